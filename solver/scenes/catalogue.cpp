@@ -1,0 +1,40 @@
+#include "solver/scenes/catalogue.hpp"
+
+#include "solver/scenes/scene.hpp"
+
+#include <algorithm>
+
+namespace grainsweep {
+
+const ParameterSpec* SceneInfo::find_parameter(std::string_view parameter) const {
+    const auto found = std::ranges::find(parameters, parameter, &ParameterSpec::name);
+    return found == parameters.end() ? nullptr : &*found;
+}
+
+const ObservableSpec* SceneInfo::find_observable(std::string_view observable) const {
+    const auto found = std::ranges::find(observables, observable, &ObservableSpec::name);
+    return found == observables.end() ? nullptr : &*found;
+}
+
+Inputs SceneInfo::defaults() const {
+    Inputs inputs;
+    for (const auto& parameter : parameters) inputs.emplace(parameter.name, parameter.default_value);
+    return inputs;
+}
+
+std::span<const SceneInfo> scene_catalogue() {
+    static const std::vector<SceneInfo> scenes = {
+        rehearsal_scene(),
+    };
+    return scenes;
+}
+
+const SceneInfo* find_scene(std::string_view name) {
+    const auto scenes = scene_catalogue();
+    const auto found = std::ranges::find(scenes, name, &SceneInfo::name);
+    return found == scenes.end() ? nullptr : &*found;
+}
+
+std::string_view instruction_path() { return "x86-64-v2"; }
+
+}  // namespace grainsweep

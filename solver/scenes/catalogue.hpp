@@ -1,0 +1,10 @@
+// One line per scene: the function that describes it.
+#pragma once
+
+#include "solver/scenes/scene.hpp"
+
+namespace grainsweep {
+
+[[nodiscard]] SceneInfo rehearsal_scene();
+
+}  // namespace grainsweep

@@ -1,0 +1,109 @@
+// What a scene is: a closed experiment that advances in its own time step and can be observed, saved and
+// restored at any moment without changing what it will answer.
+#pragma once
+
+#include "solver/scenes/values.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace grainsweep {
+
+using Bytes = std::vector<std::byte>;
+
+/// Why a state can no longer be trusted: what, where, when. Empty reason: healthy.
+struct Health {
+    std::string reason;
+    [[nodiscard]] bool stable() const { return reason.empty(); }
+};
+
+/// Particle columns for pictures: positions and named columns of the same length.
+struct Snapshot {
+    std::vector<std::array<double, 3>> positions;  ///< m
+    std::map<std::string, std::vector<double>, std::less<>> scalars;
+    std::map<std::string, std::vector<std::array<double, 3>>, std::less<>> vectors;
+};
+
+/// Expensive starting states shared by cases (packing, settled bed, periodic flow). The key is the
+/// canonical text of the inputs that determine the artefact and nothing else; with or without the store
+/// the bits of the result are the same.
+class Artefacts {
+public:
+    virtual ~Artefacts() = default;
+    [[nodiscard]] virtual std::optional<Bytes> get(std::string_view key) = 0;
+    virtual void put(std::string_view key, std::span<const std::byte> contents) = 0;
+};
+
+/// Keeps nothing: every artefact is computed anew.
+class NoArtefacts final : public Artefacts {
+public:
+    [[nodiscard]] std::optional<Bytes> get(std::string_view) override { return std::nullopt; }
+    void put(std::string_view, std::span<const std::byte>) override {}
+};
+
+class Scene {
+public:
+    Scene() = default;
+    Scene(const Scene&) = delete;
+    Scene& operator=(const Scene&) = delete;
+    virtual ~Scene() = default;
+
+    /// Integrates in the scene's own steps until time() >= until, finished() or !health().stable().
+    /// Where the slices are cut never changes the result.
+    virtual void advance(double until) = 0;
+    /// Adds everything measured so far. Reads only.
+    virtual void observe(Observations& into) const = 0;
+    /// Physical time since the start, s. Grows with every advance until finished.
+    [[nodiscard]] virtual double time() const = 0;
+    [[nodiscard]] virtual bool finished() const = 0;
+    /// Share of the work done, 0 to 1.
+    [[nodiscard]] virtual double progress() const = 0;
+    [[nodiscard]] virtual Health health() const { return {}; }
+    /// Work done so far, in particle steps, and seconds by phase where the scene measures none: empty.
+    [[nodiscard]] virtual double particle_steps() const { return 0; }
+    /// Complete state; a scene made with the same inputs and seed and restored from it continues bit for bit.
+    virtual void save(Bytes& into) const = 0;
+    virtual void restore(std::span<const std::byte> from) = 0;
+    [[nodiscard]] virtual Snapshot snapshot() const { return {}; }
+};
+
+/// Everything known about a kind of scene without making one.
+struct SceneInfo {
+    std::string name;
+    std::string summary;
+    int revision = 1;  ///< part of every case id; grows whenever results or defaults change on purpose
+    std::vector<ParameterSpec> parameters;
+    std::vector<ObservableSpec> observables;
+    /// Named sets of numerical inputs: "fast", "balanced", "reference". Empty: the scene offers none.
+    std::map<std::string, Inputs, std::less<>> accuracy;
+
+    /// A complete map (every parameter present) -> a scene at time 0. Throws std::invalid_argument with
+    /// one sentence when inputs are each within bounds but impossible together.
+    std::function<std::unique_ptr<Scene>(const Inputs&, std::uint64_t seed, Artefacts&)> make;
+    /// Predicted processor seconds of a case on a plain core, for planning and order only.
+    std::function<double(const Inputs&)> estimate_cost;
+    /// The answer, where it is proven without simulation; otherwise empty.
+    std::function<std::optional<ProvenAnswer>(const Inputs&)> proven_answer;
+
+    [[nodiscard]] const ParameterSpec* find_parameter(std::string_view parameter) const;
+    [[nodiscard]] const ObservableSpec* find_observable(std::string_view observable) const;
+    [[nodiscard]] Inputs defaults() const;
+};
+
+/// Every scene that exists, in the order they are shown.
+[[nodiscard]] std::span<const SceneInfo> scene_catalogue();
+/// nullptr when there is none of that name.
+[[nodiscard]] const SceneInfo* find_scene(std::string_view name);
+
+/// The instruction set the solver's inner loops run with in this process: "x86-64-v2", "avx2", "avx512".
+[[nodiscard]] std::string_view instruction_path();
+
+}  // namespace grainsweep

@@ -1,0 +1,100 @@
+// The window between office and workshop: plain values, std only.
+//
+// A scene declares what it takes (ParameterSpec) and what it measures (ObservableSpec); a case is a map
+// from parameter names to values (Inputs). Everything is in SI units unless a unit is named.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace grainsweep {
+
+/// A parameter's value: a real number, a count, or a word.
+using Value = std::variant<double, std::int64_t, std::string>;
+
+/// What a case is asked: parameter name -> value, sorted by name, SI.
+using Inputs = std::map<std::string, Value, std::less<>>;
+
+/// Allowed numbers: low <= x <= high, an end excluded where it is open.
+struct Interval {
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+    bool low_open = false;
+    bool high_open = false;
+
+    [[nodiscard]] bool contains(double x) const {
+        return (low_open ? x > low : x >= low) && (high_open ? x < high : x <= high);
+    }
+};
+
+/// Allowed words of a parameter whose values are words. With `file_allowed`, any other word names a file
+/// beside the campaign file, and its contents (not its name) are part of the question.
+struct Words {
+    std::vector<std::string> allowed;
+    bool file_allowed = false;
+};
+
+/// When a parameter matters: only if `other` can be (is_zero / non-zero / one of `words`).
+/// A campaign that gives a parameter which no case of it can feel is refused.
+struct Relevance {
+    enum class Condition { zero, nonzero, is_word };
+    std::string other;
+    Condition condition = Condition::nonzero;
+    std::vector<std::string> words;
+};
+
+/// One input of a scene. The type of `default_value` is the type of the parameter.
+struct ParameterSpec {
+    std::string name;
+    std::string unit;  ///< "1" for a pure number, "" for a word
+    std::string meaning;
+    Value default_value;
+    std::variant<Interval, Words> bounds;
+    std::vector<Relevance> relevant_if;  ///< all must hold
+};
+
+enum class Shape { scalar, series, profile };
+
+/// One thing a scene measures. A series has a time per value, a profile a bin coordinate per value
+/// (and a time where it is measured more than once).
+struct ObservableSpec {
+    std::string name;
+    std::string unit;
+    std::string meaning;
+    Shape shape = Shape::scalar;
+};
+
+/// One entry of a series or profile; what does not apply is NaN.
+struct Sample {
+    double time = std::numeric_limits<double>::quiet_NaN();
+    double bin = std::numeric_limits<double>::quiet_NaN();
+    double value = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// What a case answered. A scalar that is undefined for the case is absent or NaN, never invented.
+struct Observations {
+    std::map<std::string, double, std::less<>> scalars;
+    std::map<std::string, std::vector<Sample>, std::less<>> series;  ///< series and profiles
+};
+
+/// Where the time went. Not part of the answer, never compared.
+struct Cost {
+    double wall_seconds = 0;
+    double cpu_seconds = 0;
+    double particle_steps = 0;
+    std::map<std::string, double, std::less<>> phases;  ///< seconds by phase name
+};
+
+/// An answer known without simulation, with the proof in words.
+struct ProvenAnswer {
+    std::string reason;
+    Observations observations;
+};
+
+}  // namespace grainsweep

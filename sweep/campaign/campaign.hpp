@@ -1,0 +1,100 @@
+// A campaign: one scene, a space of factors, a design over it, and when to stop.
+#pragma once
+
+#include "solver/scenes/scene.hpp"
+#include "sweep/campaign/case.hpp"
+#include "sweep/designs/design.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace grainsweep::campaign {
+
+enum class Scale { linear, log };
+
+/// u in [0, 1] -> low + u (high - low), or low (high/low)^u, computed so on every platform.
+struct Between {
+    double low = 0;
+    double high = 1;
+    Scale scale = Scale::linear;
+    bool operator==(const Between&) const = default;
+};
+
+/// u -> level floor(k u), the last one at u = 1.
+struct Levels {
+    std::vector<Value> values;
+    bool operator==(const Levels&) const = default;
+};
+
+struct Factor {
+    std::string name;
+    std::variant<Between, Levels> range;
+    bool operator==(const Factor&) const = default;
+};
+
+/// What a campaign varies and what it holds.
+struct ParameterSpace {
+    const SceneInfo* scene = nullptr;
+    std::vector<Factor> factors;  ///< their order fixes the design's dimensions
+    Inputs fixed;                 ///< as given, with the accuracy setting resolved under it
+
+    /// Complete inputs of the point u in [0, 1]^d: defaults, then fixed, then factors.
+    [[nodiscard]] Inputs at(std::span<const double> u) const;
+    /// Complete inputs of a listed row of factor values.
+    [[nodiscard]] Inputs at(std::span<const Value> row) const;
+};
+
+struct Convergence {
+    std::string observable;
+    std::string rule = "replicates";  ///< replicates | any_change | all_change
+    std::vector<std::string> gates = {"mean", "sd", "kurtosis", "g1"};
+    double tolerance = 0.01;
+    std::int64_t block = 400;  ///< points between two checks
+    bool stop = true;
+    bool operator==(const Convergence&) const = default;
+};
+
+struct Limits {
+    double wall_seconds = 0;  ///< per attempt; 0: none
+    std::int64_t attempts = 3;
+};
+
+struct Execution {
+    std::int64_t workers = 0;           ///< 0: all cores
+    std::vector<std::string> launcher;  ///< argv prefix of a worker
+};
+
+struct Campaign {
+    std::string name;
+    ParameterSpace space;
+    std::string where;  ///< empty: every point
+    std::string design;
+    designs::DesignRequest request;
+    std::int64_t replicates = 1;
+    std::uint64_t seed = 1;
+    std::optional<Convergence> convergence;
+    std::string accuracy;  ///< empty: none asked
+    Limits limits;
+    Execution execution;
+    std::string text;  ///< the campaign file as read
+
+    [[nodiscard]] const SceneInfo& scene() const { return *space.scene; }
+};
+
+/// Decides whether a candidate point belongs to the campaign: the `where` clause.
+using Filter = std::function<bool(const Inputs&)>;
+
+/// A placed case for every point and replicate that passes the filter, ordered by point, then replicate.
+/// Point numbers keep the gaps of what was filtered out.
+[[nodiscard]] std::vector<PlacedCase> unfold(const Campaign& campaign, const Filter& filter);
+
+/// A case from complete inputs: id and canonical text as in the contract.
+[[nodiscard]] Case make_case(const SceneInfo& scene, const Inputs& inputs, std::uint64_t seed);
+
+}  // namespace grainsweep::campaign

@@ -1,0 +1,81 @@
+// The nouns that travel: a case, where it stands in a campaign, what became of it.
+#pragma once
+
+#include "solver/scenes/values.hpp"
+
+#include <array>
+#include <compare>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace grainsweep::campaign {
+
+/// 32 hexadecimal digits: XXH3 128-bit of the canonical text. Same question, same id.
+using CaseId = std::string;
+
+/// One question to a scene. `inputs` is complete (every parameter of the scene).
+struct Case {
+    CaseId id;
+    std::string scene;
+    int revision = 1;
+    Inputs inputs;
+    std::uint64_t seed = 0;  ///< below 2^63, so that SQL shows it as it is
+
+    bool operator==(const Case&) const = default;
+};
+
+/// A case as an answer to a design point of a campaign.
+struct PlacedCase {
+    Case question;
+    std::int64_t point = 0;
+    std::int64_t sequence = 0;
+    std::int64_t replicate = 0;
+};
+
+enum class Outcome { completed, skipped, unstable, rejected, crashed, timed_out, abandoned };
+
+inline constexpr std::array outcomes = {Outcome::completed, Outcome::skipped,   Outcome::unstable, Outcome::rejected,
+                                        Outcome::crashed,   Outcome::timed_out, Outcome::abandoned};
+
+[[nodiscard]] std::string_view to_string(Outcome outcome);
+[[nodiscard]] std::optional<Outcome> outcome_named(std::string_view word);
+
+/// completed, skipped, unstable and rejected settle a case: asking again would give the same answer.
+[[nodiscard]] constexpr bool settles(Outcome outcome) {
+    return outcome == Outcome::completed || outcome == Outcome::skipped || outcome == Outcome::unstable ||
+           outcome == Outcome::rejected;
+}
+
+/// One try at a case. Numbers start at 1 and only grow, also across restarts.
+struct Attempt {
+    CaseId case_id;
+    std::int64_t number = 1;
+    auto operator<=>(const Attempt&) const = default;
+};
+
+struct CaseResult {
+    Attempt attempt;
+    Outcome outcome = Outcome::completed;
+    std::string message;  ///< why, where it is not completed
+    Observations observations;
+    Cost cost;
+};
+
+/// scene, revision, every input that differs from its default, seed: name=value, sorted, doubles in
+/// shortest round-trip form, -0 as 0.  `defaults` are the scene's.
+[[nodiscard]] std::string canonical_text(std::string_view scene, int revision, const Inputs& inputs,
+                                         const Inputs& defaults, std::optional<std::uint64_t> seed);
+/// XXH3 128-bit of the text, 32 hexadecimal digits.
+[[nodiscard]] std::string content_hash(std::string_view text);
+/// Hash of (campaign seed, canonical inputs without seed, replicate), below 2^63.
+[[nodiscard]] std::uint64_t case_seed(std::uint64_t campaign_seed, std::string_view canonical_inputs,
+                                      std::int64_t replicate);
+/// A number as the canonical text shows it.
+[[nodiscard]] std::string shortest(double x);
+/// A value in text, words unquoted.
+[[nodiscard]] std::string to_text(const Value& value);
+
+}  // namespace grainsweep::campaign

@@ -1,0 +1,24 @@
+// A question that cannot be asked: where, what value, which rule, the nearest right word. Exit code 2.
+#pragma once
+
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace grainsweep::campaign {
+
+class WrongQuestion : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+/// "path: got value; rule. Did you mean 'x'?"
+[[nodiscard]] WrongQuestion wrong_question(std::string_view where, std::string_view value, std::string_view rule,
+                                           std::string_view suggestion = {});
+
+/// The candidate with the smallest edit distance to `word`, empty where none is near.
+[[nodiscard]] std::string nearest_word(std::string_view word, std::span<const std::string> candidates);
+
+}  // namespace grainsweep::campaign

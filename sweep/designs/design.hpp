@@ -1,0 +1,78 @@
+// A design: which points of the unit cube [0, 1]^d (or which listed rows) a campaign asks about.
+//
+// Point numbers are for ever: sample(request with more points) begins with the same points whenever
+// `extends` is true, so a campaign grows without renumbering.
+#pragma once
+
+#include "solver/scenes/values.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace grainsweep::designs {
+
+/// A table of physical values, one row a point, one column a factor.
+using Rows = std::vector<std::vector<Value>>;
+
+using OptionValue = std::variant<std::int64_t, std::string, std::vector<std::int64_t>, Rows>;
+
+/// What a design takes beside its kind: the campaign reader checks against this, `grainsweep designs`
+/// and the JSON schema print it.
+struct OptionSpec {
+    enum class Kind { count, word, counts, rows };  ///< counts: one whole number, or one per factor
+    std::string name;
+    std::string meaning;
+    Kind kind = Kind::count;
+    std::optional<OptionValue> default_value;  ///< none: required
+    std::int64_t minimum = 1;                  ///< of a count
+    std::int64_t maximum = 1'000'000'000'000;
+    std::vector<std::string> words;            ///< of a word
+};
+
+struct DesignRequest {
+    std::vector<std::size_t> levels;  ///< per factor: number of its levels, 0 where it is continuous
+    std::map<std::string, OptionValue, std::less<>> options;  ///< complete: defaults filled in
+    std::uint64_t seed = 1;           ///< the campaign's
+
+    [[nodiscard]] std::size_t dimensions() const { return levels.size(); }
+    [[nodiscard]] std::int64_t count(std::string_view option) const;
+    [[nodiscard]] const std::string& word(std::string_view option) const;
+};
+
+/// Points in order of their number. Either coordinates in the unit cube (row-major, points x dimensions)
+/// or listed physical rows; point p belongs to sequence p mod sequences.
+struct PointSet {
+    std::size_t dimensions = 0;
+    std::size_t sequences = 1;
+    std::vector<double> coordinates;
+    Rows rows;
+
+    [[nodiscard]] std::size_t size() const {
+        return rows.empty() ? (dimensions == 0 ? 0 : coordinates.size() / dimensions) : rows.size();
+    }
+    [[nodiscard]] std::span<const double> point(std::size_t p) const {
+        return std::span(coordinates).subspan(p * dimensions, dimensions);
+    }
+};
+
+struct DesignInfo {
+    std::string name;
+    std::string summary;  ///< what it is good for, and what it is not, with figures
+    std::vector<OptionSpec> options;
+    bool extends = false;
+    /// Throws std::invalid_argument with one sentence where options are impossible together.
+    std::function<PointSet(const DesignRequest&)> sample;
+};
+
+[[nodiscard]] std::span<const DesignInfo> design_catalogue();
+[[nodiscard]] const DesignInfo* find_design(std::string_view name);
+
+}  // namespace grainsweep::designs
