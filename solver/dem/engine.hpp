@@ -1,0 +1,144 @@
+// What a DEM calculation is asked, and the coarse door to whatever computes it.
+//
+// Velocity Verlet over spheres with translational and rotational freedom (house signs: overlap > 0 in
+// contact, n points from j or wall to i, the computed force acts on i). The door is virtual but wide: one
+// call runs many steps. Behind it stand a clear double-precision engine and fast mixed-precision ones, each
+// instantiated for the laws a case needs; make_engine chooses once per case.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace grainsweep::dem {
+
+using Vec3 = std::array<double, 3>;
+
+/// Area of the cohesive neck over which the cohesion energy density acts; overlap d, first order in d for
+/// equal spheres: sjkr pi R d (LIGGGHTS 3.8 `sjkr`), sjkr2 2 pi R d, paper pi R d/4 (Gupta, eq. 15 as printed).
+enum class CohesionArea { sjkr, sjkr2, paper };
+
+/// What Coulomb's limit sees: the contact force without the cohesive part, or the net normal force.
+enum class FrictionLimit { contact, net };
+
+/// One material for particles and walls.
+struct Material {
+    double youngs_modulus = 21e6;  ///< Pa
+    double poisson_ratio = 0.3;
+    double density = 7980;     ///< kg/m3
+    double restitution = 0.5;  ///< (0, 1]
+    double friction = 0.2;     ///< Coulomb, particle-particle and particle-wall; 0: no tangential law at all
+    double rolling_friction = 0;
+    double cohesion = 0;  ///< cohesion energy density, J/m3; 0: no cohesion law at all
+    CohesionArea cohesion_area = CohesionArea::sjkr;
+    FrictionLimit friction_limit = FrictionLimit::contact;
+};
+
+/// One sphere at the start. Its index in Setup::spheres is its id for ever.
+struct Sphere {
+    Vec3 position{};          ///< m
+    Vec3 velocity{};          ///< m/s
+    Vec3 angular_velocity{};  ///< rad/s
+    double radius = 0;        ///< m
+    bool mobile = true;       ///< false: frozen, an obstacle of infinite mass
+};
+
+/// Periodic faces wrap; a particle whose centre passes an open face is removed.
+struct Domain {
+    Vec3 low{};
+    Vec3 high{};
+    std::array<bool, 3> periodic{};
+};
+
+/// Infinite frictional plane; particles live on the side the unit normal points to.
+struct Plane {
+    Vec3 point{};
+    Vec3 normal{0, 0, 1};
+};
+
+/// Bar without end along y: front - thickness <= x <= front, bottom <= z <= top, moving with
+/// x velocity `speed` and vertical displacement amplitude sin(2 pi frequency t), t since the walls were set.
+/// A sphere touches the closest point of the bar, once; the lower edges have radius edge_radius (0: sharp).
+struct Blade {
+    double front = 0, thickness = 0, bottom = 0, top = 0;  ///< m, at t = 0
+    double speed = 0;                                      ///< m/s
+    double amplitude = 0, frequency = 0;                   ///< m, Hz
+    double edge_radius = 0;                                ///< m
+};
+
+using Wall = std::variant<Plane, Blade>;
+
+struct Setup {
+    Domain domain;
+    Material material;
+    Vec3 gravity{0, 0, -9.81};  ///< m/s2
+    double time_step = 1e-5;    ///< s
+    std::vector<Sphere> spheres;
+    std::vector<Wall> walls;
+};
+
+/// How to compute it; never changes what is asked beyond the stated error of the precision.
+struct Method {
+    enum class Precision { mixed, double_precision };
+    enum class Path { best, baseline, avx2, avx512 };  ///< best: what this processor has
+    Precision precision = Precision::double_precision;
+    Path path = Path::best;
+    double skin = 0;  ///< m; neighbour-list skin, 0: the engine's own choice
+};
+
+/// State of the particles still present, in order of id.
+struct State {
+    std::vector<std::int32_t> id;
+    std::vector<Vec3> position, velocity, angular_velocity;  ///< velocities of the full step
+    std::vector<double> radius;
+    std::vector<char> mobile;
+};
+
+/// Work done, for cost and benchmarks.
+struct Work {
+    std::int64_t steps = 0;
+    double particle_steps = 0;  ///< mobile particles times steps
+    double pair_visits = 0;     ///< list entries evaluated
+    std::int64_t rebuilds = 0;
+    std::map<std::string, double, std::less<>> seconds;  ///< by phase, where measured
+};
+
+class Engine {
+public:
+    Engine() = default;
+    Engine(const Engine&) = delete;
+    Engine& operator=(const Engine&) = delete;
+    virtual ~Engine() = default;
+
+    /// Advances by `steps` time steps; stops at once when the state becomes untrustworthy (fault()).
+    virtual void run(std::int64_t steps) = 0;
+    /// New walls: wall time starts at 0, wall histories are forgotten, particle histories stay; forces are
+    /// recomputed once without touching histories.
+    virtual void set_walls(std::vector<Wall> walls) = 0;
+    /// Removes particles by id; absent ids are ignored.
+    virtual void remove(std::span<const std::int32_t> ids) = 0;
+
+    [[nodiscard]] virtual std::size_t size() const = 0;         ///< particles present
+    [[nodiscard]] virtual double wall_time() const = 0;         ///< s since the walls were set
+    virtual void state(State& into) const = 0;                  ///< reuses the vectors' memory
+    /// Largest particle-particle overlap over the smaller diameter among the contacts of the last step.
+    [[nodiscard]] virtual double largest_overlap() const = 0;
+    /// What, where, when the state became untrustworthy; empty: it is sound.
+    [[nodiscard]] virtual const std::string& fault() const = 0;
+    [[nodiscard]] virtual Work work() const = 0;
+    /// Everything: an engine made from the same Setup and Method and restored continues bit for bit.
+    virtual void save(std::vector<std::byte>& into) const = 0;
+    virtual void restore(std::span<const std::byte> from) = 0;
+};
+
+/// Chooses laws and instruction path once. Throws std::invalid_argument with one sentence on an impossible setup.
+[[nodiscard]] std::unique_ptr<Engine> make_engine(const Setup& setup, const Method& method);
+
+}  // namespace grainsweep::dem
