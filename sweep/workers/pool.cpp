@@ -9,7 +9,6 @@
 #include <boost/process/extend.hpp>
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -39,11 +38,18 @@ void close_on_exec(bp::async_pipe& pipe) {
     for (const int fd : {pipe.native_source(), pipe.native_sink()}) ::fcntl(fd, F_SETFD, FD_CLOEXEC);
 }
 
+std::string joined(const std::vector<std::string>& words) {
+    std::string text;
+    for (const auto& word : words) text += (text.empty() ? "" : " ") + word;
+    return text;
+}
+
 std::string describe_end(int status) {
     if (WIFSIGNALED(status)) {
-        return fmt::format("worker ended by signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)));
+        const int signal = WTERMSIG(status);
+        return "worker ended by signal " + std::to_string(signal) + " (" + ::strsignal(signal) + ")";
     }
-    return fmt::format("worker ended with exit code {}", WEXITSTATUS(status));
+    return "worker ended with exit code " + std::to_string(WEXITSTATUS(status));
 }
 
 }  // namespace
@@ -152,8 +158,7 @@ struct Pool::Impl {
         std::string reason =
             worker->complaint.empty() ? describe_end(worker->process.native_exit_code()) : worker->complaint;
         if (!worker->log.empty()) reason += "; it wrote: " + worker->log;
-        if (!worker->ready && !ever_ready) broken = fmt::format("cannot start workers with '{}': {}",
-                                                                fmt::join(options.command, " "), reason);
+        if (!worker->ready && !ever_ready) broken = "cannot start workers with '" + joined(options.command) + "': " + reason;
         if (worker->timed_out && running) {
             events.emplace_back(TimedOut{*running, std::move(queued), options.wall_seconds,
                                          fmt::format("no answer within {} s", options.wall_seconds)});
