@@ -23,14 +23,14 @@ namespace grainsweep::schedule {
 struct History {
     std::int64_t attempts = 0;  ///< highest attempt number
     std::int64_t failures = 0;  ///< of those, crashed or timed out
-    std::optional<campaign::Outcome> outcome;
+    std::optional<campaign::Outcome> outcome = {};
 };
 
 struct Rules {
     std::int64_t attempts = 3;              ///< tries of a case that crashes or times out
     std::int64_t stop_after_failures = 0;   ///< start nothing more after so many failed cases; 0: never
     std::int64_t max_cases = 0;             ///< settle at most so many in this run; 0: all
-    std::optional<campaign::Outcome> again; ///< ask again what ended like this
+    std::optional<campaign::Outcome> again = {};  ///< ask again what ended like this
 };
 
 class Plan {

@@ -12,14 +12,14 @@ using namespace grainsweep::workers;
 namespace {
 
 TEST(Message, AQuestionSurvivesTheTrip) {
-    Run run;
+    workers::Run run;
     run.attempt = 3;
     run.question = {"0123", "rehearsal", 2,
                     {{"x1", 0.1}, {"whole", 2.0}, {"count", std::int64_t{2}}, {"word", std::string("a \"b\"\n")}},
                     (1ULL << 63U) - 1};
     const std::string line = encode(run);
     EXPECT_EQ(line.find('\n'), std::string::npos);
-    const auto back = std::get<Run>(decode_to_worker(line));
+    const auto back = std::get<workers::Run>(decode_to_worker(line));
     EXPECT_EQ(back.attempt, 3);
     EXPECT_EQ(back.question, run.question);  // a real that is whole stays a real
 }
