@@ -114,16 +114,20 @@ void Moments::merge(const Moments& other) {
     maximum_ = std::max(maximum_, other.maximum_);
 }
 
-Summary Moments::summary() const {
-    return summary(undefined);
+double Middle::median() const {
+    return std::midpoint(low, high);
 }
 
-Summary Moments::summary(double median) const {
+Summary Moments::summary() const {
+    return summary(Middle{});
+}
+
+Summary Moments::summary(Middle middle) const {
     Summary s;
     const Sums sums = all();
     s.count = sums.count;
     s.excluded = excluded_;
-    s.median = median;
+    s.median = middle.median();
     if (s.count == 0) return s;
     const auto n = static_cast<double>(s.count);
     s.minimum = minimum_;
@@ -141,7 +145,9 @@ Summary Moments::summary(double median) const {
     s.representable = variance_sound && shape_sound && std::isfinite(s.mean);
     if (!std::isfinite(s.mean)) s.mean = undefined;
     s.sd = variance_sound ? std::sqrt(sums.m2 / n) : undefined;
-    if (variance_sound) s.skewness = 3 * (sums.mean - (median - shift_)) / s.sd;
+    // Shifted first, then halved: the median itself may not be a double at a large offset.
+    const double shifted_median = std::midpoint(middle.low - shift_, middle.high - shift_);
+    if (variance_sound) s.skewness = 3 * (sums.mean - shifted_median) / s.sd;
     if (shape_sound) {
         s.g1 = std::sqrt(n) * sums.m3 / (sums.m2 * std::sqrt(sums.m2));
         s.kurtosis = n * (sums.m4 / sums.m2) / sums.m2;
@@ -149,21 +155,21 @@ Summary Moments::summary(double median) const {
     return s;
 }
 
-double median(std::span<const double> values) {
+Middle middle(std::span<const double> values) {
     std::vector<double> finite;
     finite.reserve(values.size());
     std::ranges::copy_if(values, std::back_inserter(finite), [](double x) { return std::isfinite(x); });
-    if (finite.empty()) return undefined;
-    const auto middle = finite.begin() + static_cast<std::ptrdiff_t>(finite.size() / 2);
-    std::nth_element(finite.begin(), middle, finite.end());
-    if (finite.size() % 2 == 1) return *middle;
-    return std::midpoint(*std::max_element(finite.begin(), middle), *middle);
+    if (finite.empty()) return {};
+    const auto upper = finite.begin() + static_cast<std::ptrdiff_t>(finite.size() / 2);
+    std::nth_element(finite.begin(), upper, finite.end());
+    const double high = *upper;
+    return {finite.size() % 2 == 1 ? high : *std::max_element(finite.begin(), upper), high};
 }
 
 Summary summarise(std::span<const double> values) {
     Moments moments;
     moments.add(values);
-    return moments.summary(median(values));
+    return moments.summary(middle(values));
 }
 
 }  // namespace grainsweep::stats

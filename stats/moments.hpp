@@ -47,6 +47,13 @@ struct Summary {
     [[nodiscard]] double of(Statistic statistic) const;
 };
 
+/// The middle value of a sorted sample, or the middle two where their number is even.
+struct Middle {
+    double low = std::numeric_limits<double>::quiet_NaN();
+    double high = std::numeric_limits<double>::quiet_NaN();
+    [[nodiscard]] double median() const;
+};
+
 /// Accumulates values; forgets them. Everything but the median.
 class Moments {
 public:
@@ -60,8 +67,8 @@ public:
     [[nodiscard]] std::int64_t excluded() const { return excluded_; }
     /// All figures but median and skewness (NaN).
     [[nodiscard]] Summary summary() const;
-    /// All figures, given the median of the same values.
-    [[nodiscard]] Summary summary(double median) const;
+    /// All figures, given the middle of the same values.
+    [[nodiscard]] Summary summary(Middle middle) const;
 
 private:
     /// count, mean and sums of powers of deviations, of values minus the shift.
@@ -86,8 +93,8 @@ private:
     double maximum_ = -std::numeric_limits<double>::infinity();
 };
 
-/// Median of the finite values, the mean of the middle two where their number is even; NaN where there are none.
-[[nodiscard]] double median(std::span<const double> values);
+/// The middle of the finite values; NaN where there are none. Linear time.
+[[nodiscard]] Middle middle(std::span<const double> values);
 
 [[nodiscard]] Summary summarise(std::span<const double> values);
 

@@ -7,6 +7,7 @@
 
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <vector>
 
@@ -61,7 +62,8 @@ void expect_near(double got, double expected, double scale, double tolerance, co
         EXPECT_TRUE(std::isnan(got)) << what << " is " << got;
         return;
     }
-    EXPECT_NEAR(got, expected, tolerance * std::max(std::abs(expected), scale)) << what;
+    constexpr double grain = std::numeric_limits<double>::denorm_min();
+    EXPECT_NEAR(got, expected, tolerance * std::max(std::abs(expected), scale) + grain) << what;
 }
 
 }  // namespace

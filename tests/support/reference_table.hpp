@@ -52,7 +52,8 @@ public:
     }
 
 private:
-    static std::vector<std::string> split(const std::string& line) {
+    static std::vector<std::string> split(std::string line) {
+        if (!line.empty() && line.back() == '\r') line.pop_back();
         std::vector<std::string> cells;
         std::istringstream stream(line);
         for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
