@@ -163,6 +163,11 @@ SceneInfo rehearsal_scene() {
     };
     info.estimate_cost = [](const Inputs& inputs) { return 1e-5 + std::get<double>(inputs.at("wait_seconds")); };
     info.proven_answer = [](const Inputs&) -> std::optional<ProvenAnswer> { return std::nullopt; };
+    info.on_attempt = [](Inputs inputs, std::int64_t attempt) {
+        const auto misbehaving = std::get<std::int64_t>(inputs.at("behave_attempts"));
+        if (misbehaving > 0 && attempt > misbehaving) inputs["behaviour"] = std::string("normal");
+        return inputs;
+    };
     return info;
 }
 
