@@ -83,14 +83,14 @@ bool same(const store::ConvergenceRow& a, const store::ConvergenceRow& b) {
 
 TEST(Judge, DoesNotDependOnWhoFinishedFirst) {
     const auto placed = place(400);
-    Judge calm(wanted(40, 0.02), placed, sequences, known(placed));
+    Judge calm(wanted(40, 0.03), placed, sequences, known(placed));
     const auto expected = calm.judge(placed.size());
     ASSERT_GE(expected.size(), 3U);
     ASSERT_TRUE(calm.converged_at());
     ASSERT_LT(*calm.converged_at(), 400);
 
     for (std::uint64_t shuffle = 0; shuffle < 5; ++shuffle) {
-        Judge judge = judge_of(wanted(40, 0.02), placed);
+        Judge judge = judge_of(wanted(40, 0.03), placed);
         std::vector<bool> there(placed.size());
         std::size_t prefix = 0;
         std::vector<store::ConvergenceRow> rows;
