@@ -74,13 +74,13 @@ store::ConvergenceRow row_of(const stats::Checkpoint& check, std::string_view ob
 std::string verdict_of(const stats::Checkpoint& check, const stats::ConvergenceSettings& settings,
                        std::int64_t candidates) {
     if (check.converged) {
-        std::string text = fmt::format("converged at {} points:", check.points);
+        std::string text;
         for (const auto gate : settings.gates) {
             const double measure = check.of(gate).measure;
-            text += fmt::format("{} {} {}", gate == settings.gates.front() ? "" : ",", measure_name(gate, settings),
-                                std::isnan(measure) ? "undefined" : percent(measure));
+            if (!(measure < settings.tolerance)) continue;  // under any_change one is enough
+            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", measure_name(gate, settings), percent(measure));
         }
-        return text;
+        return fmt::format("{} < {}", text, percent(settings.tolerance));
     }
     if (check.passes || !check.held_back) {
         return fmt::format("every gate within {} for the first time, the next check may confirm it{}",
