@@ -50,8 +50,7 @@ std::optional<double> Plan::next_predicted() const {
     if (closed_ || queue_.empty()) return std::nullopt;
     const auto limit = static_cast<std::size_t>(rules_.max_cases);
     if (limit > 0 && tally_.settled_now + tally_.failed_now + running_ >= limit) return std::nullopt;
-    const auto failures = static_cast<std::size_t>(rules_.stop_after_failures);
-    if (failures > 0 && tally_.failed_now >= failures) return std::nullopt;
+    if (too_many_failures()) return std::nullopt;
     return entries_[queue_.front()].predicted;
 }
 

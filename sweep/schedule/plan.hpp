@@ -57,7 +57,10 @@ public:
     /// Start nothing more.
     void close() { closed_ = true; }
 
-    [[nodiscard]] bool idle() const { return running_ == 0; }
+    [[nodiscard]] bool too_many_failures() const {
+        return rules_.stop_after_failures > 0 &&
+               tally_.failed_now >= static_cast<std::size_t>(rules_.stop_after_failures);
+    }
     /// Nothing running and nothing that could still be started.
     [[nodiscard]] bool over() const { return running_ == 0 && !next_predicted(); }
     /// Length of the longest prefix of the placed cases all of whose questions have their last word.

@@ -44,7 +44,7 @@ Ending Scheduler::run() {
     show();
     if (early_) return *early_;
     if (plan_.tally().decided == plan_.tally().questions) return Ending::finished;
-    return Ending::limited;
+    return plan_.too_many_failures() ? Ending::too_many_failures : Ending::limited;
 }
 
 void Scheduler::hand_out() {

@@ -6,6 +6,7 @@
 
 #include "sweep/campaign/campaign.hpp"
 #include "sweep/campaign/case.hpp"
+#include "sweep/store/broken_world.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -14,18 +15,12 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 namespace grainsweep::store {
-
-/// Disk full, database locked or damaged: exit code 3.
-class BrokenWorld : public std::runtime_error {
-public:
-    using std::runtime_error::runtime_error;
-};
 
 /// Who computes: stored once per run, referred to by every attempt.
 struct Provenance {
@@ -34,9 +29,9 @@ struct Provenance {
 
 /// What the archive knows of a case of the campaign.
 struct CaseState {
-    std::int64_t attempts = 0;                     ///< highest attempt number begun
-    std::int64_t failures = 0;                     ///< attempts that crashed or timed out
-    std::optional<campaign::Outcome> outcome;      ///< of the last finished attempt
+    std::int64_t attempts = 0;                 ///< highest attempt number begun
+    std::int64_t failures = 0;                 ///< attempts that crashed or timed out
+    std::optional<campaign::Outcome> outcome;  ///< of the last finished attempt
 };
 
 struct LoggedAttempt {
@@ -121,8 +116,9 @@ public:
     /// Canonical text of all results: no times, attempts, hosts; equal for equal science.
     void dump(const std::function<void(std::string_view line)>& sink) const;
 
+    struct Impl;  ///< known to the files of this room only
+
 private:
-    struct Impl;
     std::unique_ptr<Impl> impl_;
 };
 
