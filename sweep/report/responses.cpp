@@ -81,6 +81,10 @@ FactorColumn read_factor(const Json& given, const std::vector<Cell>& cells, cons
         factor.meaning = parameter->meaning;
     }
     factor.log = given.value("scale", "linear") == "log";
+    if (given.contains("between")) {
+        factor.low = given.at("between").at(0).get<double>();
+        factor.high = given.at("between").at(1).get<double>();
+    }
     const bool words = std::ranges::any_of(cells, [](const Cell& c) { return std::holds_alternative<std::string>(c); });
     if (given.contains("levels") || words) {
         read_levels(factor, cells, given.contains("levels") ? &given.at("levels") : nullptr);
@@ -88,6 +92,13 @@ FactorColumn read_factor(const Json& given, const std::vector<Cell>& cells, cons
         for (const auto& cell : cells) factor.values.push_back(number(cell));
     }
     return factor;
+}
+
+/// A view calls an observable that bears the name of a factor "NAME_observed".
+std::string observable_name(const std::string& column, const SceneInfo* scene) {
+    constexpr std::string_view suffix = "_observed";
+    if (scene == nullptr || scene->find_observable(column) != nullptr || !column.ends_with(suffix)) return column;
+    return column.substr(0, column.size() - suffix.size());
 }
 
 bool has_last_word(const std::optional<campaign::Outcome>& outcome) {
@@ -112,6 +123,12 @@ void find_settled(Responses& responses) {
 }
 
 }  // namespace
+
+double FactorColumn::coordinate(std::size_t row) const {
+    const double value = values[row];
+    if (!continuous()) return levels.size() < 2 ? 0 : value / static_cast<double>(levels.size() - 1);
+    return log ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
+}
 
 const ResponseColumn* Responses::main_observable() const {
     if (campaign.convergence) {
@@ -164,7 +181,7 @@ Responses read_responses(const store::Store& store, const store::CampaignRecord&
         responses.factors.push_back(read_factor(given, column_of(table, column++), scene));
     for (; column < table.columns.size(); ++column) {
         ResponseColumn response;
-        response.name = table.columns[column];
+        response.name = observable_name(table.columns[column], scene);
         if (const auto* spec = scene == nullptr ? nullptr : scene->find_observable(response.name)) {
             response.unit = spec->unit;
             response.meaning = spec->meaning;

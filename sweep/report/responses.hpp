@@ -17,10 +17,13 @@ namespace grainsweep::report {
 struct FactorColumn {
     std::string name, unit, meaning;
     std::vector<std::string> levels;  ///< as text, in the order of the campaign file; empty: continuous
+    double low = 0, high = 0;         ///< continuous: the range
     bool log = false;                 ///< the range is divided logarithmically
     std::vector<double> values;       ///< one per row
 
     [[nodiscard]] bool continuous() const { return levels.empty(); }
+    /// Where the row stands in the range: 0 to 1; a level by its index over their number less one.
+    [[nodiscard]] double coordinate(std::size_t row) const;
 };
 
 /// What was measured: one scalar observable, NaN where a case has none.
