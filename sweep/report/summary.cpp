@@ -43,17 +43,17 @@ void add_extreme(store::Table& table, const Responses& responses, const Response
 std::string with_error(double value, double error) {
     if (!std::isfinite(value)) return "-";
     if (!std::isfinite(error)) return fmt::format("{:.5g}", value);
-    if (!(error > 0)) return fmt::format("{:.5g} +- 0", value);
+    if (!(error > 0)) return fmt::format("{:.5g} ± 0", value);
     const double magnitude = std::max(std::abs(value), error);
     const int place = 1 - static_cast<int>(std::floor(std::log10(error)));  // decimals for two digits of the error
     if (magnitude >= 1e6 || magnitude < 1e-3) {
         const int exponent = static_cast<int>(std::floor(std::log10(magnitude)));
         const double unit = std::pow(10.0, exponent);
         const int decimals = std::clamp(place + exponent, 0, 15);
-        return fmt::format("({:.{}f} +- {:.{}f})e{}", value / unit, decimals, error / unit, decimals, exponent);
+        return fmt::format("({:.{}f} ± {:.{}f})e{}", value / unit, decimals, error / unit, decimals, exponent);
     }
     const int decimals = std::clamp(place, 0, 15);
-    return fmt::format("{:.{}f} +- {:.{}f}", value, decimals, error, decimals);
+    return fmt::format("{:.{}f} ± {:.{}f}", value, decimals, error, decimals);
 }
 
 std::string outcome_line(const Responses& responses) {

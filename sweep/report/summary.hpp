@@ -9,7 +9,7 @@
 
 namespace grainsweep::report {
 
-/// "0.2702 +- 0.0011": the error to two digits, the value to the same place. No error: the value to 5 digits.
+/// "0.2702 ± 0.0011": the error to two digits, the value to the same place. No error: the value to 5 digits.
 /// NaN: "-".
 [[nodiscard]] std::string with_error(double value, double error);
 
