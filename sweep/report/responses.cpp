@@ -3,6 +3,7 @@
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/json_text.hpp"
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/schedule/judge.hpp"
 
 #include <fmt/format.h>
 
@@ -157,8 +158,18 @@ const ResponseColumn& Responses::observable(std::string_view name) const {
         campaign::nearest_word(name, names));
 }
 
+bool Responses::measures(std::string_view name) const {
+    return name.empty() ? !observables.empty()
+                        : std::ranges::find(observables, name, &ResponseColumn::name) != observables.end();
+}
+
 bool Responses::ordered_sample() const {
     return campaign.design != "lattice" && campaign.design != "list";
+}
+
+bool repeats(const Responses& responses) {
+    const auto sequences = static_cast<std::size_t>(responses.campaign.sequences);
+    return schedule::independent_sequences(responses.campaign.design, sequences) > 1;
 }
 
 Responses read_responses(const store::Store& store, const store::CampaignRecord& record) {

@@ -56,9 +56,14 @@ struct Responses {
     [[nodiscard]] const ResponseColumn* main_observable() const;
     /// Throws WrongQuestion with the nearest name. Empty: the main observable.
     [[nodiscard]] const ResponseColumn& observable(std::string_view name) const;
+    /// Whether it has a scalar of this name; any, where the name is empty.
+    [[nodiscard]] bool measures(std::string_view name) const;
     /// A lattice or a list has no order in which statistics could settle: its beginnings are no samples of it.
     [[nodiscard]] bool ordered_sample() const;
 };
+
+/// Whether the sequences of the design repeat one another independently.
+[[nodiscard]] bool repeats(const Responses& responses);
 
 [[nodiscard]] Responses read_responses(const store::Store& store, const store::CampaignRecord& campaign);
 
