@@ -26,6 +26,12 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 // wall_seconds.
 constexpr std::size_t point_column = 0, replicate_column = 2, case_column = 3, outcome_column = 5, first_factor = 8;
 
+std::string listed(const std::vector<std::string>& names) {
+    std::string text;
+    for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text;
+}
+
 std::int64_t integer(const Cell& cell) {
     const auto* value = std::get_if<std::int64_t>(&cell);
     return value == nullptr ? 0 : *value;
@@ -154,7 +160,7 @@ const ResponseColumn& Responses::observable(std::string_view name) const {
     for (const auto& response : observables) names.push_back(response.name);
     throw campaign::wrong_question(
         "--observable", fmt::format("'{}'", name),
-        fmt::format("scene '{}' measures no such scalar; it measures {}", campaign.scene, fmt::join(names, ", ")),
+        fmt::format("scene '{}' measures no such scalar; it measures {}", campaign.scene, listed(names)),
         campaign::nearest_word(name, names));
 }
 
@@ -220,7 +226,7 @@ std::vector<store::CampaignRecord> find_campaigns(const store::Store& store, std
     std::erase_if(records, [&](const auto& record) { return record.name != name; });
     if (!records.empty()) return records;
     throw campaign::wrong_question("--campaign", fmt::format("'{}'", name),
-                                   fmt::format("the database holds {}", fmt::join(names, ", ")),
+                                   fmt::format("the database holds {}", listed(names)),
                                    campaign::nearest_word(name, names));
 }
 
