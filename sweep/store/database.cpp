@@ -306,6 +306,11 @@ int call_authorizer(void* user, int action, const char* first, const char* secon
             return ask(SqlAction::function, second, nullptr);
         case SQLITE_PRAGMA:
             return ask(SqlAction::pragma, first, second);
+        case SQLITE_ATTACH:
+        case SQLITE_DETACH:
+        case SQLITE_TRANSACTION:
+        case SQLITE_SAVEPOINT:
+            return ask(SqlAction::control, first, second);
         default:
             return ask(SqlAction::other, first, second);
     }

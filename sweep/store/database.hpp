@@ -110,8 +110,9 @@ private:
     Statement* statement_;
 };
 
-/// What a statement wants to do, as SQLite's authorizer reports it while preparing.
-enum class SqlAction { select, recursive, read, function, pragma, other };
+/// What a statement wants to do, as SQLite's authorizer reports it while preparing. `control`: attach, detach,
+/// transactions, savepoints.
+enum class SqlAction { select, recursive, read, function, pragma, control, other };
 /// Says yes to an action; for `read` table and column, for `function` its name, for `pragma` name and argument.
 using Authorizer = std::function<bool(SqlAction action, std::string_view first, std::string_view second)>;
 

@@ -11,7 +11,8 @@ namespace grainsweep::store {
 
 namespace {
 
-/// What a question may do. ATTACH, BEGIN and most pragmas leave the file unchanged as well, but are no questions.
+/// What a question may do. ATTACH, BEGIN and most pragmas are read-only to SQLite, but no questions. Statements that
+/// write are told by sqlite3_stmt_readonly: table-valued functions (json_each) declare a table on the way.
 bool may(SqlAction action, std::string_view name) {
     constexpr std::array pragmas = {"table_info", "table_xinfo", "table_list",
                                     "index_list", "index_info",  "foreign_key_list"};
@@ -24,8 +25,10 @@ bool may(SqlAction action, std::string_view name) {
             return name != "load_extension" && name != "fts3_tokenizer";
         case SqlAction::pragma:
             return std::ranges::find(pragmas, name) != pragmas.end();
-        case SqlAction::other:
+        case SqlAction::control:
             return false;
+        case SqlAction::other:
+            return true;
     }
     return false;
 }
