@@ -65,7 +65,7 @@ void ClearEngine<Laws, case_needs>::evaluate() {
     pair_contacts<advance>();
     for (auto& wall : walls_) wall_contacts<advance>(wall);
     work_.pair_visits += static_cast<double>(list_.size());
-    // A sum, so that a value that is not a number is not lost in a comparison.
+    // Negated, so that a value that is not a number is reported too.
     if (!(largest_overlap_ <= largest_sound_overlap) || !(largest_wall_overlap_ <= largest_sound_overlap))
         report_overlap();
 }
@@ -89,7 +89,7 @@ void ClearEngine<Laws, case_needs>::pair_contacts() {
                 if constexpr (needs.tangential_history)
                     if (pairs_.live[k] != 0) {
                         pairs_.live[k] = 0;
-                        pairs_.value[k] = Vec3{};
+                        if constexpr (!Laws::remembers_separation) pairs_.value[k] = Vec3{};
                     }
                 continue;
             }
