@@ -15,6 +15,8 @@
 #include <limits>
 
 namespace grainsweep::tests {
+using namespace report;
+
 namespace {
 
 using report::Responses;
