@@ -78,10 +78,12 @@ struct CampaignRecord {
 class Store {
 public:
     enum class Mode { create, read };
+    /// A network disk gets a rollback journal instead of a write-ahead log; which it is, statfs(2) knows.
+    enum class Disk { found_out, local, network };
     /// create: makes the file and its schema where absent, takes the writer's lock (a second writer is
     /// refused with a sentence naming the first); read: never writes. Throws BrokenWorld, or WrongQuestion
     /// when the file is no grainsweep database.
-    Store(const std::filesystem::path& file, Mode mode);
+    Store(const std::filesystem::path& file, Mode mode, Disk disk = Disk::found_out);
     ~Store();
     Store(Store&&) noexcept;
     Store& operator=(Store&&) noexcept;
