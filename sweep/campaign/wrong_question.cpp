@@ -13,7 +13,9 @@ namespace {
 
 constexpr std::size_t longest_word = 64;  // longer ones are no misspelling of a name of ours
 
-char folded(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
+char folded(char c) {
+    return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+}
 
 /// Optimal string alignment distance: insertions, deletions, substitutions and swaps of neighbours, case ignored.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
