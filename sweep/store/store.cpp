@@ -79,13 +79,14 @@ void migrate(Connection& db, const std::filesystem::path& file) {
     transaction.commit();
 }
 
-std::unique_ptr<Store::Impl> open_to_write(const std::filesystem::path& file) {
+std::unique_ptr<Store::Impl> open_to_write(const std::filesystem::path& file, Store::Disk disk) {
     std::error_code ignored;
     if (std::filesystem::exists(file, ignored)) check_readable(file);
     std::optional<WriterLock> lock(std::in_place, file);
     Connection db(file, Connection::Access::write);
     (void)schema_version(db, file);  // before anything is changed in a stranger's file
-    db.use(on_network(file) ? Connection::Journal::rollback : Connection::Journal::write_ahead);
+    const bool network = disk == Store::Disk::network || (disk == Store::Disk::found_out && on_network(file));
+    db.use(network ? Connection::Journal::rollback : Connection::Journal::write_ahead);
     migrate(db, file);
     return std::make_unique<Store::Impl>(file, std::move(lock), std::move(db));
 }
@@ -116,8 +117,8 @@ std::optional<std::string> phases_text(const Cost& cost) {
 
 }  // namespace
 
-Store::Store(const std::filesystem::path& file, Mode mode)
-    : impl_(mode == Mode::create ? open_to_write(file) : open_to_read(file)) {
+Store::Store(const std::filesystem::path& file, Mode mode, Disk disk)
+    : impl_(mode == Mode::create ? open_to_write(file, disk) : open_to_read(file)) {
     add_statistics(impl_->db);
 }
 Store::~Store() = default;
