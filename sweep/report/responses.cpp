@@ -3,6 +3,7 @@
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/json_text.hpp"
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/schedule/judge.hpp"
 
 #include <fmt/format.h>
 
@@ -24,6 +25,12 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 // Columns of a campaign's view before its factors: point, sequence, replicate, case_id, seed, outcome, attempts,
 // wall_seconds.
 constexpr std::size_t point_column = 0, replicate_column = 2, case_column = 3, outcome_column = 5, first_factor = 8;
+
+std::string listed(const std::vector<std::string>& names) {
+    std::string text;
+    for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text;
+}
 
 std::int64_t integer(const Cell& cell) {
     const auto* value = std::get_if<std::int64_t>(&cell);
@@ -81,6 +88,10 @@ FactorColumn read_factor(const Json& given, const std::vector<Cell>& cells, cons
         factor.meaning = parameter->meaning;
     }
     factor.log = given.value("scale", "linear") == "log";
+    if (given.contains("between")) {
+        factor.low = given.at("between").at(0).get<double>();
+        factor.high = given.at("between").at(1).get<double>();
+    }
     const bool words = std::ranges::any_of(cells, [](const Cell& c) { return std::holds_alternative<std::string>(c); });
     if (given.contains("levels") || words) {
         read_levels(factor, cells, given.contains("levels") ? &given.at("levels") : nullptr);
@@ -88,6 +99,13 @@ FactorColumn read_factor(const Json& given, const std::vector<Cell>& cells, cons
         for (const auto& cell : cells) factor.values.push_back(number(cell));
     }
     return factor;
+}
+
+/// A view calls an observable that bears the name of a factor "NAME_observed".
+std::string observable_name(const std::string& column, const SceneInfo* scene) {
+    constexpr std::string_view suffix = "_observed";
+    if (scene == nullptr || scene->find_observable(column) != nullptr || !column.ends_with(suffix)) return column;
+    return column.substr(0, column.size() - suffix.size());
 }
 
 bool has_last_word(const std::optional<campaign::Outcome>& outcome) {
@@ -113,6 +131,12 @@ void find_settled(Responses& responses) {
 
 }  // namespace
 
+double FactorColumn::coordinate(std::size_t row) const {
+    const double value = values[row];
+    if (!continuous()) return levels.size() < 2 ? 0 : value / static_cast<double>(levels.size() - 1);
+    return log ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
+}
+
 const ResponseColumn* Responses::main_observable() const {
     if (campaign.convergence) {
         const auto named = std::ranges::find(observables, campaign.convergence->observable, &ResponseColumn::name);
@@ -136,12 +160,22 @@ const ResponseColumn& Responses::observable(std::string_view name) const {
     for (const auto& response : observables) names.push_back(response.name);
     throw campaign::wrong_question(
         "--observable", fmt::format("'{}'", name),
-        fmt::format("scene '{}' measures no such scalar; it measures {}", campaign.scene, fmt::join(names, ", ")),
+        fmt::format("scene '{}' measures no such scalar; it measures {}", campaign.scene, listed(names)),
         campaign::nearest_word(name, names));
+}
+
+bool Responses::measures(std::string_view name) const {
+    return name.empty() ? !observables.empty()
+                        : std::ranges::find(observables, name, &ResponseColumn::name) != observables.end();
 }
 
 bool Responses::ordered_sample() const {
     return campaign.design != "lattice" && campaign.design != "list";
+}
+
+bool repeats(const Responses& responses) {
+    const auto sequences = static_cast<std::size_t>(responses.campaign.sequences);
+    return schedule::independent_sequences(responses.campaign.design, sequences) > 1;
 }
 
 Responses read_responses(const store::Store& store, const store::CampaignRecord& record) {
@@ -164,7 +198,7 @@ Responses read_responses(const store::Store& store, const store::CampaignRecord&
         responses.factors.push_back(read_factor(given, column_of(table, column++), scene));
     for (; column < table.columns.size(); ++column) {
         ResponseColumn response;
-        response.name = table.columns[column];
+        response.name = observable_name(table.columns[column], scene);
         if (const auto* spec = scene == nullptr ? nullptr : scene->find_observable(response.name)) {
             response.unit = spec->unit;
             response.meaning = spec->meaning;
@@ -192,7 +226,7 @@ std::vector<store::CampaignRecord> find_campaigns(const store::Store& store, std
     std::erase_if(records, [&](const auto& record) { return record.name != name; });
     if (!records.empty()) return records;
     throw campaign::wrong_question("--campaign", fmt::format("'{}'", name),
-                                   fmt::format("the database holds {}", fmt::join(names, ", ")),
+                                   fmt::format("the database holds {}", listed(names)),
                                    campaign::nearest_word(name, names));
 }
 

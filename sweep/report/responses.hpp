@@ -17,10 +17,13 @@ namespace grainsweep::report {
 struct FactorColumn {
     std::string name, unit, meaning;
     std::vector<std::string> levels;  ///< as text, in the order of the campaign file; empty: continuous
+    double low = 0, high = 0;         ///< continuous: the range
     bool log = false;                 ///< the range is divided logarithmically
     std::vector<double> values;       ///< one per row
 
     [[nodiscard]] bool continuous() const { return levels.empty(); }
+    /// Where the row stands in the range: 0 to 1; a level by its index over their number less one.
+    [[nodiscard]] double coordinate(std::size_t row) const;
 };
 
 /// What was measured: one scalar observable, NaN where a case has none.
@@ -53,9 +56,14 @@ struct Responses {
     [[nodiscard]] const ResponseColumn* main_observable() const;
     /// Throws WrongQuestion with the nearest name. Empty: the main observable.
     [[nodiscard]] const ResponseColumn& observable(std::string_view name) const;
+    /// Whether it has a scalar of this name; any, where the name is empty.
+    [[nodiscard]] bool measures(std::string_view name) const;
     /// A lattice or a list has no order in which statistics could settle: its beginnings are no samples of it.
     [[nodiscard]] bool ordered_sample() const;
 };
+
+/// Whether the sequences of the design repeat one another independently.
+[[nodiscard]] bool repeats(const Responses& responses);
 
 [[nodiscard]] Responses read_responses(const store::Store& store, const store::CampaignRecord& campaign);
 
