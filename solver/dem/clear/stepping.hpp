@@ -29,6 +29,7 @@ ClearEngine<Laws, case_needs>::ClearEngine(const Setup& setup, const Method& met
       gravity_(setup.gravity),
       time_step_(setup.time_step),
       density_(setup.material.density),
+      swing_factor_(2 * effective_modulus(setup.material) * setup.time_step * setup.time_step),
       skin_(method.skin),
       spheres_at_start_(setup.spheres.size()) {
     const std::size_t n = setup.spheres.size();
@@ -303,26 +304,38 @@ void ClearEngine<Laws, case_needs>::report(const std::string& what, std::size_t 
 }
 
 template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::report_overlap() {
-    const auto describe = [](double share, const std::string& partner) {
-        char text[160];
-        std::snprintf(text, sizeof text, "overlap of %.3g diameters (limit %.3g) with ", share, largest_sound_overlap);
-        return text + partner;
+void ClearEngine<Laws, case_needs>::report_contacts() {
+    const auto judge = [&](std::size_t i, double overlap, double share, double stiffness, const std::string& partner) {
+        char text[200];
+        const double swing = std::sqrt(swing_factor_ * stiffness);
+        if (!(share <= largest_sound_overlap)) {
+            std::snprintf(text, sizeof text, "overlap of %.3g diameters (limit %.3g) with ", share,
+                          largest_sound_overlap);
+            report(text + partner, i);
+        } else if (overlap > 0 && !(swing <= largest_sound_swing)) {
+            std::snprintf(text, sizeof text,
+                          "the time step is too large: a contact swings by %.3g rad per step (limit %.3g) with ", swing,
+                          largest_sound_swing);
+            report(text + partner, i);
+        }
     };
     for (std::size_t i = 0; i < p_.size(); ++i)
         for (std::uint32_t k = list_.begin(i); k < list_.end(i); ++k) {
             const std::size_t j = list_[k].j();
             const double r = norm(p_.position[i] - (p_.position[j] + image_shifts_[list_[k].image()]));
-            const double share = (radius(i) + radius(j) - r) / (2 * std::min(radius(i), radius(j)));
-            if (!(share <= largest_sound_overlap)) report(describe(share, "particle " + std::to_string(p_.id[j])), i);
+            const double overlap = radius(i) + radius(j) - r;
+            judge(i, overlap, overlap / (2 * std::min(radius(i), radius(j))),
+                  std::sqrt(effective_radius(i, j) * overlap) / reduced_mass(i, j),
+                  "particle " + std::to_string(p_.id[j]));
         }
     for (std::size_t w = 0; w < walls_.size(); ++w)
         for (const auto i : walls_[w].near) {
             const double distance = std::visit(
                 [&](const auto& wall) { return shape_at(wall, wall_time()).closest(p_.position[i]).distance; },
                 walls_[w].wall);
-            const double share = (radius(i) - distance) / (2 * radius(i));
-            if (!(share <= largest_sound_overlap)) report(describe(share, "wall " + std::to_string(w)), i);
+            const double overlap = radius(i) - distance;
+            judge(i, overlap, overlap / (2 * radius(i)), std::sqrt(radius(i) * overlap) * inverse_mass(i),
+                  "wall " + std::to_string(w));
         }
 }
 
