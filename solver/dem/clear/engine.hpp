@@ -103,6 +103,8 @@ private:
     void rebuild(std::span<const std::int32_t> removed = {});
     void list_walls(std::span<const std::uint32_t> fresh_index);
     [[nodiscard]] bool list_is_stale() const;
+
+    // soundness.hpp
     [[nodiscard]] bool sound();
     void check_energy();
     void learn_speed_limit();
