@@ -88,7 +88,7 @@ std::vector<ObservableSpec> observables_of_spreading() {
 double estimate_cost(const Inputs& inputs) {
     const auto s = spreading::study_of(inputs);
     return static_cast<double>(s.particles) *
-           (60e-9 * static_cast<double>(s.settle_steps) + 110e-9 * static_cast<double>(s.sweep_steps));
+           (80e-9 * static_cast<double>(s.settle_steps) + 95e-9 * static_cast<double>(s.sweep_steps));
 }
 
 }  // namespace
