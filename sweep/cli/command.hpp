@@ -27,6 +27,7 @@ struct Command {
 // One line per group of commands; each group has a file of its own.
 [[nodiscard]] std::vector<Command> plan_commands();       // plan
 [[nodiscard]] std::vector<Command> solve_commands();      // solve
+[[nodiscard]] std::vector<Command> study_commands();      // converge, sensitivity, report
 [[nodiscard]] std::vector<Command> catalogue_commands();  // scenes, designs, schema
 
 /// The commands as subcommands of `app`. The chosen one's action is in `chosen` after parsing.

@@ -23,6 +23,7 @@ std::vector<cli::Command> all_commands() {
     for (const auto& group : {
              cli::plan_commands(),
              cli::solve_commands(),
+             cli::study_commands(),
              cli::catalogue_commands(),
          }) {
         commands.insert(commands.end(), group.begin(), group.end());
