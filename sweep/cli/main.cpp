@@ -22,6 +22,9 @@ std::vector<cli::Command> all_commands() {
     std::vector<cli::Command> commands;
     for (const auto& group : {
              cli::plan_commands(),
+             cli::run_commands(),
+             cli::archive_commands(),
+             cli::study_commands(),
              cli::solve_commands(),
              cli::study_commands(),
              cli::catalogue_commands(),

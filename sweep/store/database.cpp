@@ -10,6 +10,7 @@
 #include <cstring>
 #include <limits>
 #include <new>
+#include <stdexcept>
 #include <utility>
 
 namespace grainsweep::store {
@@ -57,7 +58,7 @@ std::string file_of(sqlite3* database) {
         case SQLITE_NOMEM:
             throw std::bad_alloc();
         default:
-            throw RefusedSql(words);
+            throw RefusedSql(words, file);
     }
 }
 

@@ -16,7 +16,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -29,10 +28,17 @@ struct sqlite3_stmt;
 
 namespace grainsweep::store {
 
-/// SQLite does not accept the statement: syntax, unknown name, not authorised, a constraint.
-class RefusedSql : public std::runtime_error {
+/// SQLite does not accept the statement: syntax, unknown name, not authorised, a constraint. Of a statement of our
+/// own this says that the file is not as we made it; one who passes on a stranger's statement catches it.
+class RefusedSql : public BrokenWorld {
 public:
-    using std::runtime_error::runtime_error;
+    explicit RefusedSql(std::string words, const std::string& file = "the database")
+        : BrokenWorld(file + ": not as this program made it, damaged or altered (" + words + ")"),
+          words_(std::move(words)) {}
+    [[nodiscard]] const std::string& words() const { return words_; }  ///< SQLite's
+
+private:
+    std::string words_;
 };
 
 /// NULL, integer, real, text.

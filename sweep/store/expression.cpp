@@ -92,7 +92,7 @@ std::set<std::string> check(Connection& db, std::string_view expression, std::sp
                           fmt::format("'{}' is not among the deterministic functions of SQLite", forbidden));
         }
         if (selects > 1) throw refusal(expression, "a condition is asked of one case: no SELECT inside");
-        throw refusal_by_sqlite(expression, refused.what(), names);
+        throw refusal_by_sqlite(expression, refused.words(), names);
     }
     finish();
     return read;
@@ -125,7 +125,7 @@ public:
         try {
             return statement_.step() && statement_.get<std::int64_t>(0) != 0;
         } catch (const RefusedSql& refused) {
-            throw refusal(text_, refused.what());
+            throw refusal(text_, refused.words());
         }
     }
 

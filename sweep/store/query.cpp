@@ -74,7 +74,7 @@ Table Store::query(std::string_view sql) const {
     try {
         return rows_of(impl_->db, sql);
     } catch (const RefusedSql& refused) {
-        throw campaign::wrong_question("SQL", {}, refused.what());
+        throw campaign::wrong_question("SQL", {}, refused.words());
     }
 }
 

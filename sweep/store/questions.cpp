@@ -144,7 +144,8 @@ std::vector<LoggedAttempt> Store::attempts(std::string_view case_id) const {
     const auto key = case_key(impl_->db, case_id);
     if (!key) return attempts;
     auto rows = impl_->db.ask(
-        "SELECT number, outcome, coalesce(message, ''), coalesce(wall_seconds, 0.0), started, host, instruction_path "
+        "SELECT number, outcome, coalesce(message, ''), coalesce(wall_seconds, 0.0), started, host, "
+        "version || ' (' || \"commit\" || ')', instruction_path "
         "FROM attempt AS t JOIN provenance AS v ON v.provenance_id = t.provenance_id "
         "WHERE case_key = ? ORDER BY number",
         *key);
@@ -155,7 +156,8 @@ std::vector<LoggedAttempt> Store::attempts(std::string_view case_id) const {
                             .wall_seconds = rows.get<double>(3),
                             .started = rows.get<std::string>(4),
                             .host = rows.get<std::string>(5),
-                            .instruction_path = rows.get<std::string>(6)});
+                            .version = rows.get<std::string>(6),
+                            .instruction_path = rows.get<std::string>(7)});
     }
     return attempts;
 }

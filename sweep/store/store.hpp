@@ -39,7 +39,7 @@ struct LoggedAttempt {
     std::optional<campaign::Outcome> outcome;  ///< none: running, or its boss died
     std::string message;
     double wall_seconds = 0;
-    std::string started, host, instruction_path;
+    std::string started, host, version, instruction_path;  ///< version (commit) of the program
 };
 
 /// Rows for the commands: column names and cells (NULL, integer, real, text).
