@@ -30,7 +30,6 @@ struct Command {
 [[nodiscard]] std::vector<Command> archive_commands();    // status, explain, replay, query, dump
 [[nodiscard]] std::vector<Command> study_commands();      // converge, sensitivity, report
 [[nodiscard]] std::vector<Command> solve_commands();      // solve
-[[nodiscard]] std::vector<Command> study_commands();      // converge, sensitivity, report
 [[nodiscard]] std::vector<Command> catalogue_commands();  // scenes, designs, schema
 
 /// The commands as subcommands of `app`. The chosen one's action is in `chosen` after parsing.

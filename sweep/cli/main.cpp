@@ -26,7 +26,6 @@ std::vector<cli::Command> all_commands() {
              cli::archive_commands(),
              cli::study_commands(),
              cli::solve_commands(),
-             cli::study_commands(),
              cli::catalogue_commands(),
          }) {
         commands.insert(commands.end(), group.begin(), group.end());
