@@ -44,7 +44,7 @@ struct Study : testing::Test {
     Store store{folder / "a.db", Store::Mode::create};
 
     Responses ask(const std::string& name) {
-        return read_responses(store, report::find_campaigns(store, name).front());
+        return report::read_responses(store, report::find_campaigns(store, name).front());
     }
 };
 
@@ -252,7 +252,7 @@ TEST_F(Study, UnknownNamesGetTheNearestRightWord) {
 
 TEST_F(Study, TheRunEndsWithCountsMomentsExtremesAndThePlace) {
     answer_by(store, halton("c", 64), [](const Inputs& inputs) { return linear(inputs); });
-    const auto text = closing_summary(store, "c", folder / "a.db");
+    const auto text = report::closing_summary(store, "c", folder / "a.db");
     EXPECT_THAT(text, HasSubstr("c: 64 cases of rehearsal: 64 completed"));
     EXPECT_THAT(text, HasSubstr("largest"));
     EXPECT_THAT(text, HasSubstr("smallest"));
