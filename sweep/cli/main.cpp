@@ -24,6 +24,7 @@ std::vector<cli::Command> all_commands() {
              cli::plan_commands(),
              cli::run_commands(),
              cli::archive_commands(),
+             cli::study_commands(),
              cli::solve_commands(),
              cli::catalogue_commands(),
          }) {
