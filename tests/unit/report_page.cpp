@@ -40,7 +40,7 @@ struct Page : testing::Test {
     }
     [[nodiscard]] std::string page() const {
         std::ostringstream out;
-        write_page(out, store, "a.db");
+        report::write_page(out, store, "a.db");
         return out.str();
     }
     [[nodiscard]] static std::string between(const std::string& text, const std::string& from, const std::string& to) {
