@@ -11,8 +11,9 @@
 namespace grainsweep::report {
 
 struct History {
-    stats::ConvergenceSettings settings;  ///< the campaign's rule; all_change with the default gates where it has none
-    bool has_rule = false;                ///< the campaign gives a rule
+    stats::ConvergenceSettings
+        settings;           ///< the campaign's; else the default rule, or all_change where it cannot be used
+    bool has_rule = false;  ///< the campaign gives a rule
     std::vector<stats::Checkpoint> checks;  ///< every complete block of the settled beginning
     /// All settled points: the figures to quote. Where the points are no multiple of the block it is shown, never
     /// judged. Errors are NaN for a lattice or a list.

@@ -97,11 +97,14 @@ Json json_of(const Influence& influence) {
     value["factors"] = Json::array();
     for (const auto& factor : influence.factors) {
         Json one = {{"name", factor.factor},
+                    {"first_text", index_text(factor.first)},
+                    {"total_text", index_text(factor.total)},
                     {"first", drawn(factor.first.value)},
                     {"first_error", drawn(factor.first.half_width)},
                     {"total", drawn(factor.total.value)},
                     {"total_error", drawn(factor.total.half_width)}};
         if (factor.effects) {
+            one["mu_star_text"] = with_error(factor.effects->mu_star, factor.effects->mu_star_half_width);
             one["mu_star"] = drawn(factor.effects->mu_star);
             one["mu_star_error"] = drawn(factor.effects->mu_star_half_width);
             one["sigma"] = drawn(factor.effects->sigma);

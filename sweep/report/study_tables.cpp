@@ -186,9 +186,8 @@ store::Table influence_table(const Influence& influence) {
             row.push_back(to_cell(factor->effects->sigma));
             row.emplace_back(factor->effects->count);
         } else if (!morris) {
-            row.emplace_back(with_error(factor->first.value, factor->first.half_width));
-            if (influence.method == Influence::Method::saltelli)
-                row.emplace_back(with_error(factor->total.value, factor->total.half_width));
+            row.emplace_back(index_text(factor->first));
+            if (influence.method == Influence::Method::saltelli) row.emplace_back(index_text(factor->total));
         }
         row.resize(table.columns.size());
         table.rows.push_back(std::move(row));

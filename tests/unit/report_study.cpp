@@ -100,8 +100,12 @@ TEST_F(Study, AStoppedCampaignIsJudgedOnWhereItStopped) {
 }
 
 TEST_F(Study, MomentsOfAKnownResponseLieWithinTheirErrors) {
-    answer_by(store, halton("c", 1000, R"(, "convergence": {"observable": "y", "block": 400, "tolerance": 0.02})"),
-              [](const Inputs& inputs) { return linear(inputs); });
+    answer_by(
+        store,
+        halton(
+            "c", 1000,
+            R"(, "convergence": {"observable": "y", "block": 400, "tolerance": 0.05, "gates": ["mean", "sd", "kurtosis"]})"),
+        [](const Inputs& inputs) { return linear(inputs); });
     const auto responses = ask("c");
     const auto history = history_of(responses, responses.observable("y"));
     ASSERT_EQ(history.checks.size(), 2u);

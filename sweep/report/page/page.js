@@ -9,6 +9,7 @@
     ["mean", "mean"], ["sd", "standard deviation (divides by N)"], ["skewness", "skewness (Pearson, 3 (mean − median)/sd)"],
     ["g1", "moment skewness g1"], ["kurtosis", "kurtosis (3 for a normal distribution)"]];
   let charts = [];
+  let undrawn = [];  // a chart needs its canvas to stand in the page
 
   // ---- building blocks
 
@@ -110,7 +111,7 @@
   function axis(title, more) {
     return Object.assign({
       title: { display: Boolean(title), text: title, color: colour("quiet") },
-      ticks: { color: colour("quiet"), maxTicksLimit: 7, maxRotation: 0, callback(value) { return show(value); } },
+      ticks: { color: colour("quiet"), maxTicksLimit: 7, maxRotation: 0, includeBounds: false, callback(value) { return show(value); } },
       grid: { color: colour("grid"), borderColor: colour("line") },
     }, more || {});
   }
@@ -119,7 +120,7 @@
     config.options = Object.assign({ responsive: true, maintainAspectRatio: false, animation: false }, config.options);
     config.options.plugins = Object.assign({ legend: { display: false } }, config.options.plugins);
     config.plugins = [whiskers, marker];
-    charts.push(new Chart(canvas, config));
+    undrawn.push(() => charts.push(new Chart(canvas, config)));
   }
 
   function levelAxis(factor) {
@@ -144,7 +145,7 @@
     const width = (high - low) / Math.max(1, counts.length);
     const total = counts.reduce((a, b) => a + b, 0);
     const c = card("Distribution", `${plural(total, "value")}` +
-      (response.history.zero_share > 0 ? `, ${show(100 * response.history.zero_share)} % of them zero` : ""), true);
+      (response.history.zero_share > 0 ? `, ${Number((100 * response.history.zero_share).toPrecision(2))} % of them zero` : ""), true);
     // Bars stand on a numeric axis, so that its ticks are round numbers.
     const centres = counts.map((_, i) => low + (i + 0.5) * width);
     draw(c.canvas, {
@@ -192,7 +193,7 @@
     const ends = effects.flat().flatMap(([, mean, error]) => mean === null ? [] : [mean - (error || 0), mean + (error || 0)]);
     if (ends.length === 0) return {};
     const low = Math.min(...ends), high = Math.max(...ends), room = 0.05 * (high - low || Math.abs(high) || 1);
-    return { min: low - room, max: high + room };
+    return { suggestedMin: low - room, suggestedMax: high + room };
   }
 
   function effect(factor, bins, response, range) {
@@ -314,13 +315,13 @@
 
   function influenceSection(response) {
     const influence = response.influence;
-    const rows = influence.factors.map((f) => influence.method === "morris" ? [f.name, f.mu_star, f.mu_star_error, f.sigma]
-      : influence.method === "saltelli" ? [f.name, f.first, f.first_error, f.total, f.total_error] : [f.name, f.first, f.first_error]);
+    const rows = influence.factors.map((f) => influence.method === "morris" ? [f.name, f.mu_star_text, f.sigma]
+      : influence.method === "saltelli" ? [f.name, f.first_text, f.total_text] : [f.name, f.first_text]);
     const n = "number";
-    const columns = influence.method === "morris" ? [["factor"], ["mu*", n], ["±", n], ["sigma", n]]
-      : influence.method === "saltelli" ? [["factor"], ["first order", n], ["±", n], ["total", n], ["±", n]] : [["factor"], ["first order", n], ["±", n]];
+    const columns = influence.method === "morris" ? [["factor"], ["mu*", n], ["sigma", n]]
+      : influence.method === "saltelli" ? [["factor"], ["first order", n], ["total", n]] : [["factor"], ["first order", n]];
     const says = influence.method === "morris" ? "Change of the response when a factor moves over its range."
-      : "Share of the variance of the response that a factor explains alone" + (influence.method === "saltelli" ? ", and with all its interactions." : "; what is missing to 1 is interactions.");
+      : "Share of the variance of the response that a factor explains alone" + (influence.method === "saltelli" ? ", and with all its interactions." : "; what is missing to 1 is interactions and scatter.");
     return section("Sensitivity", says, el("div", { class: "grid wide" }, influenceFigure(influence),
       el("div", { class: "card" }, table(columns, rows), influence.notes.map((note) => el("p", { class: "says" }, note)))));
   }
@@ -337,10 +338,10 @@
     const n = "number";
     const columns = [["point", n]].concat(campaign.replicates > 1 ? [["repeat", n]] : [],
       campaign.factors.map((f) => [f.name, f.levels.length > 0 ? "" : n]), [[response.name, n], ["case"]]);
-    const rows = (list) => list.map((one) => [one.point].concat(campaign.replicates > 1 ? [one.replicate] : [], one.factors, [one.value, one.case.slice(0, 12)]));
+    const rows = (list) => list.map((one) => [one.point].concat(campaign.replicates > 1 ? [one.replicate] : [], one.factors, [one.value, one.case.slice(0, 10)]));
     const part = (title, list) => el("div", { class: "card" }, el("h3", {}, title), table(columns, rows(list)));
     return section("Extremes", "grainsweep explain and replay take the id in the last column.",
-      el("div", { class: "grid wide" }, part(`Largest ${response.name}`, response.largest), part(`Smallest ${response.name}`, response.smallest)));
+      el("div", { class: campaign.factors.length > 3 ? "grid full" : "grid wide" }, part(`Largest ${response.name}`, response.largest), part(`Smallest ${response.name}`, response.smallest)));
   }
 
   function failuresSection(campaign) {
@@ -348,9 +349,9 @@
     if (count === 0) return null;
     const columns = [["point", "number"], ["outcome"], ["attempts", "number"], ["reason", "text"]]
       .concat(campaign.factors.map((f) => [f.name, f.levels.length > 0 ? "" : "number"]), [["case"]]);
-    const rows = listed.map((one) => [one.point, one.outcome, one.attempts, one.reason].concat(one.factors, [one.case.slice(0, 12)]));
+    const rows = listed.map((one) => [one.point, one.outcome, one.attempts, one.reason].concat(one.factors, [one.case.slice(0, 10)]));
     const says = listed.length < count ? `The first ${listed.length} of ${count}. ` : "";
-    return section("Failed cases", says + "They are left out of all statistics.", el("div", { class: "card" }, table(columns, rows)));
+    return section("Failed cases", says + "They are left out of all statistics.", el("div", { class: "card tail" }, table(columns, rows)));
   }
 
   function provenanceSection(campaign) {
@@ -363,16 +364,16 @@
   function render() {
     charts.forEach((chart) => chart.destroy());
     charts = [];
+    undrawn = [];
     const campaign = data.campaigns[chosen.campaign];
     const response = campaign.observables[chosen.observable];
-    // Canvases need a width before they are drawn: every section is put in place at once, charts follow their size.
     page.replaceChildren(...heading(campaign).filter(Boolean));
     const sections = response && response.history.count > 0
       ? [distributionSection(response), momentsSection(campaign, response), effectsSection(campaign, response),
         influenceSection(response), scatterSection(campaign, response), extremesSection(campaign, response)]
       : [el("p", {}, "No case has an answer yet.")];
     page.append(...sections.concat([failuresSection(campaign), provenanceSection(campaign)]).filter(Boolean));
-    charts.forEach((chart) => chart.resize());
+    undrawn.forEach((start) => start());
   }
 
   function fillObservables() {
