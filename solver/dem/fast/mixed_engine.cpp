@@ -55,9 +55,9 @@ private:
     void check_walls(const std::vector<Wall>& walls) const;
     void begin_tally();
     void account_travel();
-    void make_lists();
+    void make_lists(std::span<const std::int32_t> removed = {});
     void full_step_velocities();
-    void restart_forces();
+    void restart_forces(std::span<const std::int32_t> removed = {});
     void report_fast_particle();
     void report_overlap();
     [[nodiscard]] double half_change(std::int32_t particle, int axis) const;
@@ -122,7 +122,6 @@ void MixedEngine::load(const Setup& setup) {
         r.inverse_radius = 1 / r.radius;
         r.inverse_mass = sphere.mobile ? static_cast<float>(1 / (8 * radius * radius * radius)) : 0.0F;
         smallest_diameter_ = std::min(smallest_diameter_, 2 * r.radius);
-        mobile_ += sphere.mobile ? 1 : 0;
         columns_.id[i] = static_cast<std::int32_t>(i);
         for (int a = 0; a < 3; ++a) {
             const auto axis = static_cast<std::size_t>(a);
@@ -193,10 +192,10 @@ void MixedEngine::full_step_velocities() {
 
 /// Lists anew, forces at the present full-step velocities without touching histories, velocities then set back by
 /// half a step: a leapfrog whose first kick is a half one.
-void MixedEngine::restart_forces() {
+void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
     place_walls(field_, walls_, room_, wall_time());
     drift_.outer = drift_.inner = std::numeric_limits<double>::infinity();
-    make_lists();
+    make_lists(removed);
     begin_tally();
     field_.history_step = 0;
     kernels_->walls(field_, tally_);
@@ -253,13 +252,15 @@ void MixedEngine::account_travel() {
 
 /// Rebuilds or refreshes the lists where displacements since demand it. A pair outside the outer list had a gap
 /// above its skin and has lost at most the drift since; likewise the inner list.
-void MixedEngine::make_lists() {
+void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
     const double skin = static_cast<double>(room_.skin);
     const bool rebuilt = !(drift_.outer < skin);
     if (!rebuilt && drift_.inner < static_cast<double>(inner_skin_)) return;
     if (rebuilt) {
-        rebuild(field_, columns_, *kernels_, room_, {});
+        rebuild(field_, columns_, *kernels_, room_, removed);
         drift_.outer = 0;
+        mobile_ = 0;
+        for (std::int32_t i = 0; i < field_.count; ++i) mobile_ += field_.records[i].inverse_mass > 0 ? 1 : 0;
         ++work_.rebuilds;
     }
     // wide enough for about inner_steps steps like the last
@@ -303,8 +304,7 @@ void MixedEngine::set_walls(std::vector<Wall> walls) {
 
 void MixedEngine::remove(std::span<const std::int32_t> ids) {
     full_step_velocities();
-    rebuild(field_, columns_, *kernels_, room_, ids);
-    restart_forces();
+    restart_forces(ids);
 }
 
 void MixedEngine::state(State& into) const {

@@ -134,6 +134,8 @@ Needs make_needs(const Setup& setup) {
                  : m.cohesion_area == CohesionArea::sjkr && m.friction_limit == FrictionLimit::contact
                      ? Needs::Cohesion::lens
                      : Needs::Cohesion::general;
+    // the general kernel computes with each particle's own radius
+    if (n.cohesion == Needs::Cohesion::general || (!n.friction && n.cohesion != Needs::Cohesion::none)) n.unequal = true;
     return n;
 }
 

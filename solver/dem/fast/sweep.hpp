@@ -107,7 +107,7 @@ GRAINSWEEP_LANES void meet(const Field& f, Packed& p, int batches, std::int64_t 
             reach_squared = broadcast(c.reach_squared);
         }
         const F near = closeness(c, ix, iy, iz, reach_squared);
-        const F square = max(fnma(broadcast(-1.0f), near, single(reach_squared)), broadcast(1e-12f));
+        const F square = max(single(reach_squared) - near, broadcast(1e-12f));
         Meeting m;
         m.touching = broadcast(0.0f) < near;
         const F inverse_distance = inverse_root(square);
