@@ -105,6 +105,8 @@ struct Field {
     /// vectors of wall contacts up, then the walls.
     std::int32_t count;
 
+    std::int32_t read_ahead;  ///< 1: the particles do not fit the caches near the core, fetch them early
+
     Record* records;
     Residual* residuals;
     Force* forces;

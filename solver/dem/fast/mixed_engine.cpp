@@ -26,6 +26,10 @@ struct Drift {
 /// Steps an inner list is meant to last: fewer cost refreshes, more cost pairs that do not touch.
 constexpr double inner_steps = 12;
 
+/// Beyond these records no longer fit the nearer caches and are fetched ahead of their use; below, asking costs more
+/// than it gains.
+constexpr std::size_t many_particles = 40000;
+
 const Kernels& kernels_of(Method::Path path, const Needs& needs) {
     switch (path) {
         case Method::Path::avx512: return avx512_kernels(needs);
@@ -110,6 +114,7 @@ void MixedEngine::load(const Setup& setup) {
     columns_.hold_wall_contacts(n);
     columns_.bind(field_);
     field_.count = static_cast<std::int32_t>(n);
+    field_.read_ahead = n > many_particles ? 1 : 0;
     const Scale& s = room_.scale;
     const bool all_periodic = setup.domain.periodic[0] && setup.domain.periodic[1] && setup.domain.periodic[2];
     box_includes_rest_ = !all_periodic || needs_.frozen;

@@ -121,7 +121,8 @@ std::int32_t refresh(const Field& f, float skin) {
     const std::int32_t batches = (f.outer_count + width - 1) / width;
     for (std::int32_t b = 0; b < batches; ++b) {
         const std::int64_t k = static_cast<std::int64_t>(b) * width;
-        for (int q = 0; q < width; ++q) prefetch(f.records + f.outer_second[k + q + tile]);
+        if (f.read_ahead != 0)
+            for (int q = 0; q < width; ++q) prefetch(f.records + f.outer_second[k + q + 64]);
         I ix, iy, iz;
         load_offsets(f.records, f.outer_first + k, f.outer_second + k, ix, iy, iz);
         const F x = single(ix) * broadcast(c.unit_single[0]), y = single(iy) * broadcast(c.unit_single[1]),

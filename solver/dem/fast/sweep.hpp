@@ -26,51 +26,64 @@ struct alignas(64) Packed {
     float outcome[tile / width + 1][9][width];
 };
 
-/// Where the packed pairs begin in the streams of histories.
-struct Streams {
-    std::int64_t read;
-    std::int64_t write;
-    std::int64_t met;
+/// How far a sweep has come.
+struct Progress {
+    std::int32_t batch;   ///< of the inner list, next to be sifted
+    std::int32_t packed;  ///< pairs in the buffers
+    std::int32_t done;    ///< particles integrated
+    std::int64_t read;    ///< histories taken from the last step's stream
+    std::int64_t written;  ///< histories put into this step's
+    std::int64_t met;      ///< of these, those already evaluated
 };
 
+// Each phase is a function of its own: the compiler sees loops it can schedule, a sampling profiler sees the phases.
+#define GRAINSWEEP_PHASE __attribute__((noinline))
+
+/// Sifts batches until a tile is full or the list at its end.
 template <class Law>
-GRAINSWEEP_LANES int sift(const Field& f, std::int32_t batch, Packed& p, int packed, Streams& s) {
-    const std::int64_t k = static_cast<std::int64_t>(batch) * width;
-    const std::int32_t* first = f.inner_first + k;
-    const std::int32_t* second = f.inner_second + k;
+GRAINSWEEP_PHASE void sift(const Field& f, std::int32_t batches, Packed& p, Progress& progress) {
     const Constants& c = f.constants;
-    for (int q = 0; q < width; ++q) prefetch(f.records + second[q + tile]);
-    I ix, iy, iz;
-    load_offsets(f.records, first, second, ix, iy, iz);
-    const F x = single(ix) * broadcast(c.unit_single[0]), y = single(iy) * broadcast(c.unit_single[1]),
-            z = single(iz) * broadcast(c.unit_single[2]);
-    F reach = broadcast(c.candidate_squared);
-    if constexpr (Law::unequal) reach = load(f.inner_reach + k);
-    const unsigned now = bits(fma(x, x, fma(y, y, z * z)) < reach);
-    store(p.first + packed, compress(load(first), now));
-    store(p.second + packed, compress(load(second), now));
-    store(p.offset[0] + packed, compress(ix, now));
-    store(p.offset[1] + packed, compress(iy, now));
-    store(p.offset[2] + packed, compress(iz, now));
-    const int count = __builtin_popcount(now);
-    if constexpr (Law::friction) {
-        const unsigned before = f.touching[batch];
-        for (int a = 0; a < 3; ++a)
-            store(f.history_next[a] + s.write, compress(expand(load(f.history[a] + s.read), before), now));
-        f.touching_next[batch] = static_cast<std::uint16_t>(now);
-        s.read += __builtin_popcount(before);
-        s.write += count;
+    const F ux = broadcast(c.unit_single[0]), uy = broadcast(c.unit_single[1]), uz = broadcast(c.unit_single[2]);
+    Progress s = progress;
+    for (; s.batch < batches && s.packed < tile; ++s.batch) {
+        const std::int64_t k = static_cast<std::int64_t>(s.batch) * width;
+        const std::int32_t* first = f.inner_first + k;
+        const std::int32_t* second = f.inner_second + k;
+        if (f.read_ahead != 0)
+            for (int q = 0; q < width; ++q) prefetch(f.records + second[q + 64]);
+        I ix, iy, iz;
+        load_offsets(f.records, first, second, ix, iy, iz);
+        const F x = single(ix) * ux, y = single(iy) * uy, z = single(iz) * uz;
+        F reach = broadcast(c.candidate_squared);
+        if constexpr (Law::unequal) reach = load(f.inner_reach + k);
+        const unsigned now = bits(fma(x, x, fma(y, y, z * z)) < reach);
+        store(p.first + s.packed, compress(load(first), now));
+        store(p.second + s.packed, compress(load(second), now));
+        store(p.offset[0] + s.packed, compress(ix, now));
+        store(p.offset[1] + s.packed, compress(iy, now));
+        store(p.offset[2] + s.packed, compress(iz, now));
+        const int count = __builtin_popcount(now);
+        if constexpr (Law::friction) {
+            const unsigned before = f.touching[s.batch];
+            for (int a = 0; a < 3; ++a)
+                store(f.history_next[a] + s.written, compress(expand(load(f.history[a] + s.read), before), now));
+            f.touching_next[s.batch] = static_cast<std::uint16_t>(now);
+            s.read += __builtin_popcount(before);
+            s.written += count;
+        }
+        s.packed += count;
     }
-    return packed + count;
+    progress = s;
 }
 
 /// Loads and transposes the motion of the packed pairs.
 template <class Law>
-GRAINSWEEP_LANES void gather(const Field& f, Packed& p, int batches) {
+GRAINSWEEP_PHASE void gather(const Field& f, Packed& p, int batches) {
     for (int b = 0; b < batches; ++b) {
         const std::int32_t* first = p.first + b * width;
         const std::int32_t* second = p.second + b * width;
-        for (int q = 0; q < width; ++q) prefetch(f.forces + second[q]);
+        if (f.read_ahead != 0)
+            for (int q = 0; q < width; ++q) prefetch(f.forces + second[q]);
         F rows[12];
         load_motion(f.records, first, second, rows);
         if constexpr (Law::unequal) load_surface(f.records, first, second, rows + 8);
@@ -87,8 +100,9 @@ GRAINSWEEP_LANES F closeness(const Constants& c, I x, I y, I z, D reach_squared)
 
 /// Force and torques of the packed pairs, into the outcome rows; histories from stream index `at` on.
 template <class Law>
-GRAINSWEEP_LANES void meet(const Field& f, Packed& p, int batches, std::int64_t at, F& largest_overlap) {
+GRAINSWEEP_PHASE void meet(const Field& f, Packed& p, int batches, std::int64_t at, Tally& t) {
     const Constants& c = f.constants;
+    F largest_overlap = broadcast(t.overlap);
     const F history_step = broadcast(f.history_step), half = broadcast(0.5f);
     for (int b = 0; b < batches; ++b) {
         const auto row = [&](int r) { return load(p.motion[b][r]); };
@@ -164,10 +178,11 @@ GRAINSWEEP_LANES void meet(const Field& f, Packed& p, int batches, std::int64_t 
             }
         }
     }
+    t.overlap = largest(largest_overlap);
 }
 
 template <class Law>
-GRAINSWEEP_LANES void scatter(const Field& f, const Packed& p, int batches) {
+GRAINSWEEP_PHASE void scatter(const Field& f, const Packed& p, int batches) {
     for (int b = 0; b < batches; ++b) {
         F o[9];
         for (int r = 0; r < (Law::friction ? (Law::unequal ? 9 : 6) : 3); ++r) o[r] = load(p.outcome[b][r]);
@@ -228,53 +243,64 @@ GRAINSWEEP_LANES void advance_one(const Field& f, std::int32_t i, Stepper& s) {
     }
 }
 
+/// Integrates the particles [from, to).
+template <class Law>
+GRAINSWEEP_PHASE void advance_range(const Field& f, std::int32_t from, std::int32_t to, Tally& t) {
+    Stepper s = stepper(f.constants, t);
+    for (std::int32_t i = from; i < to; ++i) advance_one<Law>(f, i, s);
+    store8(t.velocity_high, s.high);
+    store8(t.velocity_low, s.low);
+}
+
 template <class Law>
 void advance(const Field& f, Tally& t) {
     const unsigned denormals = flush_denormals();
-    Stepper s = stepper(f.constants, t);
-    for (std::int32_t i = 0; i < f.count; ++i) advance_one<Law>(f, i, s);
-    store8(t.velocity_high, s.high);
-    store8(t.velocity_low, s.low);
+    advance_range<Law>(f, 0, f.count, t);
     restore_denormals(denormals);
+}
+
+/// Fills the last vector up with a pair that never touches.
+GRAINSWEEP_LANES void fill_up(const Field& f, Packed& p, int packed) {
+    for (int q = packed; q < packed + width; ++q) {
+        p.first[q] = f.count;
+        p.second[q] = f.count + 1;
+        for (auto& offset : p.offset) offset[q] = INT32_MIN;
+    }
+}
+
+/// Moves what a tile left over to the front.
+GRAINSWEEP_LANES void keep_rest(Packed& p, int from) {
+    store(p.first, load(p.first + from));
+    store(p.second, load(p.second + from));
+    for (auto& offset : p.offset) store(offset, load(offset + from));
 }
 
 template <class Law>
 void sweep(const Field& f, bool advancing, Tally& t) {
     const unsigned denormals = flush_denormals();
     Packed p;
-    Streams streams{};
-    Stepper s = stepper(f.constants, t);
-    F largest_overlap = broadcast(t.overlap);
+    Progress at{};
     const std::int32_t batches = f.inner_count / width;
-    std::int32_t done = 0;
-    int packed = 0;
-    for (std::int32_t b = 0; b <= batches; ++b) {
-        const bool last = b == batches;
-        if (!last) packed = sift<Law>(f, b, p, packed, streams);
-        if (packed < tile && !last) continue;
-        t.contacts += last ? packed : packed / width * width;
-        if (last)  // fill the vector up with a pair that never touches
-            for (int q = packed; q < packed + width; ++q) {
-                p.first[q] = f.count;
-                p.second[q] = f.count + 1;
-                p.offset[0][q] = p.offset[1][q] = p.offset[2][q] = INT32_MIN;
-            }
-        const int full = last ? (packed + width - 1) / width : packed / width;
+    for (bool last = false; !last;) {
+        sift<Law>(f, batches, p, at);
+        last = at.packed < tile;
+        if (last) fill_up(f, p, at.packed);
+        t.contacts += at.packed;
+        const int full = (last ? at.packed + width - 1 : at.packed) / width;
         gather<Law>(f, p, full);
-        meet<Law>(f, p, full, streams.met, largest_overlap);
+        meet<Law>(f, p, full, at.met, t);
         scatter<Law>(f, p, full);
-        streams.met += full * width;
-        packed = last ? 0 : packed - full * width;
-        store(p.first, load(p.first + full * width));
-        store(p.second, load(p.second + full * width));
-        for (auto& offset : p.offset) store(offset, load(offset + full * width));
+        at.met += full * width;
+        at.packed = last ? 0 : at.packed - full * width;
+        t.contacts -= at.packed;
+        keep_rest(p, full * width);
         if (!advancing) continue;
-        const std::int32_t until = last ? f.count : packed > 0 ? p.first[0] : f.inner_first[(b + 1) * width];
-        for (; done < until && done < f.count; ++done) advance_one<Law>(f, done, s);
+        // pairs still to come begin with the first one left over, or the next one listed
+        const std::int32_t next = at.packed > 0 ? p.first[0] : f.inner_first[static_cast<std::int64_t>(at.batch) * width];
+        const std::int32_t until = last || next > f.count ? f.count : next;
+        advance_range<Law>(f, at.done, until, t);
+        at.done = until;
     }
-    t.overlap = largest(largest_overlap);
-    store8(t.velocity_high, s.high);
-    store8(t.velocity_low, s.low);
     restore_denormals(denormals);
 }
 
