@@ -58,12 +58,14 @@ struct Columns {
     Column<Force> forces;
     Column<std::int32_t> id, id_next;
 
-    Column<std::int32_t> inner_first, inner_second, inner_source;
+    Column<Place> inner_first, inner_second;
+    Column<std::int32_t> inner_source;
     Column<float> inner_reach;
     Column<std::uint16_t> touching, touching_next;
     Column<float> history[3], history_next[3];
 
-    Column<std::int32_t> outer_first, outer_second, row;
+    Column<Place> outer_first, outer_second;
+    Column<std::int32_t> row;
     Column<float> outer_reach;
     Column<std::uint16_t> outer_touching;
 
@@ -74,7 +76,7 @@ struct Columns {
 
     Column<WallShape> walls;
     Column<WallSegment> segments;
-    Column<std::int32_t> wall_particle;
+    Column<Place> wall_particle;
     Column<float> wall_history[3], wall_history_next[3];
 
     /// Points the field at the columns.

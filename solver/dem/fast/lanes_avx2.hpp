@@ -26,8 +26,10 @@ GRAINSWEEP_LANES I broadcast(std::int32_t a) { return {_mm256_set1_epi32(a)}; }
 GRAINSWEEP_LANES D broadcast(double a) { return {_mm256_set1_pd(a), _mm256_set1_pd(a)}; }
 GRAINSWEEP_LANES F load(const float* p) { return {_mm256_loadu_ps(p)}; }
 GRAINSWEEP_LANES I load(const std::int32_t* p) { return {_mm256_loadu_si256(reinterpret_cast<const __m256i*>(p))}; }
+GRAINSWEEP_LANES I load(const std::uint32_t* p) { return load(reinterpret_cast<const std::int32_t*>(p)); }
 GRAINSWEEP_LANES void store(float* p, F a) { _mm256_storeu_ps(p, a.v); }
 GRAINSWEEP_LANES void store(std::int32_t* p, I a) { _mm256_storeu_si256(reinterpret_cast<__m256i*>(p), a.v); }
+GRAINSWEEP_LANES void store(std::uint32_t* p, I a) { store(reinterpret_cast<std::int32_t*>(p), a); }
 
 GRAINSWEEP_LANES F operator+(F a, F b) { return {_mm256_add_ps(a.v, b.v)}; }
 GRAINSWEEP_LANES F operator-(F a, F b) { return {_mm256_sub_ps(a.v, b.v)}; }
@@ -137,17 +139,24 @@ GRAINSWEEP_LANES I with_sign_bits(I a, unsigned m) {
 }
 GRAINSWEEP_LANES I lane_numbers() { return {_mm256_set_epi32(7, 6, 5, 4, 3, 2, 1, 0)}; }
 
+GRAINSWEEP_LANES const Record* record_at(const Record* r, Place p) {
+    return reinterpret_cast<const Record*>(reinterpret_cast<const char*>(r) + std::uint64_t{p} * (sizeof(Record) / 8));
+}
+GRAINSWEEP_LANES Force* force_at(Force* f, Place p) {
+    return reinterpret_cast<Force*>(reinterpret_cast<char*>(f) + std::uint64_t{p} * (sizeof(Force) / 8));
+}
+
 GRAINSWEEP_LANES void prefetch(const void* p) { _mm_prefetch(static_cast<const char*>(p), _MM_HINT_T0); }
 
 /// The same 16-byte block of records k[0] and k[4].
 template <int Block>
-GRAINSWEEP_LANES __m256 two_blocks(const Record* r, const std::int32_t* k) {
-    const auto at = [&](int n) { return _mm_load_ps(reinterpret_cast<const float*>(r + k[n]) + 4 * Block); };
+GRAINSWEEP_LANES __m256 two_blocks(const Record* r, const Place* k) {
+    const auto at = [&](int n) { return _mm_load_ps(reinterpret_cast<const float*>(record_at(r, k[n])) + 4 * Block); };
     return _mm256_insertf128_ps(_mm256_castps128_ps256(at(0)), at(4), 1);
 }
 
 /// Position of first minus position of second, for eight pairs.
-GRAINSWEEP_LANES void load_offsets(const Record* r, const std::int32_t* first, const std::int32_t* second, I& x, I& y,
+GRAINSWEEP_LANES void load_offsets(const Record* r, const Place* first, const Place* second, I& x, I& y,
                                    I& z) {
     __m256i a[4];
     for (int e = 0; e < 4; ++e)
@@ -176,11 +185,11 @@ GRAINSWEEP_LANES void transpose_blocks(const __m256* z, __m256* out) {
 }
 
 /// Rows 0-3: velocity differences and sum of inverse masses; rows 4-7: sums of spins and of radii.
-GRAINSWEEP_LANES void load_motion(const Record* r, const std::int32_t* first, const std::int32_t* second, F* rows) {
+GRAINSWEEP_LANES void load_motion(const Record* r, const Place* first, const Place* second, F* rows) {
     const __m256 sign = _mm256_set_ps(1, 1, 1, 1, 1, -1, -1, -1);
     __m256 z[8], half[2][4];
     for (int q = 0; q < 8; ++q)
-        z[q] = _mm256_fmadd_ps(_mm256_loadu_ps(r[second[q]].velocity), sign, _mm256_loadu_ps(r[first[q]].velocity));
+        z[q] = _mm256_fmadd_ps(_mm256_loadu_ps(record_at(r, second[q])->velocity), sign, _mm256_loadu_ps(record_at(r, first[q])->velocity));
     transpose_blocks(z, half[0]);
     transpose_blocks(z + 4, half[1]);
     for (int c = 0; c < 4; ++c) {
@@ -190,7 +199,7 @@ GRAINSWEEP_LANES void load_motion(const Record* r, const std::int32_t* first, co
 }
 
 /// Rows 0-2: sums of radius times spin; row 3: difference of radii.
-GRAINSWEEP_LANES void load_surface(const Record* r, const std::int32_t* first, const std::int32_t* second, F* rows) {
+GRAINSWEEP_LANES void load_surface(const Record* r, const Place* first, const Place* second, F* rows) {
     const __m256 sign = _mm256_set_ps(-1, 1, 1, 1, -1, 1, 1, 1);
     __m256 a[4], out[4];
     for (int e = 0; e < 4; ++e)
@@ -227,48 +236,48 @@ GRAINSWEEP_LANES void add_to(Force* f, __m256 a) {
 }
 
 /// Adds force and torque to the first, minus force and torque to the second particle of each pair, in order.
-GRAINSWEEP_LANES void scatter_pairs(Force* forces, const std::int32_t* first, const std::int32_t* second,
+GRAINSWEEP_LANES void scatter_pairs(Force* forces, const Place* first, const Place* second,
                                     const F* force, const F* torque) {
     __m256 w[8];
     to_forces(force, torque, w);
     const __m256 sign = _mm256_set_ps(0, 1, 1, 1, 0, -1, -1, -1);
     for (int q = 0; q < 8; ++q) {
-        add_to(forces + first[q], w[q]);
-        float* p = forces[second[q]].force;
+        add_to(force_at(forces, first[q]), w[q]);
+        float* p = force_at(forces, second[q])->force;
         _mm256_store_ps(p, _mm256_fmadd_ps(w[q], sign, _mm256_load_ps(p)));
     }
 }
 /// The same where the torques on the two differ.
-GRAINSWEEP_LANES void scatter_unequal(Force* forces, const std::int32_t* first, const std::int32_t* second,
+GRAINSWEEP_LANES void scatter_unequal(Force* forces, const Place* first, const Place* second,
                                       const F* force, const F* torque_first, const F* torque_second) {
     __m256 w[8], u[8];
     to_forces(force, torque_first, w);
     to_forces(force, torque_second, u);
     const __m256 sign = _mm256_set_ps(0, 1, 1, 1, 0, -1, -1, -1);
     for (int q = 0; q < 8; ++q) {
-        add_to(forces + first[q], w[q]);
-        float* p = forces[second[q]].force;
+        add_to(force_at(forces, first[q]), w[q]);
+        float* p = force_at(forces, second[q])->force;
         _mm256_store_ps(p, _mm256_fmadd_ps(u[q], sign, _mm256_load_ps(p)));
     }
 }
 /// Adds the force to the first, minus the force to the second particle of each pair; no torques.
-GRAINSWEEP_LANES void scatter_forces(Force* forces, const std::int32_t* first, const std::int32_t* second,
+GRAINSWEEP_LANES void scatter_forces(Force* forces, const Place* first, const Place* second,
                                      const F* force) {
     __m256 f[4];
     to_blocks(force[0], force[1], force[2], f);
     for (int q = 0; q < 8; ++q) {
         const __m128 w = q < 4 ? _mm256_castps256_ps128(f[q & 3]) : _mm256_extractf128_ps(f[q & 3], 1);
-        float* a = forces[first[q]].force;
+        float* a = force_at(forces, first[q])->force;
         _mm_store_ps(a, _mm_add_ps(_mm_load_ps(a), w));
-        float* b = forces[second[q]].force;
+        float* b = force_at(forces, second[q])->force;
         _mm_store_ps(b, _mm_sub_ps(_mm_load_ps(b), w));
     }
 }
 /// Adds force and torque to the particles.
-GRAINSWEEP_LANES void scatter(Force* forces, const std::int32_t* particle, const F* force, const F* torque) {
+GRAINSWEEP_LANES void scatter(Force* forces, const Place* particle, const F* force, const F* torque) {
     __m256 w[8];
     to_forces(force, torque, w);
-    for (int q = 0; q < 8; ++q) add_to(forces + particle[q], w[q]);
+    for (int q = 0; q < 8; ++q) add_to(force_at(forces, particle[q]), w[q]);
 }
 
 }  // namespace

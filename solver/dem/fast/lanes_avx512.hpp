@@ -28,8 +28,10 @@ GRAINSWEEP_LANES I broadcast(std::int32_t a) { return {_mm512_set1_epi32(a)}; }
 GRAINSWEEP_LANES D broadcast(double a) { return {_mm512_set1_pd(a), _mm512_set1_pd(a)}; }
 GRAINSWEEP_LANES F load(const float* p) { return {_mm512_loadu_ps(p)}; }
 GRAINSWEEP_LANES I load(const std::int32_t* p) { return {_mm512_loadu_si512(p)}; }
+GRAINSWEEP_LANES I load(const std::uint32_t* p) { return load(reinterpret_cast<const std::int32_t*>(p)); }
 GRAINSWEEP_LANES void store(float* p, F a) { _mm512_storeu_ps(p, a.v); }
 GRAINSWEEP_LANES void store(std::int32_t* p, I a) { _mm512_storeu_si512(p, a.v); }
+GRAINSWEEP_LANES void store(std::uint32_t* p, I a) { store(reinterpret_cast<std::int32_t*>(p), a); }
 
 GRAINSWEEP_LANES F operator+(F a, F b) { return {_mm512_add_ps(a.v, b.v)}; }
 GRAINSWEEP_LANES F operator-(F a, F b) { return {_mm512_sub_ps(a.v, b.v)}; }
@@ -100,13 +102,20 @@ GRAINSWEEP_LANES I with_sign_bits(I a, unsigned m) {
 }
 GRAINSWEEP_LANES I lane_numbers() { return {_mm512_set_epi32(15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0)}; }
 
+GRAINSWEEP_LANES const Record* record_at(const Record* r, Place p) {
+    return reinterpret_cast<const Record*>(reinterpret_cast<const char*>(r) + std::uint64_t{p} * (sizeof(Record) / 8));
+}
+GRAINSWEEP_LANES Force* force_at(Force* f, Place p) {
+    return reinterpret_cast<Force*>(reinterpret_cast<char*>(f) + std::uint64_t{p} * (sizeof(Force) / 8));
+}
+
 GRAINSWEEP_LANES void prefetch(const void* p) { _mm_prefetch(static_cast<const char*>(p), _MM_HINT_T0); }
 
 /// The same 16-byte block of records k[0], k[4], k[8], k[12].
 template <int Block>
-GRAINSWEEP_LANES __m512 four_blocks(const Record* r, const std::int32_t* k) {
+GRAINSWEEP_LANES __m512 four_blocks(const Record* r, const Place* k) {
     const auto at = [&](int n) {
-        return _mm_load_ps(reinterpret_cast<const float*>(r + k[n]) + 4 * Block);
+        return _mm_load_ps(reinterpret_cast<const float*>(record_at(r, k[n])) + 4 * Block);
     };
     __m512 a = _mm512_broadcast_f32x4(at(0));
     a = _mm512_mask_broadcast_f32x4(a, 0x00f0, at(4));
@@ -115,7 +124,7 @@ GRAINSWEEP_LANES __m512 four_blocks(const Record* r, const std::int32_t* k) {
 }
 
 /// Position of first minus position of second, for sixteen pairs.
-GRAINSWEEP_LANES void load_offsets(const Record* r, const std::int32_t* first, const std::int32_t* second, I& x, I& y,
+GRAINSWEEP_LANES void load_offsets(const Record* r, const Place* first, const Place* second, I& x, I& y,
                                    I& z) {
     __m512i a[4];
     for (int e = 0; e < 4; ++e)
@@ -136,10 +145,10 @@ GRAINSWEEP_LANES __m512 high_pairs(__m512 a, __m512 b) {
 }
 
 /// Rows 0-3: velocity differences and sum of inverse masses; rows 4-7: sums of spins and of radii.
-GRAINSWEEP_LANES void load_motion(const Record* r, const std::int32_t* first, const std::int32_t* second, F* rows) {
+GRAINSWEEP_LANES void load_motion(const Record* r, const Place* first, const Place* second, F* rows) {
     const __m256 sign = _mm256_set_ps(1, 1, 1, 1, 1, -1, -1, -1);
     const auto pair = [&](int q) {
-        const __m256 a = _mm256_loadu_ps(r[first[q]].velocity), b = _mm256_loadu_ps(r[second[q]].velocity);
+        const __m256 a = _mm256_loadu_ps(record_at(r, first[q])->velocity), b = _mm256_loadu_ps(record_at(r, second[q])->velocity);
         return _mm256_fmadd_ps(b, sign, a);
     };
     __m512 half[2][8];
@@ -161,7 +170,7 @@ GRAINSWEEP_LANES void load_motion(const Record* r, const std::int32_t* first, co
 }
 
 /// Rows 0-2: sums of radius times spin; row 3: difference of radii.
-GRAINSWEEP_LANES void load_surface(const Record* r, const std::int32_t* first, const std::int32_t* second, F* rows) {
+GRAINSWEEP_LANES void load_surface(const Record* r, const Place* first, const Place* second, F* rows) {
     const __m512 sign = _mm512_broadcast_f32x4(_mm_set_ps(-1, 1, 1, 1));
     __m512 a[4];
     for (int e = 0; e < 4; ++e)
@@ -208,32 +217,32 @@ GRAINSWEEP_LANES void add_to(Force* f, __m256 a) {
 }
 
 /// Adds force and torque to the first, minus force and torque to the second particle of each pair, in order.
-GRAINSWEEP_LANES void scatter_pairs(Force* forces, const std::int32_t* first, const std::int32_t* second,
+GRAINSWEEP_LANES void scatter_pairs(Force* forces, const Place* first, const Place* second,
                                     const F* force, const F* torque) {
     __m256 w[16];
     to_forces(force, torque, w);
     const __m256 sign = _mm256_set_ps(0, 1, 1, 1, 0, -1, -1, -1);
     for (int q = 0; q < 16; ++q) {
-        add_to(forces + first[q], w[q]);
-        float* p = forces[second[q]].force;
+        add_to(force_at(forces, first[q]), w[q]);
+        float* p = force_at(forces, second[q])->force;
         _mm256_store_ps(p, _mm256_fmadd_ps(w[q], sign, _mm256_load_ps(p)));
     }
 }
 /// The same where the torques on the two differ.
-GRAINSWEEP_LANES void scatter_unequal(Force* forces, const std::int32_t* first, const std::int32_t* second,
+GRAINSWEEP_LANES void scatter_unequal(Force* forces, const Place* first, const Place* second,
                                       const F* force, const F* torque_first, const F* torque_second) {
     __m256 w[16], u[16];
     to_forces(force, torque_first, w);
     to_forces(force, torque_second, u);
     const __m256 sign = _mm256_set_ps(0, 1, 1, 1, 0, -1, -1, -1);
     for (int q = 0; q < 16; ++q) {
-        add_to(forces + first[q], w[q]);
-        float* p = forces[second[q]].force;
+        add_to(force_at(forces, first[q]), w[q]);
+        float* p = force_at(forces, second[q])->force;
         _mm256_store_ps(p, _mm256_fmadd_ps(u[q], sign, _mm256_load_ps(p)));
     }
 }
 /// Adds the force to the first, minus the force to the second particle of each pair; no torques.
-GRAINSWEEP_LANES void scatter_forces(Force* forces, const std::int32_t* first, const std::int32_t* second,
+GRAINSWEEP_LANES void scatter_forces(Force* forces, const Place* first, const Place* second,
                                      const F* force) {
     __m512 f[4];
     to_blocks(force[0], force[1], force[2], f);
@@ -245,17 +254,17 @@ GRAINSWEEP_LANES void scatter_forces(Force* forces, const std::int32_t* first, c
         w[12 + k] = _mm512_extractf32x4_ps(f[k], 3);
     }
     for (int q = 0; q < 16; ++q) {
-        float* a = forces[first[q]].force;
+        float* a = force_at(forces, first[q])->force;
         _mm_store_ps(a, _mm_add_ps(_mm_load_ps(a), w[q]));
-        float* b = forces[second[q]].force;
+        float* b = force_at(forces, second[q])->force;
         _mm_store_ps(b, _mm_sub_ps(_mm_load_ps(b), w[q]));
     }
 }
 /// Adds force and torque to the particles.
-GRAINSWEEP_LANES void scatter(Force* forces, const std::int32_t* particle, const F* force, const F* torque) {
+GRAINSWEEP_LANES void scatter(Force* forces, const Place* particle, const F* force, const F* torque) {
     __m256 w[16];
     to_forces(force, torque, w);
-    for (int q = 0; q < 16; ++q) add_to(forces + particle[q], w[q]);
+    for (int q = 0; q < 16; ++q) add_to(force_at(forces, particle[q]), w[q]);
 }
 
 }  // namespace

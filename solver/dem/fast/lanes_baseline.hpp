@@ -31,8 +31,10 @@ GRAINSWEEP_LANES I broadcast(std::int32_t a) { return {_mm_set1_epi32(a)}; }
 GRAINSWEEP_LANES D broadcast(double a) { return {_mm_set1_pd(a), _mm_set1_pd(a)}; }
 GRAINSWEEP_LANES F load(const float* p) { return {_mm_loadu_ps(p)}; }
 GRAINSWEEP_LANES I load(const std::int32_t* p) { return {_mm_loadu_si128(reinterpret_cast<const __m128i*>(p))}; }
+GRAINSWEEP_LANES I load(const std::uint32_t* p) { return load(reinterpret_cast<const std::int32_t*>(p)); }
 GRAINSWEEP_LANES void store(float* p, F a) { _mm_storeu_ps(p, a.v); }
 GRAINSWEEP_LANES void store(std::int32_t* p, I a) { _mm_storeu_si128(reinterpret_cast<__m128i*>(p), a.v); }
+GRAINSWEEP_LANES void store(std::uint32_t* p, I a) { store(reinterpret_cast<std::int32_t*>(p), a); }
 
 GRAINSWEEP_LANES F operator+(F a, F b) { return {_mm_add_ps(a.v, b.v)}; }
 GRAINSWEEP_LANES F operator-(F a, F b) { return {_mm_sub_ps(a.v, b.v)}; }
@@ -128,11 +130,18 @@ GRAINSWEEP_LANES I with_sign_bits(I a, unsigned m) {
 }
 GRAINSWEEP_LANES I lane_numbers() { return {_mm_set_epi32(3, 2, 1, 0)}; }
 
+GRAINSWEEP_LANES const Record* record_at(const Record* r, Place p) {
+    return reinterpret_cast<const Record*>(reinterpret_cast<const char*>(r) + std::uint64_t{p} * (sizeof(Record) / 8));
+}
+GRAINSWEEP_LANES Force* force_at(Force* f, Place p) {
+    return reinterpret_cast<Force*>(reinterpret_cast<char*>(f) + std::uint64_t{p} * (sizeof(Force) / 8));
+}
+
 GRAINSWEEP_LANES void prefetch(const void* p) { _mm_prefetch(static_cast<const char*>(p), _MM_HINT_T0); }
 
 template <int Block>
-GRAINSWEEP_LANES __m128 block(const Record* r, std::int32_t k) {
-    return _mm_load_ps(reinterpret_cast<const float*>(r + k) + 4 * Block);
+GRAINSWEEP_LANES __m128 block(const Record* r, Place k) {
+    return _mm_load_ps(reinterpret_cast<const float*>(record_at(r, k)) + 4 * Block);
 }
 GRAINSWEEP_LANES void transpose_blocks(const __m128* z, F* out) {
     const __m128 t0 = _mm_unpacklo_ps(z[0], z[1]), t1 = _mm_unpacklo_ps(z[2], z[3]);
@@ -144,7 +153,7 @@ GRAINSWEEP_LANES void transpose_blocks(const __m128* z, F* out) {
 }
 
 /// Position of first minus position of second, for four pairs.
-GRAINSWEEP_LANES void load_offsets(const Record* r, const std::int32_t* first, const std::int32_t* second, I& x, I& y,
+GRAINSWEEP_LANES void load_offsets(const Record* r, const Place* first, const Place* second, I& x, I& y,
                                    I& z) {
     __m128i a[4];
     for (int e = 0; e < 4; ++e)
@@ -157,7 +166,7 @@ GRAINSWEEP_LANES void load_offsets(const Record* r, const std::int32_t* first, c
 }
 
 /// Rows 0-3: velocity differences and sum of inverse masses; rows 4-7: sums of spins and of radii.
-GRAINSWEEP_LANES void load_motion(const Record* r, const std::int32_t* first, const std::int32_t* second, F* rows) {
+GRAINSWEEP_LANES void load_motion(const Record* r, const Place* first, const Place* second, F* rows) {
     const __m128 flip = _mm_castsi128_ps(_mm_set_epi32(0, INT32_MIN, INT32_MIN, INT32_MIN));
     __m128 v[4], w[4];
     for (int e = 0; e < 4; ++e) {
@@ -169,7 +178,7 @@ GRAINSWEEP_LANES void load_motion(const Record* r, const std::int32_t* first, co
 }
 
 /// Rows 0-2: sums of radius times spin; row 3: difference of radii.
-GRAINSWEEP_LANES void load_surface(const Record* r, const std::int32_t* first, const std::int32_t* second, F* rows) {
+GRAINSWEEP_LANES void load_surface(const Record* r, const Place* first, const Place* second, F* rows) {
     const __m128 flip = _mm_castsi128_ps(_mm_set_epi32(INT32_MIN, 0, 0, 0));
     __m128 a[4];
     for (int e = 0; e < 4; ++e) a[e] = _mm_add_ps(block<3>(r, first[e]), _mm_xor_ps(block<3>(r, second[e]), flip));
@@ -184,50 +193,50 @@ GRAINSWEEP_LANES void add_to(float* p, F a) { _mm_store_ps(p, _mm_add_ps(_mm_loa
 GRAINSWEEP_LANES void subtract_from(float* p, F a) { _mm_store_ps(p, _mm_sub_ps(_mm_load_ps(p), a.v)); }
 
 /// Adds force and torque to the first, minus force and torque to the second particle of each pair; the torques differ.
-GRAINSWEEP_LANES void scatter_unequal(Force* forces, const std::int32_t* first, const std::int32_t* second,
+GRAINSWEEP_LANES void scatter_unequal(Force* forces, const Place* first, const Place* second,
                                       const F* force, const F* torque_first, const F* torque_second) {
     F f[4], t[4], u[4];
     to_blocks(force[0], force[1], force[2], f);
     to_blocks(torque_first[0], torque_first[1], torque_first[2], t);
     to_blocks(torque_second[0], torque_second[1], torque_second[2], u);
     for (int q = 0; q < 4; ++q) {
-        add_to(forces[first[q]].force, f[q]);
-        add_to(forces[first[q]].torque, t[q]);
-        subtract_from(forces[second[q]].force, f[q]);
-        add_to(forces[second[q]].torque, u[q]);
+        add_to(force_at(forces, first[q])->force, f[q]);
+        add_to(force_at(forces, first[q])->torque, t[q]);
+        subtract_from(force_at(forces, second[q])->force, f[q]);
+        add_to(force_at(forces, second[q])->torque, u[q]);
     }
 }
 /// The same where the torques are equal.
-GRAINSWEEP_LANES void scatter_pairs(Force* forces, const std::int32_t* first, const std::int32_t* second,
+GRAINSWEEP_LANES void scatter_pairs(Force* forces, const Place* first, const Place* second,
                                     const F* force, const F* torque) {
     F f[4], t[4];
     to_blocks(force[0], force[1], force[2], f);
     to_blocks(torque[0], torque[1], torque[2], t);
     for (int q = 0; q < 4; ++q) {
-        add_to(forces[first[q]].force, f[q]);
-        add_to(forces[first[q]].torque, t[q]);
-        subtract_from(forces[second[q]].force, f[q]);
-        add_to(forces[second[q]].torque, t[q]);
+        add_to(force_at(forces, first[q])->force, f[q]);
+        add_to(force_at(forces, first[q])->torque, t[q]);
+        subtract_from(force_at(forces, second[q])->force, f[q]);
+        add_to(force_at(forces, second[q])->torque, t[q]);
     }
 }
 /// Forces only.
-GRAINSWEEP_LANES void scatter_forces(Force* forces, const std::int32_t* first, const std::int32_t* second,
+GRAINSWEEP_LANES void scatter_forces(Force* forces, const Place* first, const Place* second,
                                      const F* force) {
     F f[4];
     to_blocks(force[0], force[1], force[2], f);
     for (int q = 0; q < 4; ++q) {
-        add_to(forces[first[q]].force, f[q]);
-        subtract_from(forces[second[q]].force, f[q]);
+        add_to(force_at(forces, first[q])->force, f[q]);
+        subtract_from(force_at(forces, second[q])->force, f[q]);
     }
 }
 /// Adds force and torque to the particles.
-GRAINSWEEP_LANES void scatter(Force* forces, const std::int32_t* particle, const F* force, const F* torque) {
+GRAINSWEEP_LANES void scatter(Force* forces, const Place* particle, const F* force, const F* torque) {
     F f[4], t[4];
     to_blocks(force[0], force[1], force[2], f);
     to_blocks(torque[0], torque[1], torque[2], t);
     for (int q = 0; q < 4; ++q) {
-        add_to(forces[particle[q]].force, f[q]);
-        add_to(forces[particle[q]].torque, t[q]);
+        add_to(force_at(forces, particle[q])->force, f[q]);
+        add_to(force_at(forces, particle[q])->torque, t[q]);
     }
 }
 

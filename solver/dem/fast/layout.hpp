@@ -21,6 +21,10 @@ namespace grainsweep::dem::fast {
 constexpr std::int32_t tile = 128;
 constexpr std::int32_t spare = 2 * tile + 64;
 
+/// A particle in a list: its index times eight, so that its record and its force are one scaled address away.
+using Place = std::uint32_t;
+constexpr std::int32_t places_per_index = 8;
+
 /// One particle as the pair loop reads it: one cache line.
 struct alignas(64) Record {
     std::int32_t position[3];
@@ -112,8 +116,8 @@ struct Field {
     Force* forces;
 
     // Inner list: pairs that may touch before the next refresh, sorted by the first particle.
-    std::int32_t* inner_first;
-    std::int32_t* inner_second;
+    Place* inner_first;
+    Place* inner_second;
     float* inner_reach;  ///< candidate distance squared, where radii differ
     std::int32_t* inner_source;  ///< index in the outer list
     std::int32_t inner_count;    ///< a multiple of the width
@@ -125,8 +129,8 @@ struct Field {
     float history_step;  ///< 1: the step displaces the tangential springs, 0: it only looks
 
     // Outer list, sorted by the first particle.
-    std::int32_t* outer_first;
-    std::int32_t* outer_second;
+    Place* outer_first;
+    Place* outer_second;
     float* outer_reach;  ///< sum of radii, where they differ
     std::uint16_t* outer_touching;
     std::int32_t outer_count;
@@ -145,7 +149,7 @@ struct Field {
     WallShape* walls;
     WallSegment* segments;
     std::int32_t wall_count;
-    std::int32_t* wall_particle;
+    Place* wall_particle;
     float* wall_history[3];
 };
 

@@ -377,7 +377,9 @@ void MixedEngine::report_overlap() {
     double most = 0;
     std::int32_t first = 0, second = -1;
     for (std::int32_t k = 0; k < field_.inner_count; ++k) {
-        const Record &a = field_.records[field_.inner_first[k]], &b = field_.records[field_.inner_second[k]];
+        const auto i = static_cast<std::int32_t>(field_.inner_first[k] / places_per_index);
+        const auto j = static_cast<std::int32_t>(field_.inner_second[k] / places_per_index);
+        const Record &a = field_.records[i], &b = field_.records[j];
         double square = 0;
         for (int q = 0; q < 3; ++q) {
             const auto offset = static_cast<std::int32_t>(static_cast<std::uint32_t>(a.position[q]) -
@@ -386,7 +388,7 @@ void MixedEngine::report_overlap() {
         }
         const double radii = static_cast<double>(a.radius) + static_cast<double>(b.radius);
         const double share = (radii - std::sqrt(square)) / (2 * static_cast<double>(std::min(a.radius, b.radius)));
-        if (share > most) most = share, first = field_.inner_first[k], second = field_.inner_second[k];
+        if (share > most) most = share, first = i, second = j;
     }
     char text[160];
     if (tally_.overlap > static_cast<float>(overlap_limit) && second >= 0) {
@@ -399,7 +401,7 @@ void MixedEngine::report_overlap() {
     double gap = std::numeric_limits<double>::infinity();
     for (std::int32_t w = 0; w < field_.wall_count; ++w)
         for (std::int32_t k = field_.segments[w].begin; k < field_.segments[w].end; ++k) {
-            const std::int32_t i = field_.wall_particle[k];
+            const auto i = static_cast<std::int32_t>(field_.wall_particle[k] / places_per_index);
             if (i >= field_.count) continue;
             const double g = wall_gap(field_, field_.walls[w], i) / (2 * static_cast<double>(field_.records[i].radius));
             if (g < gap) gap = g, deepest = i, wall = w;

@@ -10,6 +10,9 @@ namespace grainsweep::dem::fast {
 
 namespace {
 
+Place place_of(std::int32_t index) { return static_cast<Place>(index * places_per_index); }
+std::int32_t index_of(Place place) { return static_cast<std::int32_t>(place / places_per_index); }
+
 /// Cells along one axis: of periodic ones a whole number fills the period, open ones start at the lowest particle.
 struct Axis {
     std::int32_t cells = 1;
@@ -156,8 +159,8 @@ void find_pairs(Field& f, Columns& c, const Kernels& kernels, const Room& room) 
     }
     for (std::size_t k = 0; k < static_cast<std::size_t>(spare); ++k) {
         const std::size_t at = static_cast<std::size_t>(f.outer_count) + k;
-        c.outer_first[at] = f.count;
-        c.outer_second[at] = f.count + 1;
+        c.outer_first[at] = place_of(f.count);
+        c.outer_second[at] = place_of(f.count + 1);
         c.outer_reach[at] = 0;
     }
 }
@@ -169,7 +172,7 @@ void for_each_contact(const Field& f, std::int32_t width, Visit visit) {
     for (std::int32_t b = 0; b < f.inner_count / width; ++b)
         for (unsigned m = f.touching[b]; m != 0; m &= m - 1) {
             const std::int32_t k = b * width + std::countr_zero(m);
-            visit(f.inner_first[k], f.inner_second[k], stream++, k);
+            visit(index_of(f.inner_first[k]), index_of(f.inner_second[k]), stream++, k);
         }
 }
 
@@ -185,7 +188,7 @@ void carry_histories(Field& f, Columns& c, const Kernels& kernels) {
         const bool swapped = a > b;
         if (swapped) std::swap(a, b);
         for (std::int32_t o = f.row[a]; o < f.row[a + 1]; ++o)
-            if (f.outer_second[o] == b) {
+            if (f.outer_second[o] == place_of(b)) {
                 c.owner[static_cast<std::size_t>(o)] = swapped ? -(stream + 1) : stream + 1;
                 break;
             }
@@ -277,21 +280,21 @@ void list_wall_contacts(Field& f, Columns& c, const Kernels& kernels, const Room
     std::int32_t n = 0;
     std::vector<std::int32_t> old_slot;
     const std::int32_t old_count = keep && f.wall_count > 0 ? f.segments[f.wall_count - 1].end : 0;
-    const std::vector<std::int32_t> old_particle(f.wall_particle, f.wall_particle + old_count);
+    const std::vector<Place> old_particle(f.wall_particle, f.wall_particle + old_count);
     for (std::int32_t w = 0; w < f.wall_count; ++w) {
         const WallSegment old = f.segments[w];
         old_slot.assign(static_cast<std::size_t>(f.count), none);
         if (keep)
             for (std::int32_t k = old.begin; k < old.end; ++k) {
-                const std::int32_t from = old_particle[static_cast<std::size_t>(k)];
-                const std::int32_t to = from == none ? none : c.place[static_cast<std::size_t>(from)];
+                const std::int32_t from = index_of(old_particle[static_cast<std::size_t>(k)]);
+                const std::int32_t to = c.place[static_cast<std::size_t>(from)];
                 if (to >= 0) old_slot[static_cast<std::size_t>(to)] = k;
             }
         const std::int32_t begin = n;
         c.hold_wall_contacts(static_cast<std::size_t>(n) + static_cast<std::size_t>(f.count));
         const auto add = [&](std::int32_t particle, std::int32_t from) {
             const auto k = static_cast<std::size_t>(n++);
-            c.wall_particle[k] = particle;
+            c.wall_particle[k] = place_of(particle);
             for (int a = 0; a < 3; ++a)
                 c.wall_history_next[a][k] = from == none ? 0 : c.wall_history[a][static_cast<std::size_t>(from)];
         };

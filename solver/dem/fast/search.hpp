@@ -66,6 +66,8 @@ std::int64_t search(const Field& f, float skin) {
     const Constants& c = f.constants;
     std::int64_t n = 0;
     Runs runs;
+    I lane_places = lane_numbers();
+    for (int d = 1; d < places_per_index; d *= 2) lane_places = lane_places + lane_places;
     for (std::int32_t z = 0; z < f.cells[2]; ++z)
         for (std::int32_t y = 0; y < f.cells[1]; ++y)
             for (std::int32_t x = 0; x < f.cells[0]; ++x) {
@@ -77,6 +79,7 @@ std::int64_t search(const Field& f, float skin) {
                     f.row[i] = static_cast<std::int32_t>(n);
                     const I xi = broadcast(f.column[0][i]), yi = broadcast(f.column[1][i]),
                             zi = broadcast(f.column[2][i]);
+                    const I own = broadcast(i * places_per_index);
                     const F radius = broadcast(f.column_radius[i]), mobile = broadcast(f.column_mobile[i]);
                     const auto scan = [&](std::int32_t from, std::int32_t to) __attribute__((always_inline)) {
                         for (std::int32_t j = from; j < to; j += width) {
@@ -92,8 +95,8 @@ std::int64_t search(const Field& f, float skin) {
                             if (to - j < width) found &= (1u << (to - j)) - 1;
                             const int k = __builtin_popcount(found);
                             if (n + 2 * width <= f.outer_capacity) {
-                                store(f.outer_second + n, compress(lane_numbers() + broadcast(j), found));
-                                store(f.outer_first + n, broadcast(i));
+                                store(f.outer_second + n, compress(lane_places + broadcast(j * places_per_index), found));
+                                store(f.outer_first + n, own);
                                 if constexpr (Law::unequal) store(f.outer_reach + n, compress(sum, found));
                             }
                             n += k;
@@ -122,7 +125,7 @@ std::int32_t refresh(const Field& f, float skin) {
     for (std::int32_t b = 0; b < batches; ++b) {
         const std::int64_t k = static_cast<std::int64_t>(b) * width;
         if (f.read_ahead != 0)
-            for (int q = 0; q < width; ++q) prefetch(f.records + f.outer_second[k + q + 64]);
+            for (int q = 0; q < width; ++q) prefetch(record_at(f.records, f.outer_second[k + q + 64]));
         I ix, iy, iz;
         load_offsets(f.records, f.outer_first + k, f.outer_second + k, ix, iy, iz);
         const F x = single(ix) * broadcast(c.unit_single[0]), y = single(iy) * broadcast(c.unit_single[1]),
@@ -144,8 +147,8 @@ std::int32_t refresh(const Field& f, float skin) {
     }
     const std::int64_t padded = (n + width - 1) / width * width;
     for (std::int64_t k = n; k < padded + 2 * tile; ++k) {
-        f.inner_first[k] = f.count;
-        f.inner_second[k] = f.count + 1;
+        f.inner_first[k] = static_cast<Place>(f.count * places_per_index);
+        f.inner_second[k] = static_cast<Place>((f.count + 1) * places_per_index);
         if constexpr (Law::unequal) f.inner_reach[k] = 0;
     }
     // the touching bits travelled as signs of the second index; take them off again

@@ -2,8 +2,8 @@
 //
 //   sift      listed pairs in list order: position differences, in single precision, decide which may touch; these
 //             and their histories are packed together. A pair that does not touch costs this and nothing more.
-//   meet      packed pairs in tiles: motion is loaded and transposed, the law evaluated, forces scattered; three
-//             loops, so that the processor overlaps the vectors of one kind of work.
+//   meet      packed pairs in tiles: motion is loaded and transposed, the law evaluated.
+//   scatter   forces of a tile are added to both particles.
 //   advance   a particle whose pairs are all behind is integrated at once, while it is in the nearest cache:
 //             leapfrog v(t+dt/2) = v(t-dt/2) + dt f/m, x(t+dt) = x(t) + dt v(t+dt/2), the velocity Verlet whose
 //             contact law sees half-step velocities. What rounding drops is carried to the next step.
@@ -19,10 +19,9 @@ namespace {
 
 /// Pairs that may touch, packed; the buffers of one tile and a remainder.
 struct alignas(64) Packed {
-    std::int32_t first[tile + 2 * width];
-    std::int32_t second[tile + 2 * width];
+    Place first[tile + 2 * width];
+    Place second[tile + 2 * width];
     std::int32_t offset[3][tile + 2 * width];
-    float motion[tile / width + 1][12][width];
     float outcome[tile / width + 1][9][width];
 };
 
@@ -47,10 +46,10 @@ GRAINSWEEP_PHASE void sift(const Field& f, std::int32_t batches, Packed& p, Prog
     Progress s = progress;
     for (; s.batch < batches && s.packed < tile; ++s.batch) {
         const std::int64_t k = static_cast<std::int64_t>(s.batch) * width;
-        const std::int32_t* first = f.inner_first + k;
-        const std::int32_t* second = f.inner_second + k;
+        const Place* first = f.inner_first + k;
+        const Place* second = f.inner_second + k;
         if (f.read_ahead != 0)
-            for (int q = 0; q < width; ++q) prefetch(f.records + second[q + 64]);
+            for (int q = 0; q < width; ++q) prefetch(record_at(f.records, second[q + 64]));
         I ix, iy, iz;
         load_offsets(f.records, first, second, ix, iy, iz);
         const F x = single(ix) * ux, y = single(iy) * uy, z = single(iz) * uz;
@@ -76,21 +75,6 @@ GRAINSWEEP_PHASE void sift(const Field& f, std::int32_t batches, Packed& p, Prog
     progress = s;
 }
 
-/// Loads and transposes the motion of the packed pairs.
-template <class Law>
-GRAINSWEEP_PHASE void gather(const Field& f, Packed& p, int batches) {
-    for (int b = 0; b < batches; ++b) {
-        const std::int32_t* first = p.first + b * width;
-        const std::int32_t* second = p.second + b * width;
-        if (f.read_ahead != 0)
-            for (int q = 0; q < width; ++q) prefetch(f.forces + second[q]);
-        F rows[12];
-        load_motion(f.records, first, second, rows);
-        if constexpr (Law::unequal) load_surface(f.records, first, second, rows + 8);
-        for (int r = 0; r < (Law::unequal ? 12 : 7); ++r) store(p.motion[b][r], rows[r]);
-    }
-}
-
 /// R^2 - r^2 from exact differences, rounded once.
 GRAINSWEEP_LANES F closeness(const Constants& c, I x, I y, I z, D reach_squared) {
     const D dx = exact(x) * broadcast(c.unit[0]), dy = exact(y) * broadcast(c.unit[1]),
@@ -105,14 +89,20 @@ GRAINSWEEP_PHASE void meet(const Field& f, Packed& p, int batches, std::int64_t 
     F largest_overlap = broadcast(t.overlap);
     const F history_step = broadcast(f.history_step), half = broadcast(0.5f);
     for (int b = 0; b < batches; ++b) {
-        const auto row = [&](int r) { return load(p.motion[b][r]); };
+        const Place* first = p.first + b * width;
+        const Place* second = p.second + b * width;
+        if (f.read_ahead != 0)
+            for (int q = 0; q < width; ++q) prefetch(force_at(f.forces, second[q]));
+        F row[12];
+        load_motion(f.records, first, second, row);
+        if constexpr (Law::unequal) load_surface(f.records, first, second, row + 8);
         const I ix = load(p.offset[0] + b * width), iy = load(p.offset[1] + b * width),
                 iz = load(p.offset[2] + b * width);
         F reach, difference;
         D reach_squared;
         if constexpr (Law::unequal) {
-            reach = row(7);
-            difference = row(11);
+            reach = row[7];
+            difference = row[11];
             const D r = exact(reach);
             reach_squared = r * r;
         } else {
@@ -129,18 +119,18 @@ GRAINSWEEP_PHASE void meet(const Field& f, Packed& p, int batches, std::int64_t 
         m.normal = {single(ix) * (inverse_distance * broadcast(c.unit_single[0])),
                     single(iy) * (inverse_distance * broadcast(c.unit_single[1])),
                     single(iz) * (inverse_distance * broadcast(c.unit_single[2]))};
-        m.velocity = {row(0), row(1), row(2)};
+        m.velocity = {row[0], row[1], row[2]};
         const F shortening = half * m.overlap;
         F arm_first, arm_second;
-        const V3 spin{row(4), row(5), row(6)};
+        const V3 spin{row[4], row[5], row[6]};
         if constexpr (Law::unequal) {
-            m.surface = {fnma(shortening, spin.x, row(8)), fnma(shortening, spin.y, row(9)),
-                         fnma(shortening, spin.z, row(10))};
+            m.surface = {fnma(shortening, spin.x, row[8]), fnma(shortening, spin.y, row[9]),
+                         fnma(shortening, spin.z, row[10])};
             arm_first = fms(half, reach + difference, shortening);
             arm_second = fms(half, reach - difference, shortening);
             const F product = (reach - difference) * (reach + difference);  // 4 R_i R_j
             m.root_radius = half * product * inverse_root(product * reach);
-            m.damping = broadcast(c.damping) * inverse_root(row(3));
+            m.damping = broadcast(c.damping) * inverse_root(row[3]);
             largest_overlap = max(keep(m.touching, m.overlap * inverse(reach - abs(difference))), largest_overlap);
         } else {
             arm_first = broadcast(c.radius) - shortening;
@@ -148,7 +138,7 @@ GRAINSWEEP_PHASE void meet(const Field& f, Packed& p, int batches, std::int64_t 
             m.surface = spin * arm_first;
             m.root_radius = broadcast(c.root_radius);
             if constexpr (Law::frozen)
-                m.damping = select(broadcast(1.5f * c.inverse_mass) < row(3), broadcast(c.damping_pair),
+                m.damping = select(broadcast(1.5f * c.inverse_mass) < row[3], broadcast(c.damping_pair),
                                    broadcast(c.damping_frozen));
             else
                 m.damping = broadcast(c.damping_pair);
@@ -186,8 +176,8 @@ GRAINSWEEP_PHASE void scatter(const Field& f, const Packed& p, int batches) {
     for (int b = 0; b < batches; ++b) {
         F o[9];
         for (int r = 0; r < (Law::friction ? (Law::unequal ? 9 : 6) : 3); ++r) o[r] = load(p.outcome[b][r]);
-        const std::int32_t* first = p.first + b * width;
-        const std::int32_t* second = p.second + b * width;
+        const Place* first = p.first + b * width;
+        const Place* second = p.second + b * width;
         if constexpr (!Law::friction) {
             scatter_forces(f.forces, first, second, o);
         } else if constexpr (Law::unequal) {
@@ -262,8 +252,8 @@ void advance(const Field& f, Tally& t) {
 /// Fills the last vector up with a pair that never touches.
 GRAINSWEEP_LANES void fill_up(const Field& f, Packed& p, int packed) {
     for (int q = packed; q < packed + width; ++q) {
-        p.first[q] = f.count;
-        p.second[q] = f.count + 1;
+        p.first[q] = static_cast<Place>(f.count * places_per_index);
+        p.second[q] = static_cast<Place>((f.count + 1) * places_per_index);
         for (auto& offset : p.offset) offset[q] = INT32_MIN;
     }
 }
@@ -287,7 +277,6 @@ void sweep(const Field& f, bool advancing, Tally& t) {
         if (last) fill_up(f, p, at.packed);
         t.contacts += at.packed;
         const int full = (last ? at.packed + width - 1 : at.packed) / width;
-        gather<Law>(f, p, full);
         meet<Law>(f, p, full, at.met, t);
         scatter<Law>(f, p, full);
         at.met += full * width;
@@ -296,8 +285,9 @@ void sweep(const Field& f, bool advancing, Tally& t) {
         keep_rest(p, full * width);
         if (!advancing) continue;
         // pairs still to come begin with the first one left over, or the next one listed
-        const std::int32_t next = at.packed > 0 ? p.first[0] : f.inner_first[static_cast<std::int64_t>(at.batch) * width];
-        const std::int32_t until = last || next > f.count ? f.count : next;
+        const Place next = at.packed > 0 ? p.first[0] : f.inner_first[static_cast<std::int64_t>(at.batch) * width];
+        const auto first = static_cast<std::int32_t>(next / places_per_index);
+        const std::int32_t until = last || first > f.count ? f.count : first;
         advance_range<Law>(f, at.done, until, t);
         at.done = until;
     }

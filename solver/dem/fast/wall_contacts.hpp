@@ -54,12 +54,12 @@ void walls(const Field& f, Tally& t) {
     const Constants& c = f.constants;
     const F history_step = broadcast(f.history_step);
     F largest_overlap = broadcast(t.wall_overlap);
-    std::int32_t origin[width];
+    Place origin[width];
     for (std::int32_t w = 0; w < f.wall_count; ++w) {
         const WallShape& shape = f.walls[w];
-        for (int q = 0; q < width; ++q) origin[q] = shape.record;
+        for (int q = 0; q < width; ++q) origin[q] = static_cast<Place>(shape.record * places_per_index);
         for (std::int32_t k = f.segments[w].begin; k < f.segments[w].end; k += width) {
-            const std::int32_t* particle = f.wall_particle + k;
+            const Place* particle = f.wall_particle + k;
             I ix, iy, iz;
             load_offsets(f.records, particle, origin, ix, iy, iz);
             const D x = exact(ix) * broadcast(c.unit[0]), y = exact(iy) * broadcast(c.unit[1]),
