@@ -21,10 +21,17 @@ struct Drift {
     double outer = std::numeric_limits<double>::infinity();
     double inner = std::numeric_limits<double>::infinity();
     double last_step = 0;
+    std::int64_t steps = 0;  ///< since the outer list was made
 };
 
-/// Steps an inner list is meant to last: fewer cost refreshes, more cost pairs that do not touch.
-constexpr double inner_steps = 12;
+// The skins that make lists cheapest. A pair listed in vain costs about 1.5 ns a step and there are about ten per
+// diameter of inner skin and particle; a refresh costs about 10 ns per particle, plus 1.5 ns per pair of the outer list;
+// a rebuild about 100 ns. With drift d per step the sums of cost per step, 15 s + 10 d/s and (refreshing every five
+// steps or so) 3 s + 100 d/s, are least at s = sqrt(0.67 d) and s = sqrt(33 d).
+constexpr double inner_balance = 0.45;
+constexpr double outer_balance = 40;
+constexpr double inner_skin_least = 0.004;
+constexpr double outer_skin_least = 0.2, outer_skin_most = 0.7;
 
 /// Beyond these records no longer fit the nearer caches and are fetched ahead of their use; below, asking costs more
 /// than it gains.
@@ -74,7 +81,6 @@ private:
     Needs needs_;
     const Kernels* kernels_;
     std::vector<Wall> walls_;
-    Vec3 gravity_{};
     float smallest_diameter_ = 1;
     bool box_includes_rest_ = true;  ///< something at rest, or a face, bounds displacements besides the particles
 
@@ -83,6 +89,8 @@ private:
     Tally tally_{};
     Drift drift_;
     float inner_skin_ = 0;
+    float largest_skin_ = std::numeric_limits<float>::infinity();
+    bool adapts_skin_;
     std::int64_t wall_steps_ = 0;
     std::int64_t mobile_ = 0;
     Work work_;
@@ -94,14 +102,15 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin)
       needs_(make_needs(setup)),
       kernels_(&kernels_of(path, needs_)),
       walls_(setup.walls),
-      gravity_(setup.gravity) {
+      adapts_skin_(!(skin > 0)) {
     check_walls(walls_);
-    if (skin > 0) room_.skin = static_cast<float>(skin / room_.scale.length);
     for (std::size_t a = 0; a < 3; ++a)  // a pair must not meet across both ends of a period
         if (setup.domain.periodic[a]) {
             const double period = (setup.domain.high[a] - setup.domain.low[a]) / room_.scale.length;
-            room_.skin = std::min(room_.skin, static_cast<float>(0.5 * period - 1));
+            largest_skin_ = std::min(largest_skin_, static_cast<float>(0.5 * period - 1));
         }
+    if (skin > 0) room_.skin = static_cast<float>(skin / room_.scale.length);
+    room_.skin = std::min(room_.skin, largest_skin_);
     field_.constants = make_constants(setup, room_.scale);
     load(setup);
     restart_forces();
@@ -199,7 +208,7 @@ void MixedEngine::full_step_velocities() {
 /// half a step: a leapfrog whose first kick is a half one.
 void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
     place_walls(field_, walls_, room_, wall_time());
-    drift_.outer = drift_.inner = std::numeric_limits<double>::infinity();
+    drift_ = Drift{};
     make_lists(removed);
     begin_tally();
     field_.history_step = 0;
@@ -250,6 +259,7 @@ void MixedEngine::account_travel() {
         finite = finite && std::isfinite(spread);
     }
     drift_.last_step = std::sqrt(square) * (1 + 1e-6);
+    ++drift_.steps;
     drift_.outer += drift_.last_step;
     drift_.inner += drift_.last_step;
     if (field_.count > 0 && (!finite || !(fastest < static_cast<float>(travel_limit) * smallest_diameter_))) report_fast_particle();
@@ -258,18 +268,22 @@ void MixedEngine::account_travel() {
 /// Rebuilds or refreshes the lists where displacements since demand it. A pair outside the outer list had a gap
 /// above its skin and has lost at most the drift since; likewise the inner list.
 void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
-    const double skin = static_cast<double>(room_.skin);
-    const bool rebuilt = !(drift_.outer < skin);
+    const bool rebuilt = !(drift_.outer < static_cast<double>(room_.skin));
     if (!rebuilt && drift_.inner < static_cast<double>(inner_skin_)) return;
     if (rebuilt) {
+        const double per_step = drift_.steps > 0 ? drift_.outer / static_cast<double>(drift_.steps) : 0.003;
+        if (adapts_skin_)
+            room_.skin = std::min(static_cast<float>(std::clamp(std::sqrt(outer_balance * per_step), outer_skin_least,
+                                                                outer_skin_most)), largest_skin_);
         rebuild(field_, columns_, *kernels_, room_, removed);
         drift_.outer = 0;
+        drift_.steps = 0;
         mobile_ = 0;
         for (std::int32_t i = 0; i < field_.count; ++i) mobile_ += field_.records[i].inverse_mass > 0 ? 1 : 0;
         ++work_.rebuilds;
     }
-    // wide enough for about inner_steps steps like the last
-    inner_skin_ = static_cast<float>(std::clamp(inner_steps * drift_.last_step, 0.004, 0.5 * skin));
+    inner_skin_ = static_cast<float>(std::clamp(std::sqrt(inner_balance * drift_.last_step), inner_skin_least,
+                                                static_cast<double>(room_.skin)));
     refresh(field_, columns_, *kernels_, inner_skin_, rebuilt);
     drift_.inner = 0;
 }
@@ -419,6 +433,7 @@ void MixedEngine::pass(Self& self, Archive& archive) {
     archive.value(self.field_.outer_count);
     archive.value(self.drift_);
     archive.value(self.inner_skin_);
+    archive.value(self.room_.skin);
     archive.value(self.tally_);
     archive.value(self.wall_steps_);
     archive.value(self.mobile_);

@@ -5,8 +5,8 @@
 // position and velocity carried along. A contact then agrees with double precision to about 1e-6 of its largest
 // force; the error of energy over a collision is of that order.
 //
-// A particle beyond an open face is removed when the lists are next rebuilt: before it is half a skin (0.15 largest
-// diameters) past the face.
+// A particle beyond an open face is removed when the lists are next rebuilt: before it is a skin (0.2 to 0.7
+// largest diameters) past the face.
 #pragma once
 
 #include <memory>

@@ -73,47 +73,44 @@ Grid make_grid(const Field& f, const Room& room) {
     return g;
 }
 
-bool outside(const Record& r, const Room& room) {
-    for (std::size_t a = 0; a < 3; ++a) {
-        if (room.domain.periodic[a]) continue;
-        const double x = r.position[a];
-        if (x < room.scale.units(room.domain.low[a], a) || x > room.scale.units(room.domain.high[a], a)) return true;
-    }
-    return false;
-}
+/// Position units between which a centre is inside.
+struct Faces {
+    std::int32_t low[3], high[3];
 
-/// Takes out what left or is listed; the others keep their order. place says where everyone went.
-void take_out(Field& f, Columns& c, const Room& room, std::span<const std::int32_t> ids) {
+    explicit Faces(const Room& room) {
+        for (std::size_t a = 0; a < 3; ++a) {
+            const bool open = !room.domain.periodic[a];
+            low[a] = open ? static_cast<std::int32_t>(room.scale.units(room.domain.low[a], a)) : INT32_MIN;
+            high[a] = open ? static_cast<std::int32_t>(room.scale.units(room.domain.high[a], a)) : INT32_MAX;
+        }
+    }
+    [[nodiscard]] bool contain(const Record& r) const {
+        bool inside = true;
+        for (int a = 0; a < 3; ++a) inside = inside && r.position[a] >= low[a] && r.position[a] <= high[a];
+        return inside;
+    }
+};
+
+/// Says in `place` where everyone goes, for now 0 (stays) or -1 (left through a face, or listed); returns how many stay.
+std::int32_t take_out(const Field& f, Columns& c, const Room& room, std::span<const std::int32_t> ids) {
     std::vector<std::int32_t> gone(ids.begin(), ids.end());
     std::sort(gone.begin(), gone.end());
+    const Faces faces(room);
     std::int32_t kept = 0;
     for (std::int32_t i = 0; i < f.count; ++i) {
         const auto k = static_cast<std::size_t>(i);
-        if (outside(c.records[k], room) || std::binary_search(gone.begin(), gone.end(), c.id[k])) {
-            c.place[k] = -1;
-            continue;
-        }
-        c.place[k] = kept++;
+        const bool leaves = !faces.contain(f.records[i]) ||
+                            (!gone.empty() && std::binary_search(gone.begin(), gone.end(), c.id[k]));
+        c.place[k] = leaves ? -1 : 0;
+        kept += leaves ? 0 : 1;
     }
     for (std::int32_t k = f.count; k < f.count + 3; ++k) c.place[static_cast<std::size_t>(k)] = -1;  // the fillers
+    return kept;
 }
 
 /// Sorts by cell and fills the columns the search reads. place maps old to new indices afterwards.
-void sort_particles(Field& f, Columns& c, const Room& room) {
-    const std::int32_t before = f.count;
-    std::int32_t kept = 0;
-    for (std::int32_t i = 0; i < before; ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        if (c.place[k] < 0) continue;
-        const auto to = static_cast<std::size_t>(kept++);
-        c.records_next[to] = c.records[k];
-        c.residuals_next[to] = c.residuals[k];
-        c.id_next[to] = c.id[k];
-    }
-    c.records.swap(c.records_next), c.residuals.swap(c.residuals_next), c.id.swap(c.id_next);
-    f.count = kept;
-    c.bind(f);
-
+void sort_particles(Field& f, Columns& c, const Room& room, std::int32_t kept) {
+    const auto before = static_cast<std::size_t>(f.count);
     const Grid g = make_grid(f, room);
     const auto total = static_cast<std::size_t>(g.total());
     c.cell_start.hold(total + 2);
@@ -122,15 +119,17 @@ void sort_particles(Field& f, Columns& c, const Room& room) {
         f.cells[a] = g.axis[g.order[a]].cells;
         f.wraps[a] = room.domain.periodic[static_cast<std::size_t>(g.order[a])] ? 1 : 0;
     }
-    for (std::size_t i = 0; i < static_cast<std::size_t>(kept); ++i) {
-        c.cell_of[i] = g.cell(c.records[i]);
+    for (std::size_t i = 0; i < before; ++i) {
+        if (c.place[i] < 0) continue;
+        c.cell_of[i] = g.cell(f.records[i]);
         ++c.cell_start[static_cast<std::size_t>(c.cell_of[i]) + 2];
     }
     for (std::size_t q = 0; q < total; ++q) c.cell_start[q + 2] += c.cell_start[q + 1];
     // cell_start[q + 1] is now where cell q begins, and becomes where it ends
-    for (std::size_t i = 0; i < static_cast<std::size_t>(kept); ++i) {
+    for (std::size_t i = 0; i < before; ++i) {
+        if (c.place[i] < 0) continue;
         const std::int32_t to = c.cell_start[static_cast<std::size_t>(c.cell_of[i]) + 1]++;
-        c.cell_of[i] = to;
+        c.place[i] = to;
         const auto t = static_cast<std::size_t>(to);
         const Record& r = c.records[i];
         c.records_next[t] = r;
@@ -141,8 +140,7 @@ void sort_particles(Field& f, Columns& c, const Room& room) {
         c.column_mobile[t] = r.inverse_mass > 0 ? 1.0F : 0.0F;
     }
     c.records.swap(c.records_next), c.residuals.swap(c.residuals_next), c.id.swap(c.id_next);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(before); ++i)
-        if (c.place[i] >= 0) c.place[i] = c.cell_of[static_cast<std::size_t>(c.place[i])];
+    f.count = kept;
     c.bind(f);
 }
 
@@ -325,9 +323,9 @@ void refresh(Field& f, Columns& c, const Kernels& kernels, float skin, bool mark
 
 void rebuild(Field& f, Columns& c, const Kernels& kernels, const Room& room,
              std::span<const std::int32_t> ids) {
-    take_out(f, c, room, ids);
+    const std::int32_t kept = take_out(f, c, room, ids);
     std::vector<Record> wall_records(f.records + f.count + 3, f.records + f.count + 3 + f.wall_count);
-    sort_particles(f, c, room);
+    sort_particles(f, c, room, kept);
     place_fillers(f);
     for (std::int32_t w = 0; w < f.wall_count; ++w) {
         f.walls[w].record = f.count + 3 + w;
