@@ -5,12 +5,14 @@
 #include <cstdio>
 #include <cstring>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 
 #include "solver/dem/fast/checkpoint.hpp"
 #include "solver/dem/fast/columns.hpp"
 #include "solver/dem/fast/rebuild.hpp"
 #include "solver/dem/fast/scale.hpp"
+#include "solver/dem/limits.hpp"
 
 namespace grainsweep::dem::fast {
 
@@ -45,6 +47,34 @@ const Kernels& kernels_of(Method::Path path, const Needs& needs) {
     }
 }
 
+/// Overlaps, over the diameter, up to which a contact is both meant by the law and resolved by the time step.
+struct SoundOverlaps {
+    float pair = static_cast<float>(overlap_limit);
+    float wall = static_cast<float>(overlap_limit);
+};
+
+/// A contact of effective radius R* and reduced mass m* swings dt sqrt(S_n/m*), S_n = 2 E* sqrt(R* d), in a step; at
+/// largest_sound_swing d = (swing^2 m*/(2 E* dt^2))^2/R*. Of all contacts those of the smallest sphere come first.
+SoundOverlaps sound_overlaps(const Setup& setup) {
+    double radius = std::numeric_limits<double>::infinity();
+    for (const Sphere& sphere : setup.spheres) radius = std::min(radius, sphere.radius);
+    const Material& m = setup.material;
+    const double modulus = m.youngs_modulus / (2 * (1 - m.poisson_ratio * m.poisson_ratio));
+    const double mass = 4.0 / 3 * std::numbers::pi * radius * radius * radius * m.density;
+    const auto limit = [&](double share) {  // R* = share r, m* = share m
+        const double root = largest_sound_swing * largest_sound_swing * share * mass /
+                            (2 * modulus * setup.time_step * setup.time_step);
+        return static_cast<float>(std::min(overlap_limit, root * root / (share * radius) / (2 * radius)));
+    };
+    if (!std::isfinite(radius)) return {};
+    return {limit(0.5), limit(1)};
+}
+
+/// Words for a limit that the time step sets.
+const char* reason_of(float limit) {
+    return limit < static_cast<float>(overlap_limit) ? ": beyond, the time step is too long for the contact" : "";
+}
+
 class MixedEngine final : public Engine {
 public:
     MixedEngine(const Setup& setup, Method::Path path, double skin);
@@ -70,6 +100,7 @@ private:
     void full_step_velocities();
     void restart_forces(std::span<const std::int32_t> removed = {});
     void report_fast_particle();
+    [[nodiscard]] bool too_deep() const { return tally_.overlap > sound_.pair || tally_.wall_overlap > sound_.wall; }
     void report_overlap();
     [[nodiscard]] double half_change(std::int32_t particle, int axis) const;
     [[nodiscard]] double half_spin_change(std::int32_t particle, int axis) const;
@@ -82,6 +113,7 @@ private:
     const Kernels* kernels_;
     std::vector<Wall> walls_;
     float smallest_diameter_ = 1;
+    SoundOverlaps sound_;
     bool box_includes_rest_ = true;  ///< something at rest, or a face, bounds displacements besides the particles
 
     Columns columns_;
@@ -102,6 +134,7 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin)
       needs_(make_needs(setup)),
       kernels_(&kernels_of(path, needs_)),
       walls_(setup.walls),
+      sound_(sound_overlaps(setup)),
       adapts_skin_(!(skin > 0)) {
     check_walls(walls_);
     for (std::size_t a = 0; a < 3; ++a)  // a pair must not meet across both ends of a period
@@ -226,7 +259,7 @@ void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
             r.surface[a] = r.spin[a] * r.radius;
         }
     }
-    if (tally_.overlap > overlap_limit || tally_.wall_overlap > overlap_limit) report_overlap();
+    if (too_deep()) report_overlap();
 }
 
 /// The velocities whose spread bounds relative displacements: particles', walls', and rest where something rests.
@@ -306,7 +339,7 @@ void MixedEngine::run(std::int64_t steps) {
         kernels_->sweep(field_, s + 1 < steps, tally_);
         columns_.swap_histories(field_);
         work_.pair_visits += field_.inner_count;
-        if (tally_.overlap > static_cast<float>(overlap_limit) || tally_.wall_overlap > static_cast<float>(overlap_limit)) report_overlap();
+        if (too_deep()) report_overlap();
     }
 }
 
@@ -380,7 +413,7 @@ void MixedEngine::report_fast_particle() {
             const double travel = std::isfinite(v) ? std::abs(static_cast<double>(v)) : std::numeric_limits<double>::infinity();
             if (travel > most) most = travel, worst = i;
         }
-    char text[160];
+    char text[240];
     std::snprintf(text, sizeof text, "a particle moves %.3g smallest diameters in one step (limit %.3g)",
                   most / static_cast<double>(smallest_diameter_), travel_limit);
     fault_ = text + where_and_when(worst);
@@ -404,10 +437,11 @@ void MixedEngine::report_overlap() {
         const double share = (radii - std::sqrt(square)) / (2 * static_cast<double>(std::min(a.radius, b.radius)));
         if (share > most) most = share, first = i, second = j;
     }
-    char text[160];
-    if (tally_.overlap > static_cast<float>(overlap_limit) && second >= 0) {
-        std::snprintf(text, sizeof text, "overlap of %.3g diameters (limit %.3g) with particle %d",
-                      static_cast<double>(tally_.overlap), overlap_limit, columns_.id[static_cast<std::size_t>(second)]);
+    char text[240];
+    if (tally_.overlap > sound_.pair && second >= 0) {
+        std::snprintf(text, sizeof text, "overlap of %.3g diameters (limit %.3g%s) with particle %d",
+                      static_cast<double>(tally_.overlap), static_cast<double>(sound_.pair), reason_of(sound_.pair),
+                      columns_.id[static_cast<std::size_t>(second)]);
         fault_ = text + where_and_when(first);
         return;
     }
@@ -420,8 +454,8 @@ void MixedEngine::report_overlap() {
             const double g = wall_gap(field_, field_.walls[w], i) / (2 * static_cast<double>(field_.records[i].radius));
             if (g < gap) gap = g, deepest = i, wall = w;
         }
-    std::snprintf(text, sizeof text, "overlap of %.3g diameters (limit %.3g) with wall %d",
-                  static_cast<double>(tally_.wall_overlap), overlap_limit, wall);
+    std::snprintf(text, sizeof text, "overlap of %.3g diameters (limit %.3g%s) with wall %d",
+                  static_cast<double>(tally_.wall_overlap), static_cast<double>(sound_.wall), reason_of(sound_.wall), wall);
     fault_ = text + where_and_when(deepest);
 }
 
