@@ -130,6 +130,22 @@ TEST_F(Study, MomentsOfAKnownResponseLieWithinTheirErrors) {
     EXPECT_EQ(text_of(rows.rows[1].back()), "1");
 }
 
+TEST_F(Study, ManyChecksAreThinnedForTheEyeAndKeptForPrograms) {
+    answer_by(store, halton("c", 1004, R"(, "convergence": {"observable": "y", "block": 8, "tolerance": 0.1})"),
+              linear);
+    const auto responses = ask("c");
+    const auto history = history_of(responses, responses.observable("y"));
+    ASSERT_EQ(history.checks.size(), 125u);
+    const auto converged = std::ranges::find(history.checks, true, &stats::Checkpoint::converged);
+    ASSERT_NE(converged, history.checks.end());
+    const auto shown = checks_to_show(history, 20);
+    EXPECT_LE(shown.size(), 22u);
+    EXPECT_THAT(shown, Contains(&*converged));
+    EXPECT_EQ(shown.back(), &history.all);
+    EXPECT_EQ(shown[shown.size() - 2]->points, 1000);
+    EXPECT_EQ(checks_rows(responses, responses.observable("y"), history).rows.size(), 126u);
+}
+
 TEST_F(Study, FailedCasesAreLeftOutCountedAndSaid) {
     answer_by(store, halton("c", 160), [](const Inputs& inputs) -> std::optional<double> {
         if (input(inputs, "x1") > 0.9) return std::nullopt;
