@@ -62,13 +62,13 @@ void Scheduler::handle(workers::PoolEvent event) {
                           [&](const workers::Heartbeat&) {},
                           [&](const workers::Lost& lost) {
                               if (lost.running) handle_failure(*lost.running, Outcome::crashed, lost.reason);
-                              give_back(lost.queued);
+                              take_back(lost.queued);
                           },
                           [&](const workers::TimedOut& late) {
                               handle_failure(late.running, Outcome::timed_out, late.reason);
-                              give_back(late.queued);
+                              take_back(late.queued);
                           },
-                          [&](const workers::GivenBack& back) { give_back({back.attempt}); },
+                          [&](const workers::GivenBack& back) { park(back.attempt); },
                           [&](const workers::Interrupted& stop) {
                               plan_.close();
                               early_ = Ending::interrupted;
@@ -107,16 +107,21 @@ void Scheduler::handle_failure(const campaign::Attempt& attempt, Outcome outcome
     if (verdict == Plan::Verdict::gave_up) judge_prefix();
 }
 
-void Scheduler::give_back(const std::vector<campaign::Attempt>& attempts) {
+void Scheduler::take_back(const std::vector<campaign::Attempt>& attempts) {
     for (const auto& attempt : attempts) {
         --in_flight_;
-        plan_.returned(attempt);
-        campaign::CaseResult result;
-        result.attempt = attempt;
-        result.outcome = Outcome::abandoned;
-        result.message = "given back before it was finished";
-        recorder_.write(std::move(result));
+        plan_.never_begun(attempt);
     }
+}
+
+void Scheduler::park(const campaign::Attempt& attempt) {
+    --in_flight_;
+    plan_.returned(attempt);
+    campaign::CaseResult result;
+    result.attempt = attempt;
+    result.outcome = Outcome::abandoned;
+    result.message = "given back before it was finished";
+    recorder_.write(std::move(result));
 }
 
 void Scheduler::judge_prefix() {

@@ -176,16 +176,23 @@ void Store::begin(const campaign::Attempt& attempt) {
     impl_->require_group();
     auto& db = impl_->db;
     if (!impl_->provenance) throw std::logic_error("an attempt begins before its campaign is enrolled");
-    const auto changed = db.run("UPDATE sim_case SET attempts = ?1 WHERE case_id = ?2 AND attempts < ?1",
+    const auto changed = db.run("UPDATE sim_case SET attempts = ?1 WHERE case_id = ?2 AND attempts <= ?1",
                                 attempt.number, attempt.case_id);
     if (changed != 1) {
         throw std::logic_error(fmt::format("attempt {} of case {} begins, which is unknown or has begun a later one",
                                            attempt.number, attempt.case_id));
     }
-    db.run(
+    // An attempt that was handed out to a worker that died before it began may begin again.
+    const auto begun = db.run(
         "INSERT INTO attempt (case_key, number, provenance_id, started) "
-        "SELECT case_key, ?1, ?2, ?3 FROM sim_case WHERE case_id = ?4",
+        "SELECT case_key, ?1, ?2, ?3 FROM sim_case WHERE case_id = ?4 "
+        "ON CONFLICT (case_key, number) DO UPDATE SET provenance_id = excluded.provenance_id, started = excluded.started "
+        "WHERE outcome IS NULL",
         attempt.number, impl_->provenance, utc_now(), attempt.case_id);
+    if (begun != 1) {
+        throw std::logic_error(
+            fmt::format("attempt {} of case {} begins after it ended", attempt.number, attempt.case_id));
+    }
 }
 
 bool Store::finish(const campaign::CaseResult& result) {

@@ -76,7 +76,7 @@ TEST(KillAndResume, OneAndFourWorkersGiveTheSameDump) {
     folder.write("c.json", config);
     const std::string one = undisturbed(folder, "1");
     EXPECT_GT(one.size(), 1000U);
-    EXPECT_EQ(one, undisturbed(folder, "4"));
+    EXPECT_TRUE(one == undisturbed(folder, "4"));
 }
 
 TEST(KillAndResume, BossKilledAtTwentySeededMoments) {
@@ -96,7 +96,7 @@ TEST(KillAndResume, BossKilledAtTwentySeededMoments) {
         expect_no_orphans(db);
         const auto ended = Process(command, folder.path()).wait();
         EXPECT_EQ(ended.code, 0) << ended.err;
-        EXPECT_EQ(dump(db, folder), calm) << "killed at moment " << moment;
+        EXPECT_TRUE(dump(db, folder) == calm) << "killed at moment " << moment;
     }
 }
 
@@ -120,7 +120,7 @@ TEST(KillAndResume, WorkersKilledAtTwentySeededMoments) {
     EXPECT_GE(killed, 15);
     const auto ended = run.wait();
     EXPECT_EQ(ended.code, 0) << ended.err;
-    EXPECT_EQ(dump(db, folder), calm);
+    EXPECT_TRUE(dump(db, folder) == calm);
     expect_no_orphans(db);
 }
 
@@ -142,7 +142,7 @@ TEST(KillAndResume, AnInterruptedRunParksAndGoesOn) {
     expect_no_orphans(db);
     const auto ended = Process(command, folder.path()).wait();
     EXPECT_EQ(ended.code, 0) << ended.err;
-    EXPECT_EQ(dump(db, folder), calm);
+    EXPECT_TRUE(dump(db, folder) == calm);
 }
 
 }  // namespace
