@@ -80,8 +80,7 @@ Json json_of(const Influence& influence) {
     Json value = {{"method", influence.method == Influence::Method::morris     ? "morris"
                              : influence.method == Influence::Method::saltelli ? "saltelli"
                                                                                : "given_data"},
-                  {"notes", influence.notes},
-                  {"bins", influence.bins}};
+                  {"notes", influence.notes}};
     value["factors"] = Json::array();
     for (const auto& factor : influence.factors) {
         Json one = {{"name", factor.factor},

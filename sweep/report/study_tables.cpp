@@ -240,14 +240,16 @@ Json to_json(const Responses& responses, const ResponseColumn& response, const I
                   {"method", method_name(influence.method)},
                   {"used", influence.used},
                   {"excluded", influence.excluded}};
-    value["bins"] = influence.bins > 0 ? Json(influence.bins) : Json(nullptr);
     value["factors"] = Json::array();
     for (const auto& factor : influence.factors) {
         Json one = {{"name", factor.factor}};
         const auto put = [&](const char* name, const stats::SensitivityIndex& index) {
             one[name] = {{"value", number(index.value)}, {"error", number(index.half_width)}};
         };
-        if (influence.method != Influence::Method::morris) put("first", factor.first);
+        if (influence.method != Influence::Method::morris) {
+            one["bins"] = factor.bins;
+            put("first", factor.first);
+        }
         if (influence.method == Influence::Method::saltelli) {
             put("first_saltelli", factor.first_saltelli);
             put("total", factor.total);
