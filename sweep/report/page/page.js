@@ -202,7 +202,7 @@
     draw(c.canvas, {
       type: "line",
       data: { datasets: [{ data: bins.map(([x, y]) => ({ x, y })), errors: bins.map((bin) => bin[2]), errorColour: colour("quiet"),
-        borderColor: colour("one"), backgroundColor: colour("one"), borderWidth: 2, pointRadius: 3, pointHitRadius: 8,
+        borderColor: colour("one"), backgroundColor: colour("one"), borderWidth: 2, pointRadius: 3, pointHitRadius: 8, clip: 6,
         showLine: factor.levels.length === 0 }] },
       options: { scales: { x: factorAxis(factor), y: tick },
         plugins: { tooltip: { callbacks: {
@@ -226,7 +226,7 @@
       data: { datasets: [
         { data: bins.map(([x, y]) => ({ x, y })), type: "line", showLine: factor.levels.length === 0, borderColor: colour("two"),
           backgroundColor: colour("two"), borderWidth: 2, pointRadius: factor.levels.length > 0 ? 5 : 0, pointStyle: "rectRot" },
-        { data: points, backgroundColor: colour("dot"), borderWidth: 0, pointRadius: dot }] },
+        { data: points, backgroundColor: colour("dot"), borderWidth: 0, pointRadius: dot, clip: 6 }] },
       options: { scales: { x: factorAxis(factor), y: axis(titled(response)) },
         plugins: { tooltip: { callbacks: { label: (item) => `${show(item.raw.x)}: ${show(item.raw.y)}` } } } },
     });
