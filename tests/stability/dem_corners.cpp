@@ -133,13 +133,6 @@ TEST(DemCorners, ImpossibleSetupsAreRefusedInOneSentence) {
     refused([](dem::Setup& s) { s.domain.periodic = {true, true, true}, s.domain.high = {0.003, 1, 1}; });
     refused([](dem::Setup& s) { s.walls.emplace_back(dem::Plane{{0, 0, 0}, {0, 0, 2}}); });
     refused([](dem::Setup& s) { s.spheres[0].mobile = false; });
-    dem::Method mixed;
-    mixed.precision = dem::Method::Precision::mixed;
-    try {
-        (void)dem::make_engine(tests::boxed_gas(2, 0.1, 1, 3), mixed);
-    } catch (const std::invalid_argument& e) {
-        EXPECT_FALSE(std::string(e.what()).empty());
-    }
 }
 
 // The same bits again, and after a checkpoint at any time, for every combination of laws and columns.

