@@ -143,6 +143,19 @@ History history_of(const Responses& responses, const ResponseColumn& response) {
     return history;
 }
 
+std::vector<const stats::Checkpoint*> checks_to_show(const History& history, std::size_t most) {
+    std::vector<const stats::Checkpoint*> shown;
+    const std::size_t step = history.checks.size() / most + 1;
+    const auto converged = std::ranges::find(history.checks, true, &stats::Checkpoint::converged);
+    for (auto check = history.checks.begin(); check != history.checks.end(); ++check) {
+        const auto left = static_cast<std::size_t>(history.checks.end() - check) - 1;
+        if (left % step == 0 || check == converged) shown.push_back(&*check);
+    }
+    if (history.all.points > 0 && (shown.empty() || shown.back()->points != history.all.points))
+        shown.push_back(&history.all);
+    return shown;
+}
+
 std::vector<LatticeStep> lattice_family(const store::Store& store, const Responses& responses,
                                         const ResponseColumn& response) {
     if (responses.campaign.design != "lattice") return {};

@@ -22,6 +22,10 @@ struct History {
     std::vector<std::string> warnings;  ///< what a reader must know before quoting the figures
 };
 
+/// At most about `most` of the checks, evenly thinned, the last and the one that converged among them; after them `all`
+/// where it is no check. Pointers into the history.
+[[nodiscard]] std::vector<const stats::Checkpoint*> checks_to_show(const History& history, std::size_t most);
+
 [[nodiscard]] History history_of(const Responses& responses, const ResponseColumn& response);
 
 /// One lattice of a family (same scene, factors and ranges) and how far its moments moved since the one before.

@@ -51,24 +51,12 @@ std::vector<std::size_t> rows_to_draw(std::size_t rows) {
     return chosen;
 }
 
-/// Checks to draw: all, or evenly thinned with the last one kept.
-std::vector<const stats::Checkpoint*> checks_to_draw(const History& history) {
-    std::vector<const stats::Checkpoint*> drawn_checks;
-    const std::size_t step = history.checks.size() / most_drawn_checks + 1;
-    for (std::size_t back = 0; back < history.checks.size(); back += step)
-        drawn_checks.push_back(&history.checks[history.checks.size() - 1 - back]);
-    std::ranges::reverse(drawn_checks);
-    if (history.all.points > 0 && (drawn_checks.empty() || drawn_checks.back()->points != history.all.points))
-        drawn_checks.push_back(&history.all);
-    return drawn_checks;
-}
-
 Json json_of(const History& history) {
     Json value = {{"verdict", history.verdict}, {"judged", history.has_rule}, {"notes", history.warnings}};
     const auto converged = std::ranges::find(history.checks, true, &stats::Checkpoint::converged);
     value["converged_at"] =
         history.has_rule && converged != history.checks.end() ? Json(converged->points) : Json(nullptr);
-    const auto checks = checks_to_draw(history);
+    const auto checks = checks_to_show(history, most_drawn_checks);
     value["points"] = Json::array();
     for (const auto* check : checks) value["points"].push_back(check->points);
     for (const auto statistic : stats::statistics) {
@@ -92,8 +80,7 @@ Json json_of(const Influence& influence) {
     Json value = {{"method", influence.method == Influence::Method::morris     ? "morris"
                              : influence.method == Influence::Method::saltelli ? "saltelli"
                                                                                : "given_data"},
-                  {"notes", influence.notes},
-                  {"bins", influence.bins}};
+                  {"notes", influence.notes}};
     value["factors"] = Json::array();
     for (const auto& factor : influence.factors) {
         Json one = {{"name", factor.factor},

@@ -1,6 +1,7 @@
 // The page is one file: its data is well-formed and cannot break out, and nothing in it asks a network.
 #include "sweep/report/page.hpp"
 #include "sweep/report/page_files.hpp"
+#include "sweep/report/summary.hpp"
 #include "tests/support/answered.hpp"
 
 #include <gmock/gmock.h>
@@ -108,6 +109,19 @@ TEST_F(Page, AsksNoNetwork) {
     std::smatch found;
     EXPECT_FALSE(std::regex_search(text, found, request)) << found.str();
     EXPECT_THAT(report::page_files().library.substr(0, 60), HasSubstr("Chart.js v3"));
+}
+
+TEST_F(Page, ACampaignWithoutAnswersHasAPageToo) {
+    answer_by(
+        store, R"({"campaign": "new", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
+        "design": {"kind": "halton", "sequences": 8, "points": 64}})",
+        [](const Inputs&) { return 0; }, 0);
+    const auto data = Json::parse(between(page(), R"(<script type="application/json" id="data">)", "</script>"));
+    const auto& campaign = data["campaigns"][0];
+    EXPECT_EQ(campaign["settled"], 0);
+    EXPECT_EQ(campaign["observables"][0]["history"]["count"], 0);
+    EXPECT_EQ(campaign["outcomes"].back(), Json({"not yet", 64}));
+    EXPECT_THAT(report::closing_summary(store, "new", "a.db"), HasSubstr("new: 64 cases of rehearsal: 64 not yet"));
 }
 
 TEST_F(Page, ALargeCampaignStaysLight) {

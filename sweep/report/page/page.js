@@ -202,7 +202,7 @@
     draw(c.canvas, {
       type: "line",
       data: { datasets: [{ data: bins.map(([x, y]) => ({ x, y })), errors: bins.map((bin) => bin[2]), errorColour: colour("quiet"),
-        borderColor: colour("one"), backgroundColor: colour("one"), borderWidth: 2, pointRadius: 3, pointHitRadius: 8,
+        borderColor: colour("one"), backgroundColor: colour("one"), borderWidth: 2, pointRadius: 3, pointHitRadius: 8, clip: 6,
         showLine: factor.levels.length === 0 }] },
       options: { scales: { x: factorAxis(factor), y: tick },
         plugins: { tooltip: { callbacks: {
@@ -226,7 +226,7 @@
       data: { datasets: [
         { data: bins.map(([x, y]) => ({ x, y })), type: "line", showLine: factor.levels.length === 0, borderColor: colour("two"),
           backgroundColor: colour("two"), borderWidth: 2, pointRadius: factor.levels.length > 0 ? 5 : 0, pointStyle: "rectRot" },
-        { data: points, backgroundColor: colour("dot"), borderWidth: 0, pointRadius: dot }] },
+        { data: points, backgroundColor: colour("dot"), borderWidth: 0, pointRadius: dot, clip: 6 }] },
       options: { scales: { x: factorAxis(factor), y: axis(titled(response)) },
         plugins: { tooltip: { callbacks: { label: (item) => `${show(item.raw.x)}: ${show(item.raw.y)}` } } } },
     });
@@ -247,7 +247,8 @@
       type: "bar",
       data: { labels: factors.map((f) => f.name), datasets: sets },
       options: { indexAxis: "y",
-        scales: { x: axis(influence.method === "morris" ? "effect" : "index", { beginAtZero: true, suggestedMax: influence.method === "morris" ? undefined : 1 }),
+        scales: { x: axis(influence.method === "morris" ? "effect" : "index", { beginAtZero: true, suggestedMax: influence.method === "morris"
+          ? Math.max(...factors.map((f) => (f.mu_star || 0) + (f.mu_star_error || 0))) : 1 }),
           y: { ticks: { color: colour("ink") }, grid: { display: false } } },
         plugins: { legend: { display: sets.length > 1, labels: { color: colour("ink") } }, tooltip: { callbacks: {
           label: (item) => `${item.dataset.label}: ${show(item.raw)}` + (item.dataset.errors[item.dataIndex] ? ` ± ${show(item.dataset.errors[item.dataIndex])}` : "") } } } },
@@ -289,12 +290,12 @@
     return el("div", { class: kind }, history.verdict, history.notes.map((note) => el("div", { class: "warning" }, note)));
   }
 
-  function distributionSection(response) {
+  function distributionSection(response, sample) {
     const rows = statistics.map(([name, title]) => [title, response.history.statistics[name].text]);
     const says = response.meaning ? `${titled(response)}: ${response.meaning}` : titled(response);
     return section("Response", says, verdict(response.history), el("div", { class: "grid wide" }, histogram(response),
       el("div", { class: "card" }, el("h3", {}, "Moments"),
-        el("p", { class: "says" }, `over ${plural(response.history.count, "value")}, with 95 % errors` +
+        el("p", { class: "says" }, `over ${plural(response.history.count, "value")}` + (sample ? ", with 95 % errors" : "") +
           (response.history.excluded > 0 ? `; ${plural(response.history.excluded, "case")} without a value left out` : "")),
         table([["statistic"], ["value", "number"]], rows))));
   }
@@ -369,7 +370,7 @@
     const response = campaign.observables[chosen.observable];
     page.replaceChildren(...heading(campaign).filter(Boolean));
     const sections = response && response.history.count > 0
-      ? [distributionSection(response), momentsSection(campaign, response), effectsSection(campaign, response),
+      ? [distributionSection(response, campaign.sample), momentsSection(campaign, response), effectsSection(campaign, response),
         influenceSection(response), scatterSection(campaign, response), extremesSection(campaign, response)]
       : [el("p", {}, "No case has an answer yet.")];
     page.append(...sections.concat([failuresSection(campaign), provenanceSection(campaign)]).filter(Boolean));
