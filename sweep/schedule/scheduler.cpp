@@ -104,7 +104,10 @@ void Scheduler::handle_failure(const campaign::Attempt& attempt, Outcome outcome
     watchers_.note(fmt::format("{} {} in attempt {}{}: {}", attempt.case_id.substr(0, 12), to_string(outcome),
                                attempt.number, verdict == Plan::Verdict::again ? ", trying again" : ", giving up",
                                reason));
-    if (verdict == Plan::Verdict::gave_up) judge_prefix();
+    if (verdict == Plan::Verdict::gave_up) {
+        if (judge_ != nullptr) judge_->learn(attempt.case_id, {});  // an older answer counts no more
+        judge_prefix();
+    }
 }
 
 void Scheduler::take_back(const std::vector<campaign::Attempt>& attempts) {
@@ -125,7 +128,7 @@ void Scheduler::park(const campaign::Attempt& attempt) {
 }
 
 void Scheduler::judge_prefix() {
-    if (judge_ == nullptr || judge_->converged_at()) return;
+    if (judge_ == nullptr || (judge_->converged_at() && judge_->stops())) return;
     for (auto& row : judge_->judge(plan_.settled_prefix())) recorder_.write(store::Recorder::Checked{campaign_, row});
     progress_.judgement = judge_->verdict();
     if (judge_->converged_at() && judge_->stops() && !early_) {
