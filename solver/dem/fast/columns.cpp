@@ -1,6 +1,27 @@
 #include "solver/dem/fast/columns.hpp"
 
+#include <cstdlib>
+#include <new>
+
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
 namespace grainsweep::dem::fast {
+
+void* allocate(std::size_t bytes) {
+    constexpr std::size_t large_page = std::size_t{1} << 21U;
+    const std::size_t alignment = bytes >= large_page ? large_page : 64;
+    const std::size_t rounded = (bytes + alignment - 1) / alignment * alignment;
+    void* memory = std::aligned_alloc(alignment, rounded);
+    if (memory == nullptr) throw std::bad_alloc();
+#ifdef __linux__
+    if (bytes >= large_page) (void)madvise(memory, rounded, MADV_HUGEPAGE);  // a wish: refusal changes nothing
+#endif
+    return memory;
+}
+
+void give_back(void* memory) noexcept { std::free(memory); }
 
 void Columns::bind(Field& f) const {
     f.records = records.data();

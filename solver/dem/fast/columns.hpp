@@ -4,13 +4,17 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <new>
 #include <type_traits>
 #include <utility>
 
 #include "solver/dem/fast/layout.hpp"
 
 namespace grainsweep::dem::fast {
+
+/// Memory on a page boundary, of large pages where it is large and the system grants them: a sweep touches so many
+/// columns that small pages would miss the translation buffers.
+[[nodiscard]] void* allocate(std::size_t bytes);
+void give_back(void* memory) noexcept;
 
 /// Array of trivial values on a cache-line boundary, new entries zero. Growing keeps what is there.
 template <class T>
@@ -25,7 +29,7 @@ public:
     void hold(std::size_t count) {
         if (count <= capacity_) return;
         const std::size_t wanted = count + count / 4;
-        auto* fresh = static_cast<T*>(::operator new(wanted * sizeof(T), std::align_val_t{alignment}));
+        auto* fresh = static_cast<T*>(allocate(wanted * sizeof(T)));
         if (data_ != nullptr) std::memcpy(static_cast<void*>(fresh), data_, capacity_ * sizeof(T));
         std::memset(static_cast<void*>(fresh + capacity_), 0, (wanted - capacity_) * sizeof(T));
         release();
@@ -43,10 +47,7 @@ public:
     const T& operator[](std::size_t i) const { return data_[i]; }
 
 private:
-    static constexpr std::size_t alignment = 64;
-    void release() {
-        if (data_ != nullptr) ::operator delete(data_, std::align_val_t{alignment});
-    }
+    void release() { give_back(data_); }
     T* data_ = nullptr;
     std::size_t capacity_ = 0;
 };

@@ -126,10 +126,16 @@ GRAINSWEEP_LANES __m512 four_blocks(const Record* r, const Place* k) {
 /// Position of first minus position of second, for sixteen pairs.
 GRAINSWEEP_LANES void load_offsets(const Record* r, const Place* first, const Place* second, I& x, I& y,
                                    I& z) {
-    __m512i a[4];
-    for (int e = 0; e < 4; ++e)
-        a[e] = _mm512_sub_epi32(_mm512_castps_si512(four_blocks<0>(r, first + e)),
-                                _mm512_castps_si512(four_blocks<0>(r, second + e)));
+    const auto offset = [&](int q) {
+        return _mm_sub_epi32(_mm_load_si128(reinterpret_cast<const __m128i*>(record_at(r, first[q])->position)),
+                             _mm_load_si128(reinterpret_cast<const __m128i*>(record_at(r, second[q])->position)));
+    };
+    __m512i a[4];  // block b of a[e]: pair 4b+e
+    for (int e = 0; e < 4; ++e) {
+        const __m256i low = _mm256_inserti128_si256(_mm256_castsi128_si256(offset(e)), offset(e + 4), 1);
+        const __m256i high = _mm256_inserti128_si256(_mm256_castsi128_si256(offset(e + 8)), offset(e + 12), 1);
+        a[e] = _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
+    }
     const __m512i t0 = _mm512_unpacklo_epi32(a[0], a[1]), t1 = _mm512_unpacklo_epi32(a[2], a[3]);
     const __m512i t2 = _mm512_unpackhi_epi32(a[0], a[1]), t3 = _mm512_unpackhi_epi32(a[2], a[3]);
     x.v = _mm512_unpacklo_epi64(t0, t1);

@@ -48,8 +48,14 @@ GRAINSWEEP_PHASE void sift(const Field& f, std::int32_t batches, Packed& p, Prog
         const std::int64_t k = static_cast<std::int64_t>(s.batch) * width;
         const Place* first = f.inner_first + k;
         const Place* second = f.inner_second + k;
-        if (f.read_ahead != 0)
+        if (f.read_ahead != 0) {
             for (int q = 0; q < width; ++q) prefetch(record_at(f.records, second[q + 64]));
+            if constexpr (Law::friction)
+                for (int a = 0; a < 3; ++a) {
+                    prefetch(f.history[a] + s.read + 256);
+                    prefetch(f.history_next[a] + s.written + 256);
+                }
+        }
         I ix, iy, iz;
         load_offsets(f.records, first, second, ix, iy, iz);
         const F x = single(ix) * ux, y = single(iy) * uy, z = single(iz) * uz;
@@ -64,8 +70,11 @@ GRAINSWEEP_PHASE void sift(const Field& f, std::int32_t batches, Packed& p, Prog
         const int count = __builtin_popcount(now);
         if constexpr (Law::friction) {
             const unsigned before = f.touching[s.batch];
-            for (int a = 0; a < 3; ++a)
-                store(f.history_next[a] + s.written, compress(expand(load(f.history[a] + s.read), before), now));
+            if (before == now)  // most vectors keep their contacts
+                for (int a = 0; a < 3; ++a) store(f.history_next[a] + s.written, load(f.history[a] + s.read));
+            else
+                for (int a = 0; a < 3; ++a)
+                    store(f.history_next[a] + s.written, compress(expand(load(f.history[a] + s.read), before), now));
             f.touching_next[s.batch] = static_cast<std::uint16_t>(now);
             s.read += __builtin_popcount(before);
             s.written += count;
@@ -237,7 +246,10 @@ GRAINSWEEP_LANES void advance_one(const Field& f, std::int32_t i, Stepper& s) {
 template <class Law>
 GRAINSWEEP_PHASE void advance_range(const Field& f, std::int32_t from, std::int32_t to, Tally& t) {
     Stepper s = stepper(f.constants, t);
-    for (std::int32_t i = from; i < to; ++i) advance_one<Law>(f, i, s);
+    for (std::int32_t i = from; i < to; ++i) {
+        if (f.read_ahead != 0) prefetch(f.residuals + i + 64);
+        advance_one<Law>(f, i, s);
+    }
     store8(t.velocity_high, s.high);
     store8(t.velocity_low, s.low);
 }
