@@ -107,6 +107,7 @@ bench)
     for program in "$here"/build/tests/bench_*; do
         [ -x "$program" ] && "$program"
     done
+    "$here/tests/bench/overhead.sh"
     ;;
 *)
     usage
