@@ -1,9 +1,14 @@
-// Cost of a flow step and its parts, one core: JSON lines {program, build, cells, milliseconds per call, ...}.
+// Cost of a flow step and its parts: JSON lines {program, compiler, what, cells, milliseconds}, processor time per
+// call, best of five batches.   bench_flow [CELLS [CALLS]]
+#include "solver/coupling/drag.hpp"
+#include "solver/coupling/periodic_flow.hpp"
+#include "solver/coupling/suspension.hpp"
 #include "solver/flow/flow.hpp"
 
-#include <chrono>
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <string>
 
 using namespace grainsweep::flow;
@@ -17,10 +22,9 @@ double milliseconds(int calls, Work work) {
     work();
     double best = 1e300;
     for (int batch = 0; batch < 5; ++batch) {
-        const auto start = std::chrono::steady_clock::now();
+        const std::clock_t start = std::clock();
         for (int n = 0; n < calls; ++n) work();
-        const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
-        best = std::min(best, spent.count() / calls);
+        best = std::min(best, 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC / calls);
     }
     return best;
 }
@@ -67,6 +71,40 @@ int main(int argc, char** argv) {
     const Weights weights(grid, velocity_edges(walls, 1));
     report("momentum_transport", n, milliseconds(calls, [&] {
                momentum_transport(1, flow.velocity(), weights, {n, n, n}, 18, right, solution);
+           }));
+
+    namespace coupling = grainsweep::coupling;
+    const coupling::Sphere sphere{1.65, 3.1e-6, 18, 1.72e9, 1};
+    const coupling::Walls box{{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, {}, sphere.radius(), 1};
+    const coupling::Motion<coupling::SchillerNaumann> motion(sphere, setup.time_step);
+    const std::size_t particles = 3150;
+    const auto cloud = coupling::random_cloud(particles, box, grainsweep::stats::Stream(1, 1));
+    const auto suspension = [&]<class Kernel, class Level>(Kernel, Level level) {
+        return coupling::Suspension<Boussinesq, Level, Kernel, coupling::SchillerNaumann>(flow, heat.vibration, motion,
+                                                                                          box, cloud, std::move(level));
+    };
+    auto one_way = suspension(coupling::Trilinear{}, coupling::OneWay{});
+    report("one_way_trilinear", n, milliseconds(calls, [&] { one_way.step(); }));
+    auto solenoidal = suspension(coupling::Solenoidal{}, coupling::OneWay{});
+    report("one_way_solenoidal", n, milliseconds(calls, [&] { solenoidal.step(); }));
+    auto two_way =
+        suspension(coupling::Trilinear{}, coupling::TwoWay<coupling::ForceForm>(grid, walls, sphere, particles, 2));
+    report("two_way_force", n, milliseconds(calls, [&] { two_way.step(); }));
+
+    coupling::PeriodicFlow periodic(grid);
+    for (int s = 0; s < 32; ++s) periodic.add(2 * pi * (s + 0.5) / 32, 32, velocity, acceleration);
+    auto carried = cloud;
+    int step = 0;
+    report("replay_trilinear", n, milliseconds(calls, [&] {
+               const double phase = 2 * pi * (step++ % 32 + 0.5) / 32;
+               for (std::size_t p = 0; p < particles; ++p) {
+                   const coupling::Footing<coupling::Trilinear> foot(grid, box.periodic,
+                                                                     box.clipped(carried.position[p]));
+                   auto around = periodic.at(foot, phase);
+                   around.vibration = std::sin(phase);
+                   motion.advance(carried.position[p], carried.velocity[p], around);
+                   box.apply(carried.position[p], carried.velocity[p]);
+               }
            }));
     return 0;
 }
