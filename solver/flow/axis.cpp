@@ -51,7 +51,8 @@ Place Axis::locate(double x) const {
         s = std::clamp(0.5 * std::log((1 + a) / (1 - a)) / clustering_, -1.0, 1.0);
     }
     const double in_cells = 0.5 * (s + 1) * cells_;
-    const int cell = std::min(static_cast<int>(in_cells), cells_ - 1);
+    // Written so that a position that is no number still yields a cell that exists.
+    const int cell = in_cells < cells_ - 1 ? static_cast<int>(in_cells) : cells_ - 1;
     return {cell + 1, in_cells - cell};
 }
 

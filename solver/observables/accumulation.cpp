@@ -45,6 +45,15 @@ double random_accumulation(std::size_t particles, std::size_t cells) {
     return static_cast<double>(cells) * deviation / (2 * (n - mean));
 }
 
+double random_accumulation_deviation(std::size_t particles, std::size_t cells) {
+    const auto n = static_cast<double>(particles);
+    const auto c = static_cast<double>(cells);
+    const double mean = n / c;
+    const double deviation = random_accumulation(particles, cells) * 2 * (n - mean) / c;  // E|k - m|
+    const double variance = mean * (1 - 1 / c) - deviation * deviation;
+    return std::sqrt(std::max(variance, 0.0) * c) / (2 * (n - mean));
+}
+
 double least_accumulation(std::size_t particles, std::size_t cells) {
     const auto n = static_cast<double>(particles);
     const double lambda = n / static_cast<double>(cells);

@@ -27,6 +27,8 @@ struct Box {
 [[nodiscard]] double accumulation(std::span<const int> counts);
 /// Expected K of N independent uniform particles on so many cells.
 [[nodiscard]] double random_accumulation(std::size_t particles, std::size_t cells);
+/// Standard deviation of that K over clouds with the correlation of counts neglected, which overestimates it.
+[[nodiscard]] double random_accumulation_deviation(std::size_t particles, std::size_t cells);
 /// Least K that N particles can have on so many cells.
 [[nodiscard]] double least_accumulation(std::size_t particles, std::size_t cells);
 

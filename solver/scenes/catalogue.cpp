@@ -25,6 +25,7 @@ Inputs SceneInfo::defaults() const {
 std::span<const SceneInfo> scene_catalogue() {
     static const std::vector<SceneInfo> scenes = {
         rehearsal_scene(),
+        thermovibration_scene(),
     };
     return scenes;
 }

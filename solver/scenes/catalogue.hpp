@@ -6,5 +6,6 @@
 namespace grainsweep {
 
 [[nodiscard]] SceneInfo rehearsal_scene();
+[[nodiscard]] SceneInfo thermovibration_scene();
 
 }  // namespace grainsweep

@@ -1,5 +1,5 @@
 // Cost of a flow step and its parts: JSON lines {program, compiler, what, cells, milliseconds}, processor time per
-// call, best of five batches.   bench_flow [CELLS [CALLS]]
+// call, best of five batches.   bench_flow [CELLS [CALLS [NAME]]]
 #include "solver/coupling/drag.hpp"
 #include "solver/coupling/periodic_flow.hpp"
 #include "solver/coupling/suspension.hpp"
@@ -17,8 +17,12 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
+std::string wanted;  // only lines whose name contains it
+int cells = 40;
+int calls = 50;
+
 template <class Work>
-double milliseconds(int calls, Work work) {
+double milliseconds(Work work) {
     work();
     double best = 1e300;
     for (int batch = 0; batch < 5; ++batch) {
@@ -29,18 +33,22 @@ double milliseconds(int calls, Work work) {
     return best;
 }
 
-void report(const char* what, int cells, double ms) {
+template <class Work>
+void measure(const std::string& what, Work work) {
+    if (what.find(wanted) == std::string::npos) return;
     std::printf(R"({"program":"bench_flow","compiler":"%s","what":"%s","cells":%d,"milliseconds":%.4f})"
                 "\n",
-                __VERSION__, what, cells, ms);
+                __VERSION__, what.c_str(), cells, milliseconds(work));
     std::fflush(stdout);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    const int n = argc > 1 ? std::atoi(argv[1]) : 40;
-    const int calls = argc > 2 ? std::atoi(argv[2]) : 50;
+    if (argc > 1) cells = std::atoi(argv[1]);
+    if (argc > 2) calls = std::atoi(argv[2]);
+    if (argc > 3) wanted = argv[3];
+    const int n = cells;
     const Axis axis = Axis::uniform(n, -0.5, 0.5);
     const Grid grid{{axis, axis, axis}};
     const Sides walls{{{NoSlip{}, NoSlip{}}, {NoSlip{}, NoSlip{}}, {NoSlip{}, NoSlip{}}}};
@@ -53,25 +61,25 @@ int main(int argc, char** argv) {
     Flow<Boussinesq> flow(setup, heat);
     flow.set_temperature([](double, double, double z) { return z; });
 
-    report("flow_step", n, milliseconds(calls, [&] { flow.step(); }));
+    measure("flow_step", [&] { flow.step(); });
     FaceVectors velocity = face_vectors(grid);
     FaceVectors acceleration = face_vectors(grid);
-    report("midpoint", n, milliseconds(calls, [&] { flow.midpoint(velocity, acceleration); }));
+    measure("midpoint", [&] { flow.midpoint(velocity, acceleration); });
 
     Poisson poisson(grid, walls);
     std::vector<double> values(grid.total_cells());
     for (std::size_t m = 0; m < values.size(); ++m) values[m] = static_cast<double>(m % 7) - 3;
-    report("poisson", n, milliseconds(calls, [&] { poisson.solve(values); }));
+    measure("poisson", [&] { poisson.solve(values); });
 
     ImplicitDiffusion diffusion(grid, velocity_edges(walls, 1), 18 * setup.time_step / 2);
     Field right = flow.velocity()[1];
     Field solution(grid);
-    report("implicit_diffusion", n, milliseconds(calls, [&] { diffusion.solve(right, solution); }));
+    measure("implicit_diffusion", [&] { diffusion.solve(right, solution); });
 
     const Weights weights(grid, velocity_edges(walls, 1));
-    report("momentum_transport", n, milliseconds(calls, [&] {
-               momentum_transport(1, flow.velocity(), weights, {n, n, n}, 18, right, solution);
-           }));
+    measure("momentum_transport", [&] {
+        momentum_transport(1, flow.velocity(), weights, {n, n, n}, 18, right, solution);
+    });
 
     namespace coupling = grainsweep::coupling;
     const coupling::Sphere sphere{1.65, 3.1e-6, 18, 1.72e9, 1};
@@ -84,27 +92,26 @@ int main(int argc, char** argv) {
                                                                                           box, cloud, std::move(level));
     };
     auto one_way = suspension(coupling::Trilinear{}, coupling::OneWay{});
-    report("one_way_trilinear", n, milliseconds(calls, [&] { one_way.step(); }));
+    measure("one_way_trilinear", [&] { one_way.step(); });
     auto solenoidal = suspension(coupling::Solenoidal{}, coupling::OneWay{});
-    report("one_way_solenoidal", n, milliseconds(calls, [&] { solenoidal.step(); }));
+    measure("one_way_solenoidal", [&] { solenoidal.step(); });
     auto two_way =
         suspension(coupling::Trilinear{}, coupling::TwoWay<coupling::ForceForm>(grid, walls, sphere, particles, 2));
-    report("two_way_force", n, milliseconds(calls, [&] { two_way.step(); }));
+    measure("two_way_force", [&] { two_way.step(); });
 
     coupling::PeriodicFlow periodic(grid);
     for (int s = 0; s < 32; ++s) periodic.add(2 * pi * (s + 0.5) / 32, 32, velocity, acceleration);
     auto carried = cloud;
     int step = 0;
-    report("replay_trilinear", n, milliseconds(calls, [&] {
-               const double phase = 2 * pi * (step++ % 32 + 0.5) / 32;
-               for (std::size_t p = 0; p < particles; ++p) {
-                   const coupling::Footing<coupling::Trilinear> foot(grid, box.periodic,
-                                                                     box.clipped(carried.position[p]));
-                   auto around = periodic.at(foot, phase);
-                   around.vibration = std::sin(phase);
-                   motion.advance(carried.position[p], carried.velocity[p], around);
-                   box.apply(carried.position[p], carried.velocity[p]);
-               }
-           }));
+    measure("replay_trilinear", [&] {
+        const double phase = 2 * pi * (step++ % 32 + 0.5) / 32;
+        for (std::size_t p = 0; p < particles; ++p) {
+            const coupling::Footing<coupling::Trilinear> foot(grid, box.periodic, box.clipped(carried.position[p]));
+            auto around = periodic.at(foot, phase);
+            around.vibration = std::sin(phase);
+            motion.advance(carried.position[p], carried.velocity[p], around);
+            box.apply(carried.position[p], carried.velocity[p]);
+        }
+    });
     return 0;
 }
