@@ -1,5 +1,6 @@
 #include "solver/coupling/interpolation.hpp"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -41,26 +42,50 @@ void fold_ghosts(flow::Field& field, const flow::Grid& grid, const flow::Edges& 
 }
 
 void smooth(flow::Field& field, const flow::Grid& grid, const flow::Edges& edges, int passes) {
-    for (int pass = 0; pass < passes; ++pass)
+    // Row by row; along x the row is the line itself, else a line of rows is swept with the old values of the row
+    // before kept aside.
+    const auto length = static_cast<std::size_t>(grid.cells(0)) + 2;
+    std::vector<double> before(length);
+    std::vector<double> beyond(length);
+    for (int pass = 0; pass < passes; ++pass) {
         for (int d = 0; d < 3; ++d) {
             const flow::Edge& edge = edges[static_cast<std::size_t>(d)];
             const int first = flow::first_unknown(edge);
             const int n = grid.cells(d);
             if (n - first < 1) continue;
             const auto stride = field.stride(d);
-            double* const values = field.data();
-            each_line(field, grid, d, [&](std::ptrdiff_t line) {
-                double* const v = values + line;
-                double before = edge.periodic ? v[n * stride] : v[first * stride];
-                const double beyond = edge.periodic ? v[first * stride] : v[n * stride];
+            const int low_end = edge.periodic ? n : first;
+            const int high_end = edge.periodic ? first : n;
+            if (d == 0) {
+                each_line(field, grid, 0, [&](std::ptrdiff_t line) {
+                    double* const v = field.data() + line;
+                    double previous = v[low_end];
+                    const double next_beyond = v[high_end];
+                    for (int m = first; m <= n; ++m) {
+                        const double here = v[m];
+                        v[m] = 0.25 * (previous + (m < n ? v[m + 1] : next_beyond)) + 0.5 * here;
+                        previous = here;
+                    }
+                });
+                continue;
+            }
+            const int across = d == 1 ? 2 : 1;
+            for (int q = 0; q <= grid.cells(across) + 1; ++q) {
+                double* const line = field.data() + q * field.stride(across);
+                std::copy_n(line + low_end * stride, length, before.begin());
+                std::copy_n(line + high_end * stride, length, beyond.begin());
                 for (int m = first; m <= n; ++m) {
-                    const double here = v[m * stride];
-                    const double after = m < n ? v[(m + 1) * stride] : beyond;
-                    v[m * stride] = 0.25 * (before + after) + 0.5 * here;
-                    before = here;
+                    double* const row = line + m * stride;
+                    const double* const after = m < n ? row + stride : beyond.data();
+                    for (std::size_t i = 0; i < length; ++i) {
+                        const double here = row[i];
+                        row[i] = 0.25 * (before[i] + after[i]) + 0.5 * here;
+                        before[i] = here;
+                    }
                 }
-            });
+            }
         }
+    }
 }
 
 }  // namespace grainsweep::coupling

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "solver/coupling/levels.hpp"
+#include "solver/coupling/visit_order.hpp"
 #include "solver/flow/flow.hpp"
 
 #include <utility>
@@ -25,27 +26,30 @@ public:
           cloud_(std::move(cloud)),
           level_(std::move(level)),
           velocity_(flow::face_vectors(fluid_.grid())),
-          acceleration_(velocity_) {
-        feet_.reserve(cloud_.size());
-    }
+          acceleration_(velocity_) {}
 
     void step() {
         const double dt = fluid_.time_step();
         const double s = vibration_.at(fluid_.time() + 0.5 * dt);
-        feet_.clear();
-        for (std::size_t p = 0; p < cloud_.size(); ++p) feet_.emplace_back(fluid_.grid(), walls_.periodic, middle(p));
-        if constexpr (Level::acts_on_fluid)
+        if constexpr (Level::acts_on_fluid) {
+            feet_.clear();
+            for (std::size_t p = 0; p < cloud_.size(); ++p) feet_.push_back(foot(p));
             fluid_.step(level_.source(feet_, s));
-        else
+        } else {
             fluid_.step();
+        }
+        if (cloud_.size() == 0) return;
         fluid_.midpoint(velocity_, acceleration_);
-        for (std::size_t p = 0; p < cloud_.size(); ++p) {
+        for (const std::size_t p : order_.of(cloud_, fluid_.grid())) {
             Vec3& x = cloud_.position[p];
             Vec3& v = cloud_.velocity[p];
-            const Vec3 before = v;
-            motion_.advance(x, v, {feet_[p].gather(velocity_), feet_[p].gather(acceleration_), s, {}});
-            if constexpr (Level::acts_on_fluid)
+            if constexpr (Level::acts_on_fluid) {
+                const Vec3 before = v;
+                move(x, v, feet_[p], s);
                 level_.remember(p, {(v[0] - before[0]) / dt, (v[1] - before[1]) / dt, (v[2] - before[2]) / dt});
+            } else {
+                move(x, v, foot(p), s);
+            }
             walls_.apply(x, v);
         }
     }
@@ -68,11 +72,16 @@ public:
     }
 
 private:
-    [[nodiscard]] Vec3 middle(std::size_t p) const {
+    // At the predicted middle of the step.
+    [[nodiscard]] Footing<Kernel> foot(std::size_t p) const {
         Vec3 x = cloud_.position[p];
         const double half = 0.5 * fluid_.time_step();
         for (std::size_t d = 0; d < 3; ++d) x[d] += half * cloud_.velocity[p][d];
-        return walls_.clipped(x);
+        return {fluid_.grid(), walls_.periodic, walls_.clipped(x)};
+    }
+
+    void move(Vec3& x, Vec3& v, const Footing<Kernel>& at, double vibration) const {
+        motion_.advance(x, v, {at.gather(velocity_), at.gather(acceleration_), vibration, {}});
     }
 
     flow::Flow<Heat> fluid_;
@@ -82,7 +91,8 @@ private:
     Cloud cloud_;
     Level level_;
     flow::FaceVectors velocity_, acceleration_;
-    std::vector<Footing<Kernel>> feet_;
+    VisitOrder order_;
+    std::vector<Footing<Kernel>> feet_;  // levels that act on the fluid only
 };
 
 }  // namespace grainsweep::coupling

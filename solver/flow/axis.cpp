@@ -1,6 +1,5 @@
 #include "solver/flow/axis.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -41,26 +40,6 @@ Axis Axis::uniform(int cells, double low, double high) {
 
 Axis Axis::clustered(int cells, double low, double high, double clustering) {
     return {cells, low, high, clustering};
-}
-
-Place Axis::locate(double x) const {
-    const double t = std::clamp((x - middle_) / half_, -1.0, 1.0);
-    double s = t;
-    if (clustering_ > 0) {
-        const double a = t * tanh_;
-        s = std::clamp(0.5 * std::log((1 + a) / (1 - a)) / clustering_, -1.0, 1.0);
-    }
-    const double in_cells = 0.5 * (s + 1) * cells_;
-    // Written so that a position that is no number still yields a cell that exists.
-    const int cell = in_cells < cells_ - 1 ? static_cast<int>(in_cells) : cells_ - 1;
-    return {cell + 1, in_cells - cell};
-}
-
-double Axis::stretch(double x) const {
-    const double uniform_width = 2 * half_ / cells_;
-    if (clustering_ == 0) return uniform_width;
-    const double a = std::clamp((x - middle_) / half_, -1.0, 1.0) * tanh_;
-    return uniform_width * clustering_ / tanh_ * (1 - a * a);
 }
 
 }  // namespace grainsweep::flow

@@ -8,6 +8,9 @@
 // so faces are 1 ... n+1.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace grainsweep::flow {
@@ -38,12 +41,29 @@ public:
     [[nodiscard]] double spacing(int f) const { return centre(f) - centre(f - 1); }
 
     /// Cell and smooth offset s of a position in [low, high]; positions outside go to the nearest end.
-    [[nodiscard]] Place locate(double x) const;
+    [[nodiscard]] Place locate(double x) const {
+        const double t = std::clamp((x - middle_) / half_, -1.0, 1.0);
+        const double in_cells = 0.5 * ((clustering_ > 0 ? unclustered(t) : t) + 1) * cells_;
+        // Written so that a position that is no number still yields a cell that exists.
+        const int cell = in_cells < cells_ - 1 ? static_cast<int>(in_cells) : cells_ - 1;
+        return {cell + 1, in_cells - cell};
+    }
     /// dx/ds of the smooth map at a position (the local cell width).
-    [[nodiscard]] double stretch(double x) const;
+    [[nodiscard]] double stretch(double x) const {
+        const double equal = 2 * half_ / cells_;
+        if (clustering_ == 0) return equal;
+        const double a = std::clamp((x - middle_) / half_, -1.0, 1.0) * tanh_;
+        return equal * clustering_ / tanh_ * (1 - a * a);
+    }
 
 private:
     Axis(int cells, double low, double high, double clustering);
+
+    // artanh(t tanh c)/c, the inverse of the clustering.
+    [[nodiscard]] double unclustered(double t) const {
+        const double a = t * tanh_;
+        return std::clamp(0.5 * std::log((1 + a) / (1 - a)) / clustering_, -1.0, 1.0);
+    }
 
     int cells_;
     double low_, high_, clustering_;

@@ -41,83 +41,87 @@ RowWeights row_weights(const Weights& w, int d, int j, int k) {
 struct MomentumRow {
     const double* own;               // v_d at i = 0
     std::array<const double*, 3> q;  // all components at i = 0
-    double* convection;
-    double* diffusion;
     std::ptrdiff_t sy, sz;
     int first, last;
     double viscosity;
 };
 
-// F = advecting velocity times the average advected value; own direction at cell centres, others at edges.
-template <int D>
-[[gnu::always_inline]] inline void momentum_row(const MomentumRow& row, const RowWeights& w) {
-    const std::ptrdiff_t stride[3] = {1, row.sy, row.sz};
-    const std::ptrdiff_t s = stride[D];
-    const double* __restrict own = row.own;
-    double* __restrict convection = row.convection;
-    double* __restrict diffusion = row.diffusion;
-    for (int i = row.first; i <= row.last; ++i) {
-        const double centre = own[i];
-        const double lower = D == 0 ? w.lower_x[i] : w.lower;
-        const double upper = D == 0 ? w.upper_x[i] : w.upper;
-        double out = 0;
-        double spread = 0;
-        for (int e = 0; e < 3; ++e) {
-            const std::ptrdiff_t t = stride[e];
-            const double before = own[i - t];
-            const double after = own[i + t];
-            const double inverse_width = e == 0 ? w.inverse_width_x[i] : e == 1 ? w.inverse_width_y : w.inverse_width_z;
-            const double low = e == 0 ? w.low_x[i] : e == 1 ? w.low_y : w.low_z;
-            const double high = e == 0 ? w.high_x[i] : e == 1 ? w.high_y : w.high_z;
-            double flux_in = 0;
-            double flux_out = 0;
-            if (e == D) {
-                flux_in = 0.25 * (before + centre) * (before + centre);
-                flux_out = 0.25 * (centre + after) * (centre + after);
-            } else {
-                const double* q = row.q[static_cast<std::size_t>(e)];
-                flux_in = (lower * q[i - s] + upper * q[i]) * (0.5 * (before + centre));
-                flux_out = (lower * q[i - s + t] + upper * q[i + t]) * (0.5 * (centre + after));
-            }
-            out += (flux_out - flux_in) * inverse_width;
-            spread += low * (before - centre) + high * (after - centre);
-        }
-        convection[i] = -out;
-        diffusion[i] = row.viscosity * spread;
+// Everything a row's loop needs by value, and its outputs as restricted parameters: reread through a reference, a
+// weight would have to be loaded again after every store and the loop could not be vectorised.
+struct Across {
+    std::ptrdiff_t step;
+    double inverse_width, low, high;
+};
+
+// Convection (outflow) and spread of the own value in direction E at place i, for component D.
+template <int D, int E>
+[[gnu::always_inline]] inline void add_direction(const double* own, const double* q, std::ptrdiff_t s, std::ptrdiff_t i,
+                                                 double lower, double upper, const Across& e, double& out,
+                                                 double& spread) {
+    const double centre = own[i];
+    const double before = own[i - e.step];
+    const double after = own[i + e.step];
+    double flux_in = 0.5 * (before + centre);
+    double flux_out = 0.5 * (centre + after);
+    // Advecting velocity times the average advected value: own direction at cell centres, others at edges.
+    if constexpr (D == E) {
+        flux_in *= flux_in;
+        flux_out *= flux_out;
+    } else {
+        flux_in *= lower * q[i - s] + upper * q[i];
+        flux_out *= lower * q[i - s + e.step] + upper * q[i + e.step];
     }
+    out += (flux_out - flux_in) * e.inverse_width;
+    spread += e.low * (before - centre) + e.high * (after - centre);
 }
 
-GRAINSWEEP_VECTOR_CLONES
-void momentum_row_x(const MomentumRow& row, const RowWeights& w) {
-    momentum_row<0>(row, w);
-}
-GRAINSWEEP_VECTOR_CLONES
-void momentum_row_y(const MomentumRow& row, const RowWeights& w) {
-    momentum_row<1>(row, w);
-}
-GRAINSWEEP_VECTOR_CLONES
-void momentum_row_z(const MomentumRow& row, const RowWeights& w) {
-    momentum_row<2>(row, w);
+template <int D>
+GRAINSWEEP_VECTOR_CLONES void momentum_row(double* __restrict convection, double* __restrict diffusion,
+                                           const MomentumRow& row, const RowWeights& w) {
+    const double* own = row.own;
+    const double* u = row.q[0];
+    const double* v = row.q[1];
+    const double* z = row.q[2];
+    const double* low_x = w.low_x;
+    const double* high_x = w.high_x;
+    const double* inverse_width_x = w.inverse_width_x;
+    const double* lower_x = w.lower_x;
+    const double* upper_x = w.upper_x;
+    const Across y{row.sy, w.inverse_width_y, w.low_y, w.high_y};
+    const Across up{row.sz, w.inverse_width_z, w.low_z, w.high_z};
+    const double lower_d = w.lower;
+    const double upper_d = w.upper;
+    const double viscosity = row.viscosity;
+    const std::ptrdiff_t s = D == 0 ? 1 : D == 1 ? row.sy : row.sz;
+    const int last = row.last;
+    for (int i = row.first; i <= last; ++i) {
+        const double lower = D == 0 ? lower_x[i] : lower_d;
+        const double upper = D == 0 ? upper_x[i] : upper_d;
+        double out = 0;
+        double spread = 0;
+        add_direction<D, 0>(own, u, s, i, lower, upper, {1, inverse_width_x[i], low_x[i], high_x[i]}, out, spread);
+        add_direction<D, 1>(own, v, s, i, lower, upper, y, out, spread);
+        add_direction<D, 2>(own, z, s, i, lower, upper, up, out, spread);
+        convection[i] = -out;
+        diffusion[i] = viscosity * spread;
+    }
 }
 
 struct ScalarRow {
     const double* scalar;
     std::array<const double*, 3> q;
-    double* convection;
-    double* diffusion;
     std::ptrdiff_t sy, sz;
     int last;
     double diffusivity;
 };
 
 GRAINSWEEP_VECTOR_CLONES
-void scalar_row(const ScalarRow& row, const RowWeights& w) {
+void scalar_row(double* __restrict convection, double* __restrict diffusion, const ScalarRow& row,
+                const RowWeights& w) {
     const double* __restrict a = row.scalar;
     const double* __restrict u = row.q[0];
     const double* __restrict v = row.q[1];
     const double* __restrict z = row.q[2];
-    double* __restrict convection = row.convection;
-    double* __restrict diffusion = row.diffusion;
     const std::ptrdiff_t sy = row.sy;
     const std::ptrdiff_t sz = row.sz;
     for (int i = 1; i <= row.last; ++i) {
@@ -174,12 +178,13 @@ Weights::Weights(const Grid& grid, const Edges& edges) {
 void momentum_transport(int d, const FaceVectors& velocity, const Weights& weights, const std::array<int, 3>& cells,
                         double viscosity, Field& convection, Field& diffusion) {
     const Field& own = velocity[static_cast<std::size_t>(d)];
-    const auto kernel = d == 0 ? momentum_row_x : d == 1 ? momentum_row_y : momentum_row_z;
+    const auto kernel = d == 0 ? momentum_row<0> : d == 1 ? momentum_row<1> : momentum_row<2>;
     for (int k = weights.first[2]; k <= cells[2]; ++k)
         for (int j = weights.first[1]; j <= cells[1]; ++j) {
             const auto start = own.index(0, j, k);
-            kernel({own.data() + start, rows_at(velocity, start), convection.data() + start, diffusion.data() + start,
-                    own.stride(1), own.stride(2), weights.first[0], cells[0], viscosity},
+            kernel(convection.data() + start, diffusion.data() + start,
+                   {own.data() + start, rows_at(velocity, start), own.stride(1), own.stride(2), weights.first[0],
+                    cells[0], viscosity},
                    row_weights(weights, d, j, k));
         }
 }
@@ -189,8 +194,9 @@ void scalar_transport(const FaceVectors& velocity, const Field& scalar, const We
     for (int k = 1; k <= cells[2]; ++k)
         for (int j = 1; j <= cells[1]; ++j) {
             const auto start = scalar.index(0, j, k);
-            scalar_row({scalar.data() + start, rows_at(velocity, start), convection.data() + start,
-                        diffusion.data() + start, scalar.stride(1), scalar.stride(2), cells[0], diffusivity},
+            scalar_row(convection.data() + start, diffusion.data() + start,
+                       {scalar.data() + start, rows_at(velocity, start), scalar.stride(1), scalar.stride(2), cells[0],
+                        diffusivity},
                        row_weights(weights, 0, j, k));
         }
 }

@@ -102,10 +102,11 @@ int main(int argc, char** argv) {
     coupling::PeriodicFlow periodic(grid);
     for (int s = 0; s < 32; ++s) periodic.add(2 * pi * (s + 0.5) / 32, 32, velocity, acceleration);
     auto carried = cloud;
+    coupling::VisitOrder order;
     int step = 0;
     measure("replay_trilinear", [&] {
         const double phase = 2 * pi * (step++ % 32 + 0.5) / 32;
-        for (std::size_t p = 0; p < particles; ++p) {
+        for (const std::size_t p : order.of(carried, grid)) {
             const coupling::Footing<coupling::Trilinear> foot(grid, box.periodic, box.clipped(carried.position[p]));
             auto around = periodic.at(foot, phase);
             around.vibration = std::sin(phase);

@@ -227,7 +227,7 @@ private:
         const double s = std::sin(phase);
         const std::array<double, coupling::PeriodicFlow::terms> basis{1, c, s, c * c - s * s, 2 * s * c};
         const double vibration = question_.vibration().at(in_period * dt);
-        for (std::size_t p = 0; p < cloud_.size(); ++p) {
+        for (const std::size_t p : order_.of(cloud_, grid_)) {
             coupling::Vec3& x = cloud_.position[p];
             coupling::Vec3& v = cloud_.velocity[p];
             coupling::Vec3 middle = x;
@@ -252,6 +252,7 @@ private:
     coupling::Walls walls_;
     coupling::Motion<Drag> motion_;
     coupling::Cloud cloud_;
+    coupling::VisitOrder order_;
     Record record_;
     coupling::PeriodicFlow flow_;
     std::optional<SpinUp> spin_up_;  // only while the flow is not yet known
