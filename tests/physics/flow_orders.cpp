@@ -306,3 +306,61 @@ TEST(Conservation, InsulatedHeatIsKept) {
     EXPECT_GT(flow.fastest().courant, 1e-4);
     EXPECT_NEAR(total(), before, 1e-12);
 }
+
+namespace {
+
+// |dE/dt - (work of buoyancy - dissipation)| over the dissipation, in the step that ends at t = 0.1.
+double energy_residual(int steps) {
+    constexpr int n = 12;
+    const double dt = 0.1 / steps;
+    const std::array<Side, 2> walls{NoSlip{}, NoSlip{}};
+    const Axis axis = Axis::uniform(n, -0.5, 0.5);
+    Boussinesq heat;
+    heat.sides[2] = {Isothermal{-0.5}, Isothermal{0.5}};
+    heat.buoyancy = -2e4;
+    heat.vibration = {50, 1};
+    Flow<Boussinesq> flow({Grid{{axis, axis, axis}}, {walls, walls, walls}, 2, dt}, heat);
+    flow.set_temperature([](double x, double, double z) { return z * (1 + 0.3 * x); });
+    for (int s = 0; s < steps - 1; ++s) flow.step();
+    const FaceVectors before = flow.velocity();
+    const Field cold = flow.temperature();
+    flow.step();
+    FaceVectors middle = before;
+    double change = 0;
+    for (std::size_t d = 0; d < 3; ++d)
+        for (std::size_t m = 0; m < middle[d].size(); ++m)
+            middle[d].values()[m] = 0.5 * (before[d].values()[m] + flow.velocity()[d].values()[m]);
+    double work = 0;
+    double dissipation = 0;
+    for (int d = 0; d < 3; ++d) {
+        const auto c = static_cast<std::size_t>(d);
+        const Weights weights(flow.grid(), velocity_edges(flow.sides(), d));
+        Field convection(flow.grid());
+        Field diffusion(flow.grid());
+        momentum_transport(d, middle, weights, {n, n, n}, 2, convection, diffusion);
+        for (int k = 1; k <= n; ++k)
+            for (int j = 1; j <= n; ++j)
+                for (int i = 1; i <= n; ++i) {
+                    const double v = middle[c](i, j, k);
+                    change += v * (flow.velocity()[c](i, j, k) - before[c](i, j, k)) / dt;
+                    dissipation -= v * diffusion(i, j, k);
+                    if (d != 1) continue;
+                    const double theta = 0.25 * (cold(i, j - 1, k) + cold(i, j, k) + flow.temperature()(i, j - 1, k) +
+                                                 flow.temperature()(i, j, k));
+                    work += v * heat.buoyancy * theta * heat.vibration.at(flow.time() - 0.5 * dt);
+                }
+    }
+    EXPECT_GT(dissipation, 0);
+    return std::abs(change - work + dissipation) / dissipation;
+}
+
+}  // namespace
+
+// Kinetic energy changes by the work of buoyancy less the dissipation; what the time scheme leaves over is of second
+// order.
+TEST(Conservation, TheEnergyBudgetCloses) {
+    const double coarse = energy_residual(200);
+    const double fine = energy_residual(400);
+    EXPECT_LT(fine, 1e-3);
+    EXPECT_GT(std::log2(coarse / fine), 1.7);
+}
