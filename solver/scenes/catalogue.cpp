@@ -27,6 +27,7 @@ std::span<const SceneInfo> scene_catalogue() {
     static const std::vector<SceneInfo> scenes = {
         powder_spreading_scene(),
         rehearsal_scene(),
+        thermovibration_scene(),
     };
     return scenes;
 }

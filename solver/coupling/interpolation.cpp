@@ -1,0 +1,91 @@
+#include "solver/coupling/interpolation.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace grainsweep::coupling {
+namespace {
+
+template <class Body>
+void each_line(const flow::Field& field, const flow::Grid& grid, int d, Body body) {
+    const int a = d == 0 ? 1 : 0;
+    const int b = d == 2 ? 1 : 2;
+    for (int q = 0; q <= grid.cells(b) + 1; ++q)
+        for (int p = 0; p <= grid.cells(a) + 1; ++p) body(p * field.stride(a) + q * field.stride(b));
+}
+
+}  // namespace
+
+void fold_ghosts(flow::Field& field, const flow::Grid& grid, const flow::Edges& edges) {
+    for (int d = 2; d >= 0; --d) {  // the reverse of the order in which ghosts are filled
+        const flow::Edge& edge = edges[static_cast<std::size_t>(d)];
+        const int n = grid.cells(d);
+        const auto stride = field.stride(d);
+        double* const values = field.data();
+        each_line(field, grid, d, [&](std::ptrdiff_t line) {
+            double& low = values[line];
+            double& high = values[line + (n + 1) * stride];
+            if (edge.periodic) {
+                values[line + n * stride] += std::exchange(low, 0.0);
+                values[line + stride] += std::exchange(high, 0.0);
+            } else if (edge.on_faces) {
+                values[line + 2 * stride] -= std::exchange(low, 0.0);
+                values[line + stride] = 0;
+                high = 0;
+            } else {
+                values[line + stride] += edge.ghost[0].sign * std::exchange(low, 0.0);
+                values[line + n * stride] += edge.ghost[1].sign * std::exchange(high, 0.0);
+            }
+        });
+    }
+}
+
+void smooth(flow::Field& field, const flow::Grid& grid, const flow::Edges& edges, int passes) {
+    // Row by row; along x the row is the line itself, else a line of rows is swept with the old values of the row
+    // before kept aside.
+    const auto length = static_cast<std::size_t>(grid.cells(0)) + 2;
+    std::vector<double> before(length);
+    std::vector<double> beyond(length);
+    for (int pass = 0; pass < passes; ++pass) {
+        for (int d = 0; d < 3; ++d) {
+            const flow::Edge& edge = edges[static_cast<std::size_t>(d)];
+            const int first = flow::first_unknown(edge);
+            const int n = grid.cells(d);
+            if (n - first < 1) continue;
+            const auto stride = field.stride(d);
+            const int low_end = edge.periodic ? n : first;
+            const int high_end = edge.periodic ? first : n;
+            if (d == 0) {
+                each_line(field, grid, 0, [&](std::ptrdiff_t line) {
+                    double* const v = field.data() + line;
+                    double previous = v[low_end];
+                    const double next_beyond = v[high_end];
+                    for (int m = first; m <= n; ++m) {
+                        const double here = v[m];
+                        v[m] = 0.25 * (previous + (m < n ? v[m + 1] : next_beyond)) + 0.5 * here;
+                        previous = here;
+                    }
+                });
+                continue;
+            }
+            const int across = d == 1 ? 2 : 1;
+            for (int q = 0; q <= grid.cells(across) + 1; ++q) {
+                double* const line = field.data() + q * field.stride(across);
+                std::copy_n(line + low_end * stride, length, before.begin());
+                std::copy_n(line + high_end * stride, length, beyond.begin());
+                for (int m = first; m <= n; ++m) {
+                    double* const row = line + m * stride;
+                    const double* const after = m < n ? row + stride : beyond.data();
+                    for (std::size_t i = 0; i < length; ++i) {
+                        const double here = row[i];
+                        row[i] = 0.25 * (before[i] + after[i]) + 0.5 * here;
+                        before[i] = here;
+                    }
+                }
+            }
+        }
+    }
+}
+
+}  // namespace grainsweep::coupling

@@ -1,0 +1,144 @@
+// Values at a particle from values on staggered faces, and the transpose: a particle's force onto the faces.
+//
+// Trilinear: linear between faces along the component's own axis, between cell centres across it; on a no-slip wall
+// the value is that of the wall.
+//
+// Solenoidal: with s the smooth grid coordinate (faces at integers), the volume fluxes F = U h_j h_k are interpolated
+// by a quadratic B-spline along their own axis and linearly across it, and u = F/(y'(s) z'(s)). Differentiated, the
+// spline gives differences of fluxes times linear hats, so
+//     div u (x) = 1/(x' y' z') sum over cells of (net flux out of the cell) hat(s_x) hat(s_y) hat(s_z) = 0:
+// the interpolated field has exactly the divergence of the discrete one, and no flow through walls. In the half cell
+// beside a wall the own factor is linear and the factors across are constant. Second order; the spline smooths by
+// h^2/8 u''.
+#pragma once
+
+#include "solver/flow/boundary.hpp"
+
+#include <array>
+#include <cstddef>
+#include <utility>
+
+namespace grainsweep::coupling {
+
+using Vec3 = std::array<double, 3>;
+
+/// Nodes first, first + 1, ... along one axis and their weights.
+template <int Count>
+struct AxisWeights {
+    static constexpr int count = Count;
+    int first = 0;
+    std::array<double, Count> weight{};
+};
+
+struct Trilinear {
+    /// Along the component's own axis: nodes are faces.
+    [[nodiscard]] static AxisWeights<2> own(const flow::Axis& axis, bool /*periodic*/, double x) {
+        const int cell = axis.locate(x).cell;
+        const double share = (x - axis.face(cell)) / axis.width(cell);
+        return {cell, {1 - share, share}};
+    }
+    /// Across it: nodes are cell centres, ghosts included.
+    [[nodiscard]] static AxisWeights<2> across(const flow::Axis& axis, bool /*periodic*/, double x) {
+        const int cell = axis.locate(x).cell;
+        const int first = x < axis.centre(cell) ? cell - 1 : cell;
+        const double share = (x - axis.centre(first)) / axis.spacing(first + 1);
+        return {first, {1 - share, share}};
+    }
+};
+
+struct Solenoidal {
+    [[nodiscard]] static AxisWeights<3> own(const flow::Axis& axis, bool periodic, double x) {
+        const flow::Place place = axis.locate(x);
+        const int n = axis.cells();
+        const double s = place.cell - 1 + place.offset;  // 0 ... n, face f at f - 1
+        int nearest = static_cast<int>(s + 0.5);
+        double d = s - nearest;
+        if (!periodic && nearest == 0) return {1, {0, s, 0}};
+        if (!periodic && nearest == n) return {n - 1, {0, n - s, 0}};
+        if (nearest == n) nearest = 0;  // the same face, whose neighbours are stored beside face 1
+        return {nearest, {0.5 * (0.5 - d) * (0.5 - d), 0.75 - d * d, 0.5 * (0.5 + d) * (0.5 + d)}};
+    }
+    [[nodiscard]] static AxisWeights<2> across(const flow::Axis& axis, bool periodic, double x) {
+        const flow::Place place = axis.locate(x);
+        const int n = axis.cells();
+        const int first = place.offset < 0.5 ? place.cell - 1 : place.cell;
+        double share = place.offset < 0.5 ? place.offset + 0.5 : place.offset - 0.5;
+        if (!periodic && first == 0) share = 1;
+        if (!periodic && first == n) share = 0;
+        const double scale = 1 / axis.stretch(x);
+        return {first, {(1 - share) * axis.width(first) * scale, share * axis.width(first + 1) * scale}};
+    }
+};
+
+/// Where a particle stands: weights along the three axes for faces (own) and for centres (across).
+template <class Kernel>
+class Footing {
+public:
+    Footing(const flow::Grid& grid, const std::array<bool, 3>& periodic, const Vec3& x) {
+        for (int d = 0; d < 3; ++d) {
+            const auto m = static_cast<std::size_t>(d);
+            own_[m] = Kernel::own(grid[d], periodic[m], x[m]);
+            across_[m] = Kernel::across(grid[d], periodic[m], x[m]);
+        }
+    }
+
+    /// Calls body(index of the node in the field, weight) for every node of component D.
+    template <int D, class Body>
+    void visit(const flow::Field& shape, Body body) const {
+        const auto& wx = along<D, 0>();
+        const auto& wy = along<D, 1>();
+        const auto& wz = along<D, 2>();
+        for (int c = 0; c < wz.count; ++c)
+            for (int b = 0; b < wy.count; ++b) {
+                const double row = wz.weight[static_cast<std::size_t>(c)] * wy.weight[static_cast<std::size_t>(b)];
+                const auto start = shape.index(wx.first, wy.first + b, wz.first + c);
+                for (int a = 0; a < wx.count; ++a) body(start + a, row * wx.weight[static_cast<std::size_t>(a)]);
+            }
+    }
+
+    [[nodiscard]] Vec3 gather(const flow::FaceVectors& field) const {
+        return {component<0>(field[0]), component<1>(field[1]), component<2>(field[2])};
+    }
+
+    /// Adds `amount` of component d onto the nodes, ghosts included (fold_ghosts brings those inside).
+    void scatter(const Vec3& amount, flow::FaceVectors& onto) const {
+        deposit<0>(amount[0], onto[0]);
+        deposit<1>(amount[1], onto[1]);
+        deposit<2>(amount[2], onto[2]);
+    }
+
+    template <int D>
+    void deposit(double amount, flow::Field& onto) const {
+        double* const values = onto.data();
+        visit<D>(onto, [&](std::ptrdiff_t at, double weight) { values[at] += weight * amount; });
+    }
+
+private:
+    template <int D, int E>
+    [[nodiscard]] const auto& along() const {
+        if constexpr (D == E)
+            return own_[E];
+        else
+            return across_[E];
+    }
+    template <int D>
+    [[nodiscard]] double component(const flow::Field& field) const {
+        const double* const values = field.data();
+        double sum = 0;
+        visit<D>(field, [&](std::ptrdiff_t at, double weight) { sum += weight * values[at]; });
+        return sum;
+    }
+
+    std::array<decltype(Kernel::own(std::declval<flow::Axis>(), false, 0.0)), 3> own_{};
+    std::array<decltype(Kernel::across(std::declval<flow::Axis>(), false, 0.0)), 3> across_{};
+};
+
+/// The transpose of flow::fill_ghosts without its constants: adds what lies on ghosts to the values they copy, so that
+/// scatter and fold_ghosts are together the transpose of fill_ghosts and gather. What falls on a wall the wall takes.
+void fold_ghosts(flow::Field& field, const flow::Grid& grid, const flow::Edges& edges);
+
+/// Widens the deposit: `passes` times [1 2 1]/4 along each axis of the extensive quantity, reflected at the sides, so
+/// nothing is lost; symmetric, hence its own transpose. One pass adds half a squared cell to the variance.
+void smooth(flow::Field& field, const flow::Grid& grid, const flow::Edges& edges, int passes);
+
+}  // namespace grainsweep::coupling

@@ -1,0 +1,129 @@
+// How much particles and fluid know of each other. A level is a type; what it does not do is not compiled.
+//
+// One-way: the fluid does not feel the particles.
+//
+// Two-way, force form: each particle acts on the fluid with the opposite of what the fluid does to it beyond the
+// hydrostatic pressure. With F the sum of drag, added mass and pressure-gradient force, the particle's own equation
+// of motion gives F = v_p [xi dV/dt - (xi - 1) gamma s e], so
+//     s_m = -(1/cell) sum v_p [ xi dV_p/dt - (xi - 1) gamma s(t) e ]
+// (point-force coupling, Crowe, Sharma & Stock 1977, doi 10.1115/1.3448756, for a Boussinesq fluid: the vibrational
+// buoyancy of the cloud is part of it and dominates). Written through the balance instead of the drag law it has no
+// stiffness: the large term is known exactly, dV_p/dt is that of the step before.
+//
+// Two-way, equation 9 of Manayil Santhosh, Anwar & Lappa 2024 (IAC-24-A1.2.3) as printed:
+//     s_m = -(1/fluid part of the cell) sum v_p xi dV_p/dt.
+// Right for particles without body force; here it leaves out the reaction to the vibrational buoyancy.
+#pragma once
+
+#include "solver/coupling/cloud.hpp"
+#include "solver/coupling/motion.hpp"
+#include "solver/flow/state_bytes.hpp"
+#include "solver/flow/transport.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace grainsweep::coupling {
+
+struct OneWay {
+    static constexpr bool acts_on_fluid = false;
+};
+
+struct ForceForm {
+    static constexpr bool per_fluid_volume = false;
+    static Vec3 force_on_fluid(const Sphere& sphere, const Vec3& rate, double vibration) {
+        Vec3 force;
+        for (std::size_t d = 0; d < 3; ++d) force[d] = -sphere.volume() * sphere.density_ratio * rate[d];
+        force[static_cast<std::size_t>(sphere.direction)] +=
+            sphere.volume() * (sphere.density_ratio - 1) * sphere.acceleration * vibration;
+        return force;
+    }
+};
+
+struct EquationNine {
+    static constexpr bool per_fluid_volume = true;
+    static Vec3 force_on_fluid(const Sphere& sphere, const Vec3& rate, double /*vibration*/) {
+        Vec3 force;
+        for (std::size_t d = 0; d < 3; ++d) force[d] = -sphere.volume() * sphere.density_ratio * rate[d];
+        return force;
+    }
+};
+
+/// Deposits particle forces on the faces as accelerations of the fluid.
+template <class Form>
+class TwoWay {
+public:
+    static constexpr bool acts_on_fluid = true;
+    /// Least share of a cell that is fluid: random close packing leaves 1 - 0.63.
+    static constexpr double least_fluid = 0.37;
+
+    /// `passes`: of the smoothing of the deposit, see smooth().
+    TwoWay(const flow::Grid& grid, const flow::Sides& sides, const Sphere& sphere, std::size_t particles, int passes)
+        : grid_(grid), sphere_(sphere), passes_(passes), rate_(particles, Vec3{}), source_(flow::face_vectors(grid)) {
+        for (int d = 0; d < 3; ++d) {
+            const auto edges = flow::velocity_edges(sides, d);
+            edges_.push_back(edges);
+            weights_.emplace_back(grid, edges);
+        }
+        if constexpr (Form::per_fluid_volume) solid_ = flow::face_vectors(grid);
+    }
+
+    /// Acceleration of the fluid by the particles standing at `feet` (a Footing each), at vibration s.
+    template <class Feet>
+    const flow::FaceVectors& source(const Feet& feet, double vibration) {
+        clear(source_);
+        for (std::size_t p = 0; p < rate_.size(); ++p)
+            feet[p].scatter(Form::force_on_fluid(sphere_, rate_[p], vibration), source_);
+        spread(source_);
+        if constexpr (Form::per_fluid_volume) {
+            clear(solid_);
+            const double v = sphere_.volume();
+            for (const auto& foot : feet) foot.scatter({v, v, v}, solid_);
+            spread(solid_);
+            for (std::size_t d = 0; d < 3; ++d)
+                for (std::size_t m = 0; m < source_[d].size(); ++m)
+                    source_[d].values()[m] /= std::max(1 - solid_[d].values()[m], least_fluid);
+        }
+        return source_;
+    }
+
+    /// What particle p did in this step, before any wall touched it.
+    void remember(std::size_t p, const Vec3& rate) { rate_[p] = rate; }
+    [[nodiscard]] const std::vector<Vec3>& rates() const { return rate_; }
+
+    void save(std::vector<std::byte>& into) const { flow::append_bytes<Vec3>(into, rate_); }
+    void restore(std::span<const std::byte>& from) { flow::take_bytes<Vec3>(from, rate_); }
+
+private:
+    static void clear(flow::FaceVectors& faces) {
+        for (auto& field : faces) std::fill(field.values().begin(), field.values().end(), 0.0);
+    }
+    // Extensive deposit -> per volume of each face's control volume.
+    void spread(flow::FaceVectors& faces) const {
+        for (std::size_t d = 0; d < 3; ++d) {
+            flow::Field& field = faces[d];
+            fold_ghosts(field, grid_, edges_[d]);
+            smooth(field, grid_, edges_[d], passes_);
+            const auto& width = weights_[d].inverse_width;
+            for (int k = 1; k <= grid_.cells(2); ++k)
+                for (int j = 1; j <= grid_.cells(1); ++j) {
+                    const double yz = width[1][static_cast<std::size_t>(j)] * width[2][static_cast<std::size_t>(k)];
+                    double* const row = field.data() + field.index(0, j, k);
+                    for (int i = 1; i <= grid_.cells(0); ++i) row[i] *= yz * width[0][static_cast<std::size_t>(i)];
+                }
+        }
+    }
+
+    flow::Grid grid_;
+    Sphere sphere_;
+    int passes_;
+    std::vector<flow::Edges> edges_;
+    std::vector<flow::Weights> weights_;
+    std::vector<Vec3> rate_;  // dV_p/dt of the last step
+    flow::FaceVectors source_;
+    flow::FaceVectors solid_;  // per_fluid_volume only
+};
+
+}  // namespace grainsweep::coupling

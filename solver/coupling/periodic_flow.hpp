@@ -1,0 +1,92 @@
+// A flow that repeats every period, stored as its mean and two harmonics, and particles carried by it:
+//   V(x, t) = V0 + Vc1 cos wt + Vs1 sin wt + Vc2 cos 2wt + Vs2 sin 2wt,  and the same for the acceleration DV/Dt.
+//
+// One-way particles do not change the flow, so one periodic flow serves every case that asks for the same fluid. Each
+// node keeps its ten numbers side by side; a particle gathers the amplitudes once per step and evaluates them at the
+// phase of the step, whose cost does not depend on the grid.
+#pragma once
+
+#include "solver/coupling/cloud.hpp"
+#include "solver/coupling/motion.hpp"
+#include "solver/flow/field.hpp"
+#include "solver/flow/state_bytes.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace grainsweep::coupling {
+
+class PeriodicFlow {
+public:
+    static constexpr std::size_t terms = 5;
+
+    explicit PeriodicFlow(const flow::Grid& grid) : shape_(grid) {
+        for (auto& nodes : amplitudes_) nodes.assign(shape_.size(), Node{});
+    }
+
+    /// The share of one of `samples` equal steps of a period, taken at `phase` (rad); fields with ghosts.
+    void add(double phase, int samples, const flow::FaceVectors& velocity, const flow::FaceVectors& acceleration) {
+        const std::array<double, terms> basis = shares(phase, samples);
+        for (std::size_t d = 0; d < 3; ++d)
+            for (std::size_t m = 0; m < shape_.size(); ++m)
+                for (std::size_t t = 0; t < terms; ++t) {
+                    amplitudes_[d][m][t] += basis[t] * velocity[d].values()[m];
+                    amplitudes_[d][m][terms + t] += basis[t] * acceleration[d].values()[m];
+                }
+    }
+
+    /// Velocity and acceleration at a particle at `phase`.
+    template <class Kernel>
+    [[nodiscard]] Surroundings at(const Footing<Kernel>& foot, double phase) const {
+        const double c = std::cos(phase);
+        const double s = std::sin(phase);
+        return at(foot, {1, c, s, c * c - s * s, 2 * s * c});
+    }
+    /// The same with the basis functions 1, cos, sin, cos 2, sin 2 of the phase at hand.
+    template <class Kernel>
+    [[nodiscard]] Surroundings at(const Footing<Kernel>& foot, const std::array<double, terms>& basis) const {
+        Surroundings around;
+        component<0>(foot, basis, around);
+        component<1>(foot, basis, around);
+        component<2>(foot, basis, around);
+        return around;
+    }
+
+    void save(std::vector<std::byte>& into) const {
+        for (const auto& nodes : amplitudes_) flow::append_bytes<Node>(into, nodes);
+    }
+    void restore(std::span<const std::byte>& from) {
+        for (auto& nodes : amplitudes_) flow::take_bytes<Node>(from, nodes);
+    }
+
+private:
+    using Node = std::array<double, 2 * terms>;  // velocity, then acceleration
+
+    // Discrete Fourier weights on equidistant phases.
+    static std::array<double, terms> shares(double phase, int samples) {
+        const double one = 1.0 / samples;
+        return {one, 2 * one * std::cos(phase), 2 * one * std::sin(phase), 2 * one * std::cos(2 * phase),
+                2 * one * std::sin(2 * phase)};
+    }
+
+    template <int D, class Kernel>
+    void component(const Footing<Kernel>& foot, const std::array<double, terms>& basis, Surroundings& around) const {
+        Node sum{};
+        const Node* const nodes = amplitudes_[D].data();
+        foot.template visit<D>(shape_, [&](std::ptrdiff_t at, double weight) {
+            for (std::size_t t = 0; t < 2 * terms; ++t) sum[t] += weight * nodes[at][t];
+        });
+        for (std::size_t t = 0; t < terms; ++t) {
+            around.velocity[D] += basis[t] * sum[t];
+            around.acceleration[D] += basis[t] * sum[terms + t];
+        }
+    }
+
+    flow::Field shape_;
+    std::array<std::vector<Node>, 3> amplitudes_;
+};
+
+}  // namespace grainsweep::coupling

@@ -1,0 +1,98 @@
+// Fluid and particles advanced together, one step after the other:
+//   1. forces of the particles on the fluid, at their predicted middle positions X + V dt/2 (two-way levels only)
+//   2. the fluid step
+//   3. the particles, with the fluid in the middle of the step gathered at the same positions
+//   4. walls
+#pragma once
+
+#include "solver/coupling/levels.hpp"
+#include "solver/coupling/visit_order.hpp"
+#include "solver/flow/flow.hpp"
+
+#include <utility>
+#include <vector>
+
+namespace grainsweep::coupling {
+
+template <class Heat, class Level, class Kernel, class Drag>
+class Suspension {
+public:
+    Suspension(flow::Flow<Heat> fluid, const flow::Vibration& vibration, const Motion<Drag>& motion, const Walls& walls,
+               Cloud cloud, Level level)
+        : fluid_(std::move(fluid)),
+          vibration_(vibration),
+          motion_(motion),
+          walls_(walls),
+          cloud_(std::move(cloud)),
+          level_(std::move(level)),
+          velocity_(flow::face_vectors(fluid_.grid())),
+          acceleration_(velocity_) {}
+
+    void step() {
+        const double dt = fluid_.time_step();
+        const double s = vibration_.at(fluid_.time() + 0.5 * dt);
+        if constexpr (Level::acts_on_fluid) {
+            feet_.clear();
+            for (std::size_t p = 0; p < cloud_.size(); ++p) feet_.push_back(foot(p));
+            fluid_.step(level_.source(feet_, s));
+        } else {
+            fluid_.step();
+        }
+        if (cloud_.size() == 0) return;
+        fluid_.midpoint(velocity_, acceleration_);
+        for (const std::size_t p : order_.of(cloud_, fluid_.grid())) {
+            Vec3& x = cloud_.position[p];
+            Vec3& v = cloud_.velocity[p];
+            if constexpr (Level::acts_on_fluid) {
+                const Vec3 before = v;
+                move(x, v, feet_[p], s);
+                level_.remember(p, {(v[0] - before[0]) / dt, (v[1] - before[1]) / dt, (v[2] - before[2]) / dt});
+            } else {
+                move(x, v, foot(p), s);
+            }
+            walls_.apply(x, v);
+        }
+    }
+
+    [[nodiscard]] const flow::Flow<Heat>& fluid() const { return fluid_; }
+    [[nodiscard]] const Cloud& cloud() const { return cloud_; }
+    [[nodiscard]] const Level& level() const { return level_; }
+
+    void save(std::vector<std::byte>& into) const {
+        fluid_.save(into);
+        flow::append_bytes<Vec3>(into, cloud_.position);
+        flow::append_bytes<Vec3>(into, cloud_.velocity);
+        if constexpr (Level::acts_on_fluid) level_.save(into);
+    }
+    void restore(std::span<const std::byte>& from) {
+        fluid_.restore(from);
+        flow::take_bytes<Vec3>(from, cloud_.position);
+        flow::take_bytes<Vec3>(from, cloud_.velocity);
+        if constexpr (Level::acts_on_fluid) level_.restore(from);
+    }
+
+private:
+    // At the predicted middle of the step.
+    [[nodiscard]] Footing<Kernel> foot(std::size_t p) const {
+        Vec3 x = cloud_.position[p];
+        const double half = 0.5 * fluid_.time_step();
+        for (std::size_t d = 0; d < 3; ++d) x[d] += half * cloud_.velocity[p][d];
+        return {fluid_.grid(), walls_.periodic, walls_.clipped(x)};
+    }
+
+    void move(Vec3& x, Vec3& v, const Footing<Kernel>& at, double vibration) const {
+        motion_.advance(x, v, {at.gather(velocity_), at.gather(acceleration_), vibration, {}});
+    }
+
+    flow::Flow<Heat> fluid_;
+    flow::Vibration vibration_;
+    Motion<Drag> motion_;
+    Walls walls_;
+    Cloud cloud_;
+    Level level_;
+    flow::FaceVectors velocity_, acceleration_;
+    VisitOrder order_;
+    std::vector<Footing<Kernel>> feet_;  // levels that act on the fluid only
+};
+
+}  // namespace grainsweep::coupling

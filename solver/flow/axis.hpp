@@ -1,0 +1,74 @@
+// One direction of a tensor-product grid: where cells begin, how wide they are.
+//
+// Uniform: x(s) = low + (high - low) s/n.
+// Clustered towards both ends: x(s) = middle + (high - low)/2 tanh(c (2 s/n - 1))/tanh(c), s = 0 ... n,
+// smooth, so that second-order differences stay second order (Vinokur 1983, doi 10.1016/0021-9991(83)90065-7).
+//
+// Indices: cells 1 ... n, 0 and n+1 are ghosts as wide as their neighbours; face f is the lower end of cell f,
+// so faces are 1 ... n+1.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace grainsweep::flow {
+
+/// A position on an axis: the cell it lies in and the distance from that cell's lower face in cells, [0, 1].
+struct Place {
+    int cell = 1;
+    double offset = 0;
+};
+
+class Axis {
+public:
+    /// n >= 1 equal cells between low and high. Throws std::invalid_argument.
+    [[nodiscard]] static Axis uniform(int cells, double low, double high);
+    /// clustering > 0 narrows the cells at both ends; 0 is uniform. Throws std::invalid_argument.
+    [[nodiscard]] static Axis clustered(int cells, double low, double high, double clustering);
+
+    [[nodiscard]] int cells() const { return cells_; }
+    [[nodiscard]] double low() const { return low_; }
+    [[nodiscard]] double high() const { return high_; }
+    [[nodiscard]] double length() const { return high_ - low_; }
+    [[nodiscard]] bool is_uniform() const { return clustering_ == 0; }
+
+    [[nodiscard]] double face(int f) const { return faces_[static_cast<std::size_t>(f)]; }      ///< f = 0 ... n+2
+    [[nodiscard]] double centre(int i) const { return centres_[static_cast<std::size_t>(i)]; }  ///< i = 0 ... n+1
+    [[nodiscard]] double width(int i) const { return widths_[static_cast<std::size_t>(i)]; }    ///< i = 0 ... n+1
+    /// Distance of the two cell centres beside face f, f = 1 ... n+1.
+    [[nodiscard]] double spacing(int f) const { return centre(f) - centre(f - 1); }
+
+    /// Cell and smooth offset s of a position in [low, high]; positions outside go to the nearest end.
+    [[nodiscard]] Place locate(double x) const {
+        const double t = std::clamp((x - middle_) / half_, -1.0, 1.0);
+        const double in_cells = 0.5 * ((clustering_ > 0 ? unclustered(t) : t) + 1) * cells_;
+        // Written so that a position that is no number still yields a cell that exists.
+        const int cell = in_cells < cells_ - 1 ? static_cast<int>(in_cells) : cells_ - 1;
+        return {cell + 1, in_cells - cell};
+    }
+    /// dx/ds of the smooth map at a position (the local cell width).
+    [[nodiscard]] double stretch(double x) const {
+        const double equal = 2 * half_ / cells_;
+        if (clustering_ == 0) return equal;
+        const double a = std::clamp((x - middle_) / half_, -1.0, 1.0) * tanh_;
+        return equal * clustering_ / tanh_ * (1 - a * a);
+    }
+
+private:
+    Axis(int cells, double low, double high, double clustering);
+
+    // artanh(t tanh c)/c, the inverse of the clustering.
+    [[nodiscard]] double unclustered(double t) const {
+        const double a = t * tanh_;
+        return std::clamp(0.5 * std::log((1 + a) / (1 - a)) / clustering_, -1.0, 1.0);
+    }
+
+    int cells_;
+    double low_, high_, clustering_;
+    double middle_, half_, tanh_;
+    std::vector<double> faces_, centres_, widths_;
+};
+
+}  // namespace grainsweep::flow

@@ -1,0 +1,422 @@
+#include "solver/flow/flow.hpp"
+
+#include "solver/flow/state_bytes.hpp"
+#include "solver/flow/vector_clones.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+namespace grainsweep::flow {
+namespace {
+
+std::size_t at(int i) {
+    return static_cast<std::size_t>(i);
+}
+
+// Calls body(start of the row, j, k) with i = 0 for every row of unknowns.
+template <class Body>
+void each_row(const Field& shape, const std::array<int, 3>& first, const std::array<int, 3>& cells, Body body) {
+    for (int k = first[2]; k <= cells[2]; ++k)
+        for (int j = first[1]; j <= cells[1]; ++j) body(shape.index(0, j, k), j, k);
+}
+
+// r = dt (3/2 C - 1/2 C' + D + r - grad p): r comes in as the acceleration by forces.
+struct AssembleRow {
+    double* right;
+    const double* now;
+    const double* before;
+    const double* diffusion;
+    const double* pressure;
+    const double* inverse_spacing;  // along x; nullptr: `gradient_scale` instead
+    double gradient_scale;
+    std::ptrdiff_t stride;
+    int first, last;
+    double now_weight, before_weight, time_step;
+};
+
+GRAINSWEEP_VECTOR_CLONES
+void assemble_row(const AssembleRow& row) {
+    double* __restrict right = row.right;
+    const double* __restrict now = row.now;
+    const double* __restrict before = row.before;
+    const double* __restrict diffusion = row.diffusion;
+    const double* __restrict p = row.pressure;
+    const std::ptrdiff_t s = row.stride;
+    const int last = row.last;
+    if (row.inverse_spacing != nullptr) {
+        const double* __restrict scale = row.inverse_spacing;
+        for (int i = row.first; i <= last; ++i)
+            right[i] = row.time_step * (row.now_weight * now[i] + row.before_weight * before[i] + diffusion[i] +
+                                        right[i] - (p[i] - p[i - 1]) * scale[i]);
+    } else {
+        for (int i = row.first; i <= last; ++i)
+            right[i] = row.time_step * (row.now_weight * now[i] + row.before_weight * before[i] + diffusion[i] +
+                                        right[i] - (p[i] - p[i - s]) * row.gradient_scale);
+    }
+}
+
+// to = from + change - scale * difference of the potential.
+GRAINSWEEP_VECTOR_CLONES
+void correct_row(double* __restrict to, const double* __restrict q, std::ptrdiff_t s, const double* __restrict scale_x,
+                 double scale, int first, int last) {
+    if (scale_x != nullptr) {
+        for (int i = first; i <= last; ++i) to[i] -= scale * scale_x[i] * (q[i] - q[i - 1]);
+    } else {
+        for (int i = first; i <= last; ++i) to[i] -= scale * (q[i] - q[i - s]);
+    }
+}
+
+GRAINSWEEP_VECTOR_CLONES
+void add_row(double* __restrict to, const double* __restrict a, const double* __restrict b, int first, int last) {
+    for (int i = first; i <= last; ++i) to[i] = a[i] + b[i];
+}
+
+GRAINSWEEP_VECTOR_CLONES
+void midpoint_values(std::size_t size, const double* __restrict now, const double* __restrict previous,
+                     const double* __restrict c, const double* __restrict c_before, double inverse_step,
+                     double c_weight, double c_before_weight, double* __restrict velocity,
+                     double* __restrict acceleration) {
+    for (std::size_t m = 0; m < size; ++m) {
+        velocity[m] = 0.5 * (previous[m] + now[m]);
+        acceleration[m] = (now[m] - previous[m]) * inverse_step - (c_weight * c[m] + c_before_weight * c_before[m]);
+    }
+}
+
+// out += strength (lower a[i - s] + (1 - lower) a[i])
+GRAINSWEEP_VECTOR_CLONES
+void add_interpolated_row(double* __restrict out, const double* __restrict a, std::ptrdiff_t s,
+                          const double* __restrict lower_x, double lower, double strength, int first, int last) {
+    if (lower_x != nullptr) {
+        for (int i = first; i <= last; ++i) out[i] += strength * (lower_x[i] * a[i - 1] + (1 - lower_x[i]) * a[i]);
+    } else {
+        const double upper = 1 - lower;
+        for (int i = first; i <= last; ++i) out[i] += strength * (lower * a[i - s] + upper * a[i]);
+    }
+}
+
+std::array<int, 3> cell_counts(const Grid& grid) {
+    return {grid.cells(0), grid.cells(1), grid.cells(2)};
+}
+
+struct StepWeights {
+    double now, before;
+};
+// Adams-Bashforth of second order; the first step has no past and takes Euler.
+StepWeights convection_weights(bool first) {
+    return first ? StepWeights{1.0, 0.0} : StepWeights{1.5, -0.5};
+}
+
+void check(const FlowSetup& setup) {
+    if (!(setup.time_step > 0)) throw std::invalid_argument("the time step of the flow must be positive");
+    if (!(setup.viscosity >= 0)) throw std::invalid_argument("the viscosity of the flow must not be negative");
+    for (int d = 0; d < 3; ++d) {
+        const bool periodic = pressure_edges(setup.sides)[at(d)].periodic;
+        if (periodic && !setup.grid[d].is_uniform())
+            throw std::invalid_argument("a periodic axis must have equal cells");
+        if (periodic && setup.grid.cells(d) == 2)
+            throw std::invalid_argument("a periodic axis needs one cell or at least three");
+    }
+}
+
+}  // namespace
+
+HeatState<Boussinesq>::HeatState(const FlowSetup& setup, const Boussinesq& heat)
+    : cells_(cell_counts(setup.grid)),
+      time_step_(setup.time_step),
+      heat_(heat),
+      edges_(temperature_edges(setup.sides, heat.sides)),
+      grid_(setup.grid),
+      weights_(setup.grid, edges_),
+      diffusion_(setup.grid, edges_, 0.5 * setup.time_step * heat.diffusivity),
+      temperature_(setup.grid),
+      middle_(setup.grid),
+      convection_{Field(setup.grid), Field(setup.grid)},
+      right_(setup.grid),
+      change_(setup.grid) {
+    for (int d = 0; d < 3; ++d)
+        for (int f = 0; f <= cells_[at(d)] + 1; ++f) {
+            const double below = f > 0 ? setup.grid[d].width(f - 1) : 1;
+            const double above = setup.grid[d].width(f);
+            face_lower_[at(d)].push_back(above / (below + above));
+        }
+    fill_ghosts(temperature_, setup.grid, edges_);
+}
+
+void HeatState<Boussinesq>::set(const Grid& grid, const ScalarFunction& temperature) {
+    for (int k = 1; k <= cells_[2]; ++k)
+        for (int j = 1; j <= cells_[1]; ++j)
+            for (int i = 1; i <= cells_[0]; ++i)
+                temperature_(i, j, k) = temperature(grid[0].centre(i), grid[1].centre(j), grid[2].centre(k));
+    fill_ghosts(temperature_, grid, edges_);
+}
+
+void HeatState<Boussinesq>::start() {
+    middle_ = temperature_;
+}
+
+void HeatState<Boussinesq>::step(const FaceVectors& velocity, bool first) {
+    std::swap(convection_[0], convection_[1]);
+    scalar_transport(velocity, temperature_, weights_, cells_, heat_.diffusivity, convection_[0], right_);
+    const auto [now, before] = convection_weights(first);
+    const double dt = time_step_;
+    each_row(right_, {1, 1, 1}, cells_, [&](std::ptrdiff_t row, int, int) {
+        double* const r = right_.data() + row;
+        const double* const c = convection_[0].data() + row;
+        const double* const old = convection_[1].data() + row;
+        for (int i = 1; i <= cells_[0]; ++i) r[i] = dt * (now * c[i] + before * old[i] + r[i]);
+    });
+    diffusion_.solve(right_, change_);
+    each_row(right_, {1, 1, 1}, cells_, [&](std::ptrdiff_t row, int, int) {
+        double* const theta = temperature_.data() + row;
+        double* const middle = middle_.data() + row;
+        const double* const change = change_.data() + row;
+        for (int i = 1; i <= cells_[0]; ++i) {
+            middle[i] = theta[i] + 0.5 * change[i];
+            theta[i] += change[i];
+        }
+    });
+    fill_ghosts(temperature_, grid_, edges_);
+    fill_ghosts(middle_, grid_, edges_);
+}
+
+void HeatState<Boussinesq>::add_force(int d, double time, Field& acceleration) const {
+    if (d != heat_.direction) return;
+    const double strength = heat_.buoyancy * heat_.vibration.at(time);
+    const auto& lower = face_lower_[at(d)];
+    each_row(acceleration, {1, 1, 1}, cells_, [&](std::ptrdiff_t row, int j, int k) {
+        add_interpolated_row(acceleration.data() + row, middle_.data() + row, middle_.stride(d),
+                             d == 0 ? lower.data() : nullptr, d == 1 ? lower[at(j)] : lower[at(k)], strength, 1,
+                             cells_[0]);
+    });
+}
+
+void HeatState<Boussinesq>::save(std::vector<std::byte>& into) const {
+    append_bytes<double>(into, temperature_.values());
+    append_bytes<double>(into, convection_[0].values());
+}
+
+void HeatState<Boussinesq>::restore(std::span<const std::byte>& from) {
+    take_bytes<double>(from, temperature_.values());
+    take_bytes<double>(from, convection_[0].values());
+}
+
+template <class Heat>
+Flow<Heat>::Flow(const FlowSetup& setup, const Heat& heat)
+    : setup_((check(setup), setup)),
+      cells_(cell_counts(setup.grid)),
+      edges_{velocity_edges(setup.sides, 0), velocity_edges(setup.sides, 1), velocity_edges(setup.sides, 2)},
+      pressure_edges_(pressure_edges(setup.sides)),
+      weights_{Weights(setup.grid, edges_[0]), Weights(setup.grid, edges_[1]), Weights(setup.grid, edges_[2])},
+      cell_weights_(setup.grid, pressure_edges_),
+      poisson_(setup.grid, setup.sides),
+      heat_(setup, heat),
+      velocity_(face_vectors(setup.grid)),
+      previous_(face_vectors(setup.grid)),
+      convection_{face_vectors(setup.grid), face_vectors(setup.grid)},
+      pressure_(setup.grid),
+      increment_(setup.grid),
+      right_(setup.grid),
+      change_(setup.grid) {
+    for (int d = 0; d < 3; ++d) {
+        diffusion_.emplace_back(setup.grid, edges_[at(d)], 0.5 * setup.time_step * setup.viscosity);
+        inverse_spacing_[at(d)].push_back(0);
+        for (int f = 1; f <= cells_[at(d)] + 1; ++f) inverse_spacing_[at(d)].push_back(1 / setup.grid[d].spacing(f));
+        fill_ghosts(velocity_[at(d)], setup_.grid, edges_[at(d)]);
+    }
+}
+
+template <class Heat>
+void Flow<Heat>::set_velocity(const VectorFunction& velocity) {
+    const Grid& grid = setup_.grid;
+    for (int d = 0; d < 3; ++d) {
+        const auto place = [&](int axis, int i) { return axis == d ? grid[axis].face(i) : grid[axis].centre(i); };
+        for (int k = 1; k <= cells_[2]; ++k)
+            for (int j = 1; j <= cells_[1]; ++j)
+                for (int i = 1; i <= cells_[0]; ++i)
+                    velocity_[at(d)](i, j, k) = velocity(place(0, i), place(1, j), place(2, k))[at(d)];
+        fill_ghosts(velocity_[at(d)], grid, edges_[at(d)]);
+    }
+}
+
+template <class Heat>
+void Flow<Heat>::step() {
+    advance(nullptr);
+}
+
+template <class Heat>
+void Flow<Heat>::step(const FaceVectors& acceleration) {
+    advance(&acceleration);
+}
+
+// right_ = dt (convection + diffusion + forces - grad p) for component d; leaves C^n in convection_[0].
+template <class Heat>
+void Flow<Heat>::assemble(int d, const FaceVectors* acceleration) {
+    const auto m = at(d);
+    Field& now = convection_[0][m];
+    momentum_transport(d, velocity_, weights_[m], cells_, setup_.viscosity, now, change_);
+    const auto& first = weights_[m].first;
+    if (acceleration != nullptr)
+        right_ = (*acceleration)[m];
+    else
+        std::fill(right_.values().begin(), right_.values().end(), 0.0);
+    heat_.add_force(d, time() + 0.5 * setup_.time_step, right_);
+    const auto [now_weight, before_weight] = convection_weights(steps_ == 0);
+    each_row(right_, first, cells_, [&, nw = now_weight, bw = before_weight](std::ptrdiff_t row, int j, int k) {
+        assemble_row({right_.data() + row, now.data() + row, convection_[1][m].data() + row, change_.data() + row,
+                      pressure_.data() + row, d == 0 ? inverse_spacing_[0].data() : nullptr,
+                      inverse_spacing_[m][at(d == 1 ? j : k)], right_.stride(d), first[0], cells_[0], nw, bw,
+                      setup_.time_step});
+    });
+}
+
+// Velocity -> its divergence-free part; leaves the potential in increment_ (ghosts filled) and div in divergence_.
+template <class Heat>
+void Flow<Heat>::project() {
+    divergence(velocity_, cell_weights_, cells_, divergence_);
+    const double dt = setup_.time_step;
+    potential_.resize(divergence_.size());
+    for (std::size_t m = 0; m < divergence_.size(); ++m) potential_[m] = divergence_[m] / dt;
+    poisson_.solve(potential_);
+    const double* from = potential_.data();
+    each_row(increment_, {1, 1, 1}, cells_, [&](std::ptrdiff_t row, int, int) {
+        std::copy_n(from, cells_[0], increment_.data() + row + 1);
+        from += cells_[0];
+    });
+    fill_ghosts(increment_, setup_.grid, pressure_edges_);
+    for (int d = 0; d < 3; ++d) {
+        Field& v = velocity_[at(d)];
+        const auto& first = weights_[at(d)].first;
+        each_row(v, first, cells_, [&](std::ptrdiff_t row, int j, int k) {
+            const double scale = d == 0 ? dt : dt * inverse_spacing_[at(d)][at(d == 1 ? j : k)];
+            correct_row(v.data() + row, increment_.data() + row, v.stride(d),
+                        d == 0 ? inverse_spacing_[0].data() : nullptr, scale, first[0], cells_[0]);
+        });
+        fill_ghosts(v, setup_.grid, edges_[at(d)]);
+    }
+}
+
+// Projects the initial velocity and finds the pressure of the initial state: lap p = div(C + nu lap V + forces).
+template <class Heat>
+void Flow<Heat>::start() {
+    project();
+    heat_.start();
+    const FaceVectors initial = velocity_;
+    std::fill(pressure_.values().begin(), pressure_.values().end(), 0.0);
+    FaceVectors rate = face_vectors(setup_.grid);
+    for (int d = 0; d < 3; ++d) {
+        const auto m = at(d);
+        momentum_transport(d, initial, weights_[m], cells_, setup_.viscosity, convection_[0][m], change_);
+        heat_.add_force(d, 0, rate[m]);
+        const auto& first = weights_[m].first;
+        each_row(right_, first, cells_, [&](std::ptrdiff_t row, int, int) {
+            for (int i = first[0]; i <= cells_[0]; ++i)
+                rate[m].data()[row + i] += convection_[0][m].data()[row + i] + change_.data()[row + i];
+        });
+        velocity_[m] = rate[m];
+        fill_ghosts(velocity_[m], setup_.grid, edges_[m]);
+    }
+    // fill_ghosts moved sliding walls into the ghosts only; the divergence sees faces alone.
+    project();
+    pressure_ = increment_;
+    for (double& p : pressure_.values()) p *= setup_.time_step;
+    velocity_ = initial;
+}
+
+template <class Heat>
+void Flow<Heat>::advance(const FaceVectors* acceleration) {
+    if (steps_ == 0) start();
+    heat_.step(velocity_, steps_ == 0);
+    std::swap(convection_[0], convection_[1]);
+    for (int d = 0; d < 3; ++d) {
+        const auto m = at(d);
+        assemble(d, acceleration);
+        diffusion_[m].solve(right_, change_);
+        const auto& first = weights_[m].first;
+        each_row(right_, first, cells_, [&](std::ptrdiff_t row, int, int) {
+            add_row(previous_[m].data() + row, velocity_[m].data() + row, change_.data() + row, first[0], cells_[0]);
+        });
+    }
+    std::swap(velocity_, previous_);
+    for (int d = 0; d < 3; ++d) fill_ghosts(velocity_[at(d)], setup_.grid, edges_[at(d)]);
+    project();
+    const double* div = divergence_.data();
+    const double half_viscosity = 0.5 * setup_.viscosity;
+    each_row(pressure_, {1, 1, 1}, cells_, [&](std::ptrdiff_t row, int, int) {
+        double* const p = pressure_.data() + row;
+        const double* const q = increment_.data() + row;
+        for (int i = 1; i <= cells_[0]; ++i) p[i] += q[i] - half_viscosity * *div++;
+    });
+    fill_ghosts(pressure_, setup_.grid, pressure_edges_);
+    ++steps_;
+}
+
+template <class Heat>
+void Flow<Heat>::midpoint(FaceVectors& velocity, FaceVectors& acceleration) const {
+    const auto [now, before] = convection_weights(steps_ <= 1);
+    for (std::size_t d = 0; d < 3; ++d) {
+        midpoint_values(velocity_[d].size(), velocity_[d].data(), previous_[d].data(), convection_[0][d].data(),
+                        convection_[1][d].data(), 1 / setup_.time_step, now, before, velocity[d].data(),
+                        acceleration[d].data());
+        // Beyond the walls the acceleration continues as the velocity does, from a wall that does not accelerate.
+        Edges still = edges_[d];
+        for (Edge& edge : still)
+            for (Ghost& ghost : edge.ghost) ghost.constant = 0;
+        fill_ghosts(velocity[d], setup_.grid, edges_[d]);
+        fill_ghosts(acceleration[d], setup_.grid, still);
+    }
+}
+
+template <class Heat>
+double Flow<Heat>::largest_divergence() const {
+    std::vector<double> values;
+    divergence(velocity_, cell_weights_, cells_, values);
+    double largest = 0;
+    for (const double value : values) largest = std::max(largest, std::abs(value));
+    return largest;
+}
+
+template <class Heat>
+auto Flow<Heat>::fastest() const -> Fastest {
+    Fastest found;
+    const Grid& grid = setup_.grid;
+    for (int d = 0; d < 3; ++d)
+        for (int k = 1; k <= cells_[2]; ++k)
+            for (int j = 1; j <= cells_[1]; ++j)
+                for (int i = 1; i <= cells_[0]; ++i) {
+                    const int along = d == 0 ? i : d == 1 ? j : k;
+                    const double courant =
+                        std::abs(velocity_[at(d)](i, j, k)) * setup_.time_step / grid[d].width(along);
+                    if (courant <= found.courant) continue;
+                    found = {courant, d, {grid[0].centre(i), grid[1].centre(j), grid[2].centre(k)}};
+                    found.position[at(d)] = grid[d].face(along);
+                    if (!std::isfinite(courant)) return found;
+                }
+    return found;
+}
+
+template <class Heat>
+void Flow<Heat>::save(std::vector<std::byte>& into) const {
+    append_bytes(into, steps_);
+    for (std::size_t d = 0; d < 3; ++d) {
+        append_bytes<double>(into, velocity_[d].values());
+        append_bytes<double>(into, convection_[0][d].values());
+    }
+    append_bytes<double>(into, pressure_.values());
+    heat_.save(into);
+}
+
+template <class Heat>
+void Flow<Heat>::restore(std::span<const std::byte>& from) {
+    take_bytes(from, steps_);
+    for (std::size_t d = 0; d < 3; ++d) {
+        take_bytes<double>(from, velocity_[d].values());
+        take_bytes<double>(from, convection_[0][d].values());
+    }
+    take_bytes<double>(from, pressure_.values());
+    heat_.restore(from);
+}
+
+template class Flow<NoHeat>;
+template class Flow<Boussinesq>;
+
+}  // namespace grainsweep::flow

@@ -1,0 +1,183 @@
+// Incompressible flow in a box, with or without heat:
+//
+//   div V = 0                                                                                        (1)
+//   dV/dt + div(V V) = -grad p + nu lap V + B theta s(t) e_g + a                                      (2)
+//   dtheta/dt + div(V theta) = kappa lap theta                                                       (3)
+//
+// (2) with B = -Pr Ra_omega, s(t) = sin(Omega t + phase), e_g the direction of vibration, nu = Pr, kappa = 1 is the
+// Boussinesq flow in a vibrated cavity (length L, time L^2/alpha, theta = (T - T0)/DT; Gershuni & Lyubimov 1998);
+// s = 1 is natural convection under steady gravity. `a` is any other acceleration given on the faces.
+//
+// Scheme: staggered grid, central differences (transport.hpp); Adams-Bashforth convection (Euler in the first
+// step), Crank-Nicolson diffusion factored by direction (implicit_diffusion.hpp); incremental projection in
+// rotational form (Timmermans, Minev & van de Vosse 1996; Brown, Cortez & Minion 2001, doi 10.1006/jcph.2001.6715):
+//   theta^{n+1} from (3);  theta^{n+1/2} = (theta^n + theta^{n+1})/2
+//   (1 - nu dt/2 lap)(V* - V^n) = dt [ 3/2 C^n - 1/2 C^{n-1} + nu lap V^n - grad p + B theta^{n+1/2} s e_g + a ]
+//   lap q = div V*/dt,  V^{n+1} = V* - dt grad q,  p += q - nu/2 div V*
+// Second order in space and time; div V = 0 to round-off after every step. The first step solves for a consistent
+// pressure and projects the initial velocity.
+#pragma once
+
+#include "solver/flow/implicit_diffusion.hpp"
+#include "solver/flow/poisson.hpp"
+#include "solver/flow/transport.hpp"
+
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace grainsweep::flow {
+
+/// s(t) = sin(frequency t + phase); frequency 0: s = 1, a steady force.
+struct Vibration {
+    double frequency = 0;  ///< rad per unit time
+    double phase = 0;      ///< rad
+    [[nodiscard]] double at(double time) const { return frequency == 0 ? 1 : std::sin(frequency * time + phase); }
+};
+
+/// The fluid has no temperature: no field, no equation, no force.
+struct NoHeat {};
+
+/// The fluid carries heat and heat moves the fluid.
+struct Boussinesq {
+    double diffusivity = 1;  ///< kappa
+    ThermalSides sides{};
+    double buoyancy = 0;  ///< B: acceleration per unit temperature
+    int direction = 1;    ///< axis of e_g
+    Vibration vibration{};
+};
+
+struct FlowSetup {
+    Grid grid;
+    Sides sides{};
+    double viscosity = 1;  ///< nu
+    double time_step = 0;  ///< dt > 0
+};
+
+using VectorFunction = std::function<std::array<double, 3>(double x, double y, double z)>;
+using ScalarFunction = std::function<double(double x, double y, double z)>;
+
+/// What a kind of heat needs per step; NoHeat needs nothing.
+template <class Heat>
+class HeatState;
+
+template <>
+class HeatState<NoHeat> {
+public:
+    HeatState(const FlowSetup&, const NoHeat&) {}
+    void start() {}
+    void step(const FaceVectors&, bool) {}
+    void add_force(int, double, Field&) const {}
+    void save(std::vector<std::byte>&) const {}
+    void restore(std::span<const std::byte>&) {}
+};
+
+template <>
+class HeatState<Boussinesq> {
+public:
+    HeatState(const FlowSetup& setup, const Boussinesq& heat);
+    void start();  ///< makes theta^{n+1/2} = theta^n and fills ghosts
+    void step(const FaceVectors& velocity, bool first);
+    /// Adds the buoyancy acceleration B theta^{n+1/2} s(time) to component d.
+    void add_force(int d, double time, Field& acceleration) const;
+    void save(std::vector<std::byte>& into) const;
+    void restore(std::span<const std::byte>& from);
+
+    [[nodiscard]] const Field& temperature() const { return temperature_; }
+    [[nodiscard]] const Boussinesq& properties() const { return heat_; }
+    void set(const Grid& grid, const ScalarFunction& temperature);
+
+private:
+    std::array<int, 3> cells_;
+    double time_step_;
+    Boussinesq heat_;
+    Edges edges_;
+    Grid grid_;
+    Weights weights_;
+    std::array<std::vector<double>, 3> face_lower_;  // share of the lower cell in a value interpolated to a face
+    ImplicitDiffusion diffusion_;
+    Field temperature_, middle_;  // theta^n; sum theta^n + theta^{n+1} over 2
+    std::array<Field, 2> convection_;
+    Field right_, change_;
+};
+
+template <class Heat>
+class Flow {
+public:
+    /// Throws std::invalid_argument on an impossible setup.
+    Flow(const FlowSetup& setup, const Heat& heat);
+
+    /// Initial values, sampled at faces and cell centres; fluid at rest and temperature 0 otherwise.
+    void set_velocity(const VectorFunction& velocity);
+    void set_temperature(const ScalarFunction& temperature) requires std::same_as<Heat, Boussinesq> {
+        heat_.set(setup_.grid, temperature);
+    }
+
+    /// One time step; `acceleration` (ghosts ignored) holds at the middle of the step.
+    void step();
+    void step(const FaceVectors& acceleration);
+
+    [[nodiscard]] const Grid& grid() const { return setup_.grid; }
+    [[nodiscard]] const Sides& sides() const { return setup_.sides; }
+    [[nodiscard]] std::int64_t steps() const { return steps_; }
+    [[nodiscard]] double time_step() const { return setup_.time_step; }
+    [[nodiscard]] double time() const { return static_cast<double>(steps_) * setup_.time_step; }
+    [[nodiscard]] const FaceVectors& velocity() const { return velocity_; }  ///< ghosts filled
+    [[nodiscard]] const Field& pressure() const { return pressure_; }
+    [[nodiscard]] const Field& temperature() const requires std::same_as<Heat, Boussinesq> {
+        return heat_.temperature();
+    }
+
+    /// What a particle between the last two time levels feels, on the faces, ghosts filled:
+    /// velocity (V^n + V^{n+1})/2 and fluid acceleration DV/Dt = (V^{n+1} - V^n)/dt - (3/2 C^n - 1/2 C^{n-1}).
+    void midpoint(FaceVectors& velocity, FaceVectors& acceleration) const;
+
+    /// Largest |div V| over the cells.
+    [[nodiscard]] double largest_divergence() const;
+
+    struct Fastest {
+        double courant = 0;  ///< |v_d| dt/h_d; NaN where a velocity is not finite
+        int component = 0;
+        std::array<double, 3> position{};
+    };
+    /// The face with the largest Courant number, or the first with a value that is no number.
+    [[nodiscard]] Fastest fastest() const;
+
+    /// Complete state; a flow of the same setup restored from it continues bit for bit.
+    void save(std::vector<std::byte>& into) const;
+    /// Takes its part off the front of `from`. Throws std::invalid_argument when there is too little.
+    void restore(std::span<const std::byte>& from);
+
+private:
+    void start();
+    void advance(const FaceVectors* acceleration);
+    void assemble(int d, const FaceVectors* acceleration);
+    void project();
+
+    FlowSetup setup_;
+    std::array<int, 3> cells_;
+    std::array<Edges, 3> edges_;
+    Edges pressure_edges_;
+    std::array<Weights, 3> weights_;
+    Weights cell_weights_;
+    std::array<std::vector<double>, 3> inverse_spacing_;
+    std::vector<ImplicitDiffusion> diffusion_;
+    Poisson poisson_;
+    [[no_unique_address]] HeatState<Heat> heat_;
+
+    FaceVectors velocity_, previous_;
+    std::array<FaceVectors, 2> convection_;  // C^n, C^{n-1}
+    Field pressure_, increment_, right_, change_;
+    std::vector<double> divergence_, potential_;
+    std::int64_t steps_ = 0;
+};
+
+extern template class Flow<NoHeat>;
+extern template class Flow<Boussinesq>;
+
+}  // namespace grainsweep::flow

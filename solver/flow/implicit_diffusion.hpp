@@ -1,0 +1,38 @@
+// (1 - a Lx)(1 - a Ly)(1 - a Lz) x = r: the factored Crank-Nicolson step in increments.
+//
+// The factorisation differs from (1 - a lap) by a^2 Lx Ly + ..., with a = nu dt/2 an O(dt^2) term on the increment
+// (Douglas & Gunn 1964, doi 10.1007/BF01386093). Lines along y and z are swept with the Thomas algorithm, all of a
+// row at once; along x, and along periodic axes, the inverse of the n x n factor is applied as a matrix.
+#pragma once
+
+#include "solver/flow/boundary.hpp"
+
+#include <vector>
+
+namespace grainsweep::flow {
+
+class ImplicitDiffusion {
+public:
+    /// a >= 0: diffusivity times half the time step.
+    ImplicitDiffusion(const Grid& grid, const Edges& edges, double a);
+
+    /// Solves for indices 1 ... n; `right` is used as scratch, ghosts of `solution` are left alone.
+    void solve(Field& right, Field& solution);
+
+private:
+    struct Sweep {
+        std::vector<double> low, inverse_pivot, high_over_pivot;  // index as the field's
+        int first = 1;
+    };
+    void sweep_y(Field& field) const;
+    void sweep_z(Field& field) const;
+    void multiply(Field& field, int direction);
+
+    std::array<int, 3> n_;
+    std::array<bool, 3> by_matrix_{};
+    std::array<Sweep, 3> sweeps_;
+    std::array<std::vector<double>, 3> inverse_;  // row-major; along x transposed
+    std::vector<double> scratch_;
+};
+
+}  // namespace grainsweep::flow

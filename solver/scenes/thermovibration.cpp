@@ -1,0 +1,176 @@
+// Thermovibrational particle accumulation: a fluid-filled cube, heated from one side and shaken along another axis,
+// carries small particles that gather into structures.
+//
+//   fluid:     solver/flow/flow.hpp           (Boussinesq, non-dimensional: L, L^2/alpha)
+//   particles: solver/coupling/motion.hpp     coupling levels: solver/coupling/levels.hpp
+//   measured:  solver/observables/accumulation.hpp, flow_state.hpp
+// after Manayil Santhosh, Anwar & Lappa 2024 (IAC-24-A1.2.3), with Ra_omega = gamma beta/Pr (their eq. 28 prints
+// gamma beta Pr, with which their own Gershuni numbers do not come out).
+#include "solver/scenes/catalogue.hpp"
+#include "solver/scenes/thermovibration/runs.hpp"
+
+#include <cmath>
+
+namespace grainsweep {
+namespace {
+
+using thermovibration::Question;
+using Condition = Relevance::Condition;
+
+const Relevance with_particles{"particles", Condition::nonzero, {}};
+const Relevance vibrated{"frequency", Condition::nonzero, {}};
+const Relevance two_way{"coupling", Condition::is_word, {"two_way"}};
+
+ParameterSpec real(std::string name, std::string unit, std::string meaning, double value, Interval bounds,
+                   std::vector<Relevance> relevant_if = {}) {
+    return {std::move(name), std::move(unit), std::move(meaning), value, bounds, std::move(relevant_if)};
+}
+
+ParameterSpec whole(std::string name, std::string meaning, std::int64_t value, Interval bounds,
+                    std::vector<Relevance> relevant_if = {}) {
+    return {std::move(name), "1", std::move(meaning), value, bounds, std::move(relevant_if)};
+}
+
+ParameterSpec word(std::string name, std::string meaning, std::vector<std::string> allowed,
+                   std::vector<Relevance> relevant_if) {
+    std::string first = allowed.front();
+    return {std::move(name),       "", std::move(meaning), std::move(first), Words{std::move(allowed)},
+            std::move(relevant_if)};
+}
+
+Interval between(double low, double high) {
+    return {low, high, false, false};
+}
+Interval above(double low, double high) {
+    return {low, high, true, false};
+}
+
+std::vector<ParameterSpec> parameters() {
+    return {
+        real("rayleigh", "1", "vibrational Rayleigh number b w^2 beta DT L^3/(nu alpha)", 4.81e5, between(0, 1e9)),
+        real("frequency", "1", "angular frequency w L^2/alpha; 0: a steady force", 1.667e4, between(0, 1e7)),
+        real("start_phase", "rad", "phase of the vibration sin(w t + phase) at the start", 0, between(0, 6.2832),
+             {vibrated}),
+        real("acceleration", "1", "amplitude of the vibrational acceleration b w^2 L^3/alpha^2 (gamma)", 1.72e9,
+             between(0, 1e12), {with_particles}),
+        real("prandtl", "1", "Prandtl number nu/alpha", 18, between(1e-3, 1e4)),
+        real("density_ratio", "1", "particle density over fluid density (xi)", 1.65, between(0, 1e4), {with_particles}),
+        real("stokes", "1", "Stokes number (2/9)(R/L)^2", 3.1e-6, between(1e-12, 2.2e-3), {with_particles}),
+        whole("particles", "number of particles; 0: the flow alone", 3150, between(0, 1e6)),
+        word("coupling", "how much particles and fluid know of each other", {"one_way", "two_way"}, {with_particles}),
+        word("source_form",
+             "two-way force on the fluid: all that the fluid does to the particles, or the literal -m dV/dt of eq. 9",
+             {"force", "eq9"}, {with_particles, two_way}),
+        word("wall_contact", "a particle meets a wall with its surface or with its centre", {"radius", "centre"},
+             {with_particles}),
+        real("restitution", "1", "of the rebound from walls", 1, between(0, 1), {with_particles}),
+        word("particle_start",
+             "particles start with the flow, from rest, or are released into the flow once it is periodic",
+             {"with_flow", "periodic_flow"}, {with_particles, vibrated, {"coupling", Condition::is_word, {"one_way"}}}),
+        word("interpolation", "of the fluid velocity at a particle: linear, or quadratic and exactly divergence-free",
+             {"trilinear", "solenoidal"}, {with_particles}),
+        whole("smoothing", "passes of [1 2 1]/4 over the deposited force, per axis", 2, between(0, 20),
+              {with_particles, two_way}),
+        whole("cells", "cells of the flow grid per side", 40, between(4, 128)),
+        real("clustering", "1", "clustering c of the grid towards all walls, tanh(c s)/tanh(c); 0: uniform", 0,
+             between(0, 3)),
+        whole("steps_per_period", "time steps per period of vibration", 32, between(8, 4096), {vibrated}),
+        real("time_step", "L^2/alpha", "time step under a steady force", 1e-4, between(1e-9, 1),
+             {{"frequency", Condition::zero, {}}}),
+        real("end_time", "L^2/alpha", "time the particles are followed, to whole periods", 0.98, above(0, 100)),
+        whole("sampling_cells", "cells per side of the sampling grid of the accumulation", 10, between(2, 100),
+              {with_particles}),
+    };
+}
+
+std::vector<ObservableSpec> observables() {
+    return {
+        {"accumulation", "1", "K on sampling_cells^3 at the end", Shape::scalar},
+        {"accumulation_excess", "1", "(K - K_random)/(1 - K_random): 0 random, 1 all in one cell", Shape::scalar},
+        {"structures", "1", "connected groups of cells above twice the mean that hold at least 5 % of the particles",
+         Shape::scalar},
+        {"formation_time", "L^2/alpha", "from when K stays within a tenth of its rise from its last value",
+         Shape::scalar},
+        {"gershuni", "1", "Gershuni number (Pr/2)(Ra/Omega)^2", Shape::scalar},
+        {"kinetic_energy", "(alpha/L)^2", "mean of |V|^2/2 over the volume and the last period", Shape::scalar},
+        {"nusselt", "1", "heat flux through the hot wall over that of conduction, mean of the last period",
+         Shape::scalar},
+        {"peak_velocity", "alpha/L", "largest velocity component in the last period", Shape::scalar},
+        {"accumulation_series", "1", "K on sampling_cells^3, always at the same phase", Shape::series},
+        {"accumulation_5", "1", "K on 5^3 cells", Shape::series},
+        {"accumulation_20", "1", "K on 20^3 cells", Shape::series},
+        {"accumulation_cells", "1", "K on the cells of the flow grid", Shape::series},
+        {"density_y", "1", "particles per slab across y over the mean, at the end", Shape::profile},
+        {"density_z", "1", "particles per slab across z over the mean, at the end", Shape::profile},
+    };
+}
+
+// The one dispatch from words to types.
+template <class Kernel>
+std::unique_ptr<Scene> make_with(const Question& question, std::uint64_t seed, Artefacts& artefacts) {
+    using namespace thermovibration;
+    if (question.coupling == "two_way") {
+        const auto run = [&]<class Form>(Form) -> std::unique_ptr<Scene> {
+            using Level = coupling::TwoWay<Form>;
+            return std::make_unique<Live<Level, Kernel>>(
+                question, seed,
+                Level(question.grid(), Question::sides(), question.sphere(),
+                      static_cast<std::size_t>(question.particles), static_cast<int>(question.smoothing)));
+        };
+        return question.source_form == "force" ? run(coupling::ForceForm{}) : run(coupling::EquationNine{});
+    }
+    if (question.particle_start == "periodic_flow" && !question.steady_force() && question.particles > 0)
+        return std::make_unique<Carried<Kernel>>(question, seed, artefacts);
+    return std::make_unique<Live<coupling::OneWay, Kernel>>(question, seed, coupling::OneWay{});
+}
+
+std::unique_ptr<Scene> make(const Inputs& inputs, std::uint64_t seed, Artefacts& artefacts) {
+    const Question question(inputs);
+    if (question.interpolation == "solenoidal") return make_with<coupling::Solenoidal>(question, seed, artefacts);
+    return make_with<coupling::Trilinear>(question, seed, artefacts);
+}
+
+// Measured at 40^3 with 3150 particles on one core: 4 ms per fluid step, 1 ms per particle sweep.
+double estimate_cost(const Inputs& inputs) {
+    const Question question(inputs);
+    const double size = static_cast<double>(question.cells) / 40;
+    const double fluid_step = 4e-3 * size * size * size * (0.7 + 0.3 * size);
+    const double sweep = 1e-3 * static_cast<double>(question.particles) / 3150;
+    const auto steps = static_cast<double>(question.total_steps());
+    const bool carried = question.particle_start == "periodic_flow" && question.coupling == "one_way";
+    if (!carried || question.steady_force() || question.particles == 0) return steps * (fluid_step + sweep);
+    return steps * sweep + 0.2 / question.step() * fluid_step;
+}
+
+std::optional<ProvenAnswer> proven_answer(const Inputs& inputs) {
+    const Question question(inputs);
+    if (question.rayleigh != 0 || question.particles != 0) return std::nullopt;
+    ProvenAnswer answer;
+    answer.reason = "without buoyancy and particles nothing drives the fluid: it rests and conducts";
+    answer.observations.scalars = {{"kinetic_energy", 0}, {"nusselt", 1}, {"peak_velocity", 0}};
+    if (!question.steady_force()) answer.observations.scalars["gershuni"] = 0;
+    return answer;
+}
+
+Inputs accuracy(std::int64_t cells, double clustering, std::int64_t steps) {
+    return {{"cells", cells}, {"clustering", clustering}, {"steps_per_period", steps}};
+}
+
+}  // namespace
+
+SceneInfo thermovibration_scene() {
+    SceneInfo info;
+    info.name = "thermovibration";
+    info.summary = "particles in a heated, vibrated cube of fluid: do they gather, into what, how fast";
+    info.revision = 1;
+    info.parameters = parameters();
+    info.observables = observables();
+    info.accuracy = {
+        {"fast", accuracy(32, 0, 16)}, {"balanced", accuracy(40, 0, 32)}, {"reference", accuracy(48, 1.5, 64)}};
+    info.make = make;
+    info.estimate_cost = estimate_cost;
+    info.proven_answer = proven_answer;
+    return info;
+}
+
+}  // namespace grainsweep

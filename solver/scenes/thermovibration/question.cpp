@@ -1,0 +1,122 @@
+#include "solver/scenes/thermovibration/question.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace grainsweep::thermovibration {
+namespace {
+
+double number(const Inputs& inputs, const char* name) {
+    return std::get<double>(inputs.at(name));
+}
+std::int64_t count(const Inputs& inputs, const char* name) {
+    return std::get<std::int64_t>(inputs.at(name));
+}
+std::string word(const Inputs& inputs, const char* name) {
+    return std::get<std::string>(inputs.at(name));
+}
+
+std::string shortest(double x) {
+    std::array<char, 32> text{};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), x).ptr;
+    return {text.data(), end};
+}
+
+}  // namespace
+
+Question::Question(const Inputs& inputs)
+    : rayleigh(number(inputs, "rayleigh")),
+      frequency(number(inputs, "frequency")),
+      start_phase(number(inputs, "start_phase")),
+      acceleration(number(inputs, "acceleration")),
+      prandtl(number(inputs, "prandtl")),
+      density_ratio(number(inputs, "density_ratio")),
+      stokes(number(inputs, "stokes")),
+      particles(count(inputs, "particles")),
+      coupling(word(inputs, "coupling")),
+      source_form(word(inputs, "source_form")),
+      wall_contact(word(inputs, "wall_contact")),
+      particle_start(word(inputs, "particle_start")),
+      interpolation(word(inputs, "interpolation")),
+      restitution(number(inputs, "restitution")),
+      cells(count(inputs, "cells")),
+      clustering(number(inputs, "clustering")),
+      steps_per_period(count(inputs, "steps_per_period")),
+      smoothing(count(inputs, "smoothing")),
+      time_step(number(inputs, "time_step")),
+      end_time(number(inputs, "end_time")),
+      sampling_cells(count(inputs, "sampling_cells")) {
+    if (particles > 0 && sphere().radius() > 0.1)
+        throw std::invalid_argument("stokes = " + shortest(stokes) + " makes particles of radius " +
+                                    shortest(sphere().radius()) +
+                                    " L; point particles need a radius of at most 0.1 L (stokes <= 0.0022)");
+    if (end_time < 0.5 * step() * static_cast<double>(window()))
+        throw std::invalid_argument("end_time = " + shortest(end_time) + " is less than half of " +
+                                    (steady_force() ? "a time step" : "a period of vibration (2 pi/frequency)"));
+}
+
+double Question::period() const {
+    return 2 * std::numbers::pi / frequency;
+}
+
+double Question::step() const {
+    return steady_force() ? time_step : period() / static_cast<double>(steps_per_period);
+}
+
+std::int64_t Question::window() const {
+    return steady_force() ? 1 : steps_per_period;
+}
+
+std::int64_t Question::total_steps() const {
+    const double windows = std::round(end_time / (step() * static_cast<double>(window())));
+    return std::max<std::int64_t>(1, static_cast<std::int64_t>(windows)) * window();
+}
+
+std::int64_t Question::sample_steps() const {
+    return std::max<std::int64_t>(1, total_steps() / window() / 200) * window();
+}
+
+flow::Grid Question::grid() const {
+    const auto axis = flow::Axis::clustered(static_cast<int>(cells), -0.5, 0.5, clustering);
+    return {{axis, axis, axis}};
+}
+
+flow::Sides Question::sides() {
+    const std::array<flow::Side, 2> walls{flow::NoSlip{}, flow::NoSlip{}};
+    return {walls, walls, walls};
+}
+
+flow::Flow<flow::Boussinesq> Question::fluid() const {
+    flow::Boussinesq heat;
+    heat.diffusivity = 1;
+    heat.sides[2] = {flow::Isothermal{-0.5}, flow::Isothermal{0.5}};
+    heat.buoyancy = -prandtl * rayleigh;
+    heat.direction = 1;
+    heat.vibration = vibration();
+    flow::Flow<flow::Boussinesq> fluid({grid(), sides(), prandtl, step()}, heat);
+    fluid.set_temperature([](double, double, double z) { return z; });
+    return fluid;
+}
+
+coupling::Walls Question::walls() const {
+    const double contact = wall_contact == "radius" ? sphere().radius() : 0;
+    return {{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, {}, contact, restitution};
+}
+
+coupling::Cloud Question::cloud(std::uint64_t seed) const {
+    constexpr std::uint64_t positions = 1;  // the stream of this purpose
+    return coupling::random_cloud(static_cast<std::size_t>(particles), walls(), stats::Stream(seed, positions));
+}
+
+std::string Question::flow_key() const {
+    return "thermovibration periodic flow 1; cells=" + std::to_string(cells) + "; clustering=" + shortest(clustering) +
+           "; frequency=" + shortest(frequency) + "; prandtl=" + shortest(prandtl) +
+           "; rayleigh=" + shortest(rayleigh) + "; start_phase=" + shortest(start_phase) +
+           "; steps_per_period=" + std::to_string(steps_per_period);
+}
+
+}  // namespace grainsweep::thermovibration

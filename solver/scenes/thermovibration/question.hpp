@@ -1,0 +1,49 @@
+// What a thermovibration case asks, in the numbers of its inputs, and the pieces built from them.
+//
+// Unit cube [-1/2, 1/2]^3, length L, time L^2/alpha, theta = (T - T0)/DT. Vibration along y; hot wall z = +1/2, cold
+// wall z = -1/2, the other four insulated; no slip everywhere. Start: fluid at rest, theta = z (conduction).
+#pragma once
+
+#include "solver/coupling/cloud.hpp"
+#include "solver/coupling/motion.hpp"
+#include "solver/flow/flow.hpp"
+#include "solver/scenes/values.hpp"
+
+#include <cstdint>
+#include <string>
+
+namespace grainsweep::thermovibration {
+
+struct Question {
+    double rayleigh, frequency, start_phase, acceleration, prandtl, density_ratio, stokes;
+    std::int64_t particles;
+    std::string coupling, source_form, wall_contact, particle_start, interpolation;
+    double restitution;
+    std::int64_t cells;
+    double clustering;
+    std::int64_t steps_per_period, smoothing;
+    double time_step, end_time;
+    std::int64_t sampling_cells;
+
+    explicit Question(const Inputs& inputs);
+
+    [[nodiscard]] bool steady_force() const { return frequency == 0; }
+    [[nodiscard]] double period() const;             ///< 2 pi/Omega
+    [[nodiscard]] double step() const;               ///< dt: a share of the period, or time_step under a steady force
+    [[nodiscard]] std::int64_t window() const;       ///< steps over which the flow is averaged: a period, or one step
+    [[nodiscard]] std::int64_t total_steps() const;  ///< whole windows nearest to end_time, at least one
+    /// Steps between samples of the particles: whole windows, about 200 samples in a run.
+    [[nodiscard]] std::int64_t sample_steps() const;
+
+    [[nodiscard]] flow::Vibration vibration() const { return {frequency, start_phase}; }
+    [[nodiscard]] flow::Grid grid() const;
+    [[nodiscard]] static flow::Sides sides();
+    [[nodiscard]] flow::Flow<flow::Boussinesq> fluid() const;
+    [[nodiscard]] coupling::Sphere sphere() const { return {density_ratio, stokes, prandtl, acceleration, 1}; }
+    [[nodiscard]] coupling::Walls walls() const;
+    [[nodiscard]] coupling::Cloud cloud(std::uint64_t seed) const;
+    /// Canonical text of what determines the periodic flow.
+    [[nodiscard]] std::string flow_key() const;
+};
+
+}  // namespace grainsweep::thermovibration

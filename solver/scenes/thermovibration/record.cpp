@@ -1,0 +1,123 @@
+#include "solver/scenes/thermovibration/record.hpp"
+
+#include "solver/flow/state_bytes.hpp"
+#include "solver/observables/accumulation.hpp"
+#include "solver/observables/flow_state.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace grainsweep::thermovibration {
+namespace {
+
+const observables::Box cube{{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}};
+
+void add_series(Observations& into, const char* name, const std::vector<double>& times,
+                const std::vector<double>& values) {
+    auto& series = into.series[name];
+    for (std::size_t m = 0; m < times.size(); ++m) {
+        Sample sample;
+        sample.time = times[m];
+        sample.value = values[m];
+        series.push_back(sample);
+    }
+}
+
+void add_profile(Observations& into, const char* name, std::span<const coupling::Vec3> positions, int n, int d) {
+    auto& series = into.series[name];
+    const auto profile = observables::density_profile(positions, cube, n, d);
+    for (int m = 0; m < n; ++m) {
+        Sample sample;
+        sample.bin = (m + 0.5) / n - 0.5;
+        sample.value = profile[static_cast<std::size_t>(m)];
+        series.push_back(sample);
+    }
+}
+
+template <class T>
+void save_column(std::vector<std::byte>& into, const std::vector<T>& column) {
+    flow::append_bytes(into, column.size());
+    flow::append_bytes<T>(into, column);
+}
+
+template <class T>
+void restore_column(std::span<const std::byte>& from, std::vector<T>& column) {
+    std::size_t size = 0;
+    flow::take_bytes(from, size);
+    if (size > from.size() / sizeof(T)) throw std::invalid_argument("the saved state is of another shape");
+    column.resize(size);
+    flow::take_bytes<T>(from, column);
+}
+
+}  // namespace
+
+void FlowMeans::add(const flow::Flow<flow::Boussinesq>& fluid, std::int64_t window) {
+    const auto share = 1 / static_cast<double>(window);
+    energy += share * observables::kinetic_energy(fluid.grid(), fluid.velocity());
+    nusselt += share * observables::nusselt(fluid.grid(), fluid.temperature(), 2, 1, 0.5);
+    peak = std::max(peak, observables::peak_velocity(fluid.grid(), fluid.velocity()));
+}
+
+Record::Record(const Question& question) : question_(question) {}
+
+std::size_t Record::sampling_total() const {
+    const auto n = static_cast<std::size_t>(question_.sampling_cells);
+    return n * n * n;
+}
+
+void Record::sample(double t, const coupling::Cloud& cloud) {
+    if (cloud.size() < 2) return;
+    const auto k = [&](std::int64_t n) {
+        return observables::accumulation(observables::cell_counts(cloud.position, cube, static_cast<int>(n)));
+    };
+    times_.push_back(t);
+    k_.push_back(k(question_.sampling_cells));
+    k5_.push_back(k(5));
+    k20_.push_back(k(20));
+    k_cells_.push_back(k(question_.cells));
+    last_ = cloud.position;
+}
+
+void Record::observe(Observations& into) const {
+    if (!question_.steady_force())
+        into.scalars["gershuni"] = observables::gershuni(question_.prandtl, question_.rayleigh, question_.frequency);
+    if (has_flow_) {
+        into.scalars["kinetic_energy"] = flow_.energy;
+        into.scalars["nusselt"] = flow_.nusselt;
+        into.scalars["peak_velocity"] = flow_.peak;
+    }
+    if (times_.empty()) return;
+    const auto n = static_cast<int>(question_.sampling_cells);
+    const double random = observables::random_accumulation(last_.size(), sampling_total());
+    into.scalars["accumulation"] = k_.back();
+    into.scalars["accumulation_excess"] = (k_.back() - random) / (1 - random);
+    into.scalars["structures"] = observables::structures(observables::cell_counts(last_, cube, n), n);
+    const double noise = 5 * observables::random_accumulation_deviation(last_.size(), sampling_total());
+    const double formation = observables::formation_time(times_, k_, k_.front(), noise);
+    if (std::isfinite(formation)) into.scalars["formation_time"] = formation;
+    add_series(into, "accumulation_series", times_, k_);
+    add_series(into, "accumulation_5", times_, k5_);
+    add_series(into, "accumulation_20", times_, k20_);
+    add_series(into, "accumulation_cells", times_, k_cells_);
+    add_profile(into, "density_y", last_, n, 1);
+    add_profile(into, "density_z", last_, n, 2);
+}
+
+void Record::save(std::vector<std::byte>& into) const {
+    flow::append_bytes(into, flow_);
+    flow::append_bytes(into, static_cast<std::int64_t>(has_flow_));
+    for (const auto* column : {&times_, &k_, &k5_, &k20_, &k_cells_}) save_column(into, *column);
+    save_column(into, last_);
+}
+
+void Record::restore(std::span<const std::byte>& from) {
+    flow::take_bytes(from, flow_);
+    std::int64_t has_flow = 0;
+    flow::take_bytes(from, has_flow);
+    has_flow_ = has_flow != 0;
+    for (auto* column : {&times_, &k_, &k5_, &k20_, &k_cells_}) restore_column(from, *column);
+    restore_column(from, last_);
+}
+
+}  // namespace grainsweep::thermovibration

@@ -1,0 +1,49 @@
+// What a thermovibration case has measured so far, and its answer.
+#pragma once
+
+#include "solver/coupling/cloud.hpp"
+#include "solver/flow/flow.hpp"
+#include "solver/scenes/thermovibration/question.hpp"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace grainsweep::thermovibration {
+
+/// Averages of the flow over a window of steps.
+struct FlowMeans {
+    double energy = 0;   ///< mean of |V|^2/2 over volume and window
+    double nusselt = 0;  ///< of the hot wall, mean over the window
+    double peak = 0;     ///< largest |V_d| in the window
+
+    /// Counts the state after one of `window` steps.
+    void add(const flow::Flow<flow::Boussinesq>& fluid, std::int64_t window);
+};
+
+class Record {
+public:
+    explicit Record(const Question& question);
+
+    /// The particles at time t, always at the same phase of the vibration.
+    void sample(double t, const coupling::Cloud& cloud);
+    void set_flow(const FlowMeans& means) {
+        flow_ = means;
+        has_flow_ = true;
+    }
+
+    void observe(Observations& into) const;
+    void save(std::vector<std::byte>& into) const;
+    void restore(std::span<const std::byte>& from);
+
+private:
+    [[nodiscard]] std::size_t sampling_total() const;
+
+    Question question_;
+    FlowMeans flow_;
+    bool has_flow_ = false;
+    std::vector<double> times_, k_, k5_, k20_, k_cells_;
+    std::vector<coupling::Vec3> last_;  ///< positions of the last sample
+};
+
+}  // namespace grainsweep::thermovibration

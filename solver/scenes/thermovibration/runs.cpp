@@ -1,0 +1,146 @@
+#include "solver/scenes/thermovibration/runs.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+namespace grainsweep::thermovibration {
+namespace {
+
+constexpr std::int64_t judged_every = 20;  // periods
+constexpr double give_up = 1.0;            // L^2/alpha: ten thermal times
+
+std::string text(const char* format, double a, double b, double c, double d, double e) {
+    std::array<char, 256> line{};
+    std::snprintf(line.data(), line.size(), format, a, b, c, d, e);
+    return line.data();
+}
+
+// Sum over the cells and components of a field's square.
+double sum_of_squares(const flow::FaceVectors& field) {
+    double sum = 0;
+    for (const auto& component : field)
+        for (const double v : component.values()) sum += v * v;
+    return sum;
+}
+
+}  // namespace
+
+std::string fault(const flow::Flow<flow::Boussinesq>& fluid, double time) {
+    const auto fastest = fluid.fastest();
+    const auto& x = fastest.position;
+    if (!std::isfinite(fastest.courant))
+        return text("the fluid velocity is no number at (%.4g, %.4g, %.4g), t = %.6g L^2/alpha", x[0], x[1], x[2], time,
+                    0);
+    if (fastest.courant > 1)
+        return text("the Courant number of the fluid is %.3g, above 1, at (%.4g, %.4g, %.4g), t = %.6g L^2/alpha",
+                    fastest.courant, x[0], x[1], x[2], time);
+    return {};
+}
+
+std::string fault(const coupling::Cloud& cloud, double time_step, double cell, double time) {
+    for (std::size_t p = 0; p < cloud.size(); ++p) {
+        const auto& v = cloud.velocity[p];
+        const auto& x = cloud.position[p];
+        const double way = time_step * std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+        if (way <= cell && std::isfinite(x[0] + x[1] + x[2])) continue;
+        return "particle " + std::to_string(p) +
+               text(" crosses %.3g cells in a step at (%.4g, %.4g, %.4g), t = %.6g L^2/alpha", way / cell, x[0], x[1],
+                    x[2], time);
+    }
+    return {};
+}
+
+Snapshot picture(const coupling::Cloud& cloud) {
+    Snapshot snapshot;
+    snapshot.positions = cloud.position;
+    snapshot.vectors["velocity"] = cloud.velocity;
+    return snapshot;
+}
+
+SpinUp::SpinUp(const Question& question)
+    : question_(question),
+      fluid_(question.fluid()),
+      velocity_(flow::face_vectors(fluid_.grid())),
+      acceleration_(velocity_),
+      mean_(velocity_),
+      previous_mean_(velocity_),
+      stored_(fluid_.grid()) {}
+
+void SpinUp::step() {
+    const std::int64_t per_period = question_.steps_per_period;
+    const std::int64_t in_period = fluid_.steps() % per_period;
+    const bool judged = (fluid_.steps() / per_period) % judged_every == judged_every - 1;
+    fluid_.step();
+    if (fluid_.steps() % watch_steps == 0) {
+        fault_ = thermovibration::fault(fluid_, time());
+        if (!fault_.empty()) return;
+    }
+    if (stage_ == Stage::storing) {
+        fluid_.midpoint(velocity_, acceleration_);
+        const double phase = question_.frequency * (static_cast<double>(in_period) + 0.5) * fluid_.time_step();
+        stored_.add(phase, static_cast<int>(per_period), velocity_, acceleration_);
+        means_.add(fluid_, per_period);
+        if (in_period == per_period - 1) stage_ = Stage::stored;
+    } else if (judged) {
+        const double share = 1 / static_cast<double>(per_period);
+        for (std::size_t d = 0; d < 3; ++d)
+            for (std::size_t m = 0; m < mean_[d].size(); ++m)
+                mean_[d].values()[m] += share * fluid_.velocity()[d].values()[m];
+        mean_square_ += share * sum_of_squares(fluid_.velocity());
+        if (in_period == per_period - 1) compare();
+    }
+}
+
+void SpinUp::compare() {
+    double change = 0;
+    for (std::size_t d = 0; d < 3; ++d)
+        for (std::size_t m = 0; m < mean_[d].size(); ++m) {
+            const double difference = mean_[d].values()[m] - previous_mean_[d].values()[m];
+            change += difference * difference;
+        }
+    const double periods_to_come =
+        1 / (std::numbers::pi * std::numbers::pi * question_.period() * static_cast<double>(judged_every));
+    const double to_come = std::sqrt(change) * std::max(1.0, periods_to_come);
+    const bool settled =
+        to_come <= 0.02 * std::sqrt(sum_of_squares(mean_)) || to_come <= 1e-5 * std::sqrt(mean_square_);
+    passes_ = settled ? passes_ + 1 : 0;
+    std::swap(mean_, previous_mean_);
+    for (auto& component : mean_) std::fill(component.values().begin(), component.values().end(), 0.0);
+    mean_square_ = 0;
+    if (passes_ >= 2)
+        stage_ = Stage::storing;
+    else if (time() > give_up)
+        fault_ = text(
+            "the flow had not become periodic by t = %.4g L^2/alpha (mean velocity still to change by %.2g of "
+            "its size); release the particles with the flow instead (particle_start)",
+            time(), to_come / std::sqrt(sum_of_squares(previous_mean_)), 0, 0, 0);
+}
+
+void SpinUp::save(std::vector<std::byte>& into) const {
+    fluid_.save(into);
+    for (std::size_t d = 0; d < 3; ++d) {
+        flow::append_bytes<double>(into, mean_[d].values());
+        flow::append_bytes<double>(into, previous_mean_[d].values());
+    }
+    flow::append_bytes(into, mean_square_);
+    flow::append_bytes(into, passes_);
+    flow::append_bytes(into, stage_);
+    flow::append_bytes(into, means_);
+    if (stage_ != Stage::settling) stored_.save(into);
+}
+
+void SpinUp::restore(std::span<const std::byte>& from) {
+    fluid_.restore(from);
+    for (std::size_t d = 0; d < 3; ++d) {
+        flow::take_bytes<double>(from, mean_[d].values());
+        flow::take_bytes<double>(from, previous_mean_[d].values());
+    }
+    flow::take_bytes(from, mean_square_);
+    flow::take_bytes(from, passes_);
+    flow::take_bytes(from, stage_);
+    flow::take_bytes(from, means_);
+    if (stage_ != Stage::settling) stored_.restore(from);
+}
+
+}  // namespace grainsweep::thermovibration

@@ -1,0 +1,264 @@
+// The two ways a thermovibration case is run.
+//
+// Live: fluid and particles together from t = 0.
+// Carried: one-way particles released into a flow that has become periodic. The flow is found once, stored as
+// harmonics (an artefact shared by all cases of the same fluid) and always read back from that representation.
+#pragma once
+
+#include "solver/coupling/drag.hpp"
+#include "solver/coupling/periodic_flow.hpp"
+#include "solver/coupling/suspension.hpp"
+#include "solver/scenes/scene.hpp"
+#include "solver/scenes/thermovibration/record.hpp"
+
+#include <optional>
+#include <string>
+
+namespace grainsweep::thermovibration {
+
+using Drag = coupling::SchillerNaumann;
+
+/// Reasons not to trust the state after a step: Courant numbers above 1, values that are no numbers, particles that
+/// cross more than a cell in a step. Empty: none.
+[[nodiscard]] std::string fault(const flow::Flow<flow::Boussinesq>& fluid, double time);
+[[nodiscard]] std::string fault(const coupling::Cloud& cloud, double time_step, double cell, double time);
+[[nodiscard]] Snapshot picture(const coupling::Cloud& cloud);
+/// Steps between two looks for faults.
+constexpr std::int64_t watch_steps = 8;
+
+template <class Level, class Kernel>
+class Live final : public Scene {
+public:
+    Live(const Question& question, std::uint64_t seed, Level level)
+        : question_(question),
+          record_(question),
+          suspension_(question.fluid(), question.vibration(),
+                      coupling::Motion<Drag>(question.sphere(), question.step()), question.walls(),
+                      question.cloud(seed), std::move(level)) {
+        record_.sample(0, suspension_.cloud());
+    }
+
+    void advance(double until) override {
+        while (time() < until && !finished() && fault_.empty()) step();
+    }
+    void observe(Observations& into) const override { record_.observe(into); }
+    [[nodiscard]] double time() const override { return suspension_.fluid().time(); }
+    [[nodiscard]] bool finished() const override { return steps() >= question_.total_steps(); }
+    [[nodiscard]] double progress() const override {
+        return static_cast<double>(steps()) / static_cast<double>(question_.total_steps());
+    }
+    [[nodiscard]] Health health() const override { return {fault_}; }
+    [[nodiscard]] double particle_steps() const override {
+        return static_cast<double>(steps()) * static_cast<double>(question_.particles);
+    }
+    void save(Bytes& into) const override {
+        into.clear();
+        suspension_.save(into);
+        flow::append_bytes(into, means_);
+        record_.save(into);
+    }
+    void restore(std::span<const std::byte> from) override {
+        suspension_.restore(from);
+        flow::take_bytes(from, means_);
+        record_.restore(from);
+    }
+    [[nodiscard]] Snapshot snapshot() const override { return picture(suspension_.cloud()); }
+
+private:
+    [[nodiscard]] std::int64_t steps() const { return suspension_.fluid().steps(); }
+
+    void step() {
+        suspension_.step();
+        const auto& fluid = suspension_.fluid();
+        if (steps() % watch_steps == 0 || finished()) {
+            fault_ = fault(fluid, time());
+            if (fault_.empty())
+                fault_ =
+                    fault(suspension_.cloud(), fluid.time_step(), 1.0 / static_cast<double>(question_.cells), time());
+            if (!fault_.empty()) return;
+        }
+        if (steps() > question_.total_steps() - question_.window()) means_.add(fluid, question_.window());
+        if (finished()) record_.set_flow(means_);
+        if (steps() % question_.sample_steps() == 0 || finished()) record_.sample(time(), suspension_.cloud());
+    }
+
+    Question question_;
+    Record record_;
+    FlowMeans means_;  // of the last window, as far as it has come
+    coupling::Suspension<flow::Boussinesq, Level, Kernel, Drag> suspension_;
+    std::string fault_;
+};
+
+/// Runs a fluid alone until it repeats itself, then stores one period.
+///
+/// Judged by the mean velocity M over one period in every twenty: conduction relaxes as exp(-pi^2 t), so what is still
+/// to come is about |M - M'| / (pi^2 20 P). Periodic when that is below 2 % of |M| or 1e-5 of the rms velocity, twice
+/// in succession.
+class SpinUp {
+public:
+    explicit SpinUp(const Question& question);
+
+    void step();
+    [[nodiscard]] double time() const { return fluid_.time(); }
+    [[nodiscard]] bool periodic() const { return stage_ == Stage::stored; }
+    [[nodiscard]] const std::string& fault() const { return fault_; }
+    [[nodiscard]] const FlowMeans& means() const { return means_; }
+    [[nodiscard]] const coupling::PeriodicFlow& stored() const { return stored_; }
+
+    void save(std::vector<std::byte>& into) const;
+    void restore(std::span<const std::byte>& from);
+
+private:
+    enum class Stage : std::int64_t { settling, storing, stored };
+    void compare();
+
+    Question question_;
+    flow::Flow<flow::Boussinesq> fluid_;
+    flow::FaceVectors velocity_, acceleration_;  // scratch
+    flow::FaceVectors mean_, previous_mean_;
+    double mean_square_ = 0;  // of the velocity over the period being judged
+    std::int64_t passes_ = 0;
+    Stage stage_ = Stage::settling;
+    FlowMeans means_;
+    coupling::PeriodicFlow stored_;
+    std::string fault_;
+};
+
+template <class Kernel>
+class Carried final : public Scene {
+public:
+    Carried(const Question& question, std::uint64_t seed, Artefacts& artefacts)
+        : question_(question),
+          artefacts_(artefacts),
+          grid_(question.grid()),
+          walls_(question.walls()),
+          motion_(question.sphere(), question.step()),
+          cloud_(question.cloud(seed)),
+          record_(question),
+          flow_(grid_) {
+        if (const auto found = artefacts_.get(question_.flow_key()))
+            receive(*found);
+        else
+            spin_up_.emplace(question_);
+        record_.sample(0, cloud_);
+    }
+
+    void advance(double until) override {
+        while (time() < until && !finished() && fault_.empty()) {
+            if (spin_up_)
+                settle();
+            else
+                step();
+        }
+    }
+    void observe(Observations& into) const override { record_.observe(into); }
+    /// The time the flow took to become periodic, if it was found here, and the time of the particles since.
+    [[nodiscard]] double time() const override {
+        return (spin_up_ ? spin_up_->time() : spun_) + static_cast<double>(steps_) * question_.step();
+    }
+    [[nodiscard]] bool finished() const override { return !spin_up_ && steps_ >= question_.total_steps(); }
+    [[nodiscard]] double progress() const override {
+        constexpr double usual_spin_up = 0.25;
+        if (spin_up_) return 0.5 * std::min(1.0, spin_up_->time() / usual_spin_up);
+        const double share = static_cast<double>(steps_) / static_cast<double>(question_.total_steps());
+        return spun_ > 0 ? 0.5 + 0.5 * share : share;
+    }
+    [[nodiscard]] Health health() const override { return {fault_}; }
+    [[nodiscard]] double particle_steps() const override {
+        return static_cast<double>(steps_) * static_cast<double>(question_.particles);
+    }
+    void save(Bytes& into) const override {
+        into.clear();
+        flow::append_bytes(into, static_cast<std::int64_t>(spin_up_.has_value()));
+        flow::append_bytes(into, steps_);
+        flow::append_bytes(into, spun_);
+        flow::append_bytes<coupling::Vec3>(into, cloud_.position);
+        flow::append_bytes<coupling::Vec3>(into, cloud_.velocity);
+        record_.save(into);
+        if (spin_up_)
+            spin_up_->save(into);
+        else
+            flow_.save(into);
+    }
+    void restore(std::span<const std::byte> from) override {
+        std::int64_t spinning = 0;
+        flow::take_bytes(from, spinning);
+        flow::take_bytes(from, steps_);
+        flow::take_bytes(from, spun_);
+        flow::take_bytes<coupling::Vec3>(from, cloud_.position);
+        flow::take_bytes<coupling::Vec3>(from, cloud_.velocity);
+        record_.restore(from);
+        if (spinning != 0) {
+            spin_up_.emplace(question_);
+            spin_up_->restore(from);
+        } else {
+            spin_up_.reset();
+            flow_.restore(from);
+        }
+    }
+    [[nodiscard]] Snapshot snapshot() const override { return picture(cloud_); }
+
+private:
+    void settle() {
+        spin_up_->step();
+        fault_ = spin_up_->fault();
+        if (!spin_up_->periodic()) return;
+        Bytes contents;
+        flow::append_bytes(contents, spin_up_->means());
+        spin_up_->stored().save(contents);
+        artefacts_.put(question_.flow_key(), contents);
+        spun_ = spin_up_->time();
+        spin_up_.reset();
+        receive(contents);
+    }
+
+    void receive(std::span<const std::byte> contents) {
+        FlowMeans means;
+        flow::take_bytes(contents, means);
+        flow_.restore(contents);
+        record_.set_flow(means);
+    }
+
+    void step() {
+        const double dt = question_.step();
+        const auto in_period = static_cast<double>(steps_ % question_.steps_per_period) + 0.5;
+        const double phase = question_.frequency * in_period * dt;
+        const double c = std::cos(phase);
+        const double s = std::sin(phase);
+        const std::array<double, coupling::PeriodicFlow::terms> basis{1, c, s, c * c - s * s, 2 * s * c};
+        const double vibration = question_.vibration().at(in_period * dt);
+        for (const std::size_t p : order_.of(cloud_, grid_)) {
+            coupling::Vec3& x = cloud_.position[p];
+            coupling::Vec3& v = cloud_.velocity[p];
+            coupling::Vec3 middle = x;
+            for (std::size_t d = 0; d < 3; ++d) middle[d] += 0.5 * dt * v[d];
+            const coupling::Footing<Kernel> foot(grid_, walls_.periodic, walls_.clipped(middle));
+            auto around = flow_.at(foot, basis);
+            around.vibration = vibration;
+            motion_.advance(x, v, around);
+            walls_.apply(x, v);
+        }
+        ++steps_;
+        const double now = static_cast<double>(steps_) * dt;
+        if (steps_ % watch_steps == 0 || finished())
+            fault_ = fault(cloud_, dt, 1.0 / static_cast<double>(question_.cells), now);
+        if (!fault_.empty()) return;
+        if (steps_ % question_.sample_steps() == 0 || finished()) record_.sample(now, cloud_);
+    }
+
+    Question question_;
+    Artefacts& artefacts_;
+    flow::Grid grid_;
+    coupling::Walls walls_;
+    coupling::Motion<Drag> motion_;
+    coupling::Cloud cloud_;
+    coupling::VisitOrder order_;
+    Record record_;
+    coupling::PeriodicFlow flow_;
+    std::optional<SpinUp> spin_up_;  // only while the flow is not yet known
+    std::int64_t steps_ = 0;         // of the particles
+    double spun_ = 0;
+    std::string fault_;
+};
+
+}  // namespace grainsweep::thermovibration

@@ -1,0 +1,118 @@
+// Cost of a flow step and its parts: JSON lines {program, compiler, what, cells, milliseconds}, processor time per
+// call, best of five batches.   bench_flow [CELLS [CALLS [NAME]]]
+#include "solver/coupling/drag.hpp"
+#include "solver/coupling/periodic_flow.hpp"
+#include "solver/coupling/suspension.hpp"
+#include "solver/flow/flow.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <string>
+
+using namespace grainsweep::flow;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+std::string wanted;  // only lines whose name contains it
+int cells = 40;
+int calls = 50;
+
+template <class Work>
+double milliseconds(Work work) {
+    work();
+    double best = 1e300;
+    for (int batch = 0; batch < 5; ++batch) {
+        const std::clock_t start = std::clock();
+        for (int n = 0; n < calls; ++n) work();
+        best = std::min(best, 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC / calls);
+    }
+    return best;
+}
+
+template <class Work>
+void measure(const std::string& what, Work work) {
+    if (what.find(wanted) == std::string::npos) return;
+    std::printf(R"({"program":"bench_flow","compiler":"%s","what":"%s","cells":%d,"milliseconds":%.4f})"
+                "\n",
+                __VERSION__, what.c_str(), cells, milliseconds(work));
+    std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc > 1) cells = std::atoi(argv[1]);
+    if (argc > 2) calls = std::atoi(argv[2]);
+    if (argc > 3) wanted = argv[3];
+    const int n = cells;
+    const Axis axis = Axis::uniform(n, -0.5, 0.5);
+    const Grid grid{{axis, axis, axis}};
+    const Sides walls{{{NoSlip{}, NoSlip{}}, {NoSlip{}, NoSlip{}}, {NoSlip{}, NoSlip{}}}};
+    const double frequency = 2.33e4;
+    const FlowSetup setup{grid, walls, 18, 2 * pi / frequency / 32};
+    Boussinesq heat;
+    heat.sides[2] = {Isothermal{-0.5}, Isothermal{0.5}};
+    heat.buoyancy = -18 * 3.04e5;
+    heat.vibration = {frequency, 0};
+    Flow<Boussinesq> flow(setup, heat);
+    flow.set_temperature([](double, double, double z) { return z; });
+
+    measure("flow_step", [&] { flow.step(); });
+    FaceVectors velocity = face_vectors(grid);
+    FaceVectors acceleration = face_vectors(grid);
+    measure("midpoint", [&] { flow.midpoint(velocity, acceleration); });
+
+    Poisson poisson(grid, walls);
+    std::vector<double> values(grid.total_cells());
+    for (std::size_t m = 0; m < values.size(); ++m) values[m] = static_cast<double>(m % 7) - 3;
+    measure("poisson", [&] { poisson.solve(values); });
+
+    ImplicitDiffusion diffusion(grid, velocity_edges(walls, 1), 18 * setup.time_step / 2);
+    Field right = flow.velocity()[1];
+    Field solution(grid);
+    measure("implicit_diffusion", [&] { diffusion.solve(right, solution); });
+
+    const Weights weights(grid, velocity_edges(walls, 1));
+    measure("momentum_transport", [&] {
+        momentum_transport(1, flow.velocity(), weights, {n, n, n}, 18, right, solution);
+    });
+
+    namespace coupling = grainsweep::coupling;
+    const coupling::Sphere sphere{1.65, 3.1e-6, 18, 1.72e9, 1};
+    const coupling::Walls box{{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, {}, sphere.radius(), 1};
+    const coupling::Motion<coupling::SchillerNaumann> motion(sphere, setup.time_step);
+    const std::size_t particles = 3150;
+    const auto cloud = coupling::random_cloud(particles, box, grainsweep::stats::Stream(1, 1));
+    const auto suspension = [&]<class Kernel, class Level>(Kernel, Level level) {
+        return coupling::Suspension<Boussinesq, Level, Kernel, coupling::SchillerNaumann>(flow, heat.vibration, motion,
+                                                                                          box, cloud, std::move(level));
+    };
+    auto one_way = suspension(coupling::Trilinear{}, coupling::OneWay{});
+    measure("one_way_trilinear", [&] { one_way.step(); });
+    auto solenoidal = suspension(coupling::Solenoidal{}, coupling::OneWay{});
+    measure("one_way_solenoidal", [&] { solenoidal.step(); });
+    auto two_way =
+        suspension(coupling::Trilinear{}, coupling::TwoWay<coupling::ForceForm>(grid, walls, sphere, particles, 2));
+    measure("two_way_force", [&] { two_way.step(); });
+
+    coupling::PeriodicFlow periodic(grid);
+    for (int s = 0; s < 32; ++s) periodic.add(2 * pi * (s + 0.5) / 32, 32, velocity, acceleration);
+    auto carried = cloud;
+    coupling::VisitOrder order;
+    int step = 0;
+    measure("replay_trilinear", [&] {
+        const double phase = 2 * pi * (step++ % 32 + 0.5) / 32;
+        for (const std::size_t p : order.of(carried, grid)) {
+            const coupling::Footing<coupling::Trilinear> foot(grid, box.periodic, box.clipped(carried.position[p]));
+            auto around = periodic.at(foot, phase);
+            around.vibration = std::sin(phase);
+            motion.advance(carried.position[p], carried.velocity[p], around);
+            box.apply(carried.position[p], carried.velocity[p]);
+        }
+    });
+    return 0;
+}

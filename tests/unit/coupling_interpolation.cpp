@@ -1,0 +1,232 @@
+#include "solver/coupling/cloud.hpp"
+#include "solver/coupling/interpolation.hpp"
+#include "solver/flow/flow.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace grainsweep;
+using namespace grainsweep::coupling;
+using flow::Axis;
+using flow::Grid;
+
+namespace {
+
+constexpr std::array<flow::Side, 2> walls{flow::NoSlip{}, flow::NoSlip{}};
+constexpr std::array<flow::Side, 2> slip{flow::FreeSlip{}, flow::FreeSlip{}};
+constexpr std::array<flow::Side, 2> periodic{flow::Periodic{}, flow::Periodic{}};
+
+Vec3 random_place(const Grid& grid, std::uint64_t p) {
+    const stats::Stream random(3, 1);
+    Vec3 x;
+    for (int d = 0; d < 3; ++d)
+        x[static_cast<std::size_t>(d)] =
+            grid[d].low() + grid[d].length() * random.uniform(3 * p + static_cast<std::uint64_t>(d));
+    return x;
+}
+
+// A divergence-free field of round-off quality: any velocity after a projection.
+flow::Flow<flow::NoHeat> projected(const Grid& grid, const flow::Sides& sides) {
+    flow::Flow<flow::NoHeat> fluid({grid, sides, 1e-9, 1e-9}, flow::NoHeat{});
+    fluid.set_velocity([](double x, double y, double z) {
+        return std::array{std::sin(5 * x + 3 * y) * z, std::cos(4 * y - 2 * z) + x, std::sin(6 * z + x * y)};
+    });
+    fluid.step();
+    return fluid;
+}
+
+template <class Kernel>
+Vec3 gather(const Grid& grid, const std::array<bool, 3>& wraps, const flow::FaceVectors& field, const Vec3& x) {
+    return Footing<Kernel>(grid, wraps, x).gather(field);
+}
+
+template <class Kernel>
+double largest_divergence(const Grid& grid, const flow::Sides& sides) {
+    const auto fluid = projected(grid, sides);
+    std::array<bool, 3> wraps{};
+    for (std::size_t d = 0; d < 3; ++d) wraps[d] = std::holds_alternative<flow::Periodic>(sides[d][0]);
+    double worst = 0;
+    for (std::uint64_t p = 0; p < 2000; ++p) {
+        Vec3 x = random_place(grid, p);
+        double divergence = 0;
+        for (std::size_t d = 0; d < 3; ++d) {
+            const Axis& axis = grid[static_cast<int>(d)];
+            const double e = 1e-5 * axis.length();
+            x[d] = std::min(std::max(x[d], axis.low() + e), axis.high() - e);
+            Vec3 after = x;
+            Vec3 before = x;
+            after[d] += e;
+            before[d] -= e;
+            divergence += (gather<Kernel>(grid, wraps, fluid.velocity(), after)[d] -
+                           gather<Kernel>(grid, wraps, fluid.velocity(), before)[d]) /
+                          (2 * e);
+        }
+        worst = std::max(worst, std::abs(divergence));
+    }
+    return worst;
+}
+
+const Grid uniform{{Axis::uniform(9, -0.5, 0.5), Axis::uniform(8, -0.5, 0.5), Axis::uniform(10, -0.5, 0.5)}};
+const Grid clustered{
+    {Axis::clustered(9, -0.5, 0.5, 1.3), Axis::clustered(8, -0.5, 0.5, 1.5), Axis::clustered(10, -0.5, 0.5, 1)}};
+
+}  // namespace
+
+// The spline is piecewise quadratic, so a central difference inside a piece is exact to its round-off (1e-10); pieces
+// meet with continuous slopes, so straddling a knot leaves a second difference times e, below 1e-3.
+TEST(Solenoidal, HasNoDivergenceBetweenTheNodes) {
+    EXPECT_LT(largest_divergence<Solenoidal>(uniform, {walls, walls, walls}), 2e-3);
+    EXPECT_LT(largest_divergence<Solenoidal>(uniform, {periodic, slip, walls}), 2e-3);
+    EXPECT_LT(largest_divergence<Solenoidal>(clustered, {walls, walls, walls}), 2e-3);
+    // The trilinear field of the same nodes compresses by order one.
+    EXPECT_GT(largest_divergence<Trilinear>(uniform, {walls, walls, walls}), 0.1);
+}
+
+template <class Kernel>
+class EveryKernel : public testing::Test {};
+using Kernels = testing::Types<Trilinear, Solenoidal>;
+TYPED_TEST_SUITE(EveryKernel, Kernels);
+
+TYPED_TEST(EveryKernel, LetsNothingThroughAWall) {
+    for (const Grid* grid : {&uniform, &clustered}) {
+        const auto fluid = projected(*grid, {walls, walls, walls});
+        for (std::uint64_t p = 0; p < 50; ++p)
+            for (std::size_t d = 0; d < 3; ++d)
+                for (const double side : {-0.5, 0.5}) {
+                    Vec3 x = random_place(*grid, p);
+                    x[d] = side;
+                    EXPECT_NEAR(gather<TypeParam>(*grid, {}, fluid.velocity(), x)[d], 0, 1e-14);
+                }
+    }
+}
+
+TYPED_TEST(EveryKernel, IsContinuousAcrossCells) {
+    for (const Grid* grid : {&uniform, &clustered}) {
+        const auto fluid = projected(*grid, {walls, walls, walls});
+        for (std::uint64_t p = 0; p < 50; ++p)
+            for (int d = 0; d < 3; ++d)
+                for (int f = 2; f < grid->cells(d); ++f)
+                    for (const double knot : {(*grid)[d].face(f), (*grid)[d].centre(f)}) {
+                        Vec3 below = random_place(*grid, p);
+                        Vec3 above = below;
+                        below[static_cast<std::size_t>(d)] = knot - 1e-9;
+                        above[static_cast<std::size_t>(d)] = knot + 1e-9;
+                        const Vec3 a = gather<TypeParam>(*grid, {}, fluid.velocity(), below);
+                        const Vec3 b = gather<TypeParam>(*grid, {}, fluid.velocity(), above);
+                        for (std::size_t e = 0; e < 3; ++e) EXPECT_NEAR(a[e], b[e], 1e-6);
+                    }
+    }
+}
+
+// Second order for a smooth field that satisfies the walls: the error falls fourfold when the cells halve.
+TYPED_TEST(EveryKernel, ConvergesWithSecondOrder) {
+    const auto error = [](int n, double clustering) {
+        const Axis axis = Axis::clustered(n, 0, 1, clustering);
+        const Grid grid{{axis, axis, axis}};
+        const auto exact = [](const Vec3& x) {
+            const double pi = 3.14159265358979323846;
+            return Vec3{std::sin(pi * x[0]) * std::cos(2 * x[1]) * std::exp(x[2]),
+                        std::sin(pi * x[1]) * std::cos(x[0] + x[2]), std::sin(pi * x[2]) * x[0] * x[1]};
+        };
+        flow::FaceVectors field = flow::face_vectors(grid);
+        for (int d = 0; d < 3; ++d)
+            for (int k = 0; k <= n + 1; ++k)
+                for (int j = 0; j <= n + 1; ++j)
+                    for (int i = 0; i <= n + 1; ++i) {
+                        Vec3 x{axis.centre(i), axis.centre(j), axis.centre(k)};
+                        x[static_cast<std::size_t>(d)] = axis.face(d == 0 ? i : d == 1 ? j : k);
+                        field[static_cast<std::size_t>(d)](i, j, k) = exact(x)[static_cast<std::size_t>(d)];
+                    }
+        double sum = 0;
+        int count = 0;
+        for (std::uint64_t p = 0; p < 4000; ++p) {
+            const Vec3 x = random_place(grid, p);
+            // Away from the half cells at walls, where the solenoidal kernel is first order across.
+            if (std::ranges::any_of(x, [](double c) { return c < 0.1 || c > 0.9; })) continue;
+            const Vec3 got = gather<TypeParam>(grid, {}, field, x);
+            for (std::size_t d = 0; d < 3; ++d) sum += (got[d] - exact(x)[d]) * (got[d] - exact(x)[d]);
+            ++count;
+        }
+        return std::sqrt(sum / count);
+    };
+    for (const double clustering : {0.0, 1.0})
+        EXPECT_NEAR(std::log2(error(20, clustering) / error(40, clustering)), 2, 0.2);
+}
+
+// <scatter(F), V> = F . gather(V) for every F and V: the pair exchanges power exactly.
+TYPED_TEST(EveryKernel, ScatterIsTheTransposeOfGather) {
+    for (const flow::Sides& sides : {flow::Sides{walls, walls, walls}, flow::Sides{periodic, slip, walls}})
+        for (const int passes : {0, 2}) {
+            std::array<bool, 3> wraps{};
+            for (std::size_t d = 0; d < 3; ++d) wraps[d] = std::holds_alternative<flow::Periodic>(sides[d][0]);
+            const Grid& grid = uniform;
+            const auto fluid = projected(grid, sides);
+            flow::FaceVectors smoothed = fluid.velocity();
+            for (int d = 0; d < 3; ++d) {
+                const auto m = static_cast<std::size_t>(d);
+                const auto edges = flow::velocity_edges(sides, d);
+                smooth(smoothed[m], grid, edges, passes);
+                flow::fill_ghosts(smoothed[m], grid, edges);
+            }
+            for (std::uint64_t p = 0; p < 200; ++p) {
+                const Vec3 x = random_place(grid, p);
+                const Footing<TypeParam> foot(grid, wraps, x);
+                const Vec3 force{1.3, -0.7, 2.1};
+                flow::FaceVectors onto = flow::face_vectors(grid);
+                foot.scatter(force, onto);
+                double power = 0;
+                for (int d = 0; d < 3; ++d) {
+                    const auto m = static_cast<std::size_t>(d);
+                    const auto edges = flow::velocity_edges(sides, d);
+                    fold_ghosts(onto[m], grid, edges);
+                    smooth(onto[m], grid, edges, passes);
+                    for (int k = 1; k <= grid.cells(2); ++k)
+                        for (int j = 1; j <= grid.cells(1); ++j)
+                            for (int i = 1; i <= grid.cells(0); ++i)
+                                power += onto[m](i, j, k) * fluid.velocity()[m](i, j, k);
+                }
+                const Vec3 v = foot.gather(smoothed);
+                EXPECT_NEAR(power, force[0] * v[0] + force[1] * v[1] + force[2] * v[2], 1e-13);
+            }
+        }
+}
+
+TEST(Smooth, KeepsTheTotalAndAddsHalfACellOfVariancePerPass) {
+    const Grid grid{{Axis::uniform(21, 0, 21), Axis::uniform(1, 0, 1), Axis::uniform(1, 0, 1)}};
+    const auto edges = flow::velocity_edges({walls, slip, slip}, 1);
+    flow::Field field(grid);
+    field(11, 1, 1) = 1;
+    smooth(field, grid, edges, 3);
+    double total = 0;
+    double variance = 0;
+    for (int i = 1; i <= 21; ++i) {
+        total += field(i, 1, 1);
+        variance += field(i, 1, 1) * (i - 11) * (i - 11);
+    }
+    EXPECT_NEAR(total, 1, 1e-15);
+    EXPECT_NEAR(variance, 1.5, 1e-14);
+    // Against a wall nothing is lost either.
+    flow::Field corner(grid);
+    corner(1, 1, 1) = 1;
+    smooth(corner, grid, edges, 5);
+    total = 0;
+    for (int i = 1; i <= 21; ++i) total += corner(i, 1, 1);
+    EXPECT_NEAR(total, 1, 1e-15);
+}
+
+TEST(RandomCloud, StandsWhereCentresMayBe) {
+    const Walls box{{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, {false, true, false}, 0.1, 1};
+    const Cloud cloud = random_cloud(2000, box, stats::Stream(1, 2));
+    double mean = 0;
+    double largest = 0;
+    for (const Vec3& x : cloud.position) {
+        EXPECT_LE(std::abs(x[0]), 0.4);
+        EXPECT_LE(std::abs(x[2]), 0.4);
+        mean += x[0] / 2000;
+        largest = std::max(largest, std::abs(x[1]));
+    }
+    EXPECT_LT(std::abs(mean), 4 * 0.4 / std::sqrt(3.0 * 2000));  // four standard errors
+    EXPECT_GT(largest, 0.49);
+}
