@@ -1,0 +1,111 @@
+// State of the clear engine: seen in order of id, and written so that it continues bit for bit.
+//
+// The order of particles and of the neighbour list decides the order of sums, so both are part of a checkpoint.
+#pragma once
+
+#include "solver/dem/clear/engine.hpp"
+
+namespace grainsweep::dem::clear {
+
+inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'0001ULL;  // "grnscl", version 1
+
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::state(State& into) const {
+    std::vector<std::uint32_t> place(spheres_at_start_, particles::gone);
+    for (std::uint32_t i = 0; i < p_.size(); ++i) place[static_cast<std::size_t>(p_.id[i])] = i;
+    const std::size_t n = p_.size();
+    into.id.resize(n);
+    into.position.resize(n);
+    into.velocity.resize(n);
+    into.angular_velocity.resize(n);
+    into.radius.resize(n);
+    into.mobile.resize(n);
+    std::size_t k = 0;
+    for (std::size_t id = 0; id < place.size(); ++id) {
+        const std::uint32_t i = place[id];
+        if (i == particles::gone) continue;
+        into.id[k] = static_cast<std::int32_t>(id);
+        into.position[k] = p_.position[i];
+        into.velocity[k] = p_.velocity[i];
+        if constexpr (needs.spin)
+            into.angular_velocity[k] = p_.angular_velocity[i];
+        else
+            into.angular_velocity[k] = spin_at_start_.empty() ? Vec3{} : spin_at_start_[id];
+        into.radius[k] = radius(i);
+        into.mobile[k] = mobile(i) ? 1 : 0;
+        ++k;
+    }
+}
+
+template <class Laws, Needs case_needs>
+template <class Self, class Visit>
+void ClearEngine<Laws, case_needs>::visit_state(Self& self, Visit&& visit) {
+    self.p_.for_each_column(visit);
+    visit(self.position_at_build_);
+    visit(self.near_open_face_);
+    visit(self.pairs_.value);
+    visit(self.pairs_.live);
+    visit(self.wall_steps_);
+    visit(self.displaced_);
+    visit(self.largest_overlap_);
+    visit(self.largest_wall_overlap_);
+    visit(self.speed_limit_);
+    visit(self.work_of_walls_);
+    visit(self.work_of_wrapping_);
+    visit(self.lowest_energy_);
+    visit(self.fault_);
+    visit(self.work_.steps);
+    visit(self.work_.particle_steps);
+    visit(self.work_.pair_visits);
+    visit(self.work_.rebuilds);
+}
+
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::save(std::vector<std::byte>& into) const {
+    into.clear();
+    particles::ByteWriter out(into);
+    out.put(checkpoint_format);
+    out.put(needs);
+    out.put(static_cast<std::uint64_t>(spheres_at_start_));
+    out.put(time_step_);
+    visit_state(*this, [&out](const auto& value) { out.put(value); });
+    list_.save(out);
+    out.put(static_cast<std::uint64_t>(walls_.size()));
+    for (const auto& contacts : walls_) {
+        out.put(contacts.wall);
+        out.put(contacts.near);
+        if constexpr (needs.tangential_history) out.put(contacts.memory);
+        out.put(contacts.displacement_at_build);
+    }
+}
+
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::restore(std::span<const std::byte> from) {
+    particles::ByteReader in(from);
+    const auto expect = [&in](const auto& mine) {
+        auto theirs = mine;
+        in.get(theirs);
+        if (std::memcmp(&theirs, &mine, sizeof mine) != 0)
+            throw std::invalid_argument("checkpoint of another engine or another setup");
+    };
+    expect(checkpoint_format);
+    expect(needs);
+    expect(static_cast<std::uint64_t>(spheres_at_start_));
+    expect(time_step_);
+    visit_state(*this, [&in](auto& value) { in.get(value); });
+    list_.restore(in);
+    std::uint64_t walls = 0;
+    in.get(walls);
+    walls_.clear();
+    for (std::uint64_t w = 0; w < walls; ++w) {
+        WallContacts<needs> contacts;
+        in.get(contacts.wall);
+        in.get(contacts.near);
+        if constexpr (needs.tangential_history) in.get(contacts.memory);
+        in.get(contacts.displacement_at_build);
+        walls_.push_back(std::move(contacts));
+    }
+    in.finish();
+}
+
+}  // namespace grainsweep::dem::clear

@@ -1,0 +1,146 @@
+// The clear engine: double precision, one loop per idea, instantiated for the laws and columns a case needs.
+//
+//     v += dt/2 (f/m + g);  x += dt v;  w += dt/2 T/I;   f, T from (x, v, w);   v, w: second half     I = 2/5 m R^2
+//
+// Velocity Verlet; the contact laws see half-step velocities, as in LIGGGHTS 3.8. At the start, and when walls are
+// set, forces are evaluated once at full-step velocities without moving the contacts' memories.
+//
+// Particles are sorted in cells whenever the neighbour list is rebuilt, and it is rebuilt when any particle or wall
+// has moved half the skin since: no contact is ever missed. Sums run in a fixed order: same input, same bits.
+#pragma once
+
+#include "solver/dem/engine.hpp"
+#include "solver/dem/laws/contact.hpp"
+#include "solver/dem/moving_wall.hpp"
+#include "solver/geometry/domain.hpp"
+#include "solver/particles/bytes.hpp"
+#include "solver/particles/neighbour_list.hpp"
+#include "solver/particles/pair_memory.hpp"
+#include "solver/particles/particles.hpp"
+
+namespace grainsweep::dem::clear {
+
+using particles::Needs;
+
+/// Particles that may touch one wall before the next rebuild, ascending, and what they remember of it.
+template <Needs needs>
+struct WallContacts {
+    Wall wall;
+    std::vector<std::uint32_t> near;
+    [[no_unique_address]] particles::Column<needs.tangential_history, Vec3> memory;
+    Vec3 displacement_at_build{};
+};
+
+template <class Laws, Needs case_needs>
+class ClearEngine final : public Engine {
+public:
+    static constexpr Needs needs = Laws::needs | case_needs;
+
+    ClearEngine(const Setup& setup, const Method& method, Laws laws);
+
+    void run(std::int64_t steps) override;
+    void set_walls(std::vector<Wall> walls) override;
+    void remove(std::span<const std::int32_t> ids) override;
+
+    [[nodiscard]] std::size_t size() const override { return p_.size(); }
+    [[nodiscard]] double wall_time() const override { return time_step_ * static_cast<double>(wall_steps_); }
+    void state(State& into) const override;
+    [[nodiscard]] double largest_overlap() const override { return largest_overlap_; }
+    [[nodiscard]] const std::string& fault() const override { return fault_; }
+    [[nodiscard]] Work work() const override { return work_; }
+    void save(std::vector<std::byte>& into) const override;
+    void restore(std::span<const std::byte> from) override;
+
+private:
+    using Memory = typename Laws::Memory;
+
+    // One radius for all, or a column: the same words for both.
+    [[nodiscard]] double radius(std::size_t i) const {
+        if constexpr (needs.sizes) return p_.radius[i];
+        return radius_;
+    }
+    [[nodiscard]] bool mobile([[maybe_unused]] std::size_t i) const {
+        if constexpr (needs.frozen) return p_.mobile[i] != 0;
+        return true;
+    }
+    /// 1/m of a mobile particle.
+    [[nodiscard]] double inverse_mass(std::size_t i) const {
+        if constexpr (needs.sizes) return p_.inverse_mass[i];
+        return inverse_mass_;
+    }
+    /// m*; a frozen partner has infinite mass.
+    [[nodiscard]] double reduced_mass(std::size_t i, std::size_t j) const {
+        if constexpr (needs.sizes) return 1 / (p_.inverse_mass[i] + p_.inverse_mass[j]);
+        if constexpr (needs.frozen) return p_.mobile[i] && p_.mobile[j] ? mass_ / 2 : mass_;
+        return mass_ / 2;
+    }
+    [[nodiscard]] double effective_radius(std::size_t i, std::size_t j) const {
+        if constexpr (needs.sizes) return p_.radius[i] * p_.radius[j] / (p_.radius[i] + p_.radius[j]);
+        return radius_ / 2;
+    }
+    [[nodiscard]] particles::Radii radii() const {
+        if constexpr (needs.sizes) return {0, p_.radius};
+        return {radius_, {}};
+    }
+
+    // forces.hpp
+    template <bool advance>
+    void evaluate();
+    template <bool advance>
+    void pair_contacts();
+    template <bool advance>
+    void wall_contacts(WallContacts<needs>& contacts);
+    [[nodiscard]] Touch<Partner::particle> touch(std::size_t i, std::size_t j, const Vec3& branch, double r2) const;
+    [[nodiscard]] Touch<Partner::wall> touch(std::size_t i, const geometry::Closest& closest, const Vec3& v) const;
+    [[nodiscard]] Memory memory_of(std::size_t entry) const;
+    [[nodiscard]] double mechanical_energy(double& active) const;
+
+    // stepping.hpp
+    void step();
+    void kick_and_drift();
+    void kick();
+    void rebuild(std::span<const std::int32_t> removed = {});
+    void list_walls(std::span<const std::uint32_t> fresh_index);
+    [[nodiscard]] bool list_is_stale() const;
+    [[nodiscard]] bool sound();
+    void check_energy();
+    void learn_speed_limit();
+    void report(const std::string& what, std::size_t i);
+    void report_overlap();
+
+    // checkpoint.hpp
+    template <class Self, class Visit>
+    static void visit_state(Self& self, Visit&& visit);
+
+    Laws laws_;
+    geometry::Domain domain_;
+    std::array<Vec3, 27> image_shifts_;
+    Vec3 gravity_;
+    double time_step_;
+    double radius_ = 0, mass_ = 0, inverse_mass_ = 0;  // of all particles, unless needs.sizes
+    double density_;
+    double skin_;
+    std::size_t spheres_at_start_;
+    std::vector<Vec3> spin_at_start_;  // by id, where no law turns particles and some spin
+
+    particles::Particles<needs> p_;
+    std::vector<Vec3> position_at_build_;
+    std::vector<std::uint32_t> near_open_face_;
+    particles::NeighbourList list_;
+    particles::PairMemory pairs_;  // empty unless needs.tangential_history
+    std::vector<WallContacts<needs>> walls_;
+    particles::Cells cells_;
+
+    std::int64_t wall_steps_ = 0;
+    bool displaced_ = false;  // a particle has moved half the skin, or is not a number
+    double largest_overlap_ = 0;
+    double largest_wall_overlap_ = 0;  // over the diameter
+    double speed_limit_ = 0;
+    double work_of_walls_ = 0;     // J, since the walls were set
+    double work_of_wrapping_ = 0;  // J, potential energy lost by stepping back through periodic faces
+    double lowest_energy_ = 0;     // J, least of energy minus work so far
+    std::string fault_;
+    Work work_;
+};
+
+}  // namespace grainsweep::dem::clear

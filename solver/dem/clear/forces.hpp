@@ -1,0 +1,208 @@
+// Forces of the clear engine: who touches whom, and what the laws say.
+//
+// Torque on both partners: -(R - d/2) n x F_t, for the contact point lies in the middle of the overlap.
+#pragma once
+
+#include "solver/dem/clear/engine.hpp"
+#include "solver/dem/limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace grainsweep::dem::clear {
+
+using namespace geometry;
+
+template <class Laws, Needs case_needs>
+Touch<Partner::particle> ClearEngine<Laws, case_needs>::touch(std::size_t i, std::size_t j, const Vec3& branch,
+                                                              double r2) const {
+    Touch<Partner::particle> t;
+    t.radius_i = radius(i);
+    t.radius_j = radius(j);
+    t.distance = std::sqrt(r2);
+    t.overlap = t.radius_i + t.radius_j - t.distance;
+    t.normal = (1 / t.distance) * branch;
+    t.effective_radius = effective_radius(i, j);
+    t.reduced_mass = reduced_mass(i, j);
+    t.root = std::sqrt(t.effective_radius * t.overlap);
+    t.damping_root = std::sqrt(t.root * t.reduced_mass);
+    const Vec3 v = p_.velocity[i] - p_.velocity[j];
+    t.normal_velocity = dot(v, t.normal);
+    if constexpr (needs.spin) {
+        const Vec3 turn = (t.radius_i - t.overlap / 2) * p_.angular_velocity[i] +
+                          (t.radius_j - t.overlap / 2) * p_.angular_velocity[j];
+        t.slip = v - t.normal_velocity * t.normal - cross(turn, t.normal);
+    }
+    return t;
+}
+
+template <class Laws, Needs case_needs>
+Touch<Partner::wall> ClearEngine<Laws, case_needs>::touch(std::size_t i, const Closest& closest,
+                                                          const Vec3& wall_velocity) const {
+    Touch<Partner::wall> t;
+    t.radius_i = radius(i);
+    t.distance = closest.distance;
+    t.overlap = t.radius_i - t.distance;
+    t.normal = closest.normal;
+    t.effective_radius = t.radius_i;
+    t.reduced_mass = 1 / inverse_mass(i);
+    t.root = std::sqrt(t.effective_radius * t.overlap);
+    t.damping_root = std::sqrt(t.root * t.reduced_mass);
+    const Vec3 v = p_.velocity[i] - wall_velocity;
+    t.normal_velocity = dot(v, t.normal);
+    if constexpr (needs.spin)
+        t.slip =
+            v - t.normal_velocity * t.normal - cross((t.radius_i - t.overlap / 2) * p_.angular_velocity[i], t.normal);
+    return t;
+}
+
+template <class Laws, Needs case_needs>
+template <bool advance>
+void ClearEngine<Laws, case_needs>::evaluate() {
+    std::ranges::fill(p_.force, Vec3{});
+    if constexpr (needs.spin) std::ranges::fill(p_.torque, Vec3{});
+    largest_wall_overlap_ = 0;
+    pair_contacts<advance>();
+    for (auto& wall : walls_) wall_contacts<advance>(wall);
+    work_.pair_visits += static_cast<double>(list_.size());
+    // A sum, so that a value that is not a number is not lost in a comparison.
+    if (!(largest_overlap_ <= largest_sound_overlap) || !(largest_wall_overlap_ <= largest_sound_overlap))
+        report_overlap();
+}
+
+template <class Laws, Needs case_needs>
+template <bool advance>
+void ClearEngine<Laws, case_needs>::pair_contacts() {
+    double largest = 0;
+    for (std::size_t i = 0; i < p_.size(); ++i) {
+        const Vec3 x = p_.position[i];
+        const double radius_i = radius(i);
+        Vec3 force{};
+        [[maybe_unused]] Vec3 torque{};
+        for (std::uint32_t k = list_.begin(i); k < list_.end(i); ++k) {
+            const auto entry = list_[k];
+            const std::size_t j = entry.j();
+            const Vec3 branch = x - (p_.position[j] + image_shifts_[entry.image()]);
+            const double reach = radius_i + radius(j);
+            const double r2 = dot(branch, branch);
+            if (r2 >= reach * reach) {
+                if constexpr (needs.tangential_history)
+                    if (pairs_.live[k] != 0) {
+                        pairs_.live[k] = 0;
+                        pairs_.value[k] = Vec3{};
+                    }
+                continue;
+            }
+            const auto t = touch(i, j, branch, r2);
+            largest = std::max(largest, t.overlap / (2 * std::min(t.radius_i, t.radius_j)));
+            Response r;
+            if constexpr (needs.tangential_history) {
+                pairs_.live[k] = 1;
+                r = laws_.template respond<advance>(t, pairs_.value[k]);
+            } else {
+                NoMemory none;
+                r = laws_.template respond<advance>(t, none);
+            }
+            const Vec3 f = r.normal * t.normal + r.tangential;
+            force += f;
+            p_.force[j] -= f;
+            if constexpr (needs.spin) {
+                const Vec3 moment = cross(t.normal, r.tangential);
+                torque -= (t.radius_i - t.overlap / 2) * moment;
+                p_.torque[j] -= (t.radius_j - t.overlap / 2) * moment;
+            }
+        }
+        p_.force[i] += force;
+        if constexpr (needs.spin) p_.torque[i] += torque;
+    }
+    largest_overlap_ = largest;
+}
+
+template <class Laws, Needs case_needs>
+template <bool advance>
+void ClearEngine<Laws, case_needs>::wall_contacts(WallContacts<needs>& contacts) {
+    const Vec3 wall_velocity = velocity_at(contacts.wall, wall_time());
+    Vec3 total{};
+    double largest = 0;
+    const auto each_near = [&](const auto& shape) {
+        for (std::size_t k = 0; k < contacts.near.size(); ++k) {
+            const std::size_t i = contacts.near[k];
+            const Closest closest = shape.closest(p_.position[i]);
+            if (closest.distance >= radius(i)) {
+                if constexpr (needs.tangential_history) contacts.memory[k] = Vec3{};
+                continue;
+            }
+            const auto t = touch(i, closest, wall_velocity);
+            largest = std::max(largest, t.overlap / (2 * t.radius_i));
+            Response r;
+            if constexpr (needs.tangential_history) {
+                r = laws_.template respond<advance>(t, contacts.memory[k]);
+            } else {
+                NoMemory none;
+                r = laws_.template respond<advance>(t, none);
+            }
+            const Vec3 f = r.normal * t.normal + r.tangential;
+            p_.force[i] += f;
+            total += f;
+            if constexpr (needs.spin) p_.torque[i] -= (t.radius_i - t.overlap / 2) * cross(t.normal, r.tangential);
+        }
+    };
+    std::visit([&](const auto& wall) { each_near(shape_at(wall, wall_time())); }, contacts.wall);
+    largest_wall_overlap_ = std::max(largest_wall_overlap_, largest);
+    if constexpr (advance) work_of_walls_ += dot(total, wall_velocity) * time_step_;
+}
+
+template <class Laws, Needs case_needs>
+auto ClearEngine<Laws, case_needs>::memory_of([[maybe_unused]] std::size_t entry) const -> Memory {
+    if constexpr (needs.tangential_history)
+        return pairs_.value[entry];
+    else
+        return {};
+}
+
+/// Kinetic, gravitational and stored energy; `active` is the part in motion and in contacts.
+template <class Laws, Needs case_needs>
+double ClearEngine<Laws, case_needs>::mechanical_energy(double& active) const {
+    double motion = 0;
+    double height = 0;
+    double stored = 0;
+    double squeezed = 0;  // sum of absolute values
+    const auto add = [&](double energy) {
+        stored += energy;
+        squeezed += std::abs(energy);
+    };
+    for (std::size_t i = 0; i < p_.size(); ++i) {
+        for (std::uint32_t k = list_.begin(i); k < list_.end(i); ++k) {
+            const std::size_t j = list_[k].j();
+            const Vec3 branch = p_.position[i] - (p_.position[j] + image_shifts_[list_[k].image()]);
+            const double reach = radius(i) + radius(j);
+            const double r2 = dot(branch, branch);
+            if (r2 < reach * reach) add(laws_.energy(touch(i, j, branch, r2), memory_of(k)));
+        }
+        if (!mobile(i)) continue;
+        const double mass = 1 / inverse_mass(i);
+        motion += 0.5 * mass * dot(p_.velocity[i], p_.velocity[i]);
+        height -= mass * dot(gravity_, p_.position[i]);
+        if constexpr (needs.spin)
+            motion += 0.2 * mass * radius(i) * radius(i) * dot(p_.angular_velocity[i], p_.angular_velocity[i]);
+    }
+    for (const auto& contacts : walls_) {
+        const Vec3 wall_velocity = velocity_at(contacts.wall, wall_time());
+        const auto each_near = [&](const auto& shape) {
+            for (std::size_t k = 0; k < contacts.near.size(); ++k) {
+                const std::size_t i = contacts.near[k];
+                const Closest closest = shape.closest(p_.position[i]);
+                if (closest.distance >= radius(i)) continue;
+                if constexpr (needs.tangential_history)
+                    add(laws_.energy(touch(i, closest, wall_velocity), contacts.memory[k]));
+                else
+                    add(laws_.energy(touch(i, closest, wall_velocity), NoMemory{}));
+            }
+        };
+        std::visit([&](const auto& wall) { each_near(shape_at(wall, wall_time())); }, contacts.wall);
+    }
+    active = motion + squeezed;
+    return motion + height + stored;
+}
+
+}  // namespace grainsweep::dem::clear

@@ -1,0 +1,47 @@
+#include "solver/dem/clear/make.hpp"
+
+#include "solver/dem/clear/combinations.hpp"
+
+#include <algorithm>
+
+namespace grainsweep::dem::clear {
+namespace {
+
+template <Needs case_needs, class Laws>
+std::unique_ptr<Engine> make(const Setup& setup, const Method& method, Laws laws) {
+    return std::make_unique<ClearEngine<Laws, case_needs>>(setup, method, std::move(laws));
+}
+
+AnyLaws any_laws(const Material& m, double time_step) {
+    const bool friction_sees_it = m.friction_limit == FrictionLimit::net;
+    const Cohesion<ChosenArea> before{friction_sees_it ? m.cohesion : 0.0, {m.cohesion_area}};
+    const Cohesion<ChosenArea> after{friction_sees_it ? 0.0 : m.cohesion, {m.cohesion_area}};
+    return {{hertz(m), before, mindlin(m, time_step), after}};
+}
+
+}  // namespace
+
+std::unique_ptr<Engine> make_clear_engine(const Setup& setup, const Method& method) {
+    const Material& m = setup.material;
+    const auto& spheres = setup.spheres;
+    const bool frozen = std::ranges::any_of(spheres, [](const Sphere& s) { return !s.mobile; });
+    const bool sizes = std::ranges::any_of(spheres, [&](const Sphere& s) { return s.radius != spheres[0].radius; });
+    const bool friction = m.friction > 0;
+    const bool cohesion = m.cohesion > 0;
+    const bool plain_sjkr =
+        cohesion && m.cohesion_area == CohesionArea::sjkr && m.friction_limit == FrictionLimit::contact;
+
+    const Frictional frictional{{hertz(m), mindlin(m, setup.time_step)}};
+    const FrictionalSjkr frictional_sjkr{{hertz(m), mindlin(m, setup.time_step), {m.cohesion, {}}}};
+    if (!sizes && !frozen) {
+        if (!friction && !cohesion) return make<equal_spheres>(setup, method, Frictionless{{hertz(m)}});
+        if (friction && !cohesion) return make<equal_spheres>(setup, method, frictional);
+        if (friction && plain_sjkr) return make<equal_spheres>(setup, method, frictional_sjkr);
+    }
+    if (!sizes && friction && !cohesion) return make<some_frozen>(setup, method, frictional);
+    if (!sizes && friction && plain_sjkr) return make<some_frozen>(setup, method, frictional_sjkr);
+    if (friction && !cohesion) return make<many_sizes>(setup, method, frictional);
+    return make<many_sizes>(setup, method, any_laws(m, setup.time_step));
+}
+
+}  // namespace grainsweep::dem::clear

@@ -1,0 +1,329 @@
+// Time stepping of the clear engine, its lists, and the watch over its soundness.
+#pragma once
+
+#include "solver/dem/clear/forces.hpp"
+#include "solver/dem/limits.hpp"
+#include "solver/dem/material.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numeric>
+#include <unordered_set>
+
+namespace grainsweep::dem::clear {
+
+/// Steps between two looks at the energy: often enough to name the time, rare enough to cost nothing.
+inline constexpr std::int64_t energy_interval = 128;
+
+/// Skin over the smallest diameter where the method leaves it open: the optimum of list length against rebuilds
+/// in the sweep of a powder layer, flat between 0.2 and 0.4.
+inline constexpr double default_skin = 0.3;
+
+template <class Laws, Needs case_needs>
+ClearEngine<Laws, case_needs>::ClearEngine(const Setup& setup, const Method& method, Laws laws)
+    : laws_(std::move(laws)),
+      domain_{setup.domain.low, setup.domain.high, setup.domain.periodic},
+      image_shifts_(domain_.image_shifts()),
+      gravity_(setup.gravity),
+      time_step_(setup.time_step),
+      density_(setup.material.density),
+      skin_(method.skin),
+      spheres_at_start_(setup.spheres.size()) {
+    const std::size_t n = setup.spheres.size();
+    p_.resize(n);
+    double largest = 0;
+    double smallest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < n; ++i) {
+        const Sphere& s = setup.spheres[i];
+        p_.id[i] = static_cast<std::int32_t>(i);
+        p_.position[i] = s.position;
+        p_.velocity[i] = s.velocity;
+        if constexpr (needs.spin) p_.angular_velocity[i] = s.angular_velocity;
+        if constexpr (needs.sizes) {
+            p_.radius[i] = s.radius;
+            p_.inverse_mass[i] = s.mobile ? 1 / sphere_mass(s.radius, density_) : 0;
+        }
+        if constexpr (needs.frozen) p_.mobile[i] = s.mobile ? 1 : 0;
+        largest = std::max(largest, s.radius);
+        smallest = std::min(smallest, s.radius);
+    }
+    if constexpr (!needs.spin) {
+        spin_at_start_.resize(n);
+        for (std::size_t i = 0; i < n; ++i) spin_at_start_[i] = setup.spheres[i].angular_velocity;
+        if (std::ranges::all_of(spin_at_start_, [](const Vec3& w) { return w == Vec3{}; })) spin_at_start_.clear();
+    }
+    if constexpr (!needs.sizes) {
+        radius_ = largest;
+        mass_ = sphere_mass(radius_, density_);
+        inverse_mass_ = mass_ > 0 ? 1 / mass_ : 0;
+    }
+    if (skin_ <= 0 && n > 0) {
+        skin_ = default_skin * 2 * smallest;
+        // Two images of one particle must never reach the same partner.
+        for (std::size_t k = 0; k < 3; ++k)
+            if (domain_.periodic[k]) skin_ = std::min(skin_, 0.999 * (domain_.length(k) / 2 - 2 * largest));
+    }
+    for (const auto& wall : setup.walls) walls_.push_back({wall, {}, {}, {}});
+    rebuild();
+    learn_speed_limit();
+    evaluate<false>();
+}
+
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::run(std::int64_t steps) {
+    for (std::int64_t k = 0; k < steps && fault_.empty(); ++k) step();
+}
+
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::step() {
+    kick_and_drift();
+    ++wall_steps_;
+    ++work_.steps;
+    if (list_is_stale()) {
+        if (!sound()) return;
+        rebuild();
+    }
+    evaluate<true>();
+    if (!fault_.empty()) return;  // before a force beyond its law moves anything
+    kick();
+    work_.particle_steps += static_cast<double>(p_.size());
+    if (work_.steps % energy_interval == 0) check_energy();
+}
+
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::kick_and_drift() {
+    const double half = time_step_ / 2;
+    const double far2 = skin_ * skin_ / 4;
+    bool displaced = displaced_;
+    for (std::size_t i = 0; i < p_.size(); ++i) {
+        if (!mobile(i)) continue;
+        const double inverse = inverse_mass(i);
+        p_.velocity[i] += half * (inverse * p_.force[i] + gravity_);
+        p_.position[i] += time_step_ * p_.velocity[i];
+        if constexpr (needs.spin)
+            p_.angular_velocity[i] += (half * inverse / (0.4 * radius(i) * radius(i))) * p_.torque[i];
+        const Vec3 moved = p_.position[i] - position_at_build_[i];
+        displaced |= !(dot(moved, moved) <= far2);
+    }
+    displaced_ = displaced;
+}
+
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::kick() {
+    const double half = time_step_ / 2;
+    for (std::size_t i = 0; i < p_.size(); ++i) {
+        if (!mobile(i)) continue;
+        const double inverse = inverse_mass(i);
+        p_.velocity[i] += half * (inverse * p_.force[i] + gravity_);
+        if constexpr (needs.spin)
+            p_.angular_velocity[i] += (half * inverse / (0.4 * radius(i) * radius(i))) * p_.torque[i];
+    }
+}
+
+template <class Laws, Needs case_needs>
+bool ClearEngine<Laws, case_needs>::list_is_stale() const {
+    if (displaced_) return true;
+    for (const auto& contacts : walls_) {
+        const Vec3 moved = displacement_at(contacts.wall, wall_time()) - contacts.displacement_at_build;
+        if (!(dot(moved, moved) <= skin_ * skin_ / 4)) return true;
+    }
+    return std::ranges::any_of(near_open_face_, [&](std::uint32_t i) { return domain_.outside(p_.position[i]); });
+}
+
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::rebuild(std::span<const std::int32_t> removed) {
+    const std::unordered_set<std::int32_t> leaving(removed.begin(), removed.end());
+    std::vector<std::uint32_t> staying;
+    staying.reserve(p_.size());
+    for (std::uint32_t i = 0; i < p_.size(); ++i) {
+        Vec3& x = p_.position[i];
+        const Vec3 shift = domain_.wrapping(x);
+        if (shift != Vec3{}) {
+            x += shift;
+            if (mobile(i)) work_of_wrapping_ += dot(gravity_, shift) / inverse_mass(i);
+        }
+        if ((mobile(i) && domain_.outside(x)) || leaving.contains(p_.id[i])) continue;
+        staying.push_back(i);
+    }
+    cells_.sort(p_.position, staying, radii(), skin_, domain_);
+    std::vector<std::uint32_t> fresh_index(p_.size(), particles::gone);
+    const auto order = cells_.order();
+    for (std::uint32_t k = 0; k < order.size(); ++k) fresh_index[order[k]] = k;
+    const bool some_left = order.size() < p_.size();
+    p_.reorder(order);
+
+    const auto matters = [this](std::size_t i, std::size_t j) { return mobile(i) || mobile(j); };
+    if constexpr (needs.tangential_history) {
+        particles::NeighbourList fresh;
+        fresh.build(cells_, p_.position, radii(), skin_, domain_, matters);
+        pairs_.carry(list_, fresh, fresh_index);
+        list_ = std::move(fresh);
+    } else {
+        list_.build(cells_, p_.position, radii(), skin_, domain_, matters);
+    }
+    list_walls(fresh_index);
+    position_at_build_ = p_.position;
+    displaced_ = false;
+    near_open_face_.clear();
+    const Vec3 margin = {skin_, skin_, skin_};
+    const geometry::Domain inner{domain_.low + margin, domain_.high - margin, domain_.periodic};
+    for (std::uint32_t i = 0; i < p_.size(); ++i)
+        if (mobile(i) && inner.outside(p_.position[i])) near_open_face_.push_back(i);
+    if (some_left) lowest_energy_ = std::numeric_limits<double>::infinity();
+    ++work_.rebuilds;
+}
+
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::list_walls([[maybe_unused]] std::span<const std::uint32_t> fresh_index) {
+    [[maybe_unused]] std::vector<Vec3> remembered;
+    for (auto& contacts : walls_) {
+        if constexpr (needs.tangential_history) {
+            remembered.assign(p_.size(), Vec3{});
+            for (std::size_t k = 0; k < contacts.near.size(); ++k)
+                if (const auto i = fresh_index[contacts.near[k]]; i != particles::gone)
+                    remembered[i] = contacts.memory[k];
+        }
+        contacts.near.clear();
+        contacts.displacement_at_build = displacement_at(contacts.wall, wall_time());
+        const auto each = [&](const auto& shape) {
+            for (std::uint32_t i = 0; i < p_.size(); ++i)
+                if (mobile(i) && shape.closest(p_.position[i]).distance < radius(i) + skin_) contacts.near.push_back(i);
+        };
+        std::visit([&](const auto& wall) { each(shape_at(wall, wall_time())); }, contacts.wall);
+        if constexpr (needs.tangential_history) {
+            contacts.memory.resize(contacts.near.size());
+            for (std::size_t k = 0; k < contacts.near.size(); ++k) contacts.memory[k] = remembered[contacts.near[k]];
+        }
+    }
+}
+
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::set_walls(std::vector<Wall> walls) {
+    walls_.clear();
+    for (const auto& wall : walls) walls_.push_back({wall, {}, {}, {}});
+    wall_steps_ = 0;
+    work_of_walls_ = 0;
+    lowest_energy_ = std::numeric_limits<double>::infinity();
+    if (!fault_.empty()) return;
+    rebuild();
+    learn_speed_limit();
+    evaluate<false>();
+}
+
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::remove(std::span<const std::int32_t> ids) {
+    if (!ids.empty()) rebuild(ids);
+}
+
+/// Every position a number, nobody faster than anything here could have made him. Reports and repairs otherwise.
+template <class Laws, Needs case_needs>
+bool ClearEngine<Laws, case_needs>::sound() {
+    for (std::size_t i = 0; i < p_.size(); ++i) {
+        if (!mobile(i)) continue;
+        const double speed = norm(p_.velocity[i]);
+        bool spin_is_finite = true;
+        if constexpr (needs.spin) spin_is_finite = finite(p_.angular_velocity[i]);
+        char text[200];
+        if (!finite(p_.position[i]) || !std::isfinite(speed) || !spin_is_finite) {
+            p_.position[i] = position_at_build_[i];
+            p_.velocity[i] = Vec3{};
+            if constexpr (needs.spin) p_.angular_velocity[i] = Vec3{};
+            report("the motion of a particle is no longer a number", i);
+        } else if (speed * time_step_ > largest_sound_displacement * radius(i)) {
+            std::snprintf(text, sizeof text, "a particle moves %.3g of its radius in one time step (limit %.3g)",
+                          speed * time_step_ / radius(i), largest_sound_displacement);
+            report(text, i);
+        } else if (speed > speed_limit_) {
+            std::snprintf(text, sizeof text,
+                          "a particle moves at %.4g m/s, faster than anything here allows (%.4g m/s)", speed,
+                          speed_limit_);
+            report(text, i);
+        }
+    }
+    return fault_.empty();
+}
+
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::learn_speed_limit() {
+    double start = 0;
+    double lightest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < p_.size(); ++i) {
+        if (!mobile(i)) continue;
+        start = std::max(start, norm(p_.velocity[i]));
+        if constexpr (needs.spin) start = std::max(start, radius(i) * norm(p_.angular_velocity[i]));
+        lightest = std::min(lightest, 1 / inverse_mass(i));
+    }
+    double wall = 0;
+    for (const auto& contacts : walls_) wall = std::max(wall, fastest(contacts.wall));
+    double fall = 0;  // through the domain; without limit along a periodic axis
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (gravity_[k] == 0) continue;
+        fall = domain_.periodic[k] ? std::numeric_limits<double>::infinity()
+                                   : std::hypot(fall, std::sqrt(2 * std::abs(gravity_[k]) * domain_.length(k)));
+    }
+    double active = 0;
+    const double still = start;
+    (void)mechanical_energy(active);
+    const double released =
+        p_.size() > 0 && lightest < std::numeric_limits<double>::infinity() ? std::sqrt(2 * active / lightest) : 0.0;
+    speed_limit_ = largest_sound_speed_factor * (still + wall + fall + released);
+    lowest_energy_ = std::numeric_limits<double>::infinity();
+}
+
+/// Energy minus the work of moving walls must not grow: contacts store or dissipate.
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::check_energy() {
+    double active = 0;
+    const double balance = mechanical_energy(active) - work_of_walls_ + work_of_wrapping_;
+    const double allowed = largest_sound_energy_gain * (active + std::abs(work_of_walls_));
+    if (!(balance - lowest_energy_ <= allowed) && lowest_energy_ < std::numeric_limits<double>::infinity()) {
+        std::size_t fastest_particle = 0;
+        for (std::size_t i = 1; i < p_.size(); ++i)
+            if (norm(p_.velocity[i]) > norm(p_.velocity[fastest_particle])) fastest_particle = i;
+        char text[200];
+        std::snprintf(text, sizeof text,
+                      "contacts created %.3g J of energy, %.3g times what moves; the fastest particle",
+                      balance - lowest_energy_, (balance - lowest_energy_) / active);
+        report(text, fastest_particle);
+    }
+    lowest_energy_ = std::min(lowest_energy_, balance);
+}
+
+/// The first fault stays: what follows from it explains nothing.
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::report(const std::string& what, std::size_t i) {
+    if (!fault_.empty()) return;
+    char where[200];
+    const Vec3& x = p_.position[i];
+    std::snprintf(where, sizeof where, ": particle %d at (%.6g, %.6g, %.6g) m, after %lld steps, %.6g s", p_.id[i],
+                  x[0], x[1], x[2], static_cast<long long>(work_.steps), time_step_ * static_cast<double>(work_.steps));
+    fault_ = what + where;
+}
+
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::report_overlap() {
+    const auto describe = [](double share, const std::string& partner) {
+        char text[160];
+        std::snprintf(text, sizeof text, "overlap of %.3g diameters (limit %.3g) with ", share, largest_sound_overlap);
+        return text + partner;
+    };
+    for (std::size_t i = 0; i < p_.size(); ++i)
+        for (std::uint32_t k = list_.begin(i); k < list_.end(i); ++k) {
+            const std::size_t j = list_[k].j();
+            const double r = norm(p_.position[i] - (p_.position[j] + image_shifts_[list_[k].image()]));
+            const double share = (radius(i) + radius(j) - r) / (2 * std::min(radius(i), radius(j)));
+            if (!(share <= largest_sound_overlap)) report(describe(share, "particle " + std::to_string(p_.id[j])), i);
+        }
+    for (std::size_t w = 0; w < walls_.size(); ++w)
+        for (const auto i : walls_[w].near) {
+            const double distance = std::visit(
+                [&](const auto& wall) { return shape_at(wall, wall_time()).closest(p_.position[i]).distance; },
+                walls_[w].wall);
+            const double share = (radius(i) - distance) / (2 * radius(i));
+            if (!(share <= largest_sound_overlap)) report(describe(share, "wall " + std::to_string(w)), i);
+        }
+}
+
+}  // namespace grainsweep::dem::clear

@@ -1,0 +1,40 @@
+// What a contact law sees of one touching pair, and what it answers.
+//
+// House signs: overlap d > 0, unit normal n from j (or wall) to i, v = v_i - v_j at the contact; the computed
+// force acts on i, its reaction on j.
+#pragma once
+
+#include "solver/geometry/vector.hpp"
+
+namespace grainsweep::dem {
+
+using geometry::Vec3;
+
+/// What touches particle i. A wall has R* = R and m* = m, whatever its curvature.
+enum class Partner { particle, wall };
+
+template <Partner partner>
+struct Touch {
+    double overlap = 0;           ///< d, m
+    double distance = 0;          ///< between centres, or from the centre to the wall, m
+    double radius_i = 0;          ///< m
+    double radius_j = 0;          ///< m; a wall has none
+    double effective_radius = 0;  ///< R*, m
+    double reduced_mass = 0;      ///< m*, kg
+    double root = 0;              ///< sqrt(R* d), radius of the Hertzian contact, m
+    double damping_root = 0;      ///< sqrt(m* sqrt(R* d)): Hertzian damping is proportional to it
+    Vec3 normal{};                ///< from j to i
+    double normal_velocity = 0;   ///< v . n, negative while approaching, m/s
+    Vec3 slip{};                  ///< tangential velocity of i over j at the contact, m/s; only where a law needs spin
+};
+
+/// Sum of what the laws said so far. Laws speak in their order: friction sees what stands here before it.
+struct Response {
+    double normal = 0;  ///< along n, N; positive repels
+    Vec3 tangential{};  ///< N
+};
+
+/// Where a law keeps no memory.
+struct NoMemory {};
+
+}  // namespace grainsweep::dem

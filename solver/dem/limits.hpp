@@ -1,0 +1,22 @@
+// Beyond these a state is no longer trusted: the case is reported unstable instead of answered.
+#pragma once
+
+namespace grainsweep::dem {
+
+/// Overlap over the smaller diameter (a wall: over the diameter). Hertz's law is a small-strain law: at 0.3 the
+/// contact radius sqrt(R* d) is 0.77 (equal spheres: 0.55) of the sphere's. LIGGGHTS reaches 0.10 in spreading at E =
+/// 21 MPa.
+inline constexpr double largest_sound_overlap = 0.3;
+
+/// Distance covered in one time step over the particle's own radius: beyond, contacts could be jumped over.
+inline constexpr double largest_sound_displacement = 1.0;
+
+/// Speed over the sum of the fastest start, the fastest wall, the fall through the whole domain and the release of
+/// all elastic energy at the start by the lightest particle. Chains of collisions can focus momentum, but the factor
+/// would need a chain of particles each much lighter than the one before.
+inline constexpr double largest_sound_speed_factor = 10;
+
+/// Energy created, over the energy in motion and in contacts: time integration of sound contacts stays well below.
+inline constexpr double largest_sound_energy_gain = 0.2;
+
+}  // namespace grainsweep::dem

@@ -1,0 +1,95 @@
+#include "solver/dem/clear/make.hpp"
+#include "solver/dem/engine.hpp"
+#include "solver/geometry/vector.hpp"
+#include "solver/particles/neighbour_list.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace grainsweep::dem {
+namespace {
+
+void require(bool holds, const std::string& sentence) {
+    if (!holds) throw std::invalid_argument(sentence);
+}
+
+bool positive(double x) {
+    return std::isfinite(x) && x > 0;
+}
+bool not_negative(double x) {
+    return std::isfinite(x) && x >= 0;
+}
+
+void check(const Material& m) {
+    require(positive(m.youngs_modulus), "Young's modulus must be positive");
+    require(m.poisson_ratio > -1 && m.poisson_ratio <= 0.5, "Poisson's ratio must lie in (-1, 0.5]");
+    require(positive(m.density), "the density must be positive");
+    require(m.restitution > 0 && m.restitution <= 1, "the restitution must lie in (0, 1]");
+    require(not_negative(m.friction), "the friction must not be negative");
+    require(not_negative(m.cohesion), "the cohesion energy density must not be negative");
+    require(m.rolling_friction == 0, "rolling friction is not available: no law of rolling resistance is built in");
+}
+
+void check(const Plane& plane) {
+    require(geometry::finite(plane.point) && geometry::finite(plane.normal), "a plane must be finite");
+    require(std::abs(geometry::norm(plane.normal) - 1) < 1e-12, "the normal of a plane must have unit length");
+}
+
+void check(const Blade& b) {
+    for (const double x : {b.front, b.thickness, b.bottom, b.top, b.speed, b.amplitude, b.frequency, b.edge_radius})
+        require(std::isfinite(x), "a blade must be finite");
+    require(b.thickness > 0 && b.top > b.bottom, "a blade must have a thickness and a height");
+    require(b.edge_radius >= 0 && 2 * b.edge_radius <= std::min(b.thickness, b.top - b.bottom),
+            "the edge radius of a blade must not exceed half its thickness or height");
+}
+
+void check_spheres(const Setup& setup) {
+    require(setup.spheres.size() < particles::Neighbour::most_particles,
+            "there are more particles than can be numbered");
+    double largest = 0;
+    for (const Sphere& s : setup.spheres) {
+        require(positive(s.radius), "every radius must be positive");
+        require(geometry::finite(s.position) && geometry::finite(s.velocity) && geometry::finite(s.angular_velocity),
+                "every particle must start with finite position and velocities");
+        require(s.mobile || (s.velocity == Vec3{} && s.angular_velocity == Vec3{}), "a frozen particle cannot move");
+        largest = std::max(largest, s.radius);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double length = setup.domain.high[k] - setup.domain.low[k];
+        require(positive(length), "the domain must have a finite extent along every axis");
+        // A particle must reach a partner through one image only.
+        require(!setup.domain.periodic[k] || length > 4 * largest,
+                "a period must be longer than two of the largest diameters");
+    }
+}
+
+}  // namespace
+
+std::unique_ptr<Engine> make_engine(const Setup& setup, const Method& method) {
+    check(setup.material);
+    check_spheres(setup);
+    require(positive(setup.time_step), "the time step must be positive");
+    require(geometry::finite(setup.gravity), "gravity must be finite");
+    require(not_negative(method.skin), "the skin must not be negative");
+    for (const Wall& wall : setup.walls) std::visit([](const auto& w) { check(w); }, wall);
+    if (method.skin > 0) {
+        double largest = 0;
+        for (const Sphere& s : setup.spheres) largest = std::max(largest, s.radius);
+        for (std::size_t k = 0; k < 3; ++k)
+            require(!setup.domain.periodic[k] ||
+                        setup.domain.high[k] - setup.domain.low[k] > 2 * (2 * largest + method.skin),
+                    "a period must be longer than twice the largest diameter plus the skin");
+    }
+
+    // One line per precision: where an engine joins.
+    switch (method.precision) {
+        case Method::Precision::double_precision:
+            return clear::make_clear_engine(setup, method);
+        case Method::Precision::mixed:
+            break;
+    }
+    throw std::invalid_argument("mixed precision is not available in this build: ask for double precision");
+}
+
+}  // namespace grainsweep::dem

@@ -1,0 +1,22 @@
+#include "solver/dem/time_step.hpp"
+
+#include "solver/dem/material.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace grainsweep::dem {
+
+double rayleigh_time(const Material& m, double radius) {
+    const double shear_modulus = m.youngs_modulus / (2 * (1 + m.poisson_ratio));
+    return std::numbers::pi * radius * std::sqrt(m.density / shear_modulus) / (0.1631 * m.poisson_ratio + 0.8766);
+}
+
+double hertz_contact_time(const Material& m, double radius, double speed) {
+    const double mass = sphere_mass(radius, m.density) / 2;
+    const double modulus = effective_modulus(m);
+    // 2.868 = (15/16)^(2/5) times twice the integral of dx / sqrt(1 - x^(5/2)) over [0, 1].
+    return 2.868 * std::pow(mass * mass / (radius / 2 * modulus * modulus * speed), 0.2);
+}
+
+}  // namespace grainsweep::dem

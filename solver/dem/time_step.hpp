@@ -1,0 +1,21 @@
+// Limits of the time step of an explicit DEM integration.
+//
+//     Rayleigh   t_R = pi R sqrt(rho/G) / (0.1631 nu + 0.8766),  G = E/(2 (1 + nu))
+//                                            (Thornton & Randall 1988, in Micromechanics of Granular Materials)
+//     Hertz      t_c = 2.87 (m*^2 / (R* E*^2 v))^(1/5), duration of the elastic impact at relative speed v
+//                                            (Hertz 1882; Johnson 1985, Contact Mechanics, eq. 11.24)
+// A step should be a fraction of both. All in SI; radius, speed > 0.
+#pragma once
+
+#include "solver/dem/engine.hpp"
+
+namespace grainsweep::dem {
+
+/// Time of a surface wave around the smallest sphere, s.
+[[nodiscard]] double rayleigh_time(const Material& material, double radius);
+
+/// Duration of the elastic impact of two equal spheres at relative speed `speed`, s. It is the shortest one among
+/// spheres of at least this radius; an impact on a wall lasts 2^(1/5) = 1.15 times as long.
+[[nodiscard]] double hertz_contact_time(const Material& material, double radius, double speed);
+
+}  // namespace grainsweep::dem
