@@ -1,8 +1,8 @@
-// All pairs of points closer than a range, each once, by cells: for measuring a state, not for stepping one.
+// All pairs of points closer than a range, each once: for measuring a state, not for stepping one.
 #pragma once
 
-#include <algorithm>
-#include <array>
+#include "solver/particles/neighbour_list.hpp"
+
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -12,61 +12,34 @@
 
 namespace grainsweep::particles {
 
-/// Points sorted into cubic cells at least `range` wide that cover their bounding box, x fastest.
-class CellGrid {
-public:
-    /// range > 0; the positions must outlive the grid and stay where they are.
-    CellGrid(std::span<const std::array<double, 3>> positions, double range);
-
-    /// Calls visit(i, j, distance) once for every pair with distance < range; i and j index the positions.
-    /// The order depends on the positions only.
-    template <class Visit>
-    void for_each_pair(Visit&& visit) const;
-
-    /// Calls visit(i, distance) for every position with distance < range from a point anywhere.
-    template <class Visit>
-    void for_each_near(const std::array<double, 3>& point, Visit&& visit) const;
-
-private:
-    using Cell = std::array<std::int64_t, 3>;
-
-    [[nodiscard]] Cell cell_of(const std::array<double, 3>& point) const;
-    [[nodiscard]] std::size_t number(const Cell& c) const {
-        return static_cast<std::size_t>((c[2] * cells_[1] + c[1]) * cells_[0] + c[0]);
-    }
-    /// Members of the cells first.x ... last.x of a row, as one range of `order_`.
-    [[nodiscard]] std::span<const std::uint32_t> row(std::int64_t first_x, std::int64_t last_x, std::int64_t y,
-                                                     std::int64_t z) const;
-    [[nodiscard]] double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) const {
-        const double dx = a[0] - b[0], dy = a[1] - b[1], dz = a[2] - b[2];
-        return std::sqrt(dx * dx + dy * dy + dz * dz);
-    }
-
-    std::span<const std::array<double, 3>> positions_;
-    double range_;
-    std::array<double, 3> low_{};
-    Cell cells_{1, 1, 1};
-    double width_;
-    std::vector<std::uint32_t> order_, first_;
-};
-
+/// Calls visit(i, j, distance), i < j, for every pair of positions with distance < range, without images.
+/// range > 0; finite positions. The order of the calls depends on the positions only.
 template <class Visit>
-void CellGrid::for_each_pair(Visit&& visit) const {
-    for (std::size_t i = 0; i < positions_.size(); ++i)
-        for_each_near(positions_[i], [&](std::size_t j, double r) {
-            if (j > i) visit(i, j, r);
-        });
-}
-
-template <class Visit>
-void CellGrid::for_each_near(const std::array<double, 3>& point, Visit&& visit) const {
-    const Cell c = cell_of(point);
-    for (std::int64_t z = c[2] - 1; z <= c[2] + 1; ++z)
-        for (std::int64_t y = c[1] - 1; y <= c[1] + 1; ++y)
-            for (const std::uint32_t i : row(c[0] - 1, c[0] + 1, y, z)) {
-                const double r = distance(point, positions_[i]);
-                if (r < range_) visit(static_cast<std::size_t>(i), r);
-            }
+void for_each_near_pair(std::span<const Vec3> position, double range, Visit&& visit) {
+    using namespace geometry;
+    if (position.empty()) return;
+    Domain box{position.front(), position.front(), {}};
+    for (const Vec3& x : position)
+        for (std::size_t k = 0; k < 3; ++k) {
+            box.low[k] = std::min(box.low[k], x[k]);
+            box.high[k] = std::max(box.high[k], x[k]);
+        }
+    std::vector<std::uint32_t> among(position.size());
+    std::iota(among.begin(), among.end(), 0U);
+    Cells cells;
+    const Radii radii{range / 2, {}};
+    cells.sort(position, among, radii, 0, box);
+    const auto order = cells.order();
+    std::vector<Vec3> sorted(position.size());
+    for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = position[order[k]];
+    NeighbourList list;
+    list.build(cells, sorted, radii, 0, box, [](std::uint32_t, std::uint32_t) { return true; });
+    for (std::size_t i = 0; i < list.particles(); ++i)
+        for (std::uint32_t entry = list.begin(i); entry < list.end(i); ++entry) {
+            const std::size_t j = list[entry].j();
+            const double r = norm(sorted[i] - sorted[j]);
+            visit(std::size_t{std::min(order[i], order[j])}, std::size_t{std::max(order[i], order[j])}, r);
+        }
 }
 
 }  // namespace grainsweep::particles

@@ -112,7 +112,7 @@ Packing read_packing(std::string_view csv, double edge) {
     if (packing.positions.empty()) refuse(std::max<std::size_t>(number, 1), "there is no sphere");
 
     constexpr double most_overlap = 0.05;  // more is no packing of touching spheres, or another unit
-    CellGrid(packing.positions, 1).for_each_pair([&](std::size_t i, std::size_t j, double r) {
+    for_each_near_pair(packing.positions, 1, [&](std::size_t i, std::size_t j, double r) {
         if (1 - r > most_overlap)
             refuse(line_of[j], "the sphere overlaps that of line " + std::to_string(line_of[i]) + " by " +
                                    shortest(1 - r) + " diameters; at most 0.05 is allowed");

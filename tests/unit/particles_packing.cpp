@@ -40,7 +40,7 @@ TEST(NearPairs, AreThoseOfAllPairs) {
     points.push_back({1e6, -1e6, 0});  // far away: the grid must not grow with it
     for (const double range : {0.3, 1.0, 40.0}) {
         std::map<std::pair<std::size_t, std::size_t>, double> found;
-        CellGrid(points, range).for_each_pair([&](std::size_t i, std::size_t j, double r) {
+        for_each_near_pair(points, range, [&](std::size_t i, std::size_t j, double r) {
             EXPECT_LT(i, j);
             EXPECT_TRUE(found.emplace(std::pair(i, j), r).second) << "met twice";
         });
@@ -57,24 +57,6 @@ TEST(NearPairs, AreThoseOfAllPairs) {
             }
         EXPECT_EQ(found.size(), expected);
     }
-}
-
-TEST(NearPairs, PointsOutsideTheBoxSeeTheirNeighbours) {
-    const std::vector<Point> points = {{0, 0, 0}, {1, 1, 1}};
-    const CellGrid grid(points, 0.5);
-    int near = 0;
-    grid.for_each_near({-0.4, 0, 0}, [&](std::size_t i, double r) {
-        EXPECT_EQ(i, 0U);
-        EXPECT_DOUBLE_EQ(r, 0.4);
-        ++near;
-    });
-    grid.for_each_near({1, 1, 1.45}, [&](std::size_t i, double) {
-        EXPECT_EQ(i, 1U);
-        ++near;
-    });
-    grid.for_each_near({-100, 50, 0}, [&](std::size_t, double) { ++near; });
-    EXPECT_EQ(near, 2);
-    CellGrid({}, 1).for_each_near({0, 0, 0}, [](std::size_t, double) { FAIL(); });
 }
 
 TEST(Packing, IsAFunctionOfItsRequest) {
