@@ -4,6 +4,7 @@
 // from parameter names to values (Inputs). Everything is in SI units unless a unit is named.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -39,6 +40,22 @@ struct Words {
     std::vector<std::string> allowed;
     bool file_allowed = false;
 };
+
+/// A file given where a word may name one travels as the value "file:<hash of its contents>:<absolute path>".
+/// Only the hash is identity: the same contents elsewhere are the same question.
+struct FileWord {
+    std::string_view hash;  ///< 32 hexadecimal digits
+    std::string_view path;
+};
+
+/// The parts of a word that is a file; none for any other word.
+[[nodiscard]] inline std::optional<FileWord> file_word(std::string_view word) {
+    constexpr std::string_view prefix = "file:";
+    constexpr std::size_t digits = 32;
+    if (!word.starts_with(prefix) || word.size() <= prefix.size() + digits) return std::nullopt;
+    if (word[prefix.size() + digits] != ':') return std::nullopt;
+    return FileWord{word.substr(prefix.size(), digits), word.substr(prefix.size() + digits + 1)};
+}
 
 /// When a parameter matters: only if `other` can be (is_zero / non-zero / one of `words`).
 /// A campaign that gives a parameter which no case of it can feel is refused.
