@@ -155,7 +155,8 @@ SceneInfo rehearsal_scene() {
                                Words{{"normal", "crash", "hang", "unstable", "huge"}}, {}});
     info.parameters.push_back({"behave_attempts", "1",
                                "only the first so many attempts misbehave (0: all of them)", std::int64_t{0},
-                               Interval{0, 1000}, {}});
+                               Interval{0, 1000},
+                               {{"behaviour", Relevance::Condition::is_word, {"crash", "hang", "unstable", "huge"}}}});
     info.observables = {{"y", "1", "the response", Shape::scalar},
                         {"y_series", "1", "y growing linearly in time ('huge' only)", Shape::series}};
     info.make = [](const Inputs& inputs, std::uint64_t seed, Artefacts&) -> std::unique_ptr<Scene> {
@@ -163,6 +164,11 @@ SceneInfo rehearsal_scene() {
     };
     info.estimate_cost = [](const Inputs& inputs) { return 1e-5 + std::get<double>(inputs.at("wait_seconds")); };
     info.proven_answer = [](const Inputs&) -> std::optional<ProvenAnswer> { return std::nullopt; };
+    info.on_attempt = [](Inputs inputs, std::int64_t attempt) {
+        const auto misbehaving = std::get<std::int64_t>(inputs.at("behave_attempts"));
+        if (misbehaving > 0 && attempt > misbehaving) inputs["behaviour"] = std::string("normal");
+        return inputs;
+    };
     return info;
 }
 

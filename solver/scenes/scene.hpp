@@ -67,8 +67,10 @@ public:
     /// Share of the work done, 0 to 1.
     [[nodiscard]] virtual double progress() const = 0;
     [[nodiscard]] virtual Health health() const { return {}; }
-    /// Work done so far, in particle steps, and seconds by phase where the scene measures none: empty.
+    /// Work done so far: mobile particles times steps.
     [[nodiscard]] virtual double particle_steps() const { return 0; }
+    /// Seconds by phase, where the scene measures them.
+    [[nodiscard]] virtual std::map<std::string, double, std::less<>> phase_seconds() const { return {}; }
     /// Complete state; a scene made with the same inputs and seed and restored from it continues bit for bit.
     virtual void save(Bytes& into) const = 0;
     virtual void restore(std::span<const std::byte> from) = 0;
@@ -92,6 +94,9 @@ struct SceneInfo {
     std::function<double(const Inputs&)> estimate_cost;
     /// The answer, where it is proven without simulation; otherwise empty.
     std::function<std::optional<ProvenAnswer>(const Inputs&)> proven_answer;
+    /// What the n-th attempt really does, where that differs from what was asked: only the rehearsal, whose
+    /// misbehaviour may be limited to the first attempts.
+    std::function<Inputs(Inputs, std::int64_t attempt)> on_attempt;
 
     [[nodiscard]] const ParameterSpec* find_parameter(std::string_view parameter) const;
     [[nodiscard]] const ObservableSpec* find_observable(std::string_view observable) const;

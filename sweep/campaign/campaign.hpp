@@ -90,11 +90,25 @@ struct Campaign {
 /// Decides whether a candidate point belongs to the campaign: the `where` clause.
 using Filter = std::function<bool(const Inputs&)>;
 
+/// The names a `where` clause may use: every parameter of the scene.
+[[nodiscard]] std::vector<std::string> filter_names(const Campaign& campaign);
+
+/// More than this is a slip of the keyboard, and would not fit into memory.
+inline constexpr std::int64_t most_cases = 10'000'000;
+
 /// A placed case for every point and replicate that passes the filter, ordered by point, then replicate.
-/// Point numbers keep the gaps of what was filtered out.
+/// Point numbers keep the gaps of what was filtered out. Throws WrongQuestion when the design's options are
+/// impossible together, when no point is left and when there are more than most_cases.
 [[nodiscard]] std::vector<PlacedCase> unfold(const Campaign& campaign, const Filter& filter);
 
-/// A case from complete inputs: id and canonical text as in the contract.
+/// A case from inputs (defaults filled in, types coerced): its id is the hash of its canonical text.
+/// Throws WrongQuestion for a parameter the scene has not.
 [[nodiscard]] Case make_case(const SceneInfo& scene, const Inputs& inputs, std::uint64_t seed);
+
+/// The seed of the campaign's case with these inputs: it depends on what is asked and on nothing else.
+[[nodiscard]] std::uint64_t case_seed(const Campaign& campaign, const Inputs& inputs, std::int64_t replicate);
+
+/// A value in the type of `like`: a whole number as a real one and back where it is exact, -0 as 0.
+[[nodiscard]] Value coerced(const Value& value, const Value& like);
 
 }  // namespace grainsweep::campaign

@@ -15,7 +15,9 @@ constexpr std::array<std::string_view, outcomes.size()> outcome_words = {
     "completed", "skipped", "unstable", "rejected", "crashed", "timed_out", "abandoned"};
 }
 
-std::string_view to_string(Outcome outcome) { return outcome_words[static_cast<std::size_t>(outcome)]; }
+std::string_view to_string(Outcome outcome) {
+    return outcome_words[static_cast<std::size_t>(outcome)];
+}
 
 std::optional<Outcome> outcome_named(std::string_view word) {
     const auto found = std::ranges::find(outcome_words, word);
@@ -36,13 +38,19 @@ std::string to_text(const Value& value) {
     return std::get<std::string>(value);
 }
 
+std::string identity_text(const Value& value) {
+    const auto* word = std::get_if<std::string>(&value);
+    const auto file = word == nullptr ? std::nullopt : file_word(*word);
+    return file ? fmt::format("file:{}", file->hash) : to_text(value);
+}
+
 std::string canonical_text(std::string_view scene, int revision, const Inputs& inputs, const Inputs& defaults,
                            std::optional<std::uint64_t> seed) {
     std::string text = fmt::format("scene={}\nrevision={}\n", scene, revision);
     for (const auto& [name, value] : inputs) {
         const auto standard = defaults.find(name);
         if (standard != defaults.end() && standard->second == value) continue;
-        text += fmt::format("{}={}\n", name, to_text(value));
+        text += fmt::format("{}={}\n", name, identity_text(value));
     }
     if (seed) text += fmt::format("seed={}\n", *seed);
     return text;

@@ -65,7 +65,7 @@ struct CaseResult {
 };
 
 /// scene, revision, every input that differs from its default, seed: name=value, sorted, doubles in
-/// shortest round-trip form, -0 as 0.  `defaults` are the scene's.
+/// shortest round-trip form, -0 as 0, a file by the hash of its contents.  `defaults` are the scene's.
 [[nodiscard]] std::string canonical_text(std::string_view scene, int revision, const Inputs& inputs,
                                          const Inputs& defaults, std::optional<std::uint64_t> seed);
 /// XXH3 128-bit of the text, 32 hexadecimal digits.
@@ -77,5 +77,7 @@ struct CaseResult {
 [[nodiscard]] std::string shortest(double x);
 /// A value in text, words unquoted.
 [[nodiscard]] std::string to_text(const Value& value);
+/// A value as the canonical text shows it: to_text, but a file without its path.
+[[nodiscard]] std::string identity_text(const Value& value);
 
 }  // namespace grainsweep::campaign

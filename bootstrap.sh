@@ -1,0 +1,114 @@
+#!/usr/bin/env bash
+# From a fresh Debian machine to a running campaign or a green test run.
+#   ./bootstrap.sh run CONFIG [OPTIONS]   install what is missing, build, run the campaign
+#   ./bootstrap.sh test                   ... build everything, run the tests
+#   ./bootstrap.sh build                  ... build build/grainsweep (Release) and stop
+#   ./bootstrap.sh bench                  ... run the benchmarks (JSON lines)
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+jobs=$(nproc)
+
+usage() {
+    sed -n '2,6p' "${BASH_SOURCE[0]}" | sed 's/^# \{0,1\}//' >&2
+    exit 2
+}
+
+# What the program needs, and what only its tests and benchmarks need: package=file that proves it is there.
+program_packages=(
+    g++=/usr/bin/g++ cmake=/usr/bin/cmake ninja-build=/usr/bin/ninja git=/usr/bin/git
+    libeigen3-dev=/usr/include/eigen3/Eigen/Core libboost-dev=/usr/include/boost/process.hpp
+    libboost-filesystem-dev=/usr/include/boost/filesystem.hpp+libboost_filesystem.so libsqlite3-dev=/usr/include/sqlite3.h
+    nlohmann-json3-dev=/usr/include/nlohmann/json.hpp libfmt-dev=/usr/include/fmt/format.h
+    libcli11-dev=/usr/include/CLI/CLI.hpp libxxhash-dev=/usr/include/xxhash.h
+    libjs-chart.js=/usr/share/javascript/chart.js/chart.min.js
+)
+test_packages=(
+    libgtest-dev=/usr/include/gtest/gtest.h libgmock-dev=/usr/include/gmock/gmock.h
+)
+
+present() {  # PACKAGE=FILE[+LIBRARY]
+    local proof=${1#*=} library=''
+    case $proof in *+*) library=${proof#*+} proof=${proof%%+*} ;; esac
+    [ -e "$proof" ] || return 1
+    [ -z "$library" ] || compgen -G "/usr/lib/*/$library" >/dev/null || [ -e "/usr/lib/$library" ]
+}
+
+install_missing() {
+    local missing=() entry
+    for entry in "$@"; do present "$entry" || missing+=("${entry%%=*}"); done
+    [ ${#missing[@]} -eq 0 ] && return
+    if [ "$(id -u)" -ne 0 ]; then
+        echo "missing packages; as root: apt-get install ${missing[*]}" >&2
+        exit 1
+    fi
+    echo "installing ${missing[*]}" >&2
+    export DEBIAN_FRONTEND=noninteractive
+    local log
+    log=$(mktemp)
+    if ! { apt-get update -qq && apt-get install -y -qq --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
+        tail -n 20 "$log" >&2
+        exit 1
+    fi
+    rm -f "$log"
+}
+
+# quiet WHAT COMMAND...: shows the output only when the command fails.
+quiet() {
+    local what=$1 log
+    shift
+    log=$(mktemp)
+    if ! "$@" >"$log" 2>&1; then
+        cat "$log" >&2
+        echo "$what failed" >&2
+        exit 1
+    fi
+    rm -f "$log"
+}
+
+configure() {  # PRESET OPTIONS...
+    local preset=$1
+    shift
+    quiet "configuring" cmake -S "$here" --preset "$preset" "$@"
+}
+
+build_program() {
+    install_missing "${program_packages[@]}"
+    local tests=OFF
+    [ -e "$here/build/tests" ] && tests=ON
+    (cd "$here" && configure release -DGRAINSWEEP_TESTS=$tests)
+    [ -x "$here/build/grainsweep" ] || echo "building (about two minutes on two cores)" >&2
+    quiet "building" cmake --build "$here/build" -j "$jobs" --target grainsweep
+}
+
+case ${1:-} in
+run)
+    [ $# -ge 2 ] || usage
+    shift
+    build_program
+    exec "$here/build/grainsweep" run "$@"
+    ;;
+build)
+    build_program
+    ;;
+test)
+    install_missing "${program_packages[@]}" "${test_packages[@]}"
+    (cd "$here" && configure release -DGRAINSWEEP_TESTS=ON)
+    cmake --build "$here/build" -j "$jobs"
+    (cd "$here" && ctest --preset release -j "$jobs" -LE slow)
+    # The unit tests once more under the address and undefined-behaviour sanitizers.
+    (cd "$here" && configure sanitize -DGRAINSWEEP_TESTS=ON)
+    cmake --build "$here/build-sanitize" -j "$jobs" --target test_unit
+    "$here/build-sanitize/tests/test_unit" --gtest_brief=1
+    ;;
+bench)
+    install_missing "${program_packages[@]}" "${test_packages[@]}"
+    (cd "$here" && configure release -DGRAINSWEEP_TESTS=ON)
+    quiet "building" cmake --build "$here/build" -j "$jobs"
+    for program in "$here"/build/tests/bench_*; do
+        [ -x "$program" ] && "$program"
+    done
+    ;;
+*)
+    usage
+    ;;
+esac

@@ -1,0 +1,38 @@
+#include "stats/confidence.hpp"
+
+#include <boost/math/distributions/students_t.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace grainsweep::stats {
+namespace {
+
+/// Sum of squared deviations from the mean; NaN where any value is.
+double squared_deviations(std::span<const double> values) {
+    double mean = 0;
+    for (const double value : values) mean += value / static_cast<double>(values.size());
+    double sum = 0;
+    for (const double value : values) sum += (value - mean) * (value - mean);
+    return sum;
+}
+
+double student_t(std::size_t count) {
+    return boost::math::quantile(boost::math::students_t(static_cast<double>(count - 1)), 0.975);
+}
+
+}  // namespace
+
+double student_half_width(std::span<const double> values) {
+    if (values.size() < 2) return std::numeric_limits<double>::quiet_NaN();
+    const auto n = static_cast<double>(values.size());
+    return student_t(values.size()) * std::sqrt(squared_deviations(values) / (n * (n - 1)));
+}
+
+double jackknife_half_width(std::span<const double> leave_one_out) {
+    if (leave_one_out.size() < 2) return std::numeric_limits<double>::quiet_NaN();
+    const auto n = static_cast<double>(leave_one_out.size());
+    return student_t(leave_one_out.size()) * std::sqrt((n - 1) / n * squared_deviations(leave_one_out));
+}
+
+}  // namespace grainsweep::stats

@@ -1,0 +1,19 @@
+// 95 % half-widths: how far an estimate may be off, from repetitions or from leaving parts out.
+#pragma once
+
+#include <span>
+
+namespace grainsweep::stats {
+
+/// Student-t 95 % half-width of the mean of independent, equally distributed values:
+/// t_{R-1, 0.975} s / sqrt(R), s with divisor R - 1. NaN for fewer than two values or any NaN.
+[[nodiscard]] double student_half_width(std::span<const double> values);
+
+/// 95 % half-width from the delete-a-group jackknife (Shao & Wu 1989, Ann. Stat. 17, 1176): entry g is the
+/// estimate without group g of G equal groups;
+///   se^2 = (G - 1)/G sum_g (theta_g - mean)^2,  half-width t_{G-1, 0.975} se.
+/// Exact in expectation for independent groups; for consecutive stretches of one low-discrepancy sequence,
+/// which complement each other, it errs on the large side. NaN as above.
+[[nodiscard]] double jackknife_half_width(std::span<const double> leave_one_out);
+
+}  // namespace grainsweep::stats

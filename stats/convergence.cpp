@@ -1,0 +1,233 @@
+#include "stats/convergence.hpp"
+
+#include "stats/confidence.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace grainsweep::stats {
+namespace {
+
+constexpr std::array<std::string_view, 3> rule_names = {"replicates", "any_change", "all_change"};
+constexpr std::int64_t fewest_sequences = 4;
+constexpr std::size_t stretches = 8;
+
+/// An error in the unit of the statistic -> what the tolerance is compared with.
+double scaled(Statistic statistic, double error, double value) {
+    switch (statistic) {
+        case Statistic::skewness:
+            return error / 3;
+        case Statistic::g1:
+            return error / std::max(1.0, std::abs(value));
+        default:
+            return error / std::abs(value);
+    }
+}
+
+/// Statistics of all values but one stretch, for each of the stretches.
+std::array<Summary, stretches> leave_one_out(std::span<const double> values) {
+    std::array<Moments, stretches> parts;
+    const auto cut = [&](std::size_t g) { return values.size() * g / stretches; };
+    for (std::size_t g = 0; g < stretches; ++g) parts[g].add(values.subspan(cut(g), cut(g + 1) - cut(g)));
+    std::array<Summary, stretches> summaries;
+    std::vector<double> others;
+    for (std::size_t left_out = 0; left_out < stretches; ++left_out) {
+        Moments moments;
+        for (std::size_t g = 0; g < stretches; ++g)
+            if (g != left_out) moments.merge(parts[g]);
+        others.assign(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(cut(left_out)));
+        others.insert(others.end(), values.begin() + static_cast<std::ptrdiff_t>(cut(left_out + 1)), values.end());
+        summaries[left_out] = moments.summary(middle(others));
+    }
+    return summaries;
+}
+
+/// log(measure) = a + slope log(points) over the checks of the last three quarters, and its value now.
+struct Decay {
+    double slope = -1;
+    double measure_now = 0;
+};
+
+Decay fit_decay(std::span<const std::pair<double, double>> history) {
+    Decay decay{.slope = -1, .measure_now = history.back().second};
+    double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+    const double now = std::log(history.back().first);
+    for (const auto& [points, measure] : history) {
+        if (4 * points < history.back().first || !(measure > 0)) continue;
+        const double x = std::log(points) - now;
+        const double y = std::log(measure);
+        n += 1;
+        sx += x;
+        sy += y;
+        sxx += x * x;
+        sxy += x * y;
+    }
+    const double spread = n * sxx - sx * sx;
+    if (n < 3 || !(spread > 0)) return decay;
+    // Random points give -1/2, low-discrepancy points down to -3/2; noise must not promise more or less.
+    decay.slope = std::clamp((n * sxy - sx * sy) / spread, -1.5, -0.5);
+    decay.measure_now = std::exp((sy - decay.slope * sx) / n);
+    return decay;
+}
+
+}  // namespace
+
+std::string_view to_string(ConvergenceRule rule) {
+    return rule_names[static_cast<std::size_t>(rule)];
+}
+
+std::optional<ConvergenceRule> convergence_rule_named(std::string_view word) {
+    const auto found = std::ranges::find(rule_names, word);
+    if (found == rule_names.end()) return std::nullopt;
+    return static_cast<ConvergenceRule>(found - rule_names.begin());
+}
+
+bool median_is_unsound(double zero_share) {
+    return std::abs(zero_share - 0.5) <= 0.05;
+}
+
+Middle SortedSample::middle() {
+    std::ranges::sort(fresh_);
+    const auto old = static_cast<std::ptrdiff_t>(sorted_.size());
+    sorted_.insert(sorted_.end(), fresh_.begin(), fresh_.end());
+    std::inplace_merge(sorted_.begin(), sorted_.begin() + old, sorted_.end());
+    fresh_.clear();
+    if (sorted_.empty()) return {};
+    return {sorted_[(sorted_.size() - 1) / 2], sorted_[sorted_.size() / 2]};
+}
+
+Convergence::Convergence(ConvergenceSettings settings) : settings_(std::move(settings)) {
+    if (settings_.rule == ConvergenceRule::replicates && settings_.sequences < fewest_sequences)
+        throw std::invalid_argument("the rule 'replicates' needs at least 4 random sequences, not " +
+                                    std::to_string(settings_.sequences));
+    if (settings_.gates.empty()) throw std::invalid_argument("convergence needs at least one gate");
+    if (settings_.block < 1) throw std::invalid_argument("a block has at least 1 point");
+    if (!(settings_.tolerance > 0)) throw std::invalid_argument("the tolerance is a positive number");
+    if (settings_.sequences >= fewest_sequences) sequences_.resize(static_cast<std::size_t>(settings_.sequences));
+}
+
+void Convergence::add(std::int64_t point, double value) {
+    settle(point);
+    pooled_.moments.add(value);
+    const bool finite = std::isfinite(value);
+    if (finite) pooled_.sample.add(value);
+    if (sequences_.empty()) {
+        if (finite) values_.push_back(value);
+        return;
+    }
+    auto& sequence = sequences_[static_cast<std::size_t>(point % settings_.sequences)];
+    sequence.moments.add(value);
+    if (finite) sequence.sample.add(value);
+}
+
+void Convergence::settle(std::int64_t points) {
+    while (static_cast<std::int64_t>(checkpoints_.size() + 1) * settings_.block <= points) check();
+}
+
+const Checkpoint* Convergence::converged() const {
+    const auto found = std::ranges::find(checkpoints_, true, &Checkpoint::converged);
+    return found == checkpoints_.end() ? nullptr : &*found;
+}
+
+void Convergence::check() {
+    Checkpoint now;
+    now.points = static_cast<std::int64_t>(checkpoints_.size() + 1) * settings_.block;
+    const Summary summary = pooled_.moments.summary(pooled_.sample.middle());
+    now.count = summary.count;
+    now.excluded = summary.excluded;
+    now.zero_share = summary.zero_share;
+    for (std::size_t s = 0; s < statistics.size(); ++s) now.estimates[s].value = summary.of(statistics[s]);
+    find_errors(now);
+    find_measures(now);
+    judge(now);
+    checkpoints_.push_back(now);
+}
+
+void Convergence::find_errors(Checkpoint& now) {
+    std::vector<Summary> summaries;
+    for (auto& sequence : sequences_) summaries.push_back(sequence.moments.summary(sequence.sample.middle()));
+    if (sequences_.empty() && values_.size() >= 2 * stretches) {
+        const auto parts = leave_one_out(values_);
+        summaries.assign(parts.begin(), parts.end());
+    }
+    std::vector<double> repetitions(summaries.size());
+    for (std::size_t s = 0; s < statistics.size(); ++s) {
+        std::ranges::transform(summaries, repetitions.begin(), [&](const Summary& x) { return x.of(statistics[s]); });
+        now.estimates[s].error =
+            sequences_.empty() ? jackknife_half_width(repetitions) : student_half_width(repetitions);
+    }
+}
+
+void Convergence::find_measures(Checkpoint& now) const {
+    for (const Statistic statistic : statistics) {
+        Estimate& estimate = now.estimates[static_cast<std::size_t>(statistic)];
+        double error = estimate.error;
+        if (settings_.rule != ConvergenceRule::replicates)
+            error = checkpoints_.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                         : std::abs(estimate.value - checkpoints_.back().of(statistic).value);
+        estimate.measure = scaled(statistic, error, estimate.value);
+        if (statistic == Statistic::skewness && median_is_unsound(now.zero_share))
+            estimate.measure = std::numeric_limits<double>::quiet_NaN();
+    }
+}
+
+void Convergence::judge(Checkpoint& now) const {
+    const bool any = settings_.rule == ConvergenceRule::any_change;
+    const auto passes = [&](Statistic gate) { return now.of(gate).measure < settings_.tolerance; };
+    now.passes = any ? std::ranges::any_of(settings_.gates, passes) : std::ranges::all_of(settings_.gates, passes);
+    now.converged = now.passes;
+    if (settings_.rule == ConvergenceRule::replicates)
+        now.converged = now.passes && !checkpoints_.empty() && checkpoints_.back().passes;
+    if (!now.passes) {
+        // Undefined counts as infinitely far. One gate is enough for any_change: there the nearest decides.
+        const auto distance = [&](Statistic gate) {
+            const double measure = now.of(gate).measure;
+            return std::isnan(measure) ? std::numeric_limits<double>::infinity() : measure;
+        };
+        now.held_back = any ? *std::ranges::min_element(settings_.gates, {}, distance)
+                            : *std::ranges::max_element(settings_.gates, {}, distance);
+    }
+    now.points_needed = predict(now);
+}
+
+std::optional<std::int64_t> Convergence::predict(const Checkpoint& now) const {
+    if (now.converged) return now.points;
+    const std::int64_t block = settings_.block;
+    const bool any = settings_.rule == ConvergenceRule::any_change;
+    double needed = any ? std::numeric_limits<double>::infinity() : 0;
+    for (const Statistic gate : settings_.gates) {
+        std::vector<std::pair<double, double>> history;
+        for (const auto& check : checkpoints_) history.emplace_back(check.points, check.of(gate).measure);
+        history.emplace_back(now.points, now.of(gate).measure);
+        if (std::isnan(history.back().second)) {
+            if (any) continue;
+            return std::nullopt;
+        }
+        if (history.back().second < settings_.tolerance) continue;
+        const Decay decay = fit_decay(history);
+        const double growth = std::pow(settings_.tolerance / decay.measure_now, 1 / decay.slope);
+        const double points = static_cast<double>(now.points) * growth;
+        needed = any ? std::min(needed, points) : std::max(needed, points);
+    }
+    constexpr double most = 1e15;
+    if (!(needed < most)) return std::nullopt;
+    // The first check not yet made that reaches `needed`; `replicates` wants the one after it, too.
+    const auto reached = static_cast<std::int64_t>(std::ceil(needed / static_cast<double>(block))) * block;
+    const std::int64_t first = now.passes ? now.points : std::max(reached, now.points + block);
+    return settings_.rule == ConvergenceRule::replicates ? first + block : first;
+}
+
+std::vector<Checkpoint> judge_convergence(const ConvergenceSettings& settings, std::span<const std::int64_t> points,
+                                          std::span<const double> values, std::int64_t settled) {
+    assert(points.size() == values.size());
+    Convergence convergence(settings);
+    for (std::size_t i = 0; i < values.size() && points[i] < settled; ++i) convergence.add(points[i], values[i]);
+    convergence.settle(settled);
+    return {convergence.checkpoints().begin(), convergence.checkpoints().end()};
+}
+
+}  // namespace grainsweep::stats

@@ -1,0 +1,124 @@
+// When enough points have been asked: errors of the statistics of a response, and a verdict.
+//
+// The values of a design come in the order of its points. At every multiple of `block` points the statistics of
+// all points so far are formed, with their errors, and each gated statistic gets a measure that is compared
+// with the tolerance:
+//   mean, sd, kurtosis   e/|value|        g1   e/max(1, |g1|)        skewness (Pearson's)   e/3, 3 being its bound
+// Rules, by what e is and what converges:
+//   replicates  e = Student-t 95 % half-width over the R values of R independently randomised sequences (point p
+//               belongs to sequence p mod R); every gate below the tolerance at two consecutive checks.
+//   any_change  e = change since the check before; any one gate below the tolerance. The rule of the thesis this
+//               program began with; it stops too early in about half of all sweeps.
+//   all_change  the same, every gate below the tolerance.
+// The errors shown beside the values are the Student-t half-width where there are at least 4 sequences; else a
+// delete-a-group jackknife over 8 consecutive stretches of the points (see confidence.hpp).
+//
+// What is undefined never passes. Pearson's skewness is refused as a gate while between 45 and 55 % of the
+// values are zero: there the median jumps between zero and the rest.
+#pragma once
+
+#include "stats/moments.hpp"
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace grainsweep::stats {
+
+enum class ConvergenceRule { replicates, any_change, all_change };
+
+[[nodiscard]] std::string_view to_string(ConvergenceRule rule);
+[[nodiscard]] std::optional<ConvergenceRule> convergence_rule_named(std::string_view word);
+
+struct ConvergenceSettings {
+    ConvergenceRule rule = ConvergenceRule::replicates;
+    std::vector<Statistic> gates = {Statistic::mean, Statistic::sd, Statistic::kurtosis, Statistic::g1};
+    double tolerance = 0.01;
+    std::int64_t block = 400;    ///< points between two checks
+    std::int64_t sequences = 1;  ///< R of the design
+};
+
+struct Estimate {
+    double value = std::numeric_limits<double>::quiet_NaN();
+    double error = std::numeric_limits<double>::quiet_NaN();    ///< 95 % half-width, in the unit of the value
+    double measure = std::numeric_limits<double>::quiet_NaN();  ///< what the rule compares with the tolerance
+};
+
+struct Checkpoint {
+    std::int64_t points = 0;    ///< design points in the prefix
+    std::int64_t count = 0;     ///< finite values among them
+    std::int64_t excluded = 0;  ///< values that are not finite
+    double zero_share = std::numeric_limits<double>::quiet_NaN();
+    std::array<Estimate, statistics.size()> estimates;
+    bool passes = false;                 ///< the rule holds at this check
+    bool converged = false;              ///< and, for `replicates`, at the one before
+    std::optional<Statistic> held_back;  ///< while it does not pass: the gate that decides
+    /// Points at which it will probably have converged, from the observed decay of the measures; none where
+    /// a gate is undefined.
+    std::optional<std::int64_t> points_needed;
+
+    [[nodiscard]] const Estimate& of(Statistic statistic) const {
+        return estimates[static_cast<std::size_t>(statistic)];
+    }
+};
+
+/// True where so many values are zero that the median jumps: Pearson's skewness cannot be judged.
+[[nodiscard]] bool median_is_unsound(double zero_share);
+
+/// Values that arrive in order and stay sorted: the middle is at hand at every check.
+class SortedSample {
+public:
+    void add(double value) { fresh_.push_back(value); }
+    [[nodiscard]] Middle middle();
+
+private:
+    std::vector<double> sorted_;
+    std::vector<double> fresh_;
+};
+
+/// Follows one response through a growing design. Same values, same verdict, however they were computed.
+class Convergence {
+public:
+    /// Throws std::invalid_argument: `replicates` with fewer than 4 sequences, no gate, a block below 1, a
+    /// tolerance that is not positive.
+    explicit Convergence(ConvergenceSettings settings);
+
+    /// The next value (NaN: the case failed), by growing point number; numbers may be missing (filtered out)
+    /// or repeated. All points before `point` must have been added: checks they complete are made here.
+    void add(std::int64_t point, double value);
+    /// Every point below `points` has been added or will never be.
+    void settle(std::int64_t points);
+
+    [[nodiscard]] std::span<const Checkpoint> checkpoints() const { return checkpoints_; }
+    /// The first converged check, if any: where the campaign may stop.
+    [[nodiscard]] const Checkpoint* converged() const;
+
+private:
+    struct Sequence {
+        Moments moments;
+        SortedSample sample;
+    };
+
+    void check();
+    void find_errors(Checkpoint& now);
+    void find_measures(Checkpoint& now) const;
+    void judge(Checkpoint& now) const;
+    [[nodiscard]] std::optional<std::int64_t> predict(const Checkpoint& now) const;
+
+    ConvergenceSettings settings_;
+    std::vector<Sequence> sequences_;
+    Sequence pooled_;
+    std::vector<double> values_;  ///< finite, in order; kept where errors come from the jackknife
+    std::vector<Checkpoint> checkpoints_;
+};
+
+/// One go: values[i] belongs to design point points[i] (growing); the first `settled` points are judged.
+[[nodiscard]] std::vector<Checkpoint> judge_convergence(const ConvergenceSettings& settings,
+                                                        std::span<const std::int64_t> points,
+                                                        std::span<const double> values, std::int64_t settled);
+
+}  // namespace grainsweep::stats

@@ -1,0 +1,80 @@
+// Reading JSON with its path at hand: every refusal names where, what value, which rule, the nearest word.
+#pragma once
+
+#include "sweep/campaign/json_text.hpp"
+#include "sweep/campaign/keys.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace grainsweep::campaign {
+
+/// A JSON value and its path. Refers to the document, which must outlive it.
+class Cursor {
+public:
+    Cursor(const Json& value, std::string path) : value_(&value), path_(std::move(path)) {}
+
+    [[nodiscard]] const Json& json() const { return *value_; }
+    [[nodiscard]] const std::string& path() const { return path_; }
+    [[nodiscard]] Cursor operator[](std::size_t index) const { return {(*value_)[index], path_of(path_, index)}; }
+    [[nodiscard]] Cursor operator[](std::string_view key) const {
+        return {value_->at(std::string(key)), path_of(path_, key)};
+    }
+
+    [[noreturn]] void refuse(std::string_view rule, std::string_view suggestion = {}) const;
+
+    /// A finite number within the interval.
+    [[nodiscard]] double number(const Interval& bounds = {}) const;
+    /// A whole number within the interval; 1e4 is one.
+    [[nodiscard]] std::int64_t whole(const Interval& bounds = {}) const;
+    [[nodiscard]] bool flag() const;
+    /// Any non-empty text.
+    [[nodiscard]] std::string text() const;
+    /// One of the words.
+    [[nodiscard]] std::string word(std::span<const std::string> words) const;
+    /// A list; refuses everything else.
+    [[nodiscard]] std::vector<Cursor> elements() const;
+
+private:
+    const Json* value_;
+    std::string path_;
+};
+
+/// An object whose keys are those of a table, and "notes".
+class Section {
+public:
+    /// Refuses what is no object, an unknown key, a missing one that is required.
+    Section(Cursor place, std::span<const Key> keys);
+
+    [[nodiscard]] const Cursor& place() const { return place_; }
+    [[nodiscard]] std::optional<Cursor> find(std::string_view key) const;
+    /// A required key.
+    [[nodiscard]] Cursor at(std::string_view key) const;
+
+    // The value of a key, checked against its row of the table; `standard` where it is absent.
+    [[nodiscard]] double number(std::string_view key, double standard) const;
+    [[nodiscard]] std::int64_t whole(std::string_view key, std::int64_t standard) const;
+    [[nodiscard]] bool flag(std::string_view key, bool standard) const;
+    [[nodiscard]] std::string word(std::string_view key, std::string_view standard) const;
+    [[nodiscard]] std::vector<std::string> words(std::string_view key, const std::vector<std::string>& standard) const;
+
+private:
+    [[nodiscard]] const Key& row(std::string_view key) const;
+
+    Cursor place_;
+    std::span<const Key> keys_;
+};
+
+/// "notes" holds a text or a list of texts.
+void check_notes(const Cursor& notes);
+/// "a number from 0 to 1", "a number above 0": the interval in words.
+[[nodiscard]] std::string in_words(const Interval& bounds);
+/// "'a', 'b' or 'c'".
+[[nodiscard]] std::string in_words(std::span<const std::string> words);
+
+}  // namespace grainsweep::campaign

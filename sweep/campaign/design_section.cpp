@@ -1,0 +1,137 @@
+// "design": its options against the OptionSpecs that the design declares.
+#include "sweep/campaign/sections.hpp"
+#include "sweep/campaign/wrong_question.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace grainsweep::campaign {
+
+namespace {
+
+using designs::OptionSpec;
+using designs::OptionValue;
+
+const designs::DesignInfo& read_kind(const Cursor& place) {
+    if (!place.json().is_object()) place.refuse("must be an object with a \"kind\"");
+    std::vector<std::string> known;
+    for (const auto& design : designs::design_catalogue()) known.push_back(design.name);
+    if (!place.json().contains("kind")) {
+        throw wrong_question(place.path(), "", fmt::format("key 'kind' is missing: {}", in_words(known)));
+    }
+    return *designs::find_design(place["kind"].word(known));
+}
+
+/// One count, or one per factor; where a factor has levels, its entry is their number.
+OptionValue read_counts(const Cursor& place, const OptionSpec& option, std::span<const std::size_t> levels) {
+    const Interval bounds{static_cast<double>(option.minimum), static_cast<double>(option.maximum)};
+    if (!place.json().is_array()) return place.whole(bounds);
+    const auto elements = place.elements();
+    if (elements.size() != levels.size()) {
+        place.refuse(
+            fmt::format("must be one whole number or one per factor, and there are {} factors", levels.size()));
+    }
+    std::vector<std::int64_t> counts;
+    for (std::size_t j = 0; j < elements.size(); ++j) {
+        counts.push_back(elements[j].whole(bounds));
+        if (levels[j] != 0 && counts.back() != static_cast<std::int64_t>(levels[j])) {
+            elements[j].refuse(fmt::format("this factor is given by its {} levels", levels[j]));
+        }
+    }
+    return counts;
+}
+
+OptionValue read_rows(const Section& section, const OptionSpec& option, const ParameterSpace& space,
+                      const std::filesystem::path& folder) {
+    const auto file = section.find("file");
+    const auto listed = section.find(option.name);
+    if (file.has_value() == listed.has_value()) {
+        throw wrong_question(section.place().path(), file ? "both" : "neither",
+                             fmt::format("give either \"{}\": [[...], ...] or \"file\": a CSV file", option.name));
+    }
+    if (file) return read_rows_file(*file, space, folder);
+    designs::Rows rows;
+    for (const auto& element : listed->elements()) {
+        const auto cells = element.elements();
+        if (cells.size() != space.factors.size()) {
+            element.refuse(
+                fmt::format("a row has one value per factor, and there are {} factors", space.factors.size()));
+        }
+        auto& row = rows.emplace_back();
+        for (std::size_t j = 0; j < cells.size(); ++j) {
+            row.push_back(read_value(cells[j], *space.scene->find_parameter(space.factors[j].name), folder));
+            check_in_range(cells[j], space.factors[j], row.back());
+        }
+    }
+    if (rows.empty()) listed->refuse("a design needs at least one row");
+    return rows;
+}
+
+/// The number of points an option asks for, as far as it alone can tell.
+void check_size(const Cursor& place, const OptionValue& value, std::span<const std::size_t> levels, bool points) {
+    double size = 1;
+    if (const auto* count = std::get_if<std::int64_t>(&value)) {
+        for (const std::size_t k : levels) size *= k != 0 ? static_cast<double>(k) : static_cast<double>(*count);
+        if (points) size = static_cast<double>(*count);
+    } else if (const auto* counts = std::get_if<std::vector<std::int64_t>>(&value)) {
+        for (const std::int64_t k : *counts) size *= static_cast<double>(k);
+    }
+    if (size > static_cast<double>(most_cases)) {
+        place.refuse(fmt::format("a campaign has at most {} cases", most_cases));
+    }
+}
+
+}  // namespace
+
+void check_in_range(const Cursor& place, const Factor& factor, const Value& value) {
+    if (const auto* levels = std::get_if<Levels>(&factor.range)) {
+        if (std::ranges::find(levels->values, value) == levels->values.end()) {
+            place.refuse(fmt::format("is none of the levels of factor '{}'", factor.name));
+        }
+        return;
+    }
+    const auto& range = std::get<Between>(factor.range);
+    if (!Interval{range.low, range.high}.contains(std::get<double>(value))) {
+        place.refuse(
+            fmt::format("factor '{}' goes from {} to {}", factor.name, shortest(range.low), shortest(range.high)));
+    }
+}
+
+void read_design(const Cursor& place, Campaign& campaign, const std::filesystem::path& folder) {
+    const auto& design = read_kind(place);
+    const auto keys = design_keys(design);
+    const Section section(place, keys);
+    campaign.design = design.name;
+    auto& request = campaign.request;
+    request.seed = campaign.seed;
+    for (const auto& factor : campaign.space.factors) {
+        const auto* levels = std::get_if<Levels>(&factor.range);
+        request.levels.push_back(levels == nullptr ? 0 : levels->values.size());
+    }
+    for (const auto& option : design.options) {
+        if (option.kind == OptionSpec::Kind::rows) {
+            request.options[option.name] = read_rows(section, option, campaign.space, folder);
+            continue;
+        }
+        const auto given = section.find(option.name);
+        if (!given) {
+            request.options[option.name] = *option.default_value;
+            continue;
+        }
+        OptionValue value;
+        if (option.kind == OptionSpec::Kind::word) {
+            value = given->word(option.words);
+        } else if (option.kind == OptionSpec::Kind::counts) {
+            value = read_counts(*given, option, request.levels);
+            check_size(*given, value, request.levels, false);
+        } else {
+            value = given->whole({static_cast<double>(option.minimum), static_cast<double>(option.maximum)});
+            if (option.name == "points") check_size(*given, value, request.levels, true);
+        }
+        request.options[option.name] = std::move(value);
+    }
+}
+
+}  // namespace grainsweep::campaign

@@ -1,0 +1,115 @@
+// "factors" and "fixed": what varies and what is held.
+#include "sweep/campaign/sections.hpp"
+#include "sweep/campaign/wrong_question.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace grainsweep::campaign {
+
+namespace {
+
+Between read_between(const Section& factor, const ParameterSpec& parameter, const std::filesystem::path& folder) {
+    const Cursor place = factor.at("between");
+    if (std::holds_alternative<std::string>(parameter.default_value)) {
+        place.refuse(fmt::format("the values of '{}' are words; vary it by \"levels\"", parameter.name));
+    }
+    if (std::holds_alternative<std::int64_t>(parameter.default_value)) {
+        place.refuse(fmt::format("'{}' is a whole number; vary it by \"levels\"", parameter.name));
+    }
+    const auto ends = place.elements();
+    if (ends.size() != 2) place.refuse("must be [low, high]");
+    Between range;
+    range.low = std::get<double>(read_value(ends[0], parameter, folder));
+    range.high = std::get<double>(read_value(ends[1], parameter, folder));
+    if (!(range.low < range.high)) place.refuse("low must be below high");
+    if (!std::isfinite(range.high - range.low)) place.refuse("the range must be finite in double precision");
+    range.scale = factor.word("scale", "linear") == "log" ? Scale::log : Scale::linear;
+    if (range.scale == Scale::log && range.low <= 0) place.refuse("a logarithmic range must lie above 0");
+    if (range.scale == Scale::log && !std::isfinite(range.high / range.low)) {
+        place.refuse("the ratio of a logarithmic range must be finite in double precision");
+    }
+    return range;
+}
+
+Levels read_levels(const Section& factor, const ParameterSpec& parameter, const std::filesystem::path& folder) {
+    const Cursor place = factor.at("levels");
+    if (const auto scale = factor.find("scale")) scale->refuse("levels have no scale; it belongs to \"between\"");
+    Levels levels;
+    std::set<std::string> seen;
+    for (const auto& element : place.elements()) {
+        levels.values.push_back(read_value(element, parameter, folder));
+        if (!seen.insert(identity_text(levels.values.back())).second) element.refuse("this level is there twice");
+    }
+    if (levels.values.empty()) place.refuse("a factor needs at least one level");
+    return levels;
+}
+
+}  // namespace
+
+const ParameterSpec& read_parameter(const Cursor& name, const SceneInfo& scene) {
+    std::vector<std::string> known;
+    for (const auto& parameter : scene.parameters) known.push_back(parameter.name);
+    const auto* parameter = name.json().is_string() ? scene.find_parameter(name.json().get<std::string>()) : nullptr;
+    if (parameter != nullptr) return *parameter;
+    name.refuse(fmt::format("scene '{}' has no parameter of this name (grainsweep scenes {} lists them)", scene.name,
+                            scene.name),
+                name.json().is_string() ? nearest_word(name.json().get<std::string>(), known) : "");
+}
+
+std::vector<Factor> read_factors(const Cursor& place, const SceneInfo& scene, const std::filesystem::path& folder) {
+    std::vector<Factor> factors;
+    for (const auto& element : place.elements()) {
+        const Section section(element, factor_keys());
+        const auto& parameter = read_parameter(section.at("name"), scene);
+        if (std::ranges::find(factors, parameter.name, &Factor::name) != factors.end()) {
+            section.at("name").refuse("this factor is there twice");
+        }
+        const bool between = section.find("between").has_value();
+        if (between == section.find("levels").has_value()) {
+            throw wrong_question(element.path(), between ? "both" : "neither",
+                                 "a factor has either \"between\": [low, high] or \"levels\": [...]");
+        }
+        Factor factor{parameter.name, {}};
+        if (between) {
+            factor.range = read_between(section, parameter, folder);
+        } else {
+            factor.range = read_levels(section, parameter, folder);
+        }
+        factors.push_back(std::move(factor));
+    }
+    if (factors.empty()) place.refuse("a campaign varies at least one factor");
+    return factors;
+}
+
+Inputs read_fixed(const Cursor& place, const ParameterSpace& space, const std::filesystem::path& folder) {
+    if (!place.json().is_object()) place.refuse("must be an object of parameter names and values");
+    Inputs fixed;
+    for (const auto& [key, value] : place.json().items()) {
+        const Cursor here(value, path_of(place.path(), key));
+        if (key == notes_key) {
+            check_notes(here);
+            continue;
+        }
+        const auto* parameter = space.scene->find_parameter(key);
+        if (parameter == nullptr) {
+            std::vector<std::string> known;
+            for (const auto& one : space.scene->parameters) known.push_back(one.name);
+            throw wrong_question(
+                here.path(), "",
+                fmt::format("scene '{}' has no parameter of this name (grainsweep scenes {} lists them)",
+                            space.scene->name, space.scene->name),
+                nearest_word(key, known));
+        }
+        if (std::ranges::find(space.factors, key, &Factor::name) != space.factors.end()) {
+            here.refuse(fmt::format("'{}' is also a factor; it is either varied or fixed", key));
+        }
+        fixed[key] = read_value(here, *parameter, folder);
+    }
+    return fixed;
+}
+
+}  // namespace grainsweep::campaign

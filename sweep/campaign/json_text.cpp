@@ -1,0 +1,188 @@
+#include "sweep/campaign/json_text.hpp"
+
+#include "sweep/campaign/wrong_question.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <utility>
+#include <vector>
+
+namespace grainsweep::campaign {
+
+namespace {
+
+constexpr std::size_t deepest = 32;
+constexpr std::size_t longest_shown = 60;
+
+/// Line and column (in characters) of a byte, both from 1.
+std::string place_of(std::string_view text, std::size_t byte) {
+    const std::string_view before = text.substr(0, std::min(byte, text.size()));
+    const auto line = std::ranges::count(before, '\n') + 1;
+    const std::size_t start = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
+    const auto continuation = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; };
+    const std::string_view in_line = before.substr(start);
+    const auto column = static_cast<std::ptrdiff_t>(in_line.size()) - std::ranges::count_if(in_line, continuation) + 1;
+    return fmt::format("line {}, column {}", line, column);
+}
+
+/// What the parser says beside its own notion of the place: "unexpected end of input; expected '}'".
+std::string complaint_of(std::string_view what) {
+    if (const auto marker = what.find("last read: '"); marker != std::string_view::npos) {
+        // The quoted token may hold any bytes: it is shown by the caller, escaped.
+        const auto end = what.rfind('\'');
+        std::string_view head = what.substr(0, marker);
+        while (head.ends_with(' ') || head.ends_with(';')) head.remove_suffix(1);
+        std::string joined(head);
+        if (end != std::string_view::npos && end + 1 < what.size()) joined += what.substr(end + 1);
+        return complaint_of(joined);
+    }
+    const auto dash = what.rfind(" - ");
+    if (dash != std::string_view::npos) return std::string(what.substr(dash + 3));
+    const auto bracket = what.find("] ");
+    return std::string(bracket == std::string_view::npos ? what : what.substr(bracket + 2));
+}
+
+/// The word or number around a byte, or the byte alone, and where it starts.
+std::pair<std::size_t, std::string> word_at(std::string_view text, std::size_t byte) {
+    const auto of_word = [&](std::size_t k) {
+        const char c = text[k];
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '+' || c == '-' || c == '.';
+    };
+    byte = std::min(byte, text.size() - 1);
+    if (!of_word(byte)) return {byte, std::string(text.substr(byte, 1))};
+    std::size_t start = byte;
+    std::size_t end = byte + 1;
+    while (start > 0 && byte - start < longest_shown && of_word(start - 1)) --start;
+    while (end < text.size() && end - byte < longest_shown && of_word(end)) ++end;
+    return {start, std::string(text.substr(start, end - start))};
+}
+
+/// Builds the document and knows where it stands.
+class Builder final : public nlohmann::json_sax<Json> {
+public:
+    explicit Builder(std::string_view text) : text_(text) {}
+
+    bool null() override { return place(nullptr); }
+    bool boolean(bool value) override { return place(value); }
+    bool number_integer(number_integer_t value) override { return place(value); }
+    bool number_unsigned(number_unsigned_t value) override { return place(value); }
+    bool number_float(number_float_t value, const string_t&) override { return place(value); }
+    bool binary(binary_t&) override { return false; }
+    bool string(string_t& value) override {
+        if (value.find('\0') != std::string::npos) {
+            throw wrong_question(here(), shown(value), "a text must not contain the NUL character");
+        }
+        return place(std::move(value));
+    }
+
+    bool start_object(std::size_t) override { return open(Json::object()); }
+    bool start_array(std::size_t) override { return open(Json::array()); }
+    bool end_object() override { return close(); }
+    bool end_array() override { return close(); }
+    bool key(string_t& name) override {
+        if (stack_.back().value.contains(name)) {
+            throw wrong_question(path_of(here_without_key(), name), "", "this key is there twice; keep one");
+        }
+        stack_.back().key = std::move(name);
+        return true;
+    }
+
+    bool parse_error(std::size_t position, const std::string& token,
+                     const nlohmann::detail::exception& error) override {
+        const std::string complaint = complaint_of(error.what());
+        if (complaint.find("invalid string") != std::string::npos) {
+            throw wrong_question(place_of(text_, position - 1), shown(token), "not JSON: " + complaint);
+        }
+        if (complaint.find("unexpected end of input") != std::string::npos) {
+            throw wrong_question(place_of(text_, text_.size()), "", "not JSON: " + complaint);
+        }
+        const auto [start, word] = word_at(text_, position == 0 ? 0 : position - 1);
+        std::string rule = "not JSON: " + complaint;
+        if (complaint.find("number overflow") != std::string::npos)
+            rule = "a number must be finite in double precision";
+        if (word == "NaN" || word.ends_with("Infinity")) rule = "JSON has no NaN and no Infinity";
+        throw wrong_question(place_of(text_, start), shown(word), rule);
+    }
+
+    Json result;
+
+private:
+    struct Frame {
+        Json value;
+        std::string key;
+    };
+
+    bool place(Json value) {
+        if (stack_.empty()) {
+            result = std::move(value);
+        } else if (stack_.back().value.is_object()) {
+            stack_.back().value[stack_.back().key] = std::move(value);
+        } else {
+            stack_.back().value.push_back(std::move(value));
+        }
+        return true;
+    }
+    bool open(Json value) {
+        if (stack_.size() == deepest) {
+            throw wrong_question(here(), "", fmt::format("nested deeper than {} levels; a campaign needs 6", deepest));
+        }
+        stack_.push_back({std::move(value), {}});
+        return true;
+    }
+    bool close() {
+        Json value = std::move(stack_.back().value);
+        stack_.pop_back();
+        return place(std::move(value));
+    }
+
+    std::string here_without_key() const {
+        std::string path = "$";
+        for (std::size_t k = 0; k + 1 < stack_.size(); ++k) path = step(path, stack_[k]);
+        return path;
+    }
+    std::string here() const { return stack_.empty() ? "$" : step(here_without_key(), stack_.back()); }
+    static std::string step(std::string_view path, const Frame& frame) {
+        return frame.value.is_object() ? path_of(path, frame.key) : path_of(path, frame.value.size());
+    }
+
+    std::string_view text_;
+    std::vector<Frame> stack_;
+};
+
+}  // namespace
+
+Json parse_json(std::string_view text) {
+    constexpr std::string_view utf8_mark = "\xEF\xBB\xBF";
+    if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
+        throw wrong_question("line 1, column 1", "a UTF-16 byte-order mark", "the file must be UTF-8 text");
+    }
+    if (text.starts_with(utf8_mark)) text.remove_prefix(utf8_mark.size());
+    if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) {
+        throw wrong_question("line 1, column 1", "nothing", "a campaign file is one JSON object");
+    }
+    Builder builder(text);
+    Json::sax_parse(text.begin(), text.end(), &builder);
+    return std::move(builder.result);
+}
+
+std::string shown(const Json& value) {
+    std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
+    if (text.size() > longest_shown) text = text.substr(0, longest_shown - 4) + " ...";
+    return text;
+}
+
+std::string path_of(std::string_view parent, std::string_view key) {
+    const auto plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-'; };
+    if (!key.empty() && key.size() <= longest_shown && std::ranges::all_of(key, plain)) {
+        return fmt::format("{}.{}", parent, key);
+    }
+    return fmt::format("{}[{}]", parent, shown(std::string(key)));
+}
+
+std::string path_of(std::string_view parent, std::size_t index) {
+    return fmt::format("{}[{}]", parent, index);
+}
+
+}  // namespace grainsweep::campaign

@@ -1,0 +1,173 @@
+#include "sweep/campaign/keys.hpp"
+
+#include "sweep/campaign/campaign.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+namespace grainsweep::campaign {
+
+namespace {
+
+using Kind = Key::Kind;
+
+constexpr double largest_seed = 9223372036854774784.0;  // the last double below 2^63
+constexpr Interval not_negative{0, std::numeric_limits<double>::infinity(), false, true};
+constexpr Interval counts{1, 1e6};
+
+std::string json_word(std::string_view word) {
+    return fmt::format("\"{}\"", word);
+}
+
+std::string json_list(std::span<const std::string> words) {
+    std::string list;
+    for (const auto& word : words) list += (list.empty() ? "" : ", ") + json_word(word);
+    return "[" + list + "]";
+}
+
+Key key_of(const designs::OptionSpec& option) {
+    using OptionKind = designs::OptionSpec::Kind;
+    Key key{option.name, option.meaning, Kind::whole, !option.default_value.has_value(), {}, {}, {}};
+    key.bounds = {static_cast<double>(option.minimum), static_cast<double>(option.maximum)};
+    if (option.kind == OptionKind::word) {
+        key.kind = Kind::word;
+        key.words = option.words;
+        if (!key.required) key.standard = json_word(std::get<std::string>(*option.default_value));
+    } else if (option.kind == OptionKind::count) {
+        if (!key.required) key.standard = std::to_string(std::get<std::int64_t>(*option.default_value));
+    } else {
+        // A single count may stand for a list of equal ones, and a file for rows: the design section reads both.
+        key.kind = option.kind == OptionKind::counts ? Kind::value : Kind::array;
+        if (option.kind == OptionKind::rows) key.required = false;
+    }
+    return key;
+}
+
+}  // namespace
+
+std::span<const Key> campaign_keys() {
+    static const std::vector<Key> keys = {
+        {"campaign", "name of the campaign and of its view in the database", Kind::text, true, {}, {}, {}},
+        {"scene", "the experiment every case runs", Kind::word, true, {}, {}, {}},
+        {"factors", "what varies; their order fixes the dimensions of the design", Kind::array, true, {}, {}, {}},
+        {"fixed", "parameters held at a value other than their default", Kind::object, false, {}, {}, "{}"},
+        {"where",
+         "SQL expression over parameters: a point for which it is not true is left out",
+         Kind::text,
+         false,
+         {},
+         {},
+         {}},
+        {"design", "which points of the factor space are asked", Kind::object, true, {}, {}, {}},
+        {"replicates", "repeats of each point with other seeds", Kind::whole, false, counts, {}, "1"},
+        {"seed", "seed of the design's scrambling and of every case", Kind::whole, false, {0, largest_seed}, {}, "1"},
+        {"convergence", "when the statistics are good enough", Kind::object, false, {}, {}, {}},
+        {"accuracy",
+         "a named set of numerical inputs of the scene",
+         Kind::word,
+         false,
+         {},
+         {"fast", "balanced", "reference"},
+         {}},
+        {"limits", "what one case may cost", Kind::object, false, {}, {}, {}},
+        {"execution", "how the cases run; changes no result", Kind::object, false, {}, {}, {}},
+    };
+    return keys;
+}
+
+std::span<const Key> factor_keys() {
+    static const std::vector<Key> keys = {
+        {"name", "a parameter of the scene", Kind::word, true, {}, {}, {}},
+        {"between", "[low, high] of a real parameter", Kind::array, false, {}, {}, {}},
+        {"levels", "the values it takes, numbers or words", Kind::array, false, {}, {}, {}},
+        {"scale",
+         "linear: low + u (high - low); log: low (high/low)^u",
+         Kind::word,
+         false,
+         {},
+         {"linear", "log"},
+         json_word("linear")},
+    };
+    return keys;
+}
+
+std::span<const Key> convergence_keys() {
+    static const Convergence standard;
+    static const std::vector<Key> keys = {
+        {"observable", "a scalar observable of the scene", Kind::word, true, {}, {}, {}},
+        {"rule",
+         "replicates: 95 % half-widths over the random sequences below the tolerance at two consecutive checks; "
+         "any_change, all_change: any or all statistics changed by less than the tolerance between two blocks",
+         Kind::word,
+         false,
+         {},
+         {"replicates", "any_change", "all_change"},
+         json_word(standard.rule)},
+        {"gates",
+         "the statistics that are judged",
+         Kind::words,
+         false,
+         {},
+         {"mean", "sd", "skewness", "g1", "kurtosis"},
+         json_list(standard.gates)},
+        {"tolerance", "relative", Kind::number, false, {0, 1, true, true}, {}, fmt::format("{}", standard.tolerance)},
+        {"block", "points between two checks", Kind::whole, false, {4, 1e9}, {}, std::to_string(standard.block)},
+        {"stop", "whether a converged campaign starts no further case", Kind::flag, false, {}, {}, "true"},
+    };
+    return keys;
+}
+
+std::span<const Key> limits_keys() {
+    static const std::vector<Key> keys = {
+        {"wall_seconds", "time an attempt may take, s; 0: no limit", Kind::number, false, not_negative, {}, "0"},
+        {"attempts",
+         "tries of a case that crashes or runs out of time",
+         Kind::whole,
+         false,
+         {1, 1000},
+         {},
+         std::to_string(Limits{}.attempts)},
+    };
+    return keys;
+}
+
+std::span<const Key> execution_keys() {
+    static const std::vector<Key> keys = {
+        {"workers", "worker processes; 0: one per processor", Kind::whole, false, {0, 100'000}, {}, "0"},
+        {"launcher",
+         "argument vector put before a worker, e.g. srun -N1 -n1 --exact",
+         Kind::words,
+         false,
+         {},
+         {},
+         "[]"},
+    };
+    return keys;
+}
+
+std::vector<Key> design_keys(const designs::DesignInfo& design) {
+    std::vector<Key> keys = {{"kind", design.summary, Kind::word, true, {}, {design.name}, {}}};
+    for (const auto& option : design.options) {
+        keys.push_back(key_of(option));
+        if (option.kind == designs::OptionSpec::Kind::rows) {
+            keys.push_back({"file",
+                            "CSV beside the campaign file, one column per factor, its header the names",
+                            Kind::text,
+                            false,
+                            {},
+                            {},
+                            {}});
+        }
+    }
+    return keys;
+}
+
+std::span<const std::string> reserved_names() {
+    static const std::vector<std::string> names = {"campaign",   "sim_case",   "case_input",         "campaign_case",
+                                                   "attempt",    "observable", "observation",        "convergence",
+                                                   "provenance", "series",     "convergence_history"};
+    return names;
+}
+
+}  // namespace grainsweep::campaign

@@ -1,0 +1,40 @@
+// What a campaign file may say, in one table per section: the reader checks against it and the JSON schema
+// prints it, so that neither can know a key which the other does not.
+#pragma once
+
+#include "solver/scenes/values.hpp"
+#include "sweep/designs/design.hpp"
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace grainsweep::campaign {
+
+struct Key {
+    enum class Kind { text, word, words, whole, number, flag, value, object, array };
+    std::string name;
+    std::string meaning;
+    Kind kind = Kind::text;
+    bool required = false;
+    Interval bounds{};               ///< of whole and number
+    std::vector<std::string> words;  ///< of word and words
+    std::string standard;            ///< JSON text of the default; empty: none
+};
+
+/// Allowed in every object, read by nobody: a text or a list of texts.
+inline constexpr std::string_view notes_key = "notes";
+
+[[nodiscard]] std::span<const Key> campaign_keys();
+[[nodiscard]] std::span<const Key> factor_keys();
+[[nodiscard]] std::span<const Key> convergence_keys();
+[[nodiscard]] std::span<const Key> limits_keys();
+[[nodiscard]] std::span<const Key> execution_keys();
+/// "kind", the design's options and, where it takes rows, "file".
+[[nodiscard]] std::vector<Key> design_keys(const designs::DesignInfo& design);
+
+/// Names a campaign cannot have: the tables and views of the database are called so.
+[[nodiscard]] std::span<const std::string> reserved_names();
+
+}  // namespace grainsweep::campaign

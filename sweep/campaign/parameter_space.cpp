@@ -1,0 +1,72 @@
+#include "sweep/campaign/campaign.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace grainsweep::campaign {
+
+namespace {
+
+/// -0 and 0 are one question.
+double unsigned_zero(double x) {
+    return x == 0 ? 0 : x;
+}
+
+double value_at(const Between& range, double u) {
+    if (range.scale == Scale::log) return range.low * std::pow(range.high / range.low, u);
+    return range.low + u * (range.high - range.low);
+}
+
+const Value& value_at(const Levels& range, double u) {
+    const auto count = static_cast<double>(range.values.size());
+    const double index = std::clamp(std::floor(count * u), 0.0, count - 1);  // the last level also at u = 1
+    return range.values[static_cast<std::size_t>(index)];
+}
+
+Value value_at(const Factor& factor, double u) {
+    return std::visit([u](const auto& range) -> Value { return value_at(range, u); }, factor.range);
+}
+
+}  // namespace
+
+Value coerced(const Value& value, const Value& like) {
+    if (const auto* whole = std::get_if<std::int64_t>(&value); whole != nullptr && like.index() == 0) {
+        return unsigned_zero(static_cast<double>(*whole));
+    }
+    if (const auto* real = std::get_if<double>(&value)) {
+        if (like.index() == 1 && *real == std::floor(*real) && std::abs(*real) < 0x1p63) {
+            return static_cast<std::int64_t>(*real);
+        }
+        return unsigned_zero(*real);
+    }
+    return value;
+}
+
+Inputs ParameterSpace::at(std::span<const double> u) const {
+    assert(u.size() == factors.size());
+    std::vector<Value> row;
+    row.reserve(factors.size());
+    for (std::size_t j = 0; j < factors.size(); ++j) row.push_back(value_at(factors[j], u[j]));
+    return at(row);
+}
+
+Inputs ParameterSpace::at(std::span<const Value> row) const {
+    assert(row.size() == factors.size());
+    Inputs inputs = scene->defaults();
+    const auto set = [&inputs](const std::string& name, const Value& value) {
+        Value& slot = inputs.at(name);
+        slot = coerced(value, slot);
+    };
+    for (const auto& [name, value] : fixed) set(name, value);
+    for (std::size_t j = 0; j < factors.size(); ++j) set(factors[j].name, row[j]);
+    return inputs;
+}
+
+std::vector<std::string> filter_names(const Campaign& campaign) {
+    std::vector<std::string> names;
+    for (const auto& parameter : campaign.scene().parameters) names.push_back(parameter.name);
+    return names;
+}
+
+}  // namespace grainsweep::campaign

@@ -1,0 +1,139 @@
+#include "sweep/campaign/reader.hpp"
+
+#include "sweep/campaign/relevance.hpp"
+#include "sweep/campaign/sections.hpp"
+#include "sweep/campaign/wrong_question.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+
+namespace grainsweep::campaign {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t largest_text = 64ULL << 20U;
+constexpr std::size_t longest_name = 128;  // NAME.db must be a file name
+
+std::string lower(std::string_view word) {
+    std::string folded(word);
+    std::ranges::transform(folded, folded.begin(),
+                           [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+    return folded;
+}
+
+std::string read_name(const Cursor& place) {
+    const auto name = place.text();
+    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+    const auto allowed = [&](char c) { return letter(c) || (c >= '0' && c <= '9'); };
+    if (!letter(name.front()) || !std::ranges::all_of(name, allowed) || name.size() > longest_name) {
+        place.refuse(fmt::format(
+            "a name is letters, digits and _, not a digit first, at most {}: it names a view in SQL", longest_name));
+    }
+    // SQL folds the case of names, so do we.
+    const std::string folded = lower(name);
+    if (std::ranges::find(reserved_names(), folded) != reserved_names().end() || folded.starts_with("sqlite_")) {
+        place.refuse("the database has a table or view of this name; take another", name + "_1");
+    }
+    return name;
+}
+
+const SceneInfo& read_scene(const Cursor& place) {
+    std::vector<std::string> known;
+    for (const auto& scene : scene_catalogue()) known.push_back(scene.name);
+    return *find_scene(place.word(known));
+}
+
+std::string read_accuracy(const Cursor& place, const SceneInfo& scene) {
+    std::vector<std::string> offered;
+    for (const auto& [name, inputs] : scene.accuracy) offered.push_back(name);
+    if (offered.empty()) place.refuse(fmt::format("scene '{}' offers no accuracy settings; leave it out", scene.name));
+    return place.word(offered);
+}
+
+/// A parameter that is given but can matter to no case is a misunderstanding.
+void check_relevance(const Section& top, const ParameterSpace& space, const Inputs& given) {
+    for (std::size_t j = 0; j < space.factors.size(); ++j) {
+        const auto* parameter = space.scene->find_parameter(space.factors[j].name);
+        if (const auto reason = no_effect(space, *parameter)) {
+            throw wrong_question(path_of(top.at("factors").path(), j), "", *reason);
+        }
+    }
+    for (const auto& [name, value] : given) {
+        const auto* parameter = space.scene->find_parameter(name);
+        if (const auto reason = no_effect(space, *parameter)) top.at("fixed")[name].refuse(*reason);
+    }
+}
+
+std::string read_text(const fs::path& file) {
+    std::error_code error;
+    const std::string shown_name = file.string();
+    if (!fs::exists(file, error)) {
+        std::vector<std::string> beside;
+        const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+        for (const auto& entry : fs::directory_iterator(folder, error)) {
+            if (entry.path().extension() == ".json") beside.push_back(entry.path().filename().string());
+        }
+        throw wrong_question(shown_name, "", "there is no such campaign file",
+                             nearest_word(file.filename().string(), beside));
+    }
+    if (fs::is_directory(file, error)) throw wrong_question(shown_name, "", "is a folder, not a campaign file");
+    std::ifstream stream(file, std::ios::binary);
+    std::string text;
+    std::string chunk(1U << 16U, '\0');
+    while (stream.read(chunk.data(), static_cast<std::streamsize>(chunk.size())) || stream.gcount() > 0) {
+        text.append(chunk, 0, static_cast<std::size_t>(stream.gcount()));
+        if (text.size() > largest_text) {
+            throw wrong_question(shown_name, "", "a campaign file has at most 64 MiB; give long lists as a CSV file");
+        }
+    }
+    if (!stream.eof()) throw wrong_question(shown_name, "", "the file cannot be read");
+    return text;
+}
+
+}  // namespace
+
+Campaign parse_campaign(std::string_view text, const fs::path& folder) {
+    if (text.size() > largest_text) throw wrong_question("", "", "a campaign file has at most 64 MiB");
+    const Json document = parse_json(text);
+    const Section top(Cursor(document, "$"), campaign_keys());
+
+    Campaign campaign;
+    campaign.text = text;
+    campaign.name = read_name(top.at("campaign"));
+    campaign.space.scene = &read_scene(top.at("scene"));
+    campaign.seed = static_cast<std::uint64_t>(top.whole("seed", 1));
+    campaign.replicates = top.whole("replicates", 1);
+    if (const auto where = top.find("where")) campaign.where = where->text();
+
+    auto& space = campaign.space;
+    space.factors = read_factors(top.at("factors"), *space.scene, folder);
+    if (const auto fixed = top.find("fixed")) space.fixed = read_fixed(*fixed, space, folder);
+    const Inputs given = space.fixed;
+    if (const auto accuracy = top.find("accuracy")) campaign.accuracy = read_accuracy(*accuracy, *space.scene);
+    resolve_accuracy(space, campaign.accuracy);
+    check_relevance(top, space, given);
+
+    read_design(top.at("design"), campaign, folder);
+    if (const auto convergence = top.find("convergence")) {
+        campaign.convergence = read_convergence(*convergence, campaign);
+    }
+    if (const auto limits = top.find("limits")) campaign.limits = read_limits(*limits);
+    if (const auto execution = top.find("execution")) campaign.execution = read_execution(*execution);
+    return campaign;
+}
+
+Campaign read_campaign(const fs::path& file) {
+    const std::string text = read_text(file);
+    try {
+        return parse_campaign(text, file.parent_path());
+    } catch (const WrongQuestion& wrong) {
+        throw WrongQuestion(fmt::format("{}: {}", file.string(), wrong.what()));
+    }
+}
+
+}  // namespace grainsweep::campaign

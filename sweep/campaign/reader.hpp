@@ -1,0 +1,24 @@
+// The campaign file: from JSON to a checked Campaign, or one sentence saying what is wrong with it.
+#pragma once
+
+#include "sweep/campaign/campaign.hpp"
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace grainsweep::campaign {
+
+/// Reads and checks a campaign file. Throws WrongQuestion naming the file, the JSON path, the value, the rule
+/// and the nearest right word. Files it names (a packing, listed rows) lie beside it.
+[[nodiscard]] Campaign read_campaign(const std::filesystem::path& file);
+
+/// The same from text; `folder` is where the files it names lie.
+[[nodiscard]] Campaign parse_campaign(std::string_view text, const std::filesystem::path& folder);
+
+/// A value of a parameter as a command line gives it ("0.3", "sjkr"), checked as a campaign file's would be.
+/// `where` names the place in messages.
+[[nodiscard]] Value parse_value(const ParameterSpec& parameter, std::string_view word,
+                                const std::filesystem::path& folder, std::string_view where);
+
+}  // namespace grainsweep::campaign

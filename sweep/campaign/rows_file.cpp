@@ -1,0 +1,116 @@
+// Listed rows from CSV (RFC 4180): a header that names the factors in any order, then one point a line.
+#include "sweep/campaign/reader.hpp"
+#include "sweep/campaign/sections.hpp"
+#include "sweep/campaign/wrong_question.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+namespace grainsweep::campaign {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uintmax_t largest_file = 256ULL << 20U;
+
+using Record = std::vector<std::string>;
+
+std::string_view trimmed(std::string_view cell) {
+    constexpr std::string_view blank = " \t";
+    const auto first = cell.find_first_not_of(blank);
+    return first == std::string_view::npos ? "" : cell.substr(first, cell.find_last_not_of(blank) - first + 1);
+}
+
+/// One record from `rest`, which advances behind its line end. Quoted cells may hold commas and line ends.
+Record take_record(std::string_view& rest) {
+    Record record(1);
+    bool quoted = false;
+    std::size_t k = 0;
+    for (; k < rest.size(); ++k) {
+        const char c = rest[k];
+        if (quoted && c == '"' && k + 1 < rest.size() && rest[k + 1] == '"') {
+            record.back() += rest[++k];
+        } else if (c == '"') {
+            quoted = !quoted;
+        } else if (!quoted && c == ',') {
+            record.emplace_back();
+        } else if (!quoted && c == '\n') {
+            break;
+        } else if (quoted || c != '\r') {
+            record.back() += c;
+        }
+    }
+    rest.remove_prefix(std::min(k + 1, rest.size()));
+    for (auto& cell : record) cell = trimmed(cell);
+    return record;
+}
+
+std::string read_text(const Cursor& file, const fs::path& path) {
+    std::error_code error;
+    if (!fs::is_regular_file(path, error)) file.refuse("there is no such file beside the campaign file");
+    if (fs::file_size(path, error) > largest_file || error)
+        file.refuse("the file must be readable and at most 256 MiB");
+    std::ifstream stream(path, std::ios::binary);
+    std::string text{std::istreambuf_iterator<char>(stream), {}};
+    if (!stream.good() && !stream.eof()) file.refuse("the file cannot be read");
+    constexpr std::string_view utf8_mark = "\xEF\xBB\xBF";
+    if (text.starts_with(utf8_mark)) text.erase(0, utf8_mark.size());
+    return text;
+}
+
+/// For each factor the column that holds it.
+std::vector<std::size_t> columns_of(const Cursor& file, const Record& header, const ParameterSpace& space) {
+    std::vector<std::string> names;
+    for (const auto& factor : space.factors) names.push_back(factor.name);
+    for (std::size_t k = 0; k < header.size(); ++k) {
+        if (std::ranges::find(names, header[k]) == names.end()) {
+            file.refuse(
+                fmt::format("column {} of its header, {}, is no factor of the campaign", k + 1, shown(header[k])),
+                nearest_word(header[k], names));
+        }
+        if (std::count(header.begin(), header.end(), header[k]) > 1) {
+            file.refuse(fmt::format("its header names '{}' twice", header[k]));
+        }
+    }
+    std::vector<std::size_t> columns;
+    for (const auto& name : names) {
+        const auto found = std::ranges::find(header, name);
+        if (found == header.end()) file.refuse(fmt::format("its header has no column for factor '{}'", name));
+        columns.push_back(static_cast<std::size_t>(found - header.begin()));
+    }
+    return columns;
+}
+
+}  // namespace
+
+designs::Rows read_rows_file(const Cursor& file, const ParameterSpace& space, const fs::path& folder) {
+    const std::string name = file.text();
+    const std::string text = read_text(file, folder / name);
+    std::string_view rest = text;
+    const Record header = take_record(rest);
+    const auto columns = columns_of(file, header, space);
+    designs::Rows rows;
+    for (std::size_t number = 2; !rest.empty(); ++number) {
+        const Record record = take_record(rest);
+        if (record == Record{""}) continue;
+        if (record.size() != header.size()) {
+            file.refuse(fmt::format("record {} has {} cells and the header {}", number, record.size(), header.size()));
+        }
+        auto& row = rows.emplace_back();
+        for (std::size_t j = 0; j < columns.size(); ++j) {
+            const auto& parameter = *space.scene->find_parameter(space.factors[j].name);
+            const auto where = fmt::format("{}: {}, record {}, column '{}'", file.path(), name, number, parameter.name);
+            row.push_back(parse_value(parameter, record[columns[j]], folder, where));
+            const Json cell = record[columns[j]];
+            check_in_range(Cursor(cell, where), space.factors[j], row.back());
+        }
+    }
+    if (rows.empty()) file.refuse("it has no row below its header");
+    return rows;
+}
+
+}  // namespace grainsweep::campaign

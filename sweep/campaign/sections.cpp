@@ -1,0 +1,98 @@
+// "convergence", "limits" and "execution".
+#include "sweep/campaign/sections.hpp"
+
+#include "sweep/campaign/wrong_question.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace grainsweep::campaign {
+
+namespace {
+
+constexpr std::int64_t fewest_sequences = 4;  // fewer give no usable error bar
+
+std::string read_observable(const Cursor& place, const SceneInfo& scene) {
+    std::vector<std::string> scalars;
+    for (const auto& observable : scene.observables) {
+        if (observable.shape == Shape::scalar) scalars.push_back(observable.name);
+    }
+    const auto* named = place.json().is_string() ? scene.find_observable(place.json().get<std::string>()) : nullptr;
+    if (named != nullptr && named->shape != Shape::scalar) {
+        place.refuse(fmt::format("is a {}; statistics need a scalar observable: {}",
+                                 named->shape == Shape::series ? "series" : "profile", in_words(scalars)));
+    }
+    return place.word(scalars);
+}
+
+/// Independently scrambled sequences that advance together; 1 where there is none.
+std::int64_t random_sequences(const Campaign& campaign) {
+    const auto& options = campaign.request.options;
+    const auto sequences = options.find("sequences");
+    if (campaign.design != "halton" || sequences == options.end()) return 1;
+    return campaign.request.word("scramble") == "random" ? campaign.request.count("sequences") : 1;
+}
+
+void check_rule(const Section& section, const Convergence& convergence, const Campaign& campaign) {
+    const std::string path = path_of(section.place().path(), "rule");
+    const std::string got = fmt::format("\"{}\"{}", convergence.rule, section.find("rule") ? "" : " by default");
+    const std::int64_t sequences = random_sequences(campaign);
+    if (convergence.rule != "replicates") {
+        if (campaign.design != "lattice") return;
+        throw wrong_question(path, got,
+                             "the points of a lattice come in no useful order, so blocks of them tell nothing; compare "
+                             "lattices campaign by campaign or take a halton design");
+    }
+    if (sequences < fewest_sequences) {
+        throw wrong_question(
+            path, got,
+            fmt::format("this rule needs a halton design with \"scramble\": \"random\" and "
+                        "\"sequences\" of at least {} (8 is good); any_change and all_change need none",
+                        fewest_sequences));
+    }
+    if (convergence.block < 4 * sequences) {
+        throw wrong_question(path_of(section.place().path(), "block"), std::to_string(convergence.block),
+                             fmt::format("must give each of the {} sequences at least 4 points", sequences));
+    }
+}
+
+}  // namespace
+
+Convergence read_convergence(const Cursor& place, const Campaign& campaign) {
+    const Section section(place, convergence_keys());
+    Convergence convergence;
+    convergence.observable = read_observable(section.at("observable"), campaign.scene());
+    convergence.rule = section.word("rule", convergence.rule);
+    convergence.gates = section.words("gates", convergence.gates);
+    convergence.tolerance = section.number("tolerance", convergence.tolerance);
+    convergence.block = section.whole("block", convergence.block);
+    convergence.stop = section.flag("stop", convergence.stop);
+    if (convergence.gates.empty()) section.at("gates").refuse("at least one statistic must be judged");
+    for (std::size_t k = 0; k < convergence.gates.size(); ++k) {
+        const auto earlier = std::span(convergence.gates).first(k);
+        if (std::ranges::find(earlier, convergence.gates[k]) != earlier.end()) {
+            section.at("gates")[k].refuse("this statistic is there twice");
+        }
+    }
+    check_rule(section, convergence, campaign);
+    return convergence;
+}
+
+Limits read_limits(const Cursor& place) {
+    const Section section(place, limits_keys());
+    Limits limits;
+    limits.wall_seconds = section.number("wall_seconds", limits.wall_seconds);
+    limits.attempts = section.whole("attempts", limits.attempts);
+    return limits;
+}
+
+Execution read_execution(const Cursor& place) {
+    const Section section(place, execution_keys());
+    Execution execution;
+    execution.workers = section.whole("workers", execution.workers);
+    execution.launcher = section.words("launcher", {});
+    return execution;
+}
+
+}  // namespace grainsweep::campaign

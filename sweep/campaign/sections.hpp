@@ -1,0 +1,39 @@
+// The sections of a campaign file, each read by its own file. Internal to the reader.
+#pragma once
+
+#include "sweep/campaign/campaign.hpp"
+#include "sweep/campaign/cursor.hpp"
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace grainsweep::campaign {
+
+/// A value of a parameter, of its declared type and within its bounds. A file is looked for in `folder` and
+/// becomes "file:<hash of its contents>:<absolute path>".
+[[nodiscard]] Value read_value(const Cursor& place, const ParameterSpec& parameter,
+                               const std::filesystem::path& folder);
+
+/// The parameter a name means; refuses unknown ones with the nearest.
+[[nodiscard]] const ParameterSpec& read_parameter(const Cursor& name, const SceneInfo& scene);
+
+[[nodiscard]] std::vector<Factor> read_factors(const Cursor& place, const SceneInfo& scene,
+                                               const std::filesystem::path& folder);
+[[nodiscard]] Inputs read_fixed(const Cursor& place, const ParameterSpace& space, const std::filesystem::path& folder);
+
+/// The campaign's design: checks options against the design's OptionSpecs and fills in defaults.
+void read_design(const Cursor& place, Campaign& campaign, const std::filesystem::path& folder);
+/// Rows of factor values from a CSV file whose header names the factors, in any order.
+[[nodiscard]] designs::Rows read_rows_file(const Cursor& file, const ParameterSpace& space,
+                                           const std::filesystem::path& folder);
+/// A listed row must lie within the declared range of its factor.
+void check_in_range(const Cursor& place, const Factor& factor, const Value& value);
+
+[[nodiscard]] Convergence read_convergence(const Cursor& place, const Campaign& campaign);
+[[nodiscard]] Limits read_limits(const Cursor& place);
+[[nodiscard]] Execution read_execution(const Cursor& place);
+
+}  // namespace grainsweep::campaign

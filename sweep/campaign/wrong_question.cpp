@@ -1,0 +1,68 @@
+#include "sweep/campaign/wrong_question.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstddef>
+#include <limits>
+
+namespace grainsweep::campaign {
+
+namespace {
+
+constexpr std::size_t longest_word = 64;  // longer ones are no misspelling of a name of ours
+
+char folded(char c) {
+    return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+}
+
+/// Optimal string alignment distance: insertions, deletions, substitutions and swaps of neighbours, case ignored.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+    const std::size_t columns = b.size() + 1;
+    std::vector<std::size_t> table((a.size() + 1) * columns);
+    const auto at = [&](std::size_t i, std::size_t j) -> std::size_t& { return table[i * columns + j]; };
+    for (std::size_t i = 0; i <= a.size(); ++i) at(i, 0) = i;
+    for (std::size_t j = 0; j <= b.size(); ++j) at(0, j) = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const bool same = folded(a[i - 1]) == folded(b[j - 1]);
+            std::size_t best = std::min({at(i - 1, j) + 1, at(i, j - 1) + 1, at(i - 1, j - 1) + (same ? 0U : 1U)});
+            if (i > 1 && j > 1 && folded(a[i - 1]) == folded(b[j - 2]) && folded(a[i - 2]) == folded(b[j - 1])) {
+                best = std::min(best, at(i - 2, j - 2) + 1);
+            }
+            at(i, j) = best;
+        }
+    }
+    return at(a.size(), b.size());
+}
+
+}  // namespace
+
+WrongQuestion wrong_question(std::string_view where, std::string_view value, std::string_view rule,
+                             std::string_view suggestion) {
+    std::string sentence(where);
+    if (!sentence.empty()) sentence += ": ";
+    if (!value.empty()) sentence += fmt::format("got {}; ", value);
+    sentence += rule;
+    if (!sentence.ends_with('.')) sentence += '.';
+    if (!suggestion.empty()) sentence += fmt::format(" Did you mean '{}'?", suggestion);
+    return WrongQuestion(sentence);
+}
+
+std::string nearest_word(std::string_view word, std::span<const std::string> candidates) {
+    if (word.empty() || word.size() > longest_word) return {};
+    std::string nearest;
+    std::size_t smallest = std::numeric_limits<std::size_t>::max();
+    for (const auto& candidate : candidates) {
+        const std::size_t distance = edit_distance(word, candidate);
+        const std::size_t tolerated = std::max<std::size_t>(1, std::max(word.size(), candidate.size()) / 3);
+        if (distance < smallest && distance <= tolerated) {
+            smallest = distance;
+            nearest = candidate;
+        }
+    }
+    return nearest;
+}
+
+}  // namespace grainsweep::campaign

@@ -1,0 +1,105 @@
+#include "sweep/cli/progress.hpp"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace grainsweep::cli {
+namespace {
+
+using namespace std::chrono_literals;
+
+// On a terminal the bar moves smoothly; in a log a line every few seconds is enough.
+constexpr auto terminal_interval = 100ms;
+constexpr auto log_interval = 5s;
+constexpr std::size_t bar_width = 30;
+
+std::size_t terminal_width() {
+    winsize size{};
+    return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+}  // namespace
+
+std::string duration(double seconds) {
+    if (!std::isfinite(seconds) || seconds < 0) return "?";
+    const auto s = static_cast<long long>(std::llround(seconds));
+    if (s < 60) return fmt::format("{} s", s);
+    if (s < 3600) return fmt::format("{} min {} s", s / 60, s % 60);
+    if (s < 86400) return fmt::format("{} h {} min", s / 3600, s % 3600 / 60);
+    return fmt::format("{} d {} h", s / 86400, s % 86400 / 3600);
+}
+
+ProgressLine::ProgressLine(bool quiet, std::size_t workers)
+    : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), workers_(std::max<std::size_t>(workers, 1)) {}
+
+ProgressLine::~ProgressLine() {
+    if (line_open_) std::fputc('\n', stderr);
+}
+
+void ProgressLine::update(const schedule::Progress& progress) {
+    if (quiet_) return;
+    const auto now = Clock::now();
+    if (predicted_at_start_ < 0) predicted_at_start_ = progress.predicted_left;
+    const bool last = progress.tally.decided == progress.tally.questions;
+    const std::chrono::milliseconds interval = terminal_ ? terminal_interval : log_interval;
+    if (!last && now - shown_ < interval) return;
+    if (!terminal_ && shown_ == Clock::time_point{} && !last) {  // the first line after a first interval
+        shown_ = now;
+        return;
+    }
+    const std::string text = describe(progress, now);
+    if (text == last_) return;
+    shown_ = now;
+    last_ = text;
+    if (terminal_) {
+        fmt::print(stderr, "\r\033[K{}", text.substr(0, terminal_width() - 1));
+        line_open_ = true;
+    } else {
+        fmt::print(stderr, "{}\n", text);
+    }
+    std::fflush(stderr);
+}
+
+void ProgressLine::note(const std::string& text) {
+    erase();
+    fmt::print(stderr, "{}\n", text);
+    last_.clear();
+}
+
+void ProgressLine::erase() {
+    if (line_open_) std::fputs("\r\033[K", stderr);
+    line_open_ = false;
+}
+
+std::string ProgressLine::describe(const schedule::Progress& progress, Clock::time_point now) {
+    const auto& tally = progress.tally;
+    const double elapsed = std::chrono::duration<double>(now - began_).count();
+    const double share =
+        tally.questions == 0 ? 1 : static_cast<double>(tally.decided) / static_cast<double>(tally.questions);
+    const double rate = elapsed > 0 ? static_cast<double>(progress.durable) / elapsed : 0;
+
+    // Time left by predicted cost, corrected by how the prediction fared so far; before anything is
+    // finished, the prediction as it is.
+    const double done = predicted_at_start_ - progress.predicted_left;
+    const double pace = done > 0.02 * predicted_at_start_ ? elapsed / done : 1 / static_cast<double>(workers_);
+    const double left = progress.predicted_left * pace;
+
+    const auto full = static_cast<std::size_t>(share * bar_width);
+    std::string text;
+    if (terminal_) text = "[" + std::string(full, '#') + std::string(bar_width - full, '.') + "] ";
+    text += fmt::format("{}/{} cases", tally.decided, tally.questions);
+    if (rate > 0) {
+        text += rate >= 0.5 ? fmt::format(", {:.3g}/s", rate) : fmt::format(", {:.3g}/min", 60 * rate);
+    }
+    if (tally.decided < tally.questions) text += ", " + duration(left) + " left";
+    if (tally.failed > 0) text += fmt::format(", {} failed", tally.failed);
+    if (!progress.judgement.empty()) text += "; " + progress.judgement;
+    return text;
+}
+
+}  // namespace grainsweep::cli

@@ -1,0 +1,40 @@
+// Progress on standard error: a bar with rate and time left on a terminal, plain lines elsewhere.
+#pragma once
+
+#include "sweep/schedule/scheduler.hpp"
+
+#include <chrono>
+#include <string>
+
+namespace grainsweep::cli {
+
+class ProgressLine {
+public:
+    /// quiet: notes only. `workers` divides the predicted time left.
+    ProgressLine(bool quiet, std::size_t workers);
+    ~ProgressLine();
+    ProgressLine(const ProgressLine&) = delete;
+    ProgressLine& operator=(const ProgressLine&) = delete;
+
+    void update(const schedule::Progress& progress);
+    /// One line above the bar.
+    void note(const std::string& text);
+
+private:
+    using Clock = std::chrono::steady_clock;
+    [[nodiscard]] std::string describe(const schedule::Progress& progress, Clock::time_point now);
+    void erase();
+
+    bool quiet_, terminal_;
+    std::size_t workers_;
+    Clock::time_point began_ = Clock::now();
+    Clock::time_point shown_{};
+    double predicted_at_start_ = -1;
+    bool line_open_ = false;
+    std::string last_;
+};
+
+/// 75 -> "1 min 15 s".
+[[nodiscard]] std::string duration(double seconds);
+
+}  // namespace grainsweep::cli

@@ -1,0 +1,32 @@
+// `run`: from a campaign file to an archive, with everything wired together.
+#pragma once
+
+#include "sweep/campaign/case.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+namespace grainsweep::cli {
+
+struct RunRequest {
+    std::filesystem::path config;
+    std::filesystem::path database;          ///< empty: NAME.db in the current folder
+    std::optional<std::int64_t> workers;     ///< overrides the file's; 0: all cores
+    std::int64_t stop_after_failures = 0;    ///< 0: never
+    std::optional<campaign::Outcome> again;  ///< ask again what ended like this
+    std::int64_t max_cases = 0;              ///< 0: all
+    bool quiet = false;
+};
+
+/// What became of the run; the database is closed again.
+struct RunReport {
+    int exit_code = 0;
+    std::string campaign;
+    std::filesystem::path database;
+    std::string ending;  ///< one sentence
+};
+
+[[nodiscard]] RunReport run_campaign(const RunRequest& request);
+
+}  // namespace grainsweep::cli

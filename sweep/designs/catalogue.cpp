@@ -1,0 +1,72 @@
+#include "stats/random.hpp"
+#include "sweep/designs/kinds.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace grainsweep::designs {
+
+std::span<const DesignInfo> design_catalogue() {
+    static const std::vector<DesignInfo> kinds = {
+        halton_design(),  sobol_design(), latin_hypercube_design(), random_design(),
+        lattice_design(), list_design(),  saltelli_design(),        morris_design(),
+    };
+    return kinds;
+}
+
+const DesignInfo* find_design(std::string_view name) {
+    const auto kinds = design_catalogue();
+    const auto found = std::ranges::find(kinds, name, &DesignInfo::name);
+    return found == kinds.end() ? nullptr : &*found;
+}
+
+namespace {
+
+template <typename T>
+const T& option_of(const DesignRequest& request, std::string_view option) {
+    const auto found = request.options.find(option);
+    if (found == request.options.end())
+        throw std::invalid_argument("the design's option '" + std::string(option) + "' is missing");
+    const T* value = std::get_if<T>(&found->second);
+    if (value == nullptr)
+        throw std::invalid_argument("the design's option '" + std::string(option) + "' is of another kind");
+    return *value;
+}
+
+}  // namespace
+
+std::int64_t DesignRequest::count(std::string_view option) const {
+    return option_of<std::int64_t>(*this, option);
+}
+
+const std::string& DesignRequest::word(std::string_view option) const {
+    return option_of<std::string>(*this, option);
+}
+
+std::uint64_t draw_key(std::uint64_t seed, DrawPurpose purpose, std::uint64_t a, std::uint64_t b, std::uint64_t c) {
+    std::uint64_t h = stats::splitmix64(seed);
+    for (const std::uint64_t part : {static_cast<std::uint64_t>(purpose), a, b, c}) h = stats::splitmix64(h ^ part);
+    return h;
+}
+
+OptionSpec points_option(std::string meaning) {
+    return {.name = "points",
+            .meaning = std::move(meaning),
+            .kind = OptionSpec::Kind::count,
+            .default_value = std::nullopt,
+            .minimum = 1,
+            .maximum = 100'000'000,
+            .words = {}};
+}
+
+std::vector<double> room_for(std::int64_t points, std::size_t dimensions) {
+    constexpr auto most = std::size_t{1} << 31U;
+    const auto count = static_cast<std::size_t>(points);
+    if (dimensions != 0 && count > most / dimensions)
+        throw std::invalid_argument(std::to_string(points) + " points of " + std::to_string(dimensions) +
+                                    " factors are more than a design may hold (2^31 coordinates)");
+    return std::vector<double>(count * dimensions);
+}
+
+}  // namespace grainsweep::designs

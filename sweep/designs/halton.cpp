@@ -1,0 +1,103 @@
+// Halton points: factor j is the radical inverse of the index in the j-th prime (see radical_inverse.hpp).
+// Point p belongs to sequence p mod R and has the index first + p div R in it.
+#include "sweep/designs/braaten_weller.hpp"
+#include "sweep/designs/kinds.hpp"
+#include "sweep/designs/radical_inverse.hpp"
+
+#include <stdexcept>
+
+namespace grainsweep::designs {
+namespace {
+
+std::vector<RadicalInverse> random_inverses(const std::vector<std::uint32_t>& bases, std::uint64_t seed,
+                                            std::uint64_t sequence) {
+    std::vector<RadicalInverse> inverses;
+    for (std::size_t j = 0; j < bases.size(); ++j)
+        inverses.push_back(RadicalInverse::random(bases[j], seed, sequence, j));
+    return inverses;
+}
+
+std::vector<RadicalInverse> braaten_weller_inverses(BraatenWellerTable table, std::size_t dimensions) {
+    if (dimensions > braaten_weller_factors(table))
+        throw std::invalid_argument("this Braaten-Weller table serves " +
+                                    std::to_string(braaten_weller_factors(table)) + " factors, not " +
+                                    std::to_string(dimensions) + "; use \"random\"");
+    std::vector<RadicalInverse> inverses;
+    for (std::size_t j = 0; j < dimensions; ++j)
+        inverses.push_back(RadicalInverse::permuted(braaten_weller_permutation(table, j)));
+    return inverses;
+}
+
+/// One radical inverse per factor of one sequence.
+std::vector<RadicalInverse> inverses_of(const DesignRequest& request, std::uint64_t sequence) {
+    const auto& scramble = request.word("scramble");
+    const std::size_t d = request.dimensions();
+    if (scramble == "braaten_weller") return braaten_weller_inverses(BraatenWellerTable::original, d);
+    if (scramble == "braaten_weller_vc2006") return braaten_weller_inverses(BraatenWellerTable::vc2006, d);
+    const auto bases = primes(d);
+    if (scramble == "random") return random_inverses(bases, request.seed, sequence);
+    std::vector<RadicalInverse> inverses;
+    for (const std::uint32_t base : bases) inverses.push_back(RadicalInverse::plain(base));
+    return inverses;
+}
+
+PointSet sample(const DesignRequest& request) {
+    const auto sequences = static_cast<std::size_t>(request.count("sequences"));
+    if (sequences > 1 && request.word("scramble") != "random")
+        throw std::invalid_argument("several sequences need \"scramble\": \"random\": '" + request.word("scramble") +
+                                    "' would give the same points in each");
+    const std::size_t d = request.dimensions();
+    const auto first = static_cast<std::uint64_t>(request.count("first"));
+    PointSet set{
+        .dimensions = d, .sequences = sequences, .coordinates = room_for(request.count("points"), d), .rows = {}};
+    for (std::size_t sequence = 0; sequence < sequences; ++sequence) {
+        const auto inverses = inverses_of(request, sequence);
+        for (std::size_t j = 0; j < d; ++j)
+            for (std::size_t p = sequence; p < set.size(); p += sequences)
+                set.coordinates[p * d + j] = inverses[j](first + p / sequences);
+    }
+    return set;
+}
+
+}  // namespace
+
+DesignInfo halton_design() {
+    return {
+        .name = "halton",
+        .summary =
+            "Even coverage that extends point by point; the default choice. Worst two-dimensional projection of 8 "
+            "factors at 100 points (star discrepancy, smaller is more even): scramble 'random' 0.079, 'none' 0.117, "
+            "'braaten_weller' 0.144 (sobol 0.064, random points 0.17). With 8 random sequences every statistic has "
+            "an honest error bar, and mean, sd and kurtosis of a smooth response are known to 1 % at about 2400 "
+            "points.",
+        .options = {points_option("number of points, all sequences together"),
+                    {.name = "scramble",
+                     .meaning = "none: plain; braaten_weller: the 1979 permutations (25 factors at most); "
+                                "braaten_weller_vc2006: the table of Vandewoestyne & Cools 2006 (16 factors); "
+                                "random: an independent permutation per digit, from the campaign's seed",
+                     .kind = OptionSpec::Kind::word,
+                     .default_value = std::string("random"),
+                     .minimum = 1,
+                     .maximum = 1,
+                     .words = {"none", "braaten_weller", "braaten_weller_vc2006", "random"}},
+                    {.name = "sequences",
+                     .meaning = "independently scrambled sequences that advance together ('random' only); the "
+                                "convergence rule 'replicates' needs at least 4, 8 are recommended",
+                     .kind = OptionSpec::Kind::count,
+                     .default_value = std::int64_t{1},
+                     .minimum = 1,
+                     .maximum = 10'000,
+                     .words = {}},
+                    {.name = "first",
+                     .meaning = "index of the first point (unscrambled, index 0 is the corner where every factor is "
+                                "at its low end)",
+                     .kind = OptionSpec::Kind::count,
+                     .default_value = std::int64_t{1},
+                     .minimum = 0,
+                     .maximum = 1'000'000'000'000,
+                     .words = {}}},
+        .extends = true,
+        .sample = sample};
+}
+
+}  // namespace grainsweep::designs

@@ -1,0 +1,31 @@
+// Every kind of design, one file each. To add one: its file, its line here, its line in catalogue.cpp.
+#pragma once
+
+#include "sweep/designs/design.hpp"
+
+namespace grainsweep::designs {
+
+[[nodiscard]] DesignInfo halton_design();
+[[nodiscard]] DesignInfo sobol_design();
+[[nodiscard]] DesignInfo latin_hypercube_design();
+[[nodiscard]] DesignInfo random_design();
+[[nodiscard]] DesignInfo lattice_design();
+[[nodiscard]] DesignInfo list_design();
+[[nodiscard]] DesignInfo saltelli_design();
+[[nodiscard]] DesignInfo morris_design();
+
+/// Streams that designs draw from, so that two kinds never share a draw of the campaign's seed.
+enum class DrawPurpose : std::uint64_t { random = 1, latin_hypercube = 2, sobol = 3, morris = 4 };
+
+/// A generator's initial state for a purpose and up to three whole numbers, chained through SplitMix64.
+[[nodiscard]] std::uint64_t draw_key(std::uint64_t seed, DrawPurpose purpose, std::uint64_t a, std::uint64_t b = 0,
+                                     std::uint64_t c = 0);
+
+/// The option "points", as every sampling design declares it.
+[[nodiscard]] OptionSpec points_option(std::string meaning);
+
+/// Room for points x dimensions coordinates; throws std::invalid_argument where that is more than a
+/// machine should be asked for (2^31 coordinates).
+[[nodiscard]] std::vector<double> room_for(std::int64_t points, std::size_t dimensions);
+
+}  // namespace grainsweep::designs

@@ -1,0 +1,112 @@
+#include "sweep/schedule/plan.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace grainsweep::schedule {
+namespace {
+
+using campaign::Outcome;
+
+// Long enough that the longest case of a window is under way while the rest fills the other workers, short
+// enough that a stopped run has a gapless beginning.
+constexpr std::size_t window = 64;
+
+bool good(Outcome outcome) { return outcome == Outcome::completed || outcome == Outcome::skipped; }
+
+}  // namespace
+
+Plan::Plan(std::vector<campaign::Case> questions, std::span<const History> histories, std::vector<double> predicted,
+           std::vector<std::size_t> places, const Rules& rules)
+    : places_(std::move(places)), rules_(rules) {
+    assert(questions.size() == histories.size() && questions.size() == predicted.size());
+    entries_.reserve(questions.size());
+    tally_.questions = questions.size();
+    for (std::size_t i = 0; i < questions.size(); ++i) {
+        Entry entry{std::move(questions[i]), histories[i].attempts, histories[i].failures, predicted[i]};
+        index_.emplace(entry.question.id, i);
+        const auto& known = histories[i].outcome;
+        const bool asked_again = known && rules_.again == known;
+        if (asked_again) entry.failures = 0;
+        const bool exhausted = entry.failures >= rules_.attempts;
+        if (known && !asked_again && (settles(*known) || exhausted)) {
+            decide(entry, *known);
+        } else {
+            queue_.push_back(i);
+            tally_.predicted_left += entry.predicted;
+        }
+        entries_.push_back(std::move(entry));
+    }
+    for (std::size_t from = 0; from < queue_.size(); from += window) {
+        const auto first = queue_.begin() + static_cast<std::ptrdiff_t>(from);
+        const auto last = queue_.begin() + static_cast<std::ptrdiff_t>(std::min(from + window, queue_.size()));
+        std::stable_sort(first, last, [this](std::size_t a, std::size_t b) {
+            return entries_[a].predicted > entries_[b].predicted;
+        });
+    }
+}
+
+std::optional<double> Plan::next_predicted() const {
+    if (closed_ || queue_.empty()) return std::nullopt;
+    const auto limit = static_cast<std::size_t>(rules_.max_cases);
+    if (limit > 0 && tally_.settled_now + tally_.failed_now + running_ >= limit) return std::nullopt;
+    if (too_many_failures()) return std::nullopt;
+    return entries_[queue_.front()].predicted;
+}
+
+std::optional<Plan::Start> Plan::next() {
+    if (!next_predicted()) return std::nullopt;
+    Entry& entry = entries_[queue_.front()];
+    queue_.pop_front();
+    entry.running = true;
+    ++running_;
+    ++entry.attempts;
+    return Start{{entry.question.id, entry.attempts}, &entry.question, entry.predicted};
+}
+
+Plan::Verdict Plan::ended(const campaign::Attempt& attempt, Outcome outcome) {
+    const auto found = index_.find(attempt.case_id);
+    if (found == index_.end()) return Verdict::stale;
+    Entry& entry = entries_[found->second];
+    if (!entry.running || entry.attempts != attempt.number) return Verdict::stale;
+    entry.running = false;
+    --running_;
+    if (settles(outcome)) {
+        ++(good(outcome) ? tally_.settled_now : tally_.failed_now);
+        tally_.predicted_left -= entry.predicted;
+        decide(entry, outcome);
+        return Verdict::settled;
+    }
+    if (outcome != Outcome::abandoned) ++entry.failures;
+    if (entry.failures >= rules_.attempts) {
+        ++tally_.failed_now;
+        tally_.predicted_left -= entry.predicted;
+        decide(entry, outcome);
+        return Verdict::gave_up;
+    }
+    queue_.push_front(found->second);
+    return Verdict::again;
+}
+
+void Plan::returned(const campaign::Attempt& attempt) {
+    const auto found = index_.find(attempt.case_id);
+    if (found == index_.end()) return;
+    Entry& entry = entries_[found->second];
+    if (!entry.running || entry.attempts != attempt.number) return;
+    entry.running = false;
+    --running_;
+    queue_.push_front(found->second);
+}
+
+std::size_t Plan::settled_prefix() {
+    while (prefix_ < places_.size() && entries_[places_[prefix_]].decided) ++prefix_;
+    return prefix_;
+}
+
+void Plan::decide(Entry& entry, Outcome outcome) {
+    entry.decided = true;
+    ++tally_.decided;
+    if (!good(outcome)) ++tally_.failed;
+}
+
+}  // namespace grainsweep::schedule

@@ -1,0 +1,101 @@
+// What to compute next, what a result means, when to give up. Pure: sees no process, clock or archive.
+//
+// Work is per question: cases that stand at several places of a design are computed once. Order is the
+// design's, so that the finished part is always a usable prefix; within a short window long cases go first,
+// which keeps all workers busy to the end.
+#pragma once
+
+#include "sweep/campaign/case.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace grainsweep::schedule {
+
+/// What the archive knew of a question when the run began.
+struct History {
+    std::int64_t attempts = 0;  ///< highest attempt number
+    std::int64_t failures = 0;  ///< of those, crashed or timed out
+    std::optional<campaign::Outcome> outcome = {};
+};
+
+struct Rules {
+    std::int64_t attempts = 3;              ///< tries of a case that crashes or times out
+    std::int64_t stop_after_failures = 0;   ///< start nothing more after so many failed cases; 0: never
+    std::int64_t max_cases = 0;             ///< settle at most so many in this run; 0: all
+    std::optional<campaign::Outcome> again = {};  ///< ask again what ended like this
+};
+
+class Plan {
+public:
+    /// `places[i]` is the index of the question that placed case i asks; `predicted` seconds per question.
+    Plan(std::vector<campaign::Case> questions, std::span<const History> histories, std::vector<double> predicted,
+         std::vector<std::size_t> places, const Rules& rules);
+
+    struct Start {
+        campaign::Attempt attempt;
+        const campaign::Case* question = nullptr;
+        double predicted_seconds = 0;
+    };
+    /// The next attempt to start, if there is one now.
+    [[nodiscard]] std::optional<Start> next();
+    /// Predicted seconds of what next() would return; nothing when there is nothing.
+    [[nodiscard]] std::optional<double> next_predicted() const;
+
+    enum class Verdict { settled, again, gave_up, stale };
+    /// A running attempt ended so.
+    Verdict ended(const campaign::Attempt& attempt, campaign::Outcome outcome);
+    /// It was never begun, or given back: the question returns to the head of the queue.
+    void returned(const campaign::Attempt& attempt);
+    /// Start nothing more.
+    void close() { closed_ = true; }
+
+    [[nodiscard]] bool too_many_failures() const {
+        return rules_.stop_after_failures > 0 &&
+               tally_.failed_now >= static_cast<std::size_t>(rules_.stop_after_failures);
+    }
+    /// Nothing running and nothing that could still be started.
+    [[nodiscard]] bool over() const { return running_ == 0 && !next_predicted(); }
+    /// Length of the longest prefix of the placed cases all of whose questions have their last word.
+    [[nodiscard]] std::size_t settled_prefix();
+    /// Whether the question of placed case i has its last word.
+    [[nodiscard]] bool decided(std::size_t placed) const { return entries_[places_[placed]].decided; }
+
+    struct Tally {
+        std::size_t questions = 0;
+        std::size_t decided = 0;           ///< settled or given up, before or in this run
+        std::size_t settled_now = 0;       ///< completed or skipped in this run
+        std::size_t failed_now = 0;        ///< given up, unstable or rejected in this run
+        std::size_t failed = 0;            ///< given up or settled as unstable or rejected, all told
+        double predicted_left = 0;         ///< seconds
+    };
+    [[nodiscard]] const Tally& tally() const { return tally_; }
+
+private:
+    struct Entry {
+        campaign::Case question;
+        std::int64_t attempts = 0, failures = 0;
+        double predicted = 0;
+        bool decided = false, running = false;
+    };
+    void decide(Entry& entry, campaign::Outcome outcome);
+
+    std::vector<Entry> entries_;
+    std::vector<std::size_t> places_;
+    std::unordered_map<campaign::CaseId, std::size_t> index_;
+    std::deque<std::size_t> queue_;
+    Rules rules_;
+    Tally tally_;
+    std::size_t running_ = 0;
+    std::size_t prefix_ = 0;
+    bool closed_ = false;
+};
+
+}  // namespace grainsweep::schedule

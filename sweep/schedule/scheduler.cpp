@@ -1,0 +1,146 @@
+#include "sweep/schedule/scheduler.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <utility>
+
+namespace grainsweep::schedule {
+namespace {
+
+using campaign::Outcome;
+using namespace std::chrono_literals;
+
+template <class... Cases>
+struct Overloaded : Cases... {
+    using Cases::operator()...;
+};
+
+}  // namespace
+
+Scheduler::Scheduler(std::string campaign, Plan& plan, workers::Crew& crew, store::Recorder& recorder, Judge* judge,
+                     Watchers watchers)
+    : campaign_(std::move(campaign)),
+      plan_(plan),
+      crew_(crew),
+      recorder_(recorder),
+      judge_(judge),
+      watchers_(std::move(watchers)) {}
+
+Ending Scheduler::run() {
+    judge_prefix();  // what the archive already has may be enough
+    while (!at_once_) {
+        hand_out();
+        if (in_flight_ == 0) break;
+        if (auto event = crew_.wait(200ms)) handle(std::move(*event));
+        show();
+    }
+    if (at_once_) {
+        crew_.dismiss();
+    } else {
+        crew_.retire();
+    }
+    recorder_.drain();
+    show();
+    if (early_) return *early_;
+    if (plan_.tally().decided == plan_.tally().questions) return Ending::finished;
+    return plan_.too_many_failures() ? Ending::too_many_failures : Ending::limited;
+}
+
+void Scheduler::hand_out() {
+    while (const auto predicted = plan_.next_predicted()) {
+        if (!crew_.has_room(*predicted)) return;
+        const auto start = plan_.next();
+        recorder_.write(start->attempt);
+        crew_.start(start->attempt, *start->question);
+        ++in_flight_;
+    }
+}
+
+void Scheduler::handle(workers::PoolEvent event) {
+    std::visit(Overloaded{[&](workers::Finished& finished) { handle_finished(finished); },
+                          [&](const workers::Heartbeat&) {},
+                          [&](const workers::Lost& lost) {
+                              if (lost.running) handle_failure(*lost.running, Outcome::crashed, lost.reason);
+                              give_back(lost.queued);
+                          },
+                          [&](const workers::TimedOut& late) {
+                              handle_failure(late.running, Outcome::timed_out, late.reason);
+                              give_back(late.queued);
+                          },
+                          [&](const workers::GivenBack& back) { give_back({back.attempt}); },
+                          [&](const workers::Interrupted& stop) {
+                              plan_.close();
+                              early_ = Ending::interrupted;
+                              crew_.retire();
+                              at_once_ = stop.at_once;
+                          }},
+               event);
+}
+
+void Scheduler::handle_finished(workers::Finished& finished) {
+    --in_flight_;
+    const auto& result = finished.result;
+    if (plan_.ended(result.attempt, result.outcome) == Plan::Verdict::stale) return;
+    if (result.outcome == Outcome::unstable || result.outcome == Outcome::rejected) {
+        watchers_.note(fmt::format("{} {}: {}", result.attempt.case_id.substr(0, 12), to_string(result.outcome),
+                                   result.message));
+    }
+    if (judge_ != nullptr) judge_->learn(result.attempt.case_id, result.observations);
+    if (finished.checkpointed) checkpointed_.push_back(result.attempt.case_id);
+    recorder_.write(std::move(finished.result));
+    judge_prefix();
+}
+
+void Scheduler::handle_failure(const campaign::Attempt& attempt, Outcome outcome, const std::string& reason) {
+    --in_flight_;
+    campaign::CaseResult result;
+    result.attempt = attempt;
+    result.outcome = outcome;
+    result.message = reason;
+    const auto verdict = plan_.ended(attempt, outcome);
+    if (verdict == Plan::Verdict::stale) return;
+    recorder_.write(std::move(result));
+    watchers_.note(fmt::format("{} {} in attempt {}{}: {}", attempt.case_id.substr(0, 12), to_string(outcome),
+                               attempt.number, verdict == Plan::Verdict::again ? ", trying again" : ", giving up",
+                               reason));
+    if (verdict == Plan::Verdict::gave_up) judge_prefix();
+}
+
+void Scheduler::give_back(const std::vector<campaign::Attempt>& attempts) {
+    for (const auto& attempt : attempts) {
+        --in_flight_;
+        plan_.returned(attempt);
+        campaign::CaseResult result;
+        result.attempt = attempt;
+        result.outcome = Outcome::abandoned;
+        result.message = "given back before it was finished";
+        recorder_.write(std::move(result));
+    }
+}
+
+void Scheduler::judge_prefix() {
+    if (judge_ == nullptr || judge_->converged_at()) return;
+    for (auto& row : judge_->judge(plan_.settled_prefix())) recorder_.write(store::Recorder::Checked{campaign_, row});
+    progress_.judgement = judge_->verdict();
+    if (judge_->converged_at() && judge_->stops() && !early_) {
+        plan_.close();
+        early_ = Ending::converged;
+        recorder_.write(store::Recorder::Stopped{campaign_, *judge_->converged_at()});
+    }
+}
+
+void Scheduler::show() {
+    const auto durable = recorder_.take_durable();
+    progress_.durable += durable.size();
+    for (const auto& result : durable) {
+        if (checkpointed_.empty()) break;
+        if (std::erase(checkpointed_, result.attempt.case_id) > 0) watchers_.forget_checkpoint(result.attempt.case_id);
+    }
+    progress_.tally = plan_.tally();
+    progress_.running = in_flight_;
+    progress_.predicted_left = plan_.tally().predicted_left;
+    watchers_.progress(progress_);
+}
+
+}  // namespace grainsweep::schedule

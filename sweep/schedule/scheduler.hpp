@@ -1,0 +1,71 @@
+// The one loop: hand out what the plan says, record what the crew answers, ask the judge whether it is
+// enough. Decisions are the plan's and the judge's, processes the crew's, the disk the recorder's.
+#pragma once
+
+#include "sweep/schedule/judge.hpp"
+#include "sweep/schedule/plan.hpp"
+#include "sweep/store/recorder.hpp"
+#include "sweep/workers/crew.hpp"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace grainsweep::schedule {
+
+enum class Ending {
+    finished,     ///< every question has its last word
+    converged,    ///< the statistics were good enough
+    limited,      ///< as many cases as asked for in this run
+    too_many_failures,
+    interrupted,
+};
+
+/// What is told to whoever watches. Counts are of results on disk.
+struct Progress {
+    Plan::Tally tally;
+    std::size_t durable = 0;  ///< results of this run on disk
+    std::size_t running = 0;
+    double predicted_left = 0;
+    std::string judgement;  ///< last verdict on convergence in one line
+};
+
+struct Watchers {
+    std::function<void(const Progress&)> progress = [](const Progress&) {};
+    std::function<void(const std::string&)> note = [](const std::string&) {};  ///< a failure, in one line
+    std::function<void(const campaign::CaseId&)> forget_checkpoint = [](const campaign::CaseId&) {};
+};
+
+class Scheduler {
+public:
+    Scheduler(std::string campaign, Plan& plan, workers::Crew& crew, store::Recorder& recorder, Judge* judge,
+              Watchers watchers);
+
+    /// Runs until nothing is left to do, the judge is satisfied or the user interrupts. Returns with
+    /// everything on disk. Throws only for a broken world.
+    Ending run();
+
+private:
+    void hand_out();
+    void handle(workers::PoolEvent event);
+    void handle_finished(workers::Finished& finished);
+    void handle_failure(const campaign::Attempt& attempt, campaign::Outcome outcome, const std::string& reason);
+    void give_back(const std::vector<campaign::Attempt>& attempts);
+    void judge_prefix();
+    void show();
+
+    std::string campaign_;
+    Plan& plan_;
+    workers::Crew& crew_;
+    store::Recorder& recorder_;
+    Judge* judge_;
+    Watchers watchers_;
+    Progress progress_;
+    std::size_t in_flight_ = 0;
+    std::optional<Ending> early_;
+    bool at_once_ = false;
+    std::vector<campaign::CaseId> checkpointed_;
+};
+
+}  // namespace grainsweep::schedule

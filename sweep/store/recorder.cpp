@@ -1,0 +1,93 @@
+#include "sweep/store/recorder.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace grainsweep::store {
+namespace {
+
+// A group is as large as what arrived while the last one was being synced, within these bounds.
+constexpr std::size_t group_rows = 256;
+constexpr auto group_wait = std::chrono::milliseconds(10);
+
+template <class... Cases>
+struct Overloaded : Cases... {
+    using Cases::operator()...;
+};
+
+}  // namespace
+
+Recorder::Recorder(Store& store) : store_(store), thread_([this] { run(); }) {}
+
+Recorder::~Recorder() {
+    {
+        const std::lock_guard lock(mutex_);
+        closing_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+}
+
+void Recorder::rethrow() {
+    if (failure_) std::rethrow_exception(failure_);
+}
+
+void Recorder::write(Entry entry) {
+    const std::lock_guard lock(mutex_);
+    rethrow();
+    waiting_.push_back(std::move(entry));
+    if (waiting_.size() == 1 || waiting_.size() >= group_rows) changed_.notify_all();
+}
+
+std::vector<campaign::CaseResult> Recorder::take_durable() {
+    const std::lock_guard lock(mutex_);
+    rethrow();
+    return std::exchange(durable_, {});
+}
+
+void Recorder::drain() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return failure_ || (waiting_.empty() && !busy_); });
+    rethrow();
+}
+
+void Recorder::run() {
+    std::unique_lock lock(mutex_);
+    while (true) {
+        changed_.wait(lock, [this] { return closing_ || !waiting_.empty(); });
+        if (waiting_.empty()) return;
+        if (!closing_) changed_.wait_for(lock, group_wait, [this] { return closing_ || waiting_.size() >= group_rows; });
+        std::vector<Entry> group = std::exchange(waiting_, {});
+        busy_ = true;
+        lock.unlock();
+        std::vector<campaign::CaseResult> kept;
+        std::exception_ptr failure;
+        try {
+            store_.group([&] {
+                for (auto& entry : group) {
+                    std::visit(Overloaded{[&](const campaign::Attempt& attempt) { store_.begin(attempt); },
+                                          [&](campaign::CaseResult& result) {
+                                              if (store_.finish(result)) kept.push_back(std::move(result));
+                                          },
+                                          [&](const Checked& c) { store_.record(c.campaign, c.row); },
+                                          [&](const Stopped& s) { store_.stop(s.campaign, s.points); }},
+                               entry);
+                }
+            });
+        } catch (...) {
+            failure = std::current_exception();
+        }
+        lock.lock();
+        busy_ = false;
+        if (failure) {
+            failure_ = failure;
+            changed_.notify_all();
+            return;
+        }
+        std::ranges::move(kept, std::back_inserter(durable_));
+        changed_.notify_all();
+    }
+}
+
+}  // namespace grainsweep::store

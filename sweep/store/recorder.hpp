@@ -1,0 +1,54 @@
+// The archive's pen: writes on a thread of its own in durable groups, so that dispatch never waits for the
+// disk. What was written is known to be on disk only when take_durable() returns it.
+#pragma once
+
+#include "sweep/store/store.hpp"
+
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <variant>
+#include <vector>
+
+namespace grainsweep::store {
+
+class Recorder {
+public:
+    struct Stopped {
+        std::string campaign;
+        std::int64_t points = 0;
+    };
+    struct Checked {
+        std::string campaign;
+        ConvergenceRow row;
+    };
+    using Entry = std::variant<campaign::Attempt, campaign::CaseResult, Checked, Stopped>;
+
+    /// The store must outlive the recorder and is the recorder's alone until drain() returned.
+    explicit Recorder(Store& store);
+    ~Recorder();
+
+    /// Hands over; returns at once. Throws what an earlier write failed with.
+    void write(Entry entry);
+    /// Results that reached the disk since the last call, in the order written.
+    [[nodiscard]] std::vector<campaign::CaseResult> take_durable();
+    /// Waits until everything handed over is on disk; throws what a write failed with.
+    void drain();
+
+private:
+    void run();
+    void rethrow();
+
+    Store& store_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::vector<Entry> waiting_;
+    std::vector<campaign::CaseResult> durable_;
+    std::exception_ptr failure_;
+    bool busy_ = false, closing_ = false;
+    std::thread thread_;
+};
+
+}  // namespace grainsweep::store

@@ -1,0 +1,107 @@
+#include "sweep/workers/compute.hpp"
+
+#include <fmt/format.h>
+#include <time.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+namespace grainsweep::workers {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+double processor_seconds() {
+    timespec t{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+// Slices of about this length: short enough to answer a stop at once, long enough to cost nothing.
+constexpr double slice_seconds = 0.1;
+
+/// Advances until the scene is over, fails or is given up; true when it is over.
+bool drive(Scene& scene, const Watch& watch) {
+    double slice = 0;  // in the scene's time; the first is a single step, then it adapts to the clock
+    while (!scene.finished() && scene.health().stable()) {
+        const auto start = Clock::now();
+        const double before = scene.time();
+        scene.advance(before + slice);
+        const double took = std::max(seconds_since(start), 1e-6);
+        const double advanced = scene.time() - before;
+        slice = advanced * std::clamp(slice_seconds / took, 0.25, 4.0);
+        if (!watch(scene)) return false;
+    }
+    return true;
+}
+
+bool all_finite(const Observations& observations) {
+    const auto infinite = [](double x) { return std::isinf(x); };
+    for (const auto& [name, value] : observations.scalars) {
+        if (infinite(value)) return false;
+    }
+    for (const auto& [name, samples] : observations.series) {
+        if (std::ranges::any_of(samples, infinite, &Sample::value)) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+std::optional<campaign::CaseResult> compute(const campaign::Case& question, std::int64_t attempt, Artefacts& artefacts,
+                                            const std::optional<Bytes>& resume, const Watch& watch,
+                                            const std::function<void(const Scene&)>& finished) {
+    const auto start = Clock::now();
+    const double processor_start = processor_seconds();
+    campaign::CaseResult result;
+    result.attempt = {question.id, attempt};
+    const auto close = [&](campaign::Outcome outcome, std::string message) {
+        result.outcome = outcome;
+        result.message = std::move(message);
+        result.cost.wall_seconds = seconds_since(start);
+        result.cost.cpu_seconds = processor_seconds() - processor_start;
+        return result;
+    };
+
+    const SceneInfo* info = find_scene(question.scene);
+    if (info == nullptr || info->revision != question.revision) {
+        return close(campaign::Outcome::rejected,
+                     fmt::format("this build has no scene '{}' of revision {}", question.scene, question.revision));
+    }
+    const Inputs inputs = info->on_attempt ? info->on_attempt(question.inputs, attempt) : question.inputs;
+    if (auto proven = info->proven_answer(inputs)) {
+        result.observations = std::move(proven->observations);
+        return close(campaign::Outcome::skipped, proven->reason);
+    }
+    try {
+        auto scene = info->make(inputs, question.seed, artefacts);
+        if (resume) {
+            try {
+                scene->restore(*resume);
+            } catch (const std::invalid_argument&) {
+                scene = info->make(inputs, question.seed, artefacts);  // a checkpoint that does not fit
+            }
+        }
+        if (!drive(*scene, watch)) return std::nullopt;
+        result.cost.particle_steps = scene->particle_steps();
+        result.cost.phases = scene->phase_seconds();
+        if (finished) finished(*scene);
+        if (const Health health = scene->health(); !health.stable()) {
+            return close(campaign::Outcome::unstable, health.reason);
+        }
+        scene->observe(result.observations);
+    } catch (const std::invalid_argument& error) {
+        return close(campaign::Outcome::rejected, error.what());
+    }
+    if (!all_finite(result.observations)) {
+        result.observations = {};
+        return close(campaign::Outcome::unstable, "an observable became infinite");
+    }
+    return close(campaign::Outcome::completed, "");
+}
+
+}  // namespace grainsweep::workers

@@ -1,0 +1,161 @@
+// The include rules of the house: every #include of every file is read, and a forbidden one fails.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Include {
+    std::string file;    // relative to the repository
+    std::string target;  // as written
+    bool ours = false;   // in quotes
+};
+
+bool starts_with_any(const std::string& text, const std::vector<std::string>& prefixes) {
+    return std::ranges::any_of(prefixes, [&](const auto& prefix) { return text.starts_with(prefix); });
+}
+
+std::vector<fs::path> sources(const std::vector<std::string>& folders) {
+    std::vector<fs::path> found;
+    for (const auto& folder : folders) {
+        const fs::path root = fs::path(GRAINSWEEP_SOURCE) / folder;
+        if (!fs::exists(root)) continue;
+        for (const auto& entry : fs::recursive_directory_iterator(root)) {
+            const auto extension = entry.path().extension();
+            if (entry.is_regular_file() && (extension == ".cpp" || extension == ".hpp" || extension == ".inl")) {
+                found.push_back(entry.path());
+            }
+        }
+    }
+    return found;
+}
+
+std::vector<Include> all_includes() {
+    static const std::regex pattern(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"])");
+    std::vector<Include> includes;
+    for (const auto& path : sources({"stats", "solver", "sweep"})) {
+        std::ifstream stream(path);
+        std::string line;
+        while (std::getline(stream, line)) {
+            std::smatch match;
+            if (std::regex_search(line, match, pattern)) {
+                includes.push_back({fs::relative(path, GRAINSWEEP_SOURCE).string(), match[2], match[1] == "\""});
+            }
+        }
+    }
+    return includes;
+}
+
+/// Room -> the prefixes of ours it may include.
+struct Rule {
+    std::string room;
+    std::vector<std::string> may;
+};
+
+const std::vector<Rule>& rules() {
+    static const std::vector<Rule> table = {
+        {"stats/", {"stats/"}},
+        {"solver/particles/", {"solver/particles/", "solver/geometry/", "stats/"}},
+        {"solver/geometry/", {"solver/geometry/", "stats/"}},
+        {"solver/dem/", {"solver/dem/", "solver/particles/", "solver/geometry/", "stats/"}},
+        {"solver/flow/", {"solver/flow/", "solver/geometry/", "stats/"}},
+        {"solver/coupling/",
+         {"solver/coupling/", "solver/flow/", "solver/dem/", "solver/particles/", "solver/geometry/", "stats/"}},
+        {"solver/observables/",
+         {"solver/observables/", "solver/dem/engine.hpp", "solver/flow/", "solver/particles/", "solver/geometry/", "stats/"}},
+        {"solver/scenes/", {"solver/", "stats/"}},
+        {"sweep/campaign/", {"sweep/campaign/", "sweep/designs/", "solver/scenes/values.hpp", "solver/scenes/scene.hpp"}},
+        {"sweep/designs/", {"sweep/designs/", "solver/scenes/values.hpp", "stats/"}},
+        {"sweep/schedule/",
+         {"sweep/schedule/", "sweep/campaign/", "sweep/store/", "sweep/workers/crew.hpp", "stats/", "solver/scenes/values.hpp"}},
+        {"sweep/workers/", {"sweep/workers/", "sweep/campaign/", "sweep/store/artefacts.hpp", "solver/scenes/values.hpp",
+                            "solver/scenes/scene.hpp"}},
+        {"sweep/store/", {"sweep/store/", "sweep/campaign/", "solver/scenes/values.hpp", "solver/scenes/scene.hpp", "stats/"}},
+        {"sweep/report/",
+         {"sweep/report/", "sweep/store/", "sweep/campaign/", "sweep/schedule/", "stats/", "solver/scenes/values.hpp", "solver/scenes/scene.hpp"}},
+        {"sweep/cli/", {"sweep/", "stats/", "solver/scenes/values.hpp", "solver/scenes/scene.hpp"}},
+    };
+    return table;
+}
+
+/// Library header prefix -> the only places that may include it.
+struct Library {
+    std::string header;
+    std::vector<std::string> only;
+};
+
+const std::vector<Library>& libraries() {
+    static const std::vector<Library> table = {
+        {"sqlite3.h", {"sweep/store/database", "sweep/store/expression"}},
+        {"boost/process", {"sweep/workers/pool."}},
+        {"boost/asio", {"sweep/workers/pool."}},
+        {"nlohmann/", {"sweep/campaign/", "sweep/workers/message.cpp", "sweep/report/", "sweep/cli/"}},
+        {"CLI/", {"sweep/cli/"}},
+        {"Eigen/", {"solver/", "stats/"}},
+        {"boost/", {"sweep/workers/pool.", "sweep/designs/", "solver/", "stats/"}},
+        {"fmt/", {"sweep/"}},
+        {"chrono", {"sweep/"}},
+    };
+    return table;
+}
+
+TEST(House, EveryRoomKnowsOnlyWhomItMay) {
+    const auto includes = all_includes();
+    ASSERT_GT(includes.size(), 100U);
+    for (const auto& include : includes) {
+        if (!include.ours) continue;
+        const auto rule = std::ranges::find_if(
+            rules(), [&](const Rule& candidate) { return include.file.starts_with(candidate.room); });
+        ASSERT_NE(rule, rules().end()) << include.file << " is in no room of the house";
+        EXPECT_TRUE(starts_with_any(include.target, rule->may)) << include.file << " includes " << include.target;
+    }
+}
+
+TEST(House, ScenesDoNotKnowScenes) {
+    for (const auto& include : all_includes()) {
+        if (!include.ours || !include.file.starts_with("solver/scenes/") ||
+            !include.target.starts_with("solver/scenes/")) {
+            continue;
+        }
+        const std::string target = fs::path(include.target).stem().string();
+        const std::string file = fs::path(include.file).stem().string();
+        const bool shared = target == "values" || target == "scene" || target == "catalogue";
+        EXPECT_TRUE(shared || file.starts_with(target) || target.starts_with(file))
+            << include.file << " includes " << include.target;
+    }
+}
+
+TEST(House, LibrariesStayWhereTheyBelong) {
+    for (const auto& include : all_includes()) {
+        if (include.ours) continue;
+        for (const auto& library : libraries()) {
+            if (!include.target.starts_with(library.header)) continue;
+            // The rehearsal waits on purpose; it is no physics.
+            if (library.header == "chrono" && include.file == "solver/scenes/rehearsal.cpp") break;
+            EXPECT_TRUE(starts_with_any(include.file, library.only))
+                << include.file << " includes <" << include.target << ">";
+            break;
+        }
+    }
+}
+
+TEST(House, NoDrawersAndNoEndlessFiles) {
+    for (const auto& path : sources({"stats", "solver", "sweep", "tests"})) {
+        const std::string stem = path.stem().string();
+        for (const char* drawer : {"util", "utils", "common", "helper", "helpers", "manager", "core", "misc"}) {
+            EXPECT_NE(stem, drawer) << path;
+        }
+        std::ifstream stream(path);
+        const auto lines = std::count(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>(), '\n');
+        EXPECT_LE(lines, 700) << path << " has " << lines << " lines";
+    }
+}
+
+}  // namespace

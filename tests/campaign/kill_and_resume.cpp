@@ -1,0 +1,148 @@
+// Boss and workers are killed at seeded moments; the campaign is resumed and must end in the same science.
+#include "stats/random.hpp"
+#include "tests/support/process.hpp"
+
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+
+#include <chrono>
+#include <csignal>
+#include <string>
+#include <thread>
+
+using namespace grainsweep::test;
+using grainsweep::stats::Stream;
+
+namespace {
+
+constexpr int cases = 240;
+
+const char* config = R"({
+  "campaign": "killed",
+  "scene": "rehearsal",
+  "factors": [{"name": "x1", "between": [0, 1]}, {"name": "x2", "between": [0, 1]}, {"name": "x3", "between": [0, 1]}],
+  "fixed": {"response": "ishigami", "noise": 0.1, "wait_seconds": 0.004},
+  "design": {"kind": "halton", "points": 240},
+  "limits": {"attempts": 1000}
+})";
+
+/// Finished cases in the database now; -1 while there is no database yet.
+int finished(const std::filesystem::path& file) {
+    sqlite3* db = nullptr;
+    int count = -1;
+    if (sqlite3_open_v2(file.c_str(), &db, SQLITE_OPEN_READONLY, nullptr) == SQLITE_OK) {
+        sqlite3_busy_timeout(db, 1000);
+        sqlite3_stmt* statement = nullptr;
+        if (sqlite3_prepare_v2(db, "SELECT count(outcome) FROM killed", -1, &statement, nullptr) == SQLITE_OK &&
+            sqlite3_step(statement) == SQLITE_ROW) {
+            count = sqlite3_column_int(statement, 0);
+        }
+        sqlite3_finalize(statement);
+    }
+    sqlite3_close(db);
+    return count;
+}
+
+/// Waits until at least `count` cases are finished, or the run is over.
+void await(Process& run, const std::filesystem::path& db, int count) {
+    while (run.running() && finished(db) < count) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+std::string dump(const std::filesystem::path& db, const Folder& folder) {
+    const auto ended = grainsweep({"dump", db.string()}, folder.path());
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    return ended.out;
+}
+
+/// The dump of a campaign nobody disturbed.
+std::string undisturbed(const Folder& folder, const std::string& workers) {
+    const auto db = folder / ("calm" + workers + ".db");
+    const auto ended = grainsweep({"run", (folder / "c.json").string(), "--db", db.string(), "-j", workers, "--quiet"},
+                                  folder.path());
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    return dump(db, folder);
+}
+
+/// No worker of this database lives on: waits a moment for the kernel to deliver the news.
+void expect_no_orphans(const std::filesystem::path& db) {
+    for (int tries = 0; tries < 200 && !processes_with(db.string()).empty(); ++tries) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    EXPECT_TRUE(processes_with(db.string()).empty()) << "a process outlived its boss";
+}
+
+TEST(KillAndResume, OneAndFourWorkersGiveTheSameDump) {
+    const Folder folder;
+    folder.write("c.json", config);
+    const std::string one = undisturbed(folder, "1");
+    EXPECT_GT(one.size(), 1000U);
+    EXPECT_EQ(one, undisturbed(folder, "4"));
+}
+
+TEST(KillAndResume, BossKilledAtTwentySeededMoments) {
+    const Folder folder;
+    folder.write("c.json", config);
+    const std::string calm = undisturbed(folder, "2");
+    for (std::uint64_t moment = 0; moment < 20; ++moment) {
+        const auto db = folder / ("boss" + std::to_string(moment) + ".db");
+        const auto command =
+            grainsweep_command({"run", (folder / "c.json").string(), "--db", db.string(), "-j", "2", "--quiet"});
+        {
+            Process run(command, folder.path());
+            await(run, db, static_cast<int>(Stream(11, moment).uniform(0) * cases));
+            run.signal(SIGKILL);
+            run.wait();
+        }
+        expect_no_orphans(db);
+        const auto ended = Process(command, folder.path()).wait();
+        EXPECT_EQ(ended.code, 0) << ended.err;
+        EXPECT_EQ(dump(db, folder), calm) << "killed at moment " << moment;
+    }
+}
+
+TEST(KillAndResume, WorkersKilledAtTwentySeededMoments) {
+    const Folder folder;
+    folder.write("c.json", config);
+    const std::string calm = undisturbed(folder, "2");
+    const auto db = folder / "workers.db";
+    const auto command =
+        grainsweep_command({"run", (folder / "c.json").string(), "--db", db.string(), "-j", "2", "--quiet"});
+    Process run(command, folder.path());
+    int killed = 0;
+    for (std::uint64_t moment = 0; moment < 20; ++moment) {
+        await(run, db, static_cast<int>(static_cast<double>(moment) / 20 * cases));
+        const auto workers = run.children();
+        if (workers.empty()) continue;
+        const auto victim = static_cast<std::size_t>(Stream(12, moment).bits(0) % workers.size());
+        ::kill(workers[victim], SIGKILL);
+        ++killed;
+    }
+    EXPECT_GE(killed, 15);
+    const auto ended = run.wait();
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_EQ(dump(db, folder), calm);
+    expect_no_orphans(db);
+}
+
+TEST(KillAndResume, AnInterruptedRunParksAndGoesOn) {
+    const Folder folder;
+    folder.write("c.json", config);
+    const std::string calm = undisturbed(folder, "2");
+    const auto db = folder / "interrupted.db";
+    const auto command =
+        grainsweep_command({"run", (folder / "c.json").string(), "--db", db.string(), "-j", "2", "--quiet"});
+    {
+        Process run(command, folder.path());
+        await(run, db, cases / 3);
+        run.signal(SIGINT);
+        EXPECT_EQ(run.wait().code, 130);
+    }
+    EXPECT_LT(finished(db), cases);
+    EXPECT_GE(finished(db), cases / 3);
+    expect_no_orphans(db);
+    const auto ended = Process(command, folder.path()).wait();
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_EQ(dump(db, folder), calm);
+}
+
+}  // namespace

@@ -1,0 +1,142 @@
+// Misfortune is recorded, retried as its kind deserves, and never spoils the rest of the campaign.
+#include "tests/support/process.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <string>
+
+using namespace grainsweep::test;
+
+namespace {
+
+std::string config(const std::string& fixed, const std::string& limits = R"({"attempts": 3})") {
+    return R"({"campaign": "trouble", "scene": "rehearsal",
+      "factors": [{"name": "x1", "between": [0, 1]}, {"name": "behaviour", "levels": ["normal", )" +
+           fixed + R"(]}], "design": {"kind": "halton", "scramble": "none", "points": 8}, "limits": )" + limits + "}";
+}
+
+nlohmann::json query(const Folder& folder, const std::string& sql) {
+    const auto ended = grainsweep({"query", "trouble.db", sql, "--format", "json"}, folder.path());
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    return nlohmann::json::parse(ended.out);
+}
+
+TEST(Outcomes, ACrashingCaseIsTriedThreeTimesAndTheRestIsComputed) {
+    const Folder folder;
+    folder.write("c.json", config("\"crash\""));
+    const auto run = grainsweep({"run", "c.json", "-j", "2", "--quiet"}, folder.path());
+    EXPECT_EQ(run.code, 1) << run.err;
+    const auto rows = query(folder, "SELECT outcome, count(*) AS n, max(attempts) AS tries FROM trouble GROUP BY outcome "
+                                    "ORDER BY outcome");
+    ASSERT_EQ(rows.size(), 2U);
+    EXPECT_EQ(rows[0]["outcome"], "completed");
+    EXPECT_EQ(rows[0]["n"], 4);
+    EXPECT_EQ(rows[1]["outcome"], "crashed");
+    EXPECT_EQ(rows[1]["n"], 4);
+    EXPECT_EQ(rows[1]["tries"], 3);
+    // Running again does not try them again; --again does.
+    EXPECT_EQ(grainsweep({"run", "c.json", "--quiet"}, folder.path()).code, 1);
+    EXPECT_EQ(query(folder, "SELECT max(attempts) AS n FROM trouble")[0]["n"], 3);
+    EXPECT_EQ(grainsweep({"run", "c.json", "--quiet", "--again", "crashed"}, folder.path()).code, 1);
+    EXPECT_EQ(query(folder, "SELECT max(attempts) AS n FROM trouble")[0]["n"], 6);
+}
+
+TEST(Outcomes, ExplainTellsEveryAttempt) {
+    const Folder folder;
+    folder.write("c.json", config("\"crash\""));
+    grainsweep({"run", "c.json", "--quiet"}, folder.path());
+    const std::string id = query(folder, "SELECT case_id FROM trouble WHERE outcome = 'crashed' LIMIT 1")[0]["case_id"];
+    const auto explained = grainsweep({"explain", "trouble.db", id}, folder.path());
+    EXPECT_EQ(explained.code, 0) << explained.err;
+    EXPECT_NE(explained.out.find("signal 9"), std::string::npos) << explained.out;
+    EXPECT_NE(explained.out.find("crashed"), std::string::npos);
+}
+
+TEST(Outcomes, ACrashThatPassesIsForgiven) {
+    const Folder folder;
+    folder.write("c.json", R"({"campaign": "trouble", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
+      "fixed": {"behaviour": "crash", "behave_attempts": 2}, "design": {"kind": "random", "points": 5}})");
+    EXPECT_EQ(grainsweep({"run", "c.json", "-j", "2", "--quiet"}, folder.path()).code, 0);
+    const auto rows = query(folder, "SELECT outcome, attempts, y FROM trouble");
+    ASSERT_EQ(rows.size(), 5U);
+    for (const auto& row : rows) {
+        EXPECT_EQ(row["outcome"], "completed");
+        EXPECT_EQ(row["attempts"], 3);
+        EXPECT_TRUE(row["y"].is_number());
+    }
+}
+
+TEST(Outcomes, AHangingCaseIsStoppedAtItsWallTime) {
+    const Folder folder;
+    folder.write("c.json", config("\"hang\"", R"({"attempts": 1, "wall_seconds": 0.5})"));
+    const auto run = grainsweep({"run", "c.json", "-j", "4", "--quiet"}, folder.path());
+    EXPECT_EQ(run.code, 1) << run.err;
+    const auto rows = query(folder, "SELECT outcome, count(*) AS n FROM trouble GROUP BY outcome ORDER BY outcome");
+    ASSERT_EQ(rows.size(), 2U);
+    EXPECT_EQ(rows[1]["outcome"], "timed_out");
+    EXPECT_EQ(rows[1]["n"], 4);
+}
+
+TEST(Outcomes, AnUnstableCaseIsSettledWithItsReasonAndWithoutNumbers) {
+    const Folder folder;
+    folder.write("c.json", config("\"unstable\""));
+    EXPECT_EQ(grainsweep({"run", "c.json", "--quiet"}, folder.path()).code, 1);
+    const auto rows = query(folder, "SELECT attempts, y FROM trouble WHERE outcome = 'unstable'");
+    ASSERT_EQ(rows.size(), 4U);
+    for (const auto& row : rows) {
+        EXPECT_EQ(row["attempts"], 1);
+        EXPECT_TRUE(row["y"].is_null());
+    }
+}
+
+TEST(Outcomes, AHugeAnswerArrivesWhole) {
+    const Folder folder;
+    folder.write("c.json", config("\"huge\""));
+    EXPECT_EQ(grainsweep({"run", "c.json", "--quiet"}, folder.path()).code, 0);
+    EXPECT_EQ(query(folder, "SELECT count(*) AS n FROM series")[0]["n"], 4 * 20000);
+}
+
+TEST(Outcomes, FailuresCanEndTheRun) {
+    const Folder folder;
+    folder.write("c.json", config("\"unstable\""));
+    EXPECT_EQ(grainsweep({"run", "c.json", "-j", "1", "-k", "1", "--quiet"}, folder.path()).code, 1);
+    EXPECT_LT(query(folder, "SELECT count(outcome) AS n FROM trouble")[0]["n"].get<int>(), 8);
+}
+
+TEST(Outcomes, MaxCasesSettlesThatManyAndNoMore) {
+    const Folder folder;
+    folder.write("c.json", config("\"huge\""));
+    EXPECT_EQ(grainsweep({"run", "c.json", "-j", "2", "--max-cases", "3", "--quiet"}, folder.path()).code, 1);
+    EXPECT_EQ(query(folder, "SELECT count(outcome) AS n FROM trouble")[0]["n"], 3);
+    EXPECT_EQ(grainsweep({"run", "c.json", "-j", "2", "--quiet"}, folder.path()).code, 0);
+    EXPECT_EQ(query(folder, "SELECT max(attempts) AS n FROM trouble")[0]["n"], 1);
+}
+
+TEST(Outcomes, ALauncherThatCannotStartIsABrokenWorldNotAFailedCase) {
+    const Folder folder;
+    folder.write("c.json", R"({"campaign": "trouble", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
+      "design": {"kind": "random", "points": 5}, "execution": {"launcher": ["/bin/false"]}})");
+    const auto run = grainsweep({"run", "c.json", "--quiet"}, folder.path());
+    EXPECT_EQ(run.code, 3) << run.err;
+    EXPECT_NE(run.err.find("/bin/false"), std::string::npos) << run.err;
+}
+
+TEST(Outcomes, ALauncherPrefixCarriesTheWorker) {
+    const Folder folder;
+    folder.write("c.json", R"({"campaign": "trouble", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
+      "design": {"kind": "random", "points": 20}, "execution": {"launcher": ["/usr/bin/env", "-u", "HOME"]}})");
+    EXPECT_EQ(grainsweep({"run", "c.json", "--quiet"}, folder.path()).code, 0);
+}
+
+TEST(Outcomes, ReplayAgreesWithTheArchive) {
+    const Folder folder;
+    folder.write("c.json", config("\"huge\""));
+    grainsweep({"run", "c.json", "--quiet"}, folder.path());
+    const std::string id = query(folder, "SELECT case_id FROM trouble LIMIT 1")[0]["case_id"];
+    const auto replay = grainsweep({"replay", "trouble.db", id.substr(0, 10)}, folder.path());
+    EXPECT_EQ(replay.code, 0) << replay.err << replay.out;
+}
+
+}  // namespace

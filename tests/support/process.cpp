@@ -1,0 +1,129 @@
+#include "tests/support/process.hpp"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+namespace grainsweep::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string contents(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::atomic<int> serial = 0;
+
+}  // namespace
+
+Process::Process(const std::vector<std::string>& argv, const fs::path& folder) {
+    const std::string tag = std::to_string(::getpid()) + "_" + std::to_string(serial++);
+    out_ = folder / ("out_" + tag);
+    err_ = folder / ("err_" + tag);
+    std::vector<char*> pointers;
+    for (const auto& word : argv) pointers.push_back(const_cast<char*>(word.c_str()));
+    pointers.push_back(nullptr);
+    pid_ = ::fork();
+    if (pid_ < 0) throw std::runtime_error("fork failed");
+    if (pid_ == 0) {
+        const int out = ::open(out_.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0644);
+        const int err = ::open(err_.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0644);
+        const int null = ::open("/dev/null", O_RDONLY);
+        ::dup2(null, 0);
+        ::dup2(out, 1);
+        ::dup2(err, 2);
+        if (::chdir(folder.c_str()) != 0) ::_exit(126);
+        ::execv(pointers[0], pointers.data());
+        ::_exit(127);
+    }
+}
+
+Process::~Process() {
+    if (!reaped_) {
+        ::kill(pid_, SIGKILL);
+        ::waitpid(pid_, &status_, 0);
+    }
+}
+
+bool Process::running() {
+    if (reaped_) return false;
+    if (::waitpid(pid_, &status_, WNOHANG) == pid_) reaped_ = true;
+    return !reaped_;
+}
+
+void Process::signal(int number) const {
+    if (!reaped_) ::kill(pid_, number);
+}
+
+Ended Process::wait() {
+    if (!reaped_) ::waitpid(pid_, &status_, 0);
+    reaped_ = true;
+    const int code = WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_);
+    return {code, contents(out_), contents(err_)};
+}
+
+std::vector<pid_t> Process::children() const {
+    std::vector<pid_t> found;
+    for (const auto& entry : fs::directory_iterator("/proc")) {
+        const std::string name = entry.path().filename();
+        if (!std::ranges::all_of(name, [](char c) { return c >= '0' && c <= '9'; })) continue;
+        const std::string stat = contents(entry.path() / "stat");
+        const auto after = stat.rfind(')');
+        if (after == std::string::npos) continue;
+        pid_t parent = 0;
+        if (std::sscanf(stat.c_str() + after + 1, " %*c %d", &parent) == 1 && parent == pid_) {
+            found.push_back(std::stoi(name));
+        }
+    }
+    return found;
+}
+
+std::vector<std::string> grainsweep_command(const std::vector<std::string>& arguments) {
+    std::vector<std::string> argv = {GRAINSWEEP_EXECUTABLE};
+    argv.insert(argv.end(), arguments.begin(), arguments.end());
+    return argv;
+}
+
+Ended grainsweep(const std::vector<std::string>& arguments, const fs::path& folder) {
+    return Process(grainsweep_command(arguments), folder).wait();
+}
+
+std::vector<pid_t> processes_with(const std::string& text) {
+    std::vector<pid_t> found;
+    for (const auto& entry : fs::directory_iterator("/proc")) {
+        const std::string name = entry.path().filename();
+        if (!std::ranges::all_of(name, [](char c) { return c >= '0' && c <= '9'; })) continue;
+        std::string command = contents(entry.path() / "cmdline");
+        std::ranges::replace(command, '\0', ' ');
+        if (command.find(text) != std::string::npos) found.push_back(std::stoi(name));
+    }
+    return found;
+}
+
+Folder::Folder() {
+    std::string name = (fs::temp_directory_path() / "grainsweep_test_XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a folder for the test");
+    path_ = name;
+}
+
+Folder::~Folder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+}
+
+fs::path Folder::write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name, std::ios::binary) << text;
+    return path_ / name;
+}
+
+}  // namespace grainsweep::test

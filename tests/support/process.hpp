@@ -1,0 +1,61 @@
+// Real processes for tests of the real executable.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace grainsweep::test {
+
+struct Ended {
+    int code = -1;  ///< exit code, or 128 + signal
+    std::string out, err;
+};
+
+/// A child process whose output goes to files in a folder of its own; killed when it goes out of scope.
+class Process {
+public:
+    Process(const std::vector<std::string>& argv, const std::filesystem::path& folder);
+    ~Process();
+    Process(const Process&) = delete;
+    Process& operator=(const Process&) = delete;
+
+    [[nodiscard]] pid_t pid() const { return pid_; }
+    [[nodiscard]] bool running();
+    void signal(int number) const;
+    Ended wait();
+    /// Processes whose parent is this one.
+    [[nodiscard]] std::vector<pid_t> children() const;
+
+private:
+    pid_t pid_ = -1;
+    int status_ = 0;
+    bool reaped_ = false;
+    std::filesystem::path out_, err_;
+};
+
+/// Runs grainsweep with the arguments, to its end, in `folder`.
+Ended grainsweep(const std::vector<std::string>& arguments, const std::filesystem::path& folder);
+[[nodiscard]] std::vector<std::string> grainsweep_command(const std::vector<std::string>& arguments);
+
+/// Processes whose command line contains `text`.
+[[nodiscard]] std::vector<pid_t> processes_with(const std::string& text);
+
+/// A new empty folder, removed at the end of the test program's life of this object.
+class Folder {
+public:
+    Folder();
+    ~Folder();
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+    [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+    std::filesystem::path write(const std::string& name, const std::string& text) const;
+
+private:
+    std::filesystem::path path_;
+};
+
+}  // namespace grainsweep::test

@@ -1,0 +1,65 @@
+#include "tests/support/ask_design.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+using namespace grainsweep;
+using grainsweep::testing::ask_design;
+
+TEST(RandomDesign, ExtendsAndDependsOnTheSeed) {
+    const auto few = ask_design("random", 3, {{"points", 10}}, 7);
+    const auto many = ask_design("random", 3, {{"points", 1000}}, 7);
+    EXPECT_TRUE(std::equal(few.coordinates.begin(), few.coordinates.end(), many.coordinates.begin()));
+    EXPECT_NE(ask_design("random", 3, {{"points", 10}}, 8).coordinates, few.coordinates);
+    EXPECT_EQ(std::set<double>(many.coordinates.begin(), many.coordinates.end()).size(), 3000U);
+}
+
+TEST(RandomDesign, IsUniformAndUncorrelated) {
+    constexpr std::size_t n = 20'000;
+    const auto set = ask_design("random", 2, {{"points", std::int64_t{n}}}, 3);
+    double mean = 0;
+    double product = 0;
+    for (std::size_t p = 0; p < n; ++p) {
+        mean += set.point(p)[0] / n;
+        product += 12 * (set.point(p)[0] - 0.5) * (set.point(p)[1] - 0.5) / n;
+    }
+    // Standard errors 0.00204 and 0.0071: four of them.
+    EXPECT_NEAR(mean, 0.5, 0.0082);
+    EXPECT_NEAR(product, 0.0, 0.0283);
+}
+
+TEST(LatinHypercube, VisitsEveryCellOfEveryFactorOnce) {
+    constexpr std::size_t n = 97;
+    const auto set = ask_design("latin_hypercube", 5, {{"points", std::int64_t{n}}}, 11);
+    for (std::size_t j = 0; j < 5; ++j) {
+        std::set<std::size_t> cells;
+        for (std::size_t p = 0; p < n; ++p) cells.insert(static_cast<std::size_t>(set.point(p)[j] * n));
+        EXPECT_EQ(cells.size(), n);
+    }
+}
+
+TEST(ListDesign, TakesRowsAsTheyAre) {
+    const designs::Rows rows = {{0.5, std::string("sjkr")}, {std::int64_t{3}, std::string("sjkr2")}};
+    const auto set = ask_design("list", 2, {{"rows", rows}});
+    EXPECT_EQ(set.size(), 2U);
+    EXPECT_EQ(set.rows, rows);
+    EXPECT_THROW((void)ask_design("list", 3, {{"rows", rows}}), std::invalid_argument);
+    EXPECT_THROW((void)ask_design("list", 3, {}), std::invalid_argument);
+}
+
+TEST(Catalogue, EveryKindSaysWhatItIsAndExtendsWhereItClaims) {
+    for (const auto& info : designs::design_catalogue()) {
+        EXPECT_GT(info.summary.size(), 60U) << info.name;
+        if (info.name == "list" || info.name == "lattice") continue;
+        const std::string counter = info.options.front().name;  // the required count
+        const auto few = ask_design(info.name, 3, {{counter, 16}}, 9);
+        const auto many = ask_design(info.name, 3, {{counter, 64}}, 9);
+        EXPECT_GT(many.size(), few.size());
+        EXPECT_EQ(info.extends, std::equal(few.coordinates.begin(), few.coordinates.end(), many.coordinates.begin()))
+            << info.name;
+        EXPECT_TRUE(std::ranges::all_of(many.coordinates, [](double u) { return u >= 0 && u <= 1; })) << info.name;
+    }
+}

@@ -1,0 +1,194 @@
+// The loop with a scripted crew: no process, no clock.
+#include "sweep/schedule/scheduler.hpp"
+
+#include "solver/scenes/scene.hpp"
+#include "sweep/campaign/campaign.hpp"
+#include "tests/support/process.hpp"
+
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <functional>
+#include <numeric>
+
+using namespace grainsweep;
+using namespace grainsweep::schedule;
+using campaign::Outcome;
+
+namespace {
+
+/// Answers with whatever the script says; y = number of cases handed out so far.
+class ScriptedCrew final : public workers::Crew {
+public:
+    using Script = std::function<workers::PoolEvent(const campaign::Attempt&)>;
+    explicit ScriptedCrew(Script script, std::size_t room = 1) : script_(std::move(script)), room_(room) {}
+
+    [[nodiscard]] bool has_room(double) const override { return !retired && waiting_.size() < room_; }
+    void start(const campaign::Attempt& attempt, const campaign::Case&) override {
+        started.push_back(attempt);
+        waiting_.push_back(attempt);
+    }
+    [[nodiscard]] std::optional<workers::PoolEvent> wait(std::chrono::milliseconds) override {
+        if (waiting_.empty()) return std::nullopt;
+        const auto attempt = waiting_.front();
+        waiting_.pop_front();
+        return script_(attempt);
+    }
+    [[nodiscard]] std::size_t outstanding() const override { return waiting_.size(); }
+    void retire() override { retired = true; }
+    void dismiss() override { dismissed = true; }
+
+    std::vector<campaign::Attempt> started;
+    bool retired = false, dismissed = false;
+
+private:
+    Script script_;
+    std::size_t room_;
+    std::deque<campaign::Attempt> waiting_;
+};
+
+workers::Finished completed(const campaign::Attempt& attempt, double y = 1) {
+    campaign::CaseResult result;
+    result.attempt = attempt;
+    result.observations.scalars["y"] = y;
+    return {result, false};
+}
+
+class SchedulerLoop : public testing::Test {
+protected:
+    SchedulerLoop() : store(folder / "loop.db", store::Store::Mode::create) {
+        campaign.name = "loop";
+        campaign.space.scene = find_scene("rehearsal");
+        campaign.space.factors = {{"x1", campaign::Between{0, 1}}};
+        campaign.design = "random";
+        for (int point = 0; point < 10; ++point) {
+            Inputs inputs = campaign.scene().defaults();
+            inputs["x1"] = 0.1 * point;
+            placed.push_back({campaign::make_case(campaign.scene(), inputs, 1), point, 0, 0});
+        }
+    }
+
+    Ending run(ScriptedCrew& crew, Rules rules = {}, Watchers watchers = {}) {
+        const auto states = store.enrol(campaign, placed, {});
+        std::vector<campaign::Case> questions;
+        std::vector<History> histories;
+        for (std::size_t i = 0; i < placed.size(); ++i) {
+            questions.push_back(placed[i].question);
+            histories.push_back({states[i].attempts, states[i].failures, states[i].outcome});
+        }
+        std::vector<std::size_t> places(placed.size());
+        std::iota(places.begin(), places.end(), std::size_t{0});
+        Plan plan(questions, histories, std::vector<double>(placed.size(), 1.0), places, rules);
+        store::Recorder recorder(store);
+        Scheduler scheduler("loop", plan, crew, recorder, nullptr, std::move(watchers));
+        return scheduler.run();
+    }
+
+    std::int64_t stored(const std::string& outcome) {
+        const auto table = store.query("SELECT count(*) FROM loop WHERE outcome = '" + outcome + "'");
+        return std::get<std::int64_t>(table.rows.at(0).at(0));
+    }
+
+    test::Folder folder;
+    campaign::Campaign campaign;
+    std::vector<campaign::PlacedCase> placed;
+    store::Store store;
+};
+
+TEST_F(SchedulerLoop, RecordsEveryAnswer) {
+    ScriptedCrew crew([](const auto& attempt) { return completed(attempt); }, 3);
+    EXPECT_EQ(run(crew), Ending::finished);
+    EXPECT_EQ(crew.started.size(), 10U);
+    EXPECT_EQ(stored("completed"), 10);
+    EXPECT_TRUE(crew.retired);
+}
+
+TEST_F(SchedulerLoop, ALostWorkersCaseIsTriedAgainAndItsQueueCostsNothing) {
+    int losses = 0;
+    ScriptedCrew crew(
+        [&](const auto& attempt) -> workers::PoolEvent {
+            if (losses < 2 && attempt.case_id == placed[0].question.id) {
+                ++losses;
+                return workers::Lost{attempt, {}, "worker ended by signal 9 (Killed)"};
+            }
+            return completed(attempt);
+        },
+        1);
+    EXPECT_EQ(run(crew), Ending::finished);
+    EXPECT_EQ(stored("completed"), 10);
+    const auto attempts = store.attempts(placed[0].question.id);
+    ASSERT_EQ(attempts.size(), 3U);
+    EXPECT_EQ(attempts[0].outcome, Outcome::crashed);
+    EXPECT_NE(attempts[0].message.find("signal 9"), std::string::npos);
+    EXPECT_EQ(attempts[2].outcome, Outcome::completed);
+}
+
+TEST_F(SchedulerLoop, ASecondInterruptEndsAtOnceAndTheNextRunGoesOn) {
+    int after = 0;
+    ScriptedCrew parking(
+        [&](const auto& attempt) -> workers::PoolEvent {
+            if (++after == 4) return workers::Interrupted{true};
+            return completed(attempt);
+        },
+        1);
+    EXPECT_EQ(run(parking), Ending::interrupted);
+    EXPECT_TRUE(parking.dismissed);
+    EXPECT_EQ(stored("completed"), 3);
+
+    ScriptedCrew second([](const auto& attempt) { return completed(attempt); });
+    EXPECT_EQ(run(second), Ending::finished);
+    EXPECT_EQ(second.started.size(), 7U);
+    EXPECT_EQ(stored("completed"), 10);
+    EXPECT_EQ(second.started.front().number, 2);  // the attempt that was under way is not counted twice
+}
+
+TEST_F(SchedulerLoop, ParkedCasesAreAbandonedAndAskedAgain) {
+    bool interrupted = false;
+    ScriptedCrew crew(
+        [&](const auto& attempt) -> workers::PoolEvent {
+            if (attempt.case_id == placed[2].question.id) return workers::GivenBack{attempt};
+            if (attempt.case_id == placed[1].question.id && !interrupted) {
+                interrupted = true;
+                return workers::Interrupted{};
+            }
+            return completed(attempt);
+        },
+        3);
+    run(crew);
+    EXPECT_EQ(stored("abandoned"), 1);
+    ScriptedCrew second([](const auto& attempt) { return completed(attempt); });
+    EXPECT_EQ(run(second), Ending::finished);
+}
+
+TEST_F(SchedulerLoop, StopsAfterTooManyFailures) {
+    ScriptedCrew crew([](const auto& attempt) {
+        campaign::CaseResult result;
+        result.attempt = attempt;
+        result.outcome = Outcome::unstable;
+        result.message = "overlap";
+        return workers::Finished{result, false};
+    });
+    Rules rules;
+    rules.stop_after_failures = 2;
+    EXPECT_EQ(run(crew, rules), Ending::too_many_failures);
+    EXPECT_EQ(crew.started.size(), 2U);
+    EXPECT_EQ(stored("unstable"), 2);
+}
+
+TEST_F(SchedulerLoop, CheckpointsAreForgottenOnlyAfterTheResultIsOnDisk) {
+    std::vector<std::string> forgotten;
+    Watchers watchers;
+    watchers.forget_checkpoint = [&](const campaign::CaseId& id) {
+        EXPECT_EQ(store::Store(folder / "loop.db", store::Store::Mode::read).result(id)->outcome, Outcome::completed);
+        forgotten.push_back(id);
+    };
+    ScriptedCrew crew([&](const auto& attempt) {
+        auto finished = completed(attempt);
+        finished.checkpointed = attempt.case_id == placed[4].question.id;
+        return finished;
+    });
+    run(crew, {}, std::move(watchers));
+    EXPECT_EQ(forgotten, std::vector<std::string>{placed[4].question.id});
+}
+
+}  // namespace

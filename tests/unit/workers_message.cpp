@@ -1,0 +1,65 @@
+#include "sweep/workers/message.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+using namespace grainsweep;
+using namespace grainsweep::workers;
+
+namespace {
+
+TEST(Message, AQuestionSurvivesTheTrip) {
+    workers::Run run;
+    run.attempt = 3;
+    run.question = {"0123", "rehearsal", 2,
+                    {{"x1", 0.1}, {"whole", 2.0}, {"count", std::int64_t{2}}, {"word", std::string("a \"b\"\n")}},
+                    (1ULL << 63U) - 1};
+    const std::string line = encode(run);
+    EXPECT_EQ(line.find('\n'), std::string::npos);
+    const auto back = std::get<workers::Run>(decode_to_worker(line));
+    EXPECT_EQ(back.attempt, 3);
+    EXPECT_EQ(back.question, run.question);  // a real that is whole stays a real
+}
+
+TEST(Message, AnAnswerSurvivesTheTripToTheLastBit) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    Done done;
+    done.result.attempt = {"ab", 2};
+    done.result.outcome = campaign::Outcome::unstable;
+    done.result.message = "speed 3e9 m/s at \xff\n";
+    done.result.observations.scalars = {{"mfr", 0.1 + 0.2}, {"undefined", nan}};
+    done.result.observations.series["flux"] = {{1.0 / 3, nan, 5e-324}, {nan, 2, 1.7976931348623157e308}};
+    done.result.cost = {1.5, 1.25, 1e9, {{"settle", 0.5}}};
+    done.checkpointed = true;
+    const auto back = std::get<Done>(decode_to_boss(encode(done)));
+    EXPECT_EQ(back.result.attempt, done.result.attempt);
+    EXPECT_EQ(back.result.outcome, done.result.outcome);
+    EXPECT_EQ(back.result.observations.scalars.at("mfr"), 0.1 + 0.2);
+    EXPECT_TRUE(std::isnan(back.result.observations.scalars.at("undefined")));
+    const auto& series = back.result.observations.series.at("flux");
+    ASSERT_EQ(series.size(), 2U);
+    EXPECT_EQ(series[0].time, 1.0 / 3);
+    EXPECT_TRUE(std::isnan(series[0].bin));
+    EXPECT_EQ(series[0].value, 5e-324);
+    EXPECT_EQ(series[1].value, 1.7976931348623157e308);
+    EXPECT_EQ(back.result.cost.phases.at("settle"), 0.5);
+    EXPECT_TRUE(back.checkpointed);
+}
+
+TEST(Message, HeartbeatsAreShort) {
+    const std::string line = encode(ToBoss{Alive{{std::string(32, 'f'), 12}, 0.123456789012345}});
+    EXPECT_LT(line.size(), 200U);
+    EXPECT_EQ(std::get<Alive>(decode_to_boss(line)).progress, 0.123456789012345);
+}
+
+TEST(Message, NonsenseIsRefused) {
+    for (const char* line : {"", "{", "[]", "{\"done\": 3}", "{\"run\": {}}", "hello", "{\"done\": {\"id\": \"x\"}}"}) {
+        EXPECT_THROW((void)decode_to_boss(line), std::invalid_argument) << line;
+        EXPECT_THROW((void)decode_to_worker(line), std::invalid_argument) << line;
+    }
+}
+
+}  // namespace
