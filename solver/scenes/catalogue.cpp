@@ -24,6 +24,7 @@ Inputs SceneInfo::defaults() const {
 
 std::span<const SceneInfo> scene_catalogue() {
     static const std::vector<SceneInfo> scenes = {
+        tpms_discharge_scene(),
         rehearsal_scene(),
     };
     return scenes;

@@ -5,6 +5,7 @@
 
 namespace grainsweep {
 
+[[nodiscard]] SceneInfo tpms_discharge_scene();
 [[nodiscard]] SceneInfo rehearsal_scene();
 
 }  // namespace grainsweep
