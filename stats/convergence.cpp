@@ -14,7 +14,6 @@ namespace {
 
 constexpr std::array<std::string_view, 3> rule_names = {"replicates", "any_change", "all_change"};
 constexpr std::int64_t fewest_sequences = 4;
-constexpr std::size_t stretches = 8;
 
 /// An error in the unit of the statistic -> what the tolerance is compared with.
 double scaled(Statistic statistic, double error, double value) {
@@ -26,24 +25,6 @@ double scaled(Statistic statistic, double error, double value) {
         default:
             return error / std::abs(value);
     }
-}
-
-/// Statistics of all values but one stretch, for each of the stretches.
-std::array<Summary, stretches> leave_one_out(std::span<const double> values) {
-    std::array<Moments, stretches> parts;
-    const auto cut = [&](std::size_t g) { return values.size() * g / stretches; };
-    for (std::size_t g = 0; g < stretches; ++g) parts[g].add(values.subspan(cut(g), cut(g + 1) - cut(g)));
-    std::array<Summary, stretches> summaries;
-    std::vector<double> others;
-    for (std::size_t left_out = 0; left_out < stretches; ++left_out) {
-        Moments moments;
-        for (std::size_t g = 0; g < stretches; ++g)
-            if (g != left_out) moments.merge(parts[g]);
-        others.assign(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(cut(left_out)));
-        others.insert(others.end(), values.begin() + static_cast<std::ptrdiff_t>(cut(left_out + 1)), values.end());
-        summaries[left_out] = moments.summary(middle(others));
-    }
-    return summaries;
 }
 
 /// log(measure) = a + slope log(points) over the checks of the last three quarters, and its value now.
@@ -116,7 +97,7 @@ void Convergence::add(std::int64_t point, double value) {
     const bool finite = std::isfinite(value);
     if (finite) pooled_.sample.add(value);
     if (sequences_.empty()) {
-        if (finite) values_.push_back(value);
+        if (finite) stretches_.add(value);
         return;
     }
     auto& sequence = sequences_[static_cast<std::size_t>(point % settings_.sequences)];
@@ -150,8 +131,8 @@ void Convergence::check() {
 void Convergence::find_errors(Checkpoint& now) {
     std::vector<Summary> summaries;
     for (auto& sequence : sequences_) summaries.push_back(sequence.moments.summary(sequence.sample.middle()));
-    if (sequences_.empty() && values_.size() >= 2 * stretches) {
-        const auto parts = leave_one_out(values_);
+    if (sequences_.empty() && stretches_.size() >= 2 * StretchedSample::stretches) {
+        const auto parts = stretches_.leave_one_out();
         summaries.assign(parts.begin(), parts.end());
     }
     std::vector<double> repetitions(summaries.size());

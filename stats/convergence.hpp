@@ -18,6 +18,7 @@
 #pragma once
 
 #include "stats/moments.hpp"
+#include "stats/stretches.hpp"
 
 #include <array>
 #include <cstdint>
@@ -112,7 +113,7 @@ private:
     ConvergenceSettings settings_;
     std::vector<Sequence> sequences_;
     Sequence pooled_;
-    std::vector<double> values_;  ///< finite, in order; kept where errors come from the jackknife
+    StretchedSample stretches_;  ///< filled where errors come from the jackknife
     std::vector<Checkpoint> checkpoints_;
 };
 

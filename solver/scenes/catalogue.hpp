@@ -5,7 +5,11 @@
 
 namespace grainsweep {
 
+<<<<<<< HEAD
 [[nodiscard]] SceneInfo tpms_discharge_scene();
+=======
+[[nodiscard]] SceneInfo powder_spreading_scene();
+>>>>>>> main
 [[nodiscard]] SceneInfo rehearsal_scene();
 
 }  // namespace grainsweep

@@ -1,8 +1,73 @@
-#include "solver/scenes/scene.hpp"
+// The front door: the table of commands, and the only place where an exception ends.
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/cli/build_facts.hpp"
+#include "sweep/cli/command.hpp"
+#include "sweep/store/store.hpp"
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
+#include <exception>
+#include <iostream>
+#include <string>
 
-int main() {
-    for (const auto& scene : grainsweep::scene_catalogue()) std::puts(scene.name.c_str());
-    return 0;
+namespace {
+
+using namespace grainsweep;
+
+constexpr int wrong_question = 2;
+constexpr int broken_world = 3;
+
+std::vector<cli::Command> all_commands() {
+    std::vector<cli::Command> commands;
+    for (const auto& group : {
+             cli::plan_commands(),
+             cli::run_commands(),
+             cli::archive_commands(),
+             cli::study_commands(),
+             cli::solve_commands(),
+             cli::catalogue_commands(),
+         }) {
+        commands.insert(commands.end(), group.begin(), group.end());
+    }
+    return commands;
+}
+
+int complain(int code, const std::string& sentence) {
+    std::cerr << "grainsweep: " << sentence << '\n';
+    return code;
+}
+
+/// What was printed must have arrived: a full disk is no success.
+int flushed(int code) {
+    errno = 0;
+    std::cout.flush();
+    if (!std::cout || std::fflush(stdout) != 0) {
+        throw store::BrokenWorld(std::string("standard output cannot be written: ") + std::strerror(errno) + ".");
+    }
+    return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app("Parameter sweeps of granular processes: from one JSON file to an answer.", "grainsweep");
+    cli::Action chosen;
+    try {
+        const auto commands = all_commands();
+        app.set_version_flag("--version", cli::version_text, "version, commit, compiler, flags, instruction path");
+        app.require_subcommand(0, 1);
+        cli::declare(app, commands, chosen);
+        cli::check_command(commands, argc, argv);
+        app.parse(argc, argv);
+        return flushed(chosen ? chosen() : 0);
+    } catch (const CLI::Success& asked) {  // --help and --version
+        return app.exit(asked);
+    } catch (const CLI::ParseError& error) {
+        return complain(wrong_question, cli::sentence_of(error, app));
+    } catch (const campaign::WrongQuestion& error) {
+        return complain(wrong_question, error.what());
+    } catch (const std::exception& error) {  // BrokenWorld and what nobody foresaw
+        return complain(broken_world, error.what());
+    }
 }

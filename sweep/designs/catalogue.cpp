@@ -61,11 +61,11 @@ OptionSpec points_option(std::string meaning) {
 }
 
 std::vector<double> room_for(std::int64_t points, std::size_t dimensions) {
-    constexpr auto most = std::size_t{1} << 31U;
+    constexpr auto most = std::size_t{1} << 28U;
     const auto count = static_cast<std::size_t>(points);
     if (dimensions != 0 && count > most / dimensions)
         throw std::invalid_argument(std::to_string(points) + " points of " + std::to_string(dimensions) +
-                                    " factors are more than a design may hold (2^31 coordinates)");
+                                    " factors are more than a design may hold (2^28 coordinates)");
     return std::vector<double>(count * dimensions);
 }
 

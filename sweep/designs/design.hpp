@@ -68,6 +68,9 @@ struct DesignInfo {
     std::string summary;  ///< what it is good for, and what it is not, with figures
     std::vector<OptionSpec> options;
     bool extends = false;
+    /// The sequences of its points, where there are several, are independent repetitions of each other: the
+    /// convergence rule 'replicates' may compare them. (Elsewhere a sequence names a point's part in a block.)
+    bool independent_sequences = false;
     /// Throws std::invalid_argument with one sentence where options are impossible together.
     std::function<PointSet(const DesignRequest&)> sample;
 };

@@ -97,6 +97,7 @@ DesignInfo halton_design() {
                      .maximum = 1'000'000'000'000,
                      .words = {}}},
         .extends = true,
+        .independent_sequences = true,
         .sample = sample};
 }
 

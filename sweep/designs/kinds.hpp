@@ -25,7 +25,7 @@ enum class DrawPurpose : std::uint64_t { random = 1, latin_hypercube = 2, sobol 
 [[nodiscard]] OptionSpec points_option(std::string meaning);
 
 /// Room for points x dimensions coordinates; throws std::invalid_argument where that is more than a
-/// machine should be asked for (2^31 coordinates).
+/// machine should be asked for (2^28 coordinates, 2 GiB).
 [[nodiscard]] std::vector<double> room_for(std::int64_t points, std::size_t dimensions);
 
 }  // namespace grainsweep::designs

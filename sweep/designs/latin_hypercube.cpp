@@ -36,6 +36,7 @@ DesignInfo latin_hypercube_design() {
                 "kurtosis and g1 together, random halton 650).",
             .options = {points_option("number of points")},
             .extends = false,
+            .independent_sequences = false,
             .sample = sample};
 }
 

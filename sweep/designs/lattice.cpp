@@ -106,6 +106,7 @@ DesignInfo lattice_design() {
                          .maximum = 1,
                          .words = {"endpoints", "centred"}}},
             .extends = false,
+            .independent_sequences = false,
             .sample = sample};
 }
 

@@ -36,6 +36,7 @@ DesignInfo list_design() {
                          .maximum = 100'000'000,
                          .words = {}}},
             .extends = true,
+            .independent_sequences = false,
             .sample = sample};
 }
 

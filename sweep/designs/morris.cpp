@@ -66,6 +66,7 @@ DesignInfo morris_design() {
                      .maximum = 1'000,
                      .words = {}}},
         .extends = true,
+        .independent_sequences = false,
         .sample = sample};
 }
 

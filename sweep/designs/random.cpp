@@ -29,6 +29,7 @@ DesignInfo random_design() {
                 "even): 0.17.",
             .options = {points_option("number of points")},
             .extends = true,
+            .independent_sequences = false,
             .sample = sample};
 }
 

@@ -54,6 +54,7 @@ DesignInfo saltelli_design() {
                          .maximum = 10'000'000,
                          .words = {}}},
             .extends = true,
+            .independent_sequences = false,
             .sample = sample};
 }
 

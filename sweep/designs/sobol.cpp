@@ -86,6 +86,7 @@ DesignInfo sobol_design() {
                          .maximum = 10'000,
                          .words = {}}},
             .extends = true,
+            .independent_sequences = true,
             .sample = sample};
 }
 

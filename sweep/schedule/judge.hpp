@@ -1,9 +1,12 @@
 // Whether the statistics of the campaign are good enough: values in, verdict out.
 //
 // Only gapless beginnings of the design are judged, block by block, so the verdict does not depend on the
-// number of workers or on who finished first.
+// number of workers or on who finished first. A block is `block` design points; those that the `where` clause
+// filtered out contribute nothing. A case without an answer (unstable, rejected, given up) is left out and
+// counted. The rules and their errors: stats/convergence.hpp.
 #pragma once
 
+#include "stats/convergence.hpp"
 #include "sweep/campaign/campaign.hpp"
 #include "sweep/store/store.hpp"
 
@@ -12,6 +15,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
@@ -19,30 +23,50 @@ namespace grainsweep::schedule {
 
 class Judge {
 public:
-    /// `placed` in the order of the plan; `known` values of what the archive already has (NaN: none).
+    /// `placed` in the order of the plan (point, replicate); `known` values of what the archive already has
+    /// (NaN: none). `sequences` that repeat one another independently, see independent_sequences().
+    /// `candidates`: how many points the design numbers, before `where` filters them; where it is not given,
+    /// a last block whose last points were filtered out is not judged.
+    /// Throws std::invalid_argument for settings that cannot be judged (`replicates` with fewer than 4 sequences).
     Judge(const campaign::Convergence& wanted, std::span<const campaign::PlacedCase> placed, std::size_t sequences,
-          std::span<const double> known);
+          std::span<const double> known, std::optional<std::int64_t> candidates = {});
 
-    /// The answer to a question, at every place where it is asked.
+    /// The answer to a question, at every place where it is asked. No such scalar: no answer.
     void learn(const campaign::CaseId& id, const Observations& observations);
-    /// Judges every block that lies within the first `settled` placed cases and was not judged before.
+    /// Judges every block that lies within the first `settled` placed cases and was not judged before. Where
+    /// convergence stops the campaign, nothing after the block that converged.
     [[nodiscard]] std::vector<store::ConvergenceRow> judge(std::size_t settled);
     /// Points of the prefix at which the statistics converged.
-    [[nodiscard]] std::optional<std::int64_t> converged_at() const { return converged_at_; }
+    [[nodiscard]] std::optional<std::int64_t> converged_at() const;
     [[nodiscard]] bool stops() const { return wanted_.stop; }
     /// The last verdict in one line: what holds it back and how many more points it probably takes.
     [[nodiscard]] const std::string& verdict() const { return verdict_; }
 
 private:
     campaign::Convergence wanted_;
-    std::size_t sequences_;
+    stats::ConvergenceSettings settings_;
+    stats::Convergence convergence_;
+    std::int64_t candidates_;
     std::vector<std::int64_t> points_;
-    std::vector<std::size_t> sequence_of_;
     std::vector<double> values_;
     std::unordered_map<campaign::CaseId, std::vector<std::size_t>> places_;
-    std::int64_t judged_blocks_ = 0;
-    std::optional<std::int64_t> converged_at_;
+    std::size_t fed_ = 0;     ///< placed cases the statistics have seen
+    std::size_t judged_ = 0;  ///< blocks told
     std::string verdict_;
 };
+
+/// How many sequences of a design repeat one another independently. Those of `saltelli` and `morris` are parts of
+/// one estimate: 1.
+[[nodiscard]] std::size_t independent_sequences(std::string_view design, std::size_t sequences);
+
+/// The words of a campaign file -> the settings of the rule. Throws std::invalid_argument for an unknown word.
+[[nodiscard]] stats::ConvergenceSettings settings_of(const campaign::Convergence& wanted, std::size_t sequences);
+
+/// A check as the archive keeps it.
+[[nodiscard]] store::ConvergenceRow row_of(const stats::Checkpoint& check, std::string_view observable);
+
+/// A check in one line: "kurtosis 1.4 % > 1 %, about 800 more points". `candidates`: points of the design.
+[[nodiscard]] std::string verdict_of(const stats::Checkpoint& check, const stats::ConvergenceSettings& settings,
+                                     std::int64_t candidates);
 
 }  // namespace grainsweep::schedule

@@ -11,7 +11,8 @@
 
 namespace grainsweep::store {
 
-/// Files named by the hash of their key in one folder (created at the first put).
+/// Files named by the hash of their key in one folder (created at the first put). Any number of processes may
+/// use one folder at once. What a full or failing disk does throws BrokenWorld; get() never throws for it.
 class ArtefactFolder final : public Artefacts {
 public:
     explicit ArtefactFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
@@ -21,6 +22,7 @@ public:
 
 private:
     std::filesystem::path folder_;
+    bool swept_ = false;  ///< leftovers of killed writers looked for
 };
 
 }  // namespace grainsweep::store

@@ -6,6 +6,7 @@
 
 #include "sweep/campaign/campaign.hpp"
 #include "sweep/campaign/case.hpp"
+#include "sweep/store/broken_world.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -14,18 +15,12 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 namespace grainsweep::store {
-
-/// Disk full, database locked or damaged: exit code 3.
-class BrokenWorld : public std::runtime_error {
-public:
-    using std::runtime_error::runtime_error;
-};
 
 /// Who computes: stored once per run, referred to by every attempt.
 struct Provenance {
@@ -34,9 +29,9 @@ struct Provenance {
 
 /// What the archive knows of a case of the campaign.
 struct CaseState {
-    std::int64_t attempts = 0;                     ///< highest attempt number begun
-    std::int64_t failures = 0;                     ///< attempts that crashed or timed out
-    std::optional<campaign::Outcome> outcome;      ///< of the last finished attempt
+    std::int64_t attempts = 0;                 ///< highest attempt number begun
+    std::int64_t failures = 0;                 ///< attempts that crashed or timed out
+    std::optional<campaign::Outcome> outcome;  ///< of the last finished attempt
 };
 
 struct LoggedAttempt {
@@ -44,7 +39,7 @@ struct LoggedAttempt {
     std::optional<campaign::Outcome> outcome;  ///< none: running, or its boss died
     std::string message;
     double wall_seconds = 0;
-    std::string started, host, instruction_path;
+    std::string started, host, version, instruction_path;  ///< version (commit) of the program
 };
 
 /// Rows for the commands: column names and cells (NULL, integer, real, text).
@@ -121,8 +116,9 @@ public:
     /// Canonical text of all results: no times, attempts, hosts; equal for equal science.
     void dump(const std::function<void(std::string_view line)>& sink) const;
 
+    struct Impl;  ///< known to the files of this room only
+
 private:
-    struct Impl;
     std::unique_ptr<Impl> impl_;
 };
 

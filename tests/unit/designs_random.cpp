@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -48,18 +47,4 @@ TEST(ListDesign, TakesRowsAsTheyAre) {
     EXPECT_EQ(set.rows, rows);
     EXPECT_THROW((void)ask_design("list", 3, {{"rows", rows}}), std::invalid_argument);
     EXPECT_THROW((void)ask_design("list", 3, {}), std::invalid_argument);
-}
-
-TEST(Catalogue, EveryKindSaysWhatItIsAndExtendsWhereItClaims) {
-    for (const auto& info : designs::design_catalogue()) {
-        EXPECT_GT(info.summary.size(), 60U) << info.name;
-        if (info.name == "list" || info.name == "lattice") continue;
-        const std::string counter = info.options.front().name;  // the required count
-        const auto few = ask_design(info.name, 3, {{counter, 16}}, 9);
-        const auto many = ask_design(info.name, 3, {{counter, 64}}, 9);
-        EXPECT_GT(many.size(), few.size());
-        EXPECT_EQ(info.extends, std::equal(few.coordinates.begin(), few.coordinates.end(), many.coordinates.begin()))
-            << info.name;
-        EXPECT_TRUE(std::ranges::all_of(many.coordinates, [](double u) { return u >= 0 && u <= 1; })) << info.name;
-    }
 }

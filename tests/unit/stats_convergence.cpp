@@ -1,6 +1,7 @@
 #include "stats/confidence.hpp"
 #include "stats/convergence.hpp"
 #include "stats/random.hpp"
+#include "stats/stretches.hpp"
 
 #include <gtest/gtest.h>
 
@@ -51,6 +52,29 @@ TEST(Confidence, JackknifeOfTheMeanIsTheStudentHalfWidth) {
     std::vector<double> leave_one_out;
     for (const double value : values) leave_one_out.push_back((31 - value) / 4);
     EXPECT_NEAR(jackknife_half_width(leave_one_out), student_half_width(values), 1e-12);
+}
+
+TEST(StretchedSample, AgreesWithSummariesOfTheRest) {
+    for (const std::size_t n : {16U, 17U, 23U, 1001U, 4000U}) {
+        auto values = uniform(n, n);
+        for (auto& value : values) value = value < 0.3 ? 0 : std::round(50 * value);  // many ties
+        StretchedSample sample;
+        for (std::size_t i = 0; i < n; ++i) {
+            sample.add(values[i]);
+            if (i == n / 2 && n > 40) (void)sample.leave_one_out();
+        }
+        const auto parts = sample.leave_one_out();
+        for (std::size_t g = 0; g < 8; ++g) {
+            std::vector<double> rest;
+            for (std::size_t i = 0; i < n; ++i)
+                if (i < n * g / 8 || i >= n * (g + 1) / 8) rest.push_back(values[i]);
+            const Summary plain = summarise(rest);
+            EXPECT_EQ(parts[g].count, plain.count);
+            EXPECT_EQ(parts[g].median, plain.median) << n << " without stretch " << g;
+            for (const Statistic statistic : statistics)
+                EXPECT_NEAR(parts[g].of(statistic), plain.of(statistic), 1e-12) << n << " " << to_string(statistic);
+        }
+    }
 }
 
 TEST(Convergence, StatisticsAndErrorsAtEachCheckAreThoseOfThePrefix) {

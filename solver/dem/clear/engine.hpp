@@ -86,6 +86,7 @@ private:
     // forces.hpp
     template <bool advance>
     void evaluate();
+    [[nodiscard]] std::size_t find_touching(std::size_t first, std::size_t last);
     template <bool advance>
     void pair_contacts();
     template <bool advance>
@@ -130,6 +131,12 @@ private:
     particles::PairMemory pairs_;  // empty unless needs.tangential_history
     std::vector<WallContacts<needs>> walls_;
     particles::Cells cells_;
+    struct Touching {
+        Vec3 branch;
+        double r2;
+        std::uint32_t i, entry;
+    };
+    std::vector<Touching> touching_;  // scratch of pair_contacts
 
     std::int64_t wall_steps_ = 0;
     bool displaced_ = false;  // a particle has moved half the skin, or is not a number

@@ -14,8 +14,10 @@ namespace grainsweep::dem::clear {
 using namespace geometry;
 
 template <class Laws, Needs case_needs>
-Touch<Partner::particle> ClearEngine<Laws, case_needs>::touch(std::size_t i, std::size_t j, const Vec3& branch,
-                                                              double r2) const {
+[[gnu::always_inline]] inline Touch<Partner::particle> ClearEngine<Laws, case_needs>::touch(std::size_t i,
+                                                                                            std::size_t j,
+                                                                                            const Vec3& branch,
+                                                                                            double r2) const {
     Touch<Partner::particle> t;
     t.radius_i = radius(i);
     t.radius_j = radius(j);
@@ -37,8 +39,8 @@ Touch<Partner::particle> ClearEngine<Laws, case_needs>::touch(std::size_t i, std
 }
 
 template <class Laws, Needs case_needs>
-Touch<Partner::wall> ClearEngine<Laws, case_needs>::touch(std::size_t i, const Closest& closest,
-                                                          const Vec3& wall_velocity) const {
+[[gnu::always_inline]] inline Touch<Partner::wall> ClearEngine<Laws, case_needs>::touch(
+    std::size_t i, const Closest& closest, const Vec3& wall_velocity) const {
     Touch<Partner::wall> t;
     t.radius_i = radius(i);
     t.distance = closest.distance;
@@ -65,57 +67,75 @@ void ClearEngine<Laws, case_needs>::evaluate() {
     pair_contacts<advance>();
     for (auto& wall : walls_) wall_contacts<advance>(wall);
     work_.pair_visits += static_cast<double>(list_.size());
-    // A sum, so that a value that is not a number is not lost in a comparison.
+    // Negated, so that a value that is not a number is reported too.
     if (!(largest_overlap_ <= largest_sound_overlap) || !(largest_wall_overlap_ <= largest_sound_overlap))
         report_overlap();
 }
 
+/// List entries of some particles that touch, in list order; contacts that ended are forgotten on the way.
+///
+/// Whether a pair on the list touches is hard to predict for a processor, so it is not asked as a question: every
+/// entry is written, and kept by moving on.
 template <class Laws, Needs case_needs>
-template <bool advance>
-void ClearEngine<Laws, case_needs>::pair_contacts() {
-    double largest = 0;
-    for (std::size_t i = 0; i < p_.size(); ++i) {
+std::size_t ClearEngine<Laws, case_needs>::find_touching(std::size_t first, std::size_t last) {
+    touching_.resize(std::max<std::size_t>(touching_.size(), list_.end(last - 1) - list_.begin(first)));
+    std::size_t found = 0;
+    for (std::size_t i = first; i < last; ++i) {
         const Vec3 x = p_.position[i];
         const double radius_i = radius(i);
-        Vec3 force{};
-        [[maybe_unused]] Vec3 torque{};
-        for (std::uint32_t k = list_.begin(i); k < list_.end(i); ++k) {
+        const std::uint32_t end = list_.end(i);
+        for (std::uint32_t k = list_.begin(i); k < end; ++k) {
             const auto entry = list_[k];
             const std::size_t j = entry.j();
             const Vec3 branch = x - (p_.position[j] + image_shifts_[entry.image()]);
             const double reach = radius_i + radius(j);
             const double r2 = dot(branch, branch);
-            if (r2 >= reach * reach) {
-                if constexpr (needs.tangential_history)
-                    if (pairs_.live[k] != 0) {
-                        pairs_.live[k] = 0;
-                        pairs_.value[k] = Vec3{};
-                    }
-                continue;
-            }
+            const bool inside = r2 < reach * reach;
+            touching_[found] = {branch, r2, static_cast<std::uint32_t>(i), k};
+            found += inside ? 1 : 0;
+            if constexpr (needs.tangential_history)
+                if (pairs_.live[k] != static_cast<std::uint8_t>(inside)) [[unlikely]] {
+                    pairs_.live[k] = inside ? 1 : 0;
+                    if constexpr (!Laws::remembers_separation) pairs_.value[k] = Vec3{};
+                }
+        }
+    }
+    return found;
+}
+
+template <class Laws, Needs case_needs>
+template <bool advance>
+void ClearEngine<Laws, case_needs>::pair_contacts() {
+    constexpr std::size_t tile = 64;  // particles whose contacts stay in the first cache between the two passes
+    double largest = 0;
+    for (std::size_t first = 0; first < p_.size(); first += tile) {
+        const std::size_t found = find_touching(first, std::min(first + tile, p_.size()));
+        for (std::size_t c = 0; c < found; ++c) {
+            const auto& [branch, r2, i, k] = touching_[c];
+            const std::size_t j = list_[k].j();
             const auto t = touch(i, j, branch, r2);
-            largest = std::max(largest, t.overlap / (2 * std::min(t.radius_i, t.radius_j)));
+            if constexpr (needs.sizes)
+                largest = std::max(largest, t.overlap / (2 * std::min(t.radius_i, t.radius_j)));
+            else
+                largest = std::max(largest, t.overlap);
             Response r;
             if constexpr (needs.tangential_history) {
-                pairs_.live[k] = 1;
                 r = laws_.template respond<advance>(t, pairs_.value[k]);
             } else {
                 NoMemory none;
                 r = laws_.template respond<advance>(t, none);
             }
             const Vec3 f = r.normal * t.normal + r.tangential;
-            force += f;
+            p_.force[i] += f;
             p_.force[j] -= f;
             if constexpr (needs.spin) {
                 const Vec3 moment = cross(t.normal, r.tangential);
-                torque -= (t.radius_i - t.overlap / 2) * moment;
+                p_.torque[i] -= (t.radius_i - t.overlap / 2) * moment;
                 p_.torque[j] -= (t.radius_j - t.overlap / 2) * moment;
             }
         }
-        p_.force[i] += force;
-        if constexpr (needs.spin) p_.torque[i] += torque;
     }
-    largest_overlap_ = largest;
+    largest_overlap_ = needs.sizes || p_.size() == 0 ? largest : largest / (2 * radius_);
 }
 
 template <class Laws, Needs case_needs>

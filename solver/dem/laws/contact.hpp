@@ -9,9 +9,16 @@
 
 namespace grainsweep::dem {
 
+/// A law may say that its memory outlives a separation until the neighbour list is rebuilt; ours do not.
+template <class Law>
+inline constexpr bool remembers_separation = requires {
+    requires Law::remembers_separation;
+};
+
 template <class... Laws>
 struct Contact {
     static constexpr particles::Needs needs = (particles::Needs{} | ... | Laws::needs);
+    static constexpr bool remembers_separation = (dem::remembers_separation<Laws> || ...);
     using Memory = std::conditional_t<needs.tangential_history, Vec3, NoMemory>;
 
     std::tuple<Laws...> laws;

@@ -33,14 +33,13 @@ struct Mindlin {
         }
         const double k = stiffness * t.root;
         const double limit = friction * std::abs(r.normal);
-        const double length2 = dot(s, s);
-        if (k * k * length2 > limit * limit) {
-            const double scale = limit / (k * std::sqrt(length2));
-            r.tangential += (-k * scale) * s;
-            if constexpr (advance) s = scale * s;
-        } else {
-            r.tangential += (-k) * s - (damping * t.damping_root) * t.slip;
-        }
+        const double spring = k * std::sqrt(dot(s, s));
+        // Both answers are computed and one is chosen: which of them holds is hard to predict.
+        const bool slides = spring > limit;
+        const double scale = slides ? limit / spring : 1.0;
+        const double viscosity = slides ? 0.0 : damping * t.damping_root;
+        r.tangential += (-k * scale) * s - viscosity * t.slip;
+        if constexpr (advance) s = scale * s;
     }
 
     /// Stored in the tangential displacement, J.

@@ -1,0 +1,98 @@
+#include "solver/observables/layer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace grainsweep::observables {
+
+std::int64_t count_behind(const dem::State& state, double front) {
+    return std::ranges::count_if(state.position, [front](const dem::Vec3& x) { return x[0] < front; });
+}
+
+std::int64_t count_under(const dem::State& state, double rear, double front, double height) {
+    return std::ranges::count_if(state.position,
+                                 [=](const dem::Vec3& x) { return x[0] >= rear && x[0] < front && x[2] <= height; });
+}
+
+double solid_volume(const dem::State& state, double from, double to) {
+    double volume = 0;
+    for (std::size_t i = 0; i < state.position.size(); ++i) {
+        if (state.position[i][0] < from || state.position[i][0] >= to) continue;
+        const double r = state.radius[i];
+        volume += 4.0 / 3.0 * std::numbers::pi * r * r * r;
+    }
+    return volume;
+}
+
+Relief::Relief(const dem::State& state, double from, double to, double width, double pitch) {
+    const auto count = [pitch](double length) {
+        return std::max<std::int64_t>(1, std::llround(std::ceil(length / pitch)));
+    };
+    const std::int64_t nx = count(to - from);
+    const std::int64_t ny = count(width);
+    const double dx = (to - from) / static_cast<double>(nx);
+    const double dy = width / static_cast<double>(ny);
+    heights_.assign(static_cast<std::size_t>(nx * ny), 0);
+    for (std::size_t i = 0; i < state.position.size(); ++i) {
+        const auto& x = state.position[i];
+        const double r = state.radius[i];
+        const auto first = [](double q, double step) { return std::llround(std::ceil(q / step - 0.5)); };
+        // Points lie at the centres of the grid's squares; rows in y are counted beyond the period and wrapped.
+        const std::int64_t ix_end = std::min<std::int64_t>(nx, first(x[0] + r - from, dx));
+        for (std::int64_t ix = std::max<std::int64_t>(0, first(x[0] - r - from, dx)); ix < ix_end; ++ix) {
+            const double px = from + (static_cast<double>(ix) + 0.5) * dx - x[0];
+            const std::int64_t iy_end = first(x[1] + r, dy);
+            for (std::int64_t iy = first(x[1] - r, dy); iy < iy_end; ++iy) {
+                const double py = (static_cast<double>(iy) + 0.5) * dy - x[1];
+                const double rest = r * r - px * px - py * py;
+                if (rest <= 0) continue;
+                double& height = heights_[static_cast<std::size_t>(ix * ny + ((iy % ny) + ny) % ny)];
+                height = std::max(height, x[2] + std::sqrt(rest));
+            }
+        }
+    }
+}
+
+double Relief::roughness() const {
+    double mean = 0;
+    for (const double h : heights_) mean += h;
+    mean /= static_cast<double>(heights_.size());
+    double squares = 0;
+    for (const double h : heights_) squares += (h - mean) * (h - mean);
+    return std::sqrt(squares / static_cast<double>(heights_.size()));
+}
+
+double Relief::empty_share() const {
+    return static_cast<double>(std::ranges::count(heights_, 0.0)) / static_cast<double>(heights_.size());
+}
+
+void VelocityProfile::add(const dem::State& state, double from, double to, double bottom, double thickness) {
+    for (std::size_t i = 0; i < state.position.size(); ++i) {
+        const auto& x = state.position[i];
+        if (x[0] <= from || x[0] >= to || x[2] < bottom) continue;
+        const double layer = std::floor((x[2] - bottom) / thickness);
+        if (layer >= static_cast<double>(sum.size())) continue;
+        sum[static_cast<std::size_t>(layer)] += state.velocity[i][0];
+        ++samples[static_cast<std::size_t>(layer)];
+    }
+}
+
+double block_standard_error(std::span<const double> series, std::size_t blocks) {
+    const std::size_t length = series.size() / blocks;
+    if (length < 2 || blocks < 2) return std::numeric_limits<double>::quiet_NaN();
+    std::vector<double> means(blocks, 0);
+    double mean = 0;
+    for (std::size_t b = 0; b < blocks; ++b) {
+        for (std::size_t k = 0; k < length; ++k) means[b] += series[b * length + k];
+        means[b] /= static_cast<double>(length);
+        mean += means[b] / static_cast<double>(blocks);
+    }
+    double squares = 0;
+    for (const double m : means) squares += (m - mean) * (m - mean);
+    const auto n = static_cast<double>(blocks);
+    return std::sqrt(squares / (n * (n - 1)));
+}
+
+}  // namespace grainsweep::observables

@@ -1,0 +1,55 @@
+// What is seen of a powder under and behind a blade: pure functions of a state.
+//
+// x is the blade's direction, y across, z up; lengths in m. A particle is where its centre is, unless its surface is
+// meant. Counting, not averaging over volumes cut by planes: what LIGGGHTS post-processing and Wu (2020) do.
+#pragma once
+
+#include "solver/dem/engine.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace grainsweep::observables {
+
+/// Centres with x < front.
+[[nodiscard]] std::int64_t count_behind(const dem::State& state, double front);
+
+/// Centres with rear <= x < front and z <= height.
+[[nodiscard]] std::int64_t count_under(const dem::State& state, double rear, double front, double height);
+
+/// Volume of the spheres whose centres have from <= x < to, m3.
+[[nodiscard]] double solid_volume(const dem::State& state, double from, double to);
+
+/// Height of the uppermost sphere surface above the points of a square grid, seen from above; 0 where no sphere covers
+/// the point. The points fill from <= x < to and one period in y at a pitch of at most `pitch`.
+class Relief {
+public:
+    /// Periodic in y with period `width` from 0. to > from, pitch > 0.
+    Relief(const dem::State& state, double from, double to, double width, double pitch);
+
+    [[nodiscard]] std::span<const double> heights() const { return heights_; }
+    /// Root mean square deviation of the heights from their mean (Sq of ISO 25178-2), m.
+    [[nodiscard]] double roughness() const;
+    /// Share of points no sphere covers.
+    [[nodiscard]] double empty_share() const;
+
+private:
+    std::vector<double> heights_;
+};
+
+/// Sum and number of v_x in horizontal layers of equal thickness above `bottom`, over x in (from, to).
+struct VelocityProfile {
+    std::vector<double> sum;            ///< m/s
+    std::vector<std::int64_t> samples;  ///< particles seen
+
+    explicit VelocityProfile(std::size_t layers) : sum(layers, 0), samples(layers, 0) {}
+    void add(const dem::State& state, double from, double to, double bottom, double thickness);
+};
+
+/// Standard error of the mean of a correlated series from the spread of `blocks` means of consecutive, equally long
+/// blocks (batch means); NaN where the series is shorter than two per block. What does not fill a block is left out.
+[[nodiscard]] double block_standard_error(std::span<const double> series, std::size_t blocks);
+
+}  // namespace grainsweep::observables

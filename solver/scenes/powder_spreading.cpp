@@ -1,0 +1,113 @@
+// Powder spreading: a blade sweeps a settled layer of powder over a base, and the flux under it is measured.
+//
+// Scene, observables and default values after Wu (2020), "Parametric analysis of particle spreading with discrete
+// element method", MSc thesis, Embry-Riddle Aeronautical University; the layer is flat and gated instead of a free
+// pile, which runs out before the blade arrives. spreading/study.hpp has the geometry, solver/dem the mechanics.
+#include "solver/scenes/catalogue.hpp"
+#include "solver/scenes/spreading/experiment.hpp"
+
+namespace grainsweep {
+namespace {
+
+using Condition = Relevance::Condition;
+
+ParameterSpec number(std::string name, std::string unit, std::string meaning, double value, Interval bounds,
+                     std::vector<Relevance> relevant_if = {}) {
+    return {std::move(name), std::move(unit), std::move(meaning), value, bounds, std::move(relevant_if)};
+}
+
+std::vector<ParameterSpec> parameters() {
+    const auto above = [](double low, double high) { return Interval{low, high, true, false}; };
+    const auto if_set = [](const char* other) { return std::vector<Relevance>{{other, Condition::nonzero, {}}}; };
+    return {
+        number("friction", "1", "Coulomb friction of particles, base and blade", 0.2, {0, 2}),
+        number("restitution", "1", "restitution of particles and walls", 0.5, above(0, 1)),
+        number("diameter", "m", "diameter D of all particles", 0.002, {1e-4, 1e-2}),
+        number("gap", "m", "height of the blade's lower edge over the base", 0.004, {1e-5, 0.1}),
+        number("speed", "m/s", "speed of the blade", 1.4, {1e-3, 10}),
+        number("cohesion", "J/m3", "cohesion energy density", 0.0, {0, 1e6}),
+        {"cohesion_law", "",
+         "area the cohesion acts on: 'sjkr' cut of the spheres, 'sjkr2' 4 pi R* d, 'paper' "
+         "pi (2 R* d - d^2)/4",
+         std::string("sjkr"), Words{{"sjkr", "sjkr2", "paper"}}, if_set("cohesion")},
+        number("youngs_modulus", "Pa", "Young's modulus of particles and walls", 21e6, {1e5, 1e12}),
+        number("poisson_ratio", "1", "Poisson's ratio of particles and walls", 0.3, {0, 0.49}),
+        number("density", "kg/m3", "density of the particles", 7980, {100, 25000}),
+        number("gravity", "m/s2", "gravity, downwards", 9.81, above(0, 100)),
+        number("vibration_amplitude", "m", "vertical vibration of the blade: amplitude of a sine", 0.0, {0, 0.01},
+               if_set("vibration_frequency")),
+        number("vibration_frequency", "Hz", "vertical vibration of the blade: frequency", 0.0, {0, 1e5},
+               if_set("vibration_amplitude")),
+        number("width", "1", "period of the layer across the blade's motion, in diameters", 10, {3, 1000}),
+        number("layer_area", "m2", "solid area of the layer in the plane of the motion", 400e-6, {1e-6, 0.1}),
+        number("settle_time", "s", "time the layer settles before the blade starts", 0.15, {0, 100}),
+        number("travel", "m", "travel of the blade; the flux counts from 2/7 of it, and the layer is 20 mm longer",
+               0.07, {1e-3, 1}),
+        number("blade_thickness", "m", "thickness of the blade", 0.005, {1e-4, 0.1}),
+        number("blade_edge_radius", "m", "radius of the blade's lower edges; 0: sharp", 0.0, {0, 0.05}),
+        number("time_step", "s",
+               "time step; 0: time_step_fraction of the shorter of the Rayleigh time and the Hertz "
+               "contact time at the fastest expected impact",
+               0.0, {0, 1e-3}),
+        number("time_step_fraction", "1", "time step over the shorter of the two limits", 0.2, above(0, 1),
+               {{"time_step", Condition::zero, {}}}),
+    };
+}
+
+std::vector<ObservableSpec> observables_of_spreading() {
+    return {
+        {"mfr", "1",
+         "mass flow rate under the blade over that of the swept gap filled solid: m (N(t2) - N(t1))/(t2 - t1)"
+         "/(W gap v rho), N the centres behind the front face, t1 at 2/7 of the travel, t2 at its end"},
+        {"mfr_window", "1",
+         "mass between the planes of rear and front face and below the gap over that of the slot filled "
+         "solid, W gap thickness rho; mean of the samples from t1 to t2"},
+        {"mfr_thesis", "s",
+         "the same mass over W gap v rho, as eq. 15-17 of Wu (2020) are printed: mfr_window times "
+         "thickness/speed"},
+        {"mfr_standard_error", "1", "standard error of mfr from the spread of 10 consecutive blocks of the flux"},
+        {"max_overlap", "1",
+         "largest overlap of two particles over the diameter, over 141 equidistant samples of the sweep"},
+        {"packing_fraction", "1",
+         "volume of the spread particles over that of a layer as high as the gap, from where the "
+         "front face was at t1 to one thickness behind the blade at the end"},
+        {"layer_roughness", "1",
+         "root mean square deviation of the height of the spread layer's surface, seen from above "
+         "on a grid of D/4, over the diameter"},
+        {"empty_share", "1", "share of the same grid that no particle covers"},
+        {"particles", "1", "particles present"},
+        {"vx_profile", "m/s",
+         "mean velocity along the blade's motion in the 12 layers of thickness D/2 above the gap, "
+         "within 6 D ahead of the front face, from t1 to t2; bin: top of the layer over the gap, in D",
+         Shape::profile},
+        {"flux_series", "1", "mfr of each 1/140 of the travel; time since the blade started", Shape::series},
+    };
+}
+
+/// Measured on one core: seconds per particle and step while settling and sweeping (lists are rebuilt more often).
+double estimate_cost(const Inputs& inputs) {
+    const auto s = spreading::study_of(inputs);
+    return static_cast<double>(s.particles) *
+           (60e-9 * static_cast<double>(s.settle_steps) + 110e-9 * static_cast<double>(s.sweep_steps));
+}
+
+}  // namespace
+
+SceneInfo powder_spreading_scene() {
+    SceneInfo info;
+    info.name = "powder_spreading";
+    info.summary = "a blade spreads a settled layer of powder: flux under the blade and quality of the layer";
+    info.revision = 1;
+    info.parameters = parameters();
+    info.observables = observables_of_spreading();
+    info.make = [](const Inputs& inputs, std::uint64_t seed, Artefacts&) -> std::unique_ptr<Scene> {
+        return std::make_unique<spreading::Experiment>(spreading::study_of(inputs), seed, dem::Method{});
+    };
+    info.estimate_cost = estimate_cost;
+    // No gap is proven to pass nothing over the whole range of stiffness, cohesion and speed: soft particles are
+    // squeezed through gaps below their diameter.
+    info.proven_answer = [](const Inputs&) -> std::optional<ProvenAnswer> { return std::nullopt; };
+    return info;
+}
+
+}  // namespace grainsweep

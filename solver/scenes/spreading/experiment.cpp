@@ -1,0 +1,183 @@
+#include "solver/scenes/spreading/experiment.hpp"
+
+#include "solver/particles/bytes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace grainsweep::spreading {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::uint64_t checkpoint_format = 0x6772'6e73'7370'0001ULL;  // "grnssp", version 1
+constexpr std::size_t blocks = 10;       // of the measured flux, 5 mm of travel each by default
+constexpr double layer_thickness = 0.5;  // of the velocity profile, in diameters
+constexpr double profile_reach = 6;      // ahead of the blade, in diameters
+constexpr double relief_pitch = 0.25;    // in diameters
+
+}  // namespace
+
+Experiment::Experiment(const Study& study, std::uint64_t seed, const dem::Method& method)
+    : study_(study), engine_(dem::make_engine(settling(study, seed), method)) {
+    if (study_.settle_steps == 0) start_sweep();
+}
+
+std::int64_t Experiment::step_of_sample(std::int64_t sample) const {
+    return study_.settle_steps + (study_.sweep_steps * sample + sweep_samples / 2) / sweep_samples;
+}
+
+double Experiment::time_of_sample(std::size_t sample) const {
+    return study_.time_step *
+           static_cast<double>(step_of_sample(static_cast<std::int64_t>(sample)) - study_.settle_steps);
+}
+
+void Experiment::advance(double until) {
+    while (!finished() && health().stable() && time() < until) {
+        // Stops are fixed by the experiment: the end of settling and the samples. A slice may only add a pause.
+        const std::int64_t stop =
+            sweeping_ ? step_of_sample(static_cast<std::int64_t>(behind_.size())) : study_.settle_steps;
+        const double left = std::ceil((until - time()) / study_.time_step);
+        const std::int64_t most = stop - step_;
+        const std::int64_t steps =
+            left < static_cast<double>(most) ? std::max<std::int64_t>(1, std::llround(left)) : most;
+        const std::int64_t before = engine_->work().steps;
+        engine_->run(steps);
+        step_ += engine_->work().steps - before;
+        if (!health().stable()) return;
+        if (step_ < stop) continue;
+        if (sweeping_)
+            sample();
+        else
+            start_sweep();
+    }
+}
+
+void Experiment::start_sweep() {
+    engine_->set_walls(sweeping_walls(study_));
+    sweeping_ = true;
+    sample();
+}
+
+void Experiment::sample() {
+    const double time = time_of_sample(behind_.size());
+    engine_->state(state_);
+    behind_.push_back(observables::count_behind(state_, study_.front(time)));
+    under_.push_back(observables::count_under(state_, study_.rear(time), study_.front(time), study_.gap));
+    largest_overlap_ = std::max(largest_overlap_, engine_->largest_overlap());
+    if (static_cast<std::int64_t>(behind_.size()) > first_measured_sample)
+        profile_.add(state_, study_.front(time), study_.front(time) + profile_reach * study_.diameter, study_.gap,
+                     layer_thickness * study_.diameter);
+}
+
+/// Mass flow rate of one particle per second in units of the gap swept by the blade, filled solid.
+double Experiment::flux_scale() const {
+    return study_.particle_mass() / (study_.width * study_.gap * study_.speed * study_.material.density);
+}
+
+void Experiment::observe(Observations& into) const {
+    into.scalars["particles"] = static_cast<double>(engine_->size());
+    if (!sweeping_) return;
+    into.scalars["max_overlap"] = largest_overlap_;
+    observe_flux(into);
+    if (finished()) observe_layer(into);
+}
+
+void Experiment::observe_flux(Observations& into) const {
+    std::vector<double> flux;
+    auto& series = into.series["flux_series"];
+    for (std::size_t k = 1; k < behind_.size(); ++k) {
+        const double value = flux_scale() * static_cast<double>(behind_[k] - behind_[k - 1]) /
+                             (time_of_sample(k) - time_of_sample(k - 1));
+        series.push_back({.time = time_of_sample(k), .bin = nan, .value = value});
+        if (k > first_measured_sample) flux.push_back(value);
+    }
+    if (flux.empty()) return;
+
+    const std::size_t first = first_measured_sample;
+    const std::size_t last = behind_.size() - 1;
+    into.scalars["mfr"] = flux_scale() * static_cast<double>(behind_[last] - behind_[first]) /
+                          (time_of_sample(last) - time_of_sample(first));
+    into.scalars["mfr_standard_error"] = observables::block_standard_error(flux, blocks);
+    double mean = 0;
+    for (std::size_t k = first; k <= last; ++k) mean += static_cast<double>(under_[k]);
+    mean /= static_cast<double>(last - first + 1);
+    const double mass = mean * study_.particle_mass();
+    const double slot = study_.width * study_.gap * study_.material.density;
+    into.scalars["mfr_window"] = mass / (slot * study_.blade_thickness);
+    into.scalars["mfr_thesis"] = mass / (slot * study_.speed);
+
+    auto& profile = into.series["vx_profile"];
+    for (std::size_t k = 0; k < profile_layers; ++k) {
+        const auto n = profile_.samples[k];
+        profile.push_back({.time = nan,
+                           .bin = layer_thickness * static_cast<double>(k + 1),
+                           .value = n > 0 ? profile_.sum[k] / static_cast<double>(n) : nan});
+    }
+}
+
+void Experiment::observe_layer(Observations& into) const {
+    // From where the flux became steady to one thickness behind the blade, where the powder has come to rest.
+    const double end = time_of_sample(static_cast<std::size_t>(sweep_samples));
+    const double from = study_.front(measured_from * end);
+    const double to = study_.rear(end) - study_.blade_thickness;
+    if (!(to > from)) return;
+    dem::State state;
+    engine_->state(state);
+    const observables::Relief relief(state, from, to, study_.width, relief_pitch * study_.diameter);
+    into.scalars["packing_fraction"] =
+        observables::solid_volume(state, from, to) / ((to - from) * study_.width * study_.gap);
+    into.scalars["layer_roughness"] = relief.roughness() / study_.diameter;
+    into.scalars["empty_share"] = relief.empty_share();
+}
+
+double Experiment::progress() const {
+    return static_cast<double>(step_) / static_cast<double>(last_step());
+}
+
+Snapshot Experiment::snapshot() const {
+    dem::State state;
+    engine_->state(state);
+    Snapshot snapshot;
+    snapshot.positions = state.position;
+    snapshot.scalars["radius"] = state.radius;
+    snapshot.vectors["velocity"] = state.velocity;
+    snapshot.vectors["angular_velocity"] = state.angular_velocity;
+    return snapshot;
+}
+
+void Experiment::save(Bytes& into) const {
+    into.clear();
+    Bytes engine;
+    engine_->save(engine);
+    particles::ByteWriter out(into);
+    out.put(checkpoint_format);
+    out.put(step_);
+    out.put(sweeping_);
+    out.put(behind_);
+    out.put(under_);
+    out.put(profile_.sum);
+    out.put(profile_.samples);
+    out.put(largest_overlap_);
+    out.put(engine);
+}
+
+void Experiment::restore(std::span<const std::byte> from) {
+    particles::ByteReader in(from);
+    std::uint64_t format = 0;
+    in.get(format);
+    if (format != checkpoint_format) throw std::invalid_argument("checkpoint of another scene");
+    Bytes engine;
+    in.get(step_);
+    in.get(sweeping_);
+    in.get(behind_);
+    in.get(under_);
+    in.get(profile_.sum);
+    in.get(profile_.samples);
+    in.get(largest_overlap_);
+    in.get(engine);
+    in.finish();
+    engine_->restore(engine);
+}
+
+}  // namespace grainsweep::spreading

@@ -1,0 +1,49 @@
+// The spreading experiment as it runs: settling, then sweeping, sampled at equal distances of blade travel.
+#pragma once
+
+#include "solver/dem/engine.hpp"
+#include "solver/observables/layer.hpp"
+#include "solver/scenes/scene.hpp"
+#include "solver/scenes/spreading/study.hpp"
+
+namespace grainsweep::spreading {
+
+class Experiment final : public Scene {
+public:
+    Experiment(const Study& study, std::uint64_t seed, const dem::Method& method);
+
+    void advance(double until) override;
+    void observe(Observations& into) const override;
+    [[nodiscard]] double time() const override { return study_.time_step * static_cast<double>(step_); }
+    [[nodiscard]] bool finished() const override { return step_ == last_step(); }
+    [[nodiscard]] double progress() const override;
+    [[nodiscard]] Health health() const override { return {engine_->fault()}; }
+    [[nodiscard]] double particle_steps() const override { return engine_->work().particle_steps; }
+    void save(Bytes& into) const override;
+    void restore(std::span<const std::byte> from) override;
+    [[nodiscard]] Snapshot snapshot() const override;
+
+    static constexpr std::size_t profile_layers = 12;
+
+private:
+    [[nodiscard]] std::int64_t last_step() const { return study_.settle_steps + study_.sweep_steps; }
+    [[nodiscard]] std::int64_t step_of_sample(std::int64_t sample) const;
+    [[nodiscard]] double time_of_sample(std::size_t sample) const;
+    [[nodiscard]] double flux_scale() const;
+    void start_sweep();
+    void sample();
+    void observe_flux(Observations& into) const;
+    void observe_layer(Observations& into) const;
+
+    Study study_;
+    std::unique_ptr<dem::Engine> engine_;
+    std::int64_t step_ = 0;
+    bool sweeping_ = false;
+    std::vector<std::int64_t> behind_;  // centres behind the front face, by sample
+    std::vector<std::int64_t> under_;   // centres under the blade and below the gap, by sample
+    observables::VelocityProfile profile_{profile_layers};
+    double largest_overlap_ = 0;  // m/m, over the samples of the sweep
+    dem::State state_;            // scratch of sample()
+};
+
+}  // namespace grainsweep::spreading

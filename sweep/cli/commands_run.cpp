@@ -1,0 +1,93 @@
+// run: a campaign file becomes an archive. worker: what run starts, as often as there are workers.
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/cli/build_facts.hpp"
+#include "sweep/cli/command.hpp"
+#include "sweep/cli/run_campaign.hpp"
+#include "sweep/report/summary.hpp"
+#include "sweep/workers/worker.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <iostream>
+#include <memory>
+#include <string>
+
+namespace grainsweep::cli {
+namespace {
+
+using report::Format;
+
+campaign::Outcome outcome_asked_again(const std::string& word) {
+    if (const auto outcome = campaign::outcome_named(word)) return *outcome;
+    std::vector<std::string> words;
+    for (const auto outcome : campaign::outcomes) words.emplace_back(to_string(outcome));
+    throw campaign::wrong_question("--again", word, "is no outcome", campaign::nearest_word(word, words));
+}
+
+/// What a program wants to know of a finished run; the science is in the database.
+void show(const RunReport& report, Format format) {
+    if (format == Format::text) {
+        const store::Store archive(report.database, store::Store::Mode::read);
+        std::cout << report::closing_summary(archive, report.campaign, report.database) << '\n'
+                  << report.ending << '\n';
+        return;
+    }
+    if (format == Format::json) {
+        report::write(std::cout, nlohmann::ordered_json{{"campaign", report.campaign},
+                                                        {"database", report.database.string()},
+                                                        {"ending", report.ending},
+                                                        {"exit_code", report.exit_code}});
+        return;
+    }
+    report::write(std::cout,
+                  {{"campaign", "database", "ending", "exit_code"},
+                   {{report.campaign, report.database.string(), report.ending, std::int64_t{report.exit_code}}}},
+                  format);
+}
+
+Command run_command() {
+    return {"run", "runs what is not settled yet; running again is resuming",
+            [](CLI::App& parser, const Format& format) -> Action {
+                const auto request = std::make_shared<RunRequest>();
+                const auto again = std::make_shared<std::string>();
+                parser.add_option("CONFIG", request->config, "campaign file")->required();
+                parser.add_option("--db", request->database, "database; default: NAME.db in the current folder");
+                parser.add_option("-j", request->workers, "workers; 0: all cores; default: execution.workers")
+                    ->check(CLI::Range(0, 4096));
+                parser
+                    .add_option("-k", request->stop_after_failures, "start nothing more after N failed cases; 0: never")
+                    ->check(CLI::NonNegativeNumber);
+                parser.add_option("--again", *again, "asks again what ended with this outcome");
+                parser.add_option("--max-cases", request->max_cases, "settle at most N cases in this run; 0: all")
+                    ->check(CLI::NonNegativeNumber);
+                parser.add_flag("--quiet", request->quiet, "no progress, no table");
+                return [request, again, &format] {
+                    if (!again->empty()) request->again = outcome_asked_again(*again);
+                    const RunReport report = run_campaign(*request);
+                    if (!request->quiet || format != Format::text) show(report, format);
+                    return report.exit_code;
+                };
+            },
+            false};
+}
+
+Command worker_command() {
+    return {"worker", "computes cases for a run; started by it",
+            [](CLI::App& parser, const Format&) -> Action {
+                const auto options = std::make_shared<workers::WorkerOptions>();
+                parser.add_option("--artefacts", options->artefacts, "folder of shared starting states and checkpoints");
+                parser.add_option("--checkpoint-seconds", options->checkpoint_seconds, "a case is saved this often");
+                parser.add_option("--lease-seconds", options->lease_seconds, "silence after which it ends itself");
+                return [options] {
+                    options->version = build_version();
+                    return workers::work(*options);
+                };
+            },
+            true};
+}
+
+}  // namespace
+
+std::vector<Command> run_commands() { return {run_command(), worker_command()}; }
+
+}  // namespace grainsweep::cli

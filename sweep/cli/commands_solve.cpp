@@ -1,0 +1,206 @@
+// solve: one case of a campaign in this process, without an archive.
+#include "sweep/campaign/reader.hpp"
+#include "sweep/campaign/relevance.hpp"
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/cli/command.hpp"
+#include "sweep/store/expression.hpp"
+#include "sweep/workers/compute.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <set>
+
+namespace grainsweep::cli {
+
+namespace {
+
+using campaign::Campaign;
+using campaign::CaseResult;
+using campaign::Outcome;
+using report::Format;
+using Cell = store::Table::Cell;
+using Json = nlohmann::ordered_json;
+
+struct SolveRequest {
+    std::string config;
+    std::vector<std::string> settings;  ///< NAME=VALUE
+    std::optional<std::uint64_t> seed;  ///< the case's own; none: the campaign's for this question
+};
+
+/// Puts NAME=VALUE in the place of what the file says, under the rules of the file.
+void apply(const std::vector<std::string>& settings, Campaign& campaign, const std::filesystem::path& folder) {
+    const auto& scene = campaign.scene();
+    std::vector<std::string> names;
+    for (const auto& parameter : scene.parameters) names.push_back(parameter.name);
+    std::set<std::string> set;
+    for (const auto& setting : settings) {
+        const auto equals = setting.find('=');
+        const std::string name = setting.substr(0, equals);
+        const std::string where = "--set " + name;
+        if (equals == std::string::npos) throw campaign::wrong_question("--set", setting, "must be NAME=VALUE");
+        const auto* parameter = scene.find_parameter(name);
+        if (parameter == nullptr) {
+            throw campaign::wrong_question(where, "",
+                                           fmt::format("scene '{}' has no parameter of this name", scene.name),
+                                           campaign::nearest_word(name, names));
+        }
+        if (!set.insert(name).second) throw campaign::wrong_question(where, "", "this parameter is set twice");
+        const Value value = campaign::parse_value(*parameter, setting.substr(equals + 1), folder, where);
+        campaign::hold(campaign.space, name, value, campaign.accuracy);
+    }
+    for (const auto& name : set) {
+        if (const auto reason = campaign::no_effect(campaign.space, *scene.find_parameter(name))) {
+            throw campaign::wrong_question("--set " + name, "", *reason);
+        }
+    }
+}
+
+/// Factors that are not set: the middle of their range, the first of their levels.
+Inputs middle_of(const campaign::ParameterSpace& space) {
+    std::vector<double> u;
+    for (const auto& factor : space.factors) {
+        u.push_back(std::holds_alternative<campaign::Between>(factor.range) ? 0.5 : 0.0);
+    }
+    return space.at(std::span<const double>(u));
+}
+
+campaign::Case question_of(const SolveRequest& request) {
+    Campaign campaign = campaign::read_campaign(request.config);
+    apply(request.settings, campaign, std::filesystem::path(request.config).parent_path());
+    const Inputs inputs = middle_of(campaign.space);
+    const auto filter = store::make_filter(campaign.where, campaign::filter_names(campaign));
+    if (!filter(inputs)) std::cerr << "grainsweep: the campaign leaves this point out: " << campaign.where << '\n';
+    const std::uint64_t seed = request.seed ? *request.seed : campaign::case_seed(campaign, inputs, 0);
+    return campaign::make_case(campaign.scene(), inputs, seed);
+}
+
+Json json_of(const Sample& sample) {
+    Json object = Json::object();
+    if (!std::isnan(sample.time)) object["time"] = sample.time;
+    if (!std::isnan(sample.bin)) object["bin"] = sample.bin;
+    object["value"] = report::to_json(Cell{sample.value});
+    return object;
+}
+
+Json json_of(const campaign::Case& question, const CaseResult& result) {
+    Json object = {
+        {"scene", question.scene}, {"revision", question.revision}, {"case_id", question.id}, {"seed", question.seed}};
+    object["inputs"] = Json::object();
+    for (const auto& [name, value] : question.inputs) object["inputs"][name] = report::to_json(report::to_cell(value));
+    object["outcome"] = campaign::to_string(result.outcome);
+    object["message"] = result.message;
+    object["scalars"] = Json::object();
+    for (const auto& [name, value] : result.observations.scalars)
+        object["scalars"][name] = report::to_json(Cell{value});
+    object["series"] = Json::object();
+    for (const auto& [name, samples] : result.observations.series) {
+        auto& list = object["series"][name] = Json::array();
+        for (const auto& sample : samples) list.push_back(json_of(sample));
+    }
+    object["cost"] = {{"wall_seconds", result.cost.wall_seconds},
+                      {"cpu_seconds", result.cost.cpu_seconds},
+                      {"particle_steps", result.cost.particle_steps}};
+    object["cost"]["phases"] = Json::object();
+    for (const auto& [name, seconds] : result.cost.phases) object["cost"]["phases"][name] = seconds;
+    return object;
+}
+
+/// Everything in one table: what it is (input, outcome, scalar, series, cost), its name, its place, its value.
+store::Table table_of(const campaign::Case& question, const CaseResult& result) {
+    store::Table table{{"kind", "name", "time", "bin", "value"}, {}};
+    const auto add = [&table](const char* kind, const std::string& name, Cell value) {
+        table.rows.push_back({std::string(kind), name, Cell{}, Cell{}, std::move(value)});
+    };
+    for (const auto& [name, value] : question.inputs) add("input", name, report::to_cell(value));
+    add("outcome", "outcome", std::string(campaign::to_string(result.outcome)));
+    if (!result.message.empty()) add("outcome", "message", result.message);
+    for (const auto& [name, value] : result.observations.scalars) add("scalar", name, report::to_cell(value));
+    for (const auto& [name, samples] : result.observations.series) {
+        for (const auto& sample : samples) {
+            table.rows.push_back({std::string("series"), name, report::to_cell(sample.time),
+                                  report::to_cell(sample.bin), report::to_cell(sample.value)});
+        }
+    }
+    add("cost", "wall_seconds", result.cost.wall_seconds);
+    add("cost", "cpu_seconds", result.cost.cpu_seconds);
+    add("cost", "particle_steps", result.cost.particle_steps);
+    for (const auto& [name, seconds] : result.cost.phases) add("cost", name, seconds);
+    return table;
+}
+
+void show_text(const campaign::Case& question, const CaseResult& result) {
+    const auto& scene = *find_scene(question.scene);
+    store::Table table{{"name", "value", "unit", "meaning"}, {}};
+    for (const auto& parameter : scene.parameters) {
+        const Value& value = question.inputs.at(parameter.name);
+        if (value == parameter.default_value) continue;
+        table.rows.push_back({parameter.name, campaign::to_text(value), parameter.unit, parameter.meaning});
+    }
+    table.rows.push_back({std::string("seed"), std::to_string(question.seed), std::string(), std::string()});
+    report::write(std::cout, table, Format::text);
+    std::cout << fmt::format("\n{}{}{}\n\n", campaign::to_string(result.outcome), result.message.empty() ? "" : ": ",
+                             result.message);
+    store::Table answers{{"observable", "value", "unit", "meaning"}, {}};
+    for (const auto& observable : scene.observables) {
+        Cell value;
+        if (const auto found = result.observations.scalars.find(observable.name);
+            found != result.observations.scalars.end()) {
+            value = report::to_cell(found->second);
+        } else if (const auto series = result.observations.series.find(observable.name);
+                   series != result.observations.series.end()) {
+            value = fmt::format("{} values", series->second.size());
+        } else {
+            continue;
+        }
+        answers.rows.push_back({observable.name, value, observable.unit, observable.meaning});
+    }
+    if (!answers.rows.empty()) report::write(std::cout, answers, Format::text);
+    std::cout << fmt::format("\n{:.3g} s, {:.3g} s of processor, {:.3g} particle steps\n", result.cost.wall_seconds,
+                             result.cost.cpu_seconds, result.cost.particle_steps);
+}
+
+/// Percents on a terminal, nothing elsewhere.
+bool show_progress(const Scene& scene) {
+    static const bool terminal = ::isatty(STDERR_FILENO) == 1;
+    if (terminal) std::cerr << fmt::format("\r{:3.0f} %", 100 * scene.progress()) << std::flush;
+    return true;
+}
+
+int solve(const SolveRequest& request, Format format) {
+    const campaign::Case question = question_of(request);
+    NoArtefacts artefacts;
+    const auto computed = workers::compute(question, 1, artefacts, std::nullopt, show_progress);
+    if (::isatty(STDERR_FILENO) == 1) std::cerr << "\r\033[K" << std::flush;
+    const CaseResult& result = computed.value();  // the watch never gives it up
+    if (format == Format::text) show_text(question, result);
+    if (format == Format::csv) report::write(std::cout, table_of(question, result), format);
+    if (format == Format::json) report::write(std::cout, json_of(question, result));
+    return result.outcome == Outcome::completed || result.outcome == Outcome::skipped ? 0 : 1;
+}
+
+}  // namespace
+
+std::vector<Command> solve_commands() {
+    return {{"solve", "one case of a campaign in this process, without an archive",
+             [](CLI::App& parser, const Format& format) -> Action {
+                 const auto request = std::make_shared<SolveRequest>();
+                 parser.add_option("CONFIG", request->config, "campaign file")->required();
+                 parser
+                     .add_option("--set", request->settings,
+                                 "a parameter's value; factors not set take the middle of their range")
+                     ->type_name("NAME=VALUE")
+                     ->allow_extra_args(false);
+                 parser.add_option("--seed", request->seed, "seed of the case; default: as in the campaign")
+                     ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{0x7FFFFFFFFFFFFFFF}));
+                 return [request, &format] { return solve(*request, format); };
+             },
+             false}};
+}
+
+}  // namespace grainsweep::cli

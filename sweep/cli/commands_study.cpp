@@ -1,0 +1,189 @@
+// converge, sensitivity, report: what the stored answers say.
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/cli/command.hpp"
+#include "sweep/report/history.hpp"
+#include "sweep/report/influence.hpp"
+#include "sweep/report/page.hpp"
+#include "sweep/report/study_tables.hpp"
+#include "sweep/report/summary.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+
+namespace grainsweep::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using report::Format;
+using report::Responses;
+using store::Store;
+
+/// Which campaign and which observable of a database.
+struct Subject {
+    std::string database, campaign, observable;
+};
+
+void append(store::Table& all, store::Table more) {
+    if (all.columns.empty()) all.columns = std::move(more.columns);
+    for (auto& row : more.rows) all.rows.push_back(std::move(row));
+}
+
+void print_heading(const Responses& responses, const report::ResponseColumn& response) {
+    const auto& record = responses.campaign;
+    const std::string unit = response.unit.empty() || response.unit == "1" ? "" : fmt::format(" ({})", response.unit);
+    std::cout << fmt::format(
+        "{}: {}{} over {} points of a {} design{}; {}\n\n", record.name, response.name, unit, responses.settled_points,
+        record.design,
+        record.sequences > 1 && report::repeats(responses) ? fmt::format(" of {} sequences", record.sequences) : "",
+        report::outcome_line(responses));
+}
+
+void print_notes(const std::vector<std::string>& notes) {
+    for (const auto& note : notes) std::cout << "note: " << note << '\n';
+}
+
+void print_history(const Responses& responses, const report::ResponseColumn& response, const report::History& history,
+                   const std::vector<report::LatticeStep>& lattices) {
+    print_heading(responses, response);
+    report::write(std::cout, report::statistics_table(history), Format::text);
+    std::cout << '\n';
+    if (!history.checks.empty()) {
+        report::write(std::cout, report::checks_table(history), Format::text);
+        std::cout << '\n';
+    }
+    if (!lattices.empty()) {
+        report::write(std::cout, report::lattice_table(lattices), Format::text);
+        std::cout << '\n';
+    }
+    std::cout << history.verdict << '\n';
+    print_notes(history.warnings);
+}
+
+/// Calls `with` for every campaign the subject names; those whose scene has not the observable are passed over where
+/// no campaign is named.
+template <class With>
+void for_each_campaign(const Store& store, const Subject& subject, With with) {
+    const auto records = report::find_campaigns(store, subject.campaign);
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        const auto responses = report::read_responses(store, records[i]);
+        const bool last_chance = i + 1 == records.size() && found == 0;
+        if (!last_chance && !responses.measures(subject.observable)) continue;
+        with(responses, responses.observable(subject.observable), found++ == 0);
+    }
+}
+
+int converge(const Subject& subject, Format format) {
+    const Store store(subject.database, Store::Mode::read);
+    Json all = Json::array();
+    store::Table rows;
+    for_each_campaign(store, subject,
+                      [&](const Responses& responses, const report::ResponseColumn& response, bool first) {
+                          const auto history = report::history_of(responses, response);
+                          const auto lattices = report::lattice_family(store, responses, response);
+                          if (format == Format::json) {
+                              all.push_back(report::to_json(responses, response, history, lattices));
+                          } else if (format == Format::csv) {
+                              append(rows, report::checks_rows(responses, response, history));
+                          } else {
+                              if (!first) std::cout << '\n';
+                              print_history(responses, response, history, lattices);
+                          }
+                      });
+    if (format == Format::json) report::write(std::cout, all);
+    if (format == Format::csv) report::write(std::cout, rows, format);
+    return 0;
+}
+
+int sensitivity(const Subject& subject, Format format) {
+    const Store store(subject.database, Store::Mode::read);
+    Json all = Json::array();
+    store::Table rows;
+    for_each_campaign(store, subject,
+                      [&](const Responses& responses, const report::ResponseColumn& response, bool first) {
+                          const auto influence = report::influence_of(responses, response);
+                          if (format == Format::json) {
+                              all.push_back(report::to_json(responses, response, influence));
+                          } else if (format == Format::csv) {
+                              append(rows, report::influence_rows(responses, response, influence));
+                          } else {
+                              if (!first) std::cout << '\n';
+                              print_heading(responses, response);
+                              report::write(std::cout, report::influence_table(influence), Format::text);
+                              std::cout << '\n';
+                              print_notes(influence.notes);
+                          }
+                      });
+    if (format == Format::json) report::write(std::cout, all);
+    if (format == Format::csv) report::write(std::cout, rows, format);
+    return 0;
+}
+
+int write_report(const std::string& database, std::string output, Format format) {
+    const Store store(database, Store::Mode::read);
+    if (output.empty()) output = fs::path(database).filename().replace_extension(".html").string();
+    std::error_code ignored;
+    if (fs::equivalent(output, database, ignored)) {
+        throw campaign::wrong_question("-o", fmt::format("'{}'", output), "this is the database itself");
+    }
+    std::ofstream file(output, std::ios::binary);
+    errno = 0;
+    report::write_page(file, store, fs::path(database).filename().string());
+    file.close();
+    if (!file) {
+        throw store::BrokenWorld(fmt::format("'{}' cannot be written: {}.", output, std::strerror(errno)));
+    }
+    const auto size = static_cast<std::int64_t>(fs::file_size(output));
+    if (format == Format::text) {
+        std::cout << fmt::format("{} ({} kB): open it in a browser\n", output, (size + 999) / 1000);
+    } else if (format == Format::json) {
+        report::write(std::cout, Json{{"report", output}, {"bytes", size}});
+    } else {
+        report::write(std::cout, store::Table{{"report", "bytes"}, {{output, size}}}, format);
+    }
+    return 0;
+}
+
+/// A command about one observable of one campaign, or of all.
+Command study(std::string command, std::string summary, int (*answer)(const Subject&, Format)) {
+    return {std::move(command), std::move(summary),
+            [answer](CLI::App& parser, const Format& format) -> Action {
+                const auto subject = std::make_shared<Subject>();
+                parser.add_option("DB", subject->database, "the database")->required();
+                parser.add_option("--campaign", subject->campaign, "one of its campaigns; default: all");
+                parser.add_option("--observable", subject->observable,
+                                  "a scalar; default: the one the campaign converges on, else the scene's first");
+                return [subject, &format, answer] { return answer(*subject, format); };
+            },
+            false};
+}
+
+}  // namespace
+
+std::vector<Command> study_commands() {
+    return {
+        study("converge", "moments with their errors, check by check, and the verdict", converge),
+        study("sensitivity", "which factor moves the response: indices with their errors", sensitivity),
+        {"report", "one self-contained page with all figures and pictures",
+         [](CLI::App& parser, const Format& format) -> Action {
+             struct Request {
+                 std::string database, output;
+             };
+             const auto request = std::make_shared<Request>();
+             parser.add_option("DB", request->database, "the database")->required();
+             parser.add_option("-o,--output", request->output, "the page; default: the database's name with .html");
+             return [request, &format] { return write_report(request->database, request->output, format); };
+         },
+         false},
+    };
+}
+
+}  // namespace grainsweep::cli

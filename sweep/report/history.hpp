@@ -1,0 +1,39 @@
+// How the moments of a response settled over its design, recomputed from the stored values, and what to make of it.
+#pragma once
+
+#include "stats/convergence.hpp"
+#include "sweep/report/responses.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace grainsweep::report {
+
+struct History {
+    stats::ConvergenceSettings settings;  ///< the campaign's rule; all_change with the default gates where it has none
+    bool has_rule = false;                ///< the campaign gives a rule
+    std::vector<stats::Checkpoint> checks;  ///< every complete block of the settled beginning
+    /// All settled points: the figures to quote. Where the points are no multiple of the block it is shown, never
+    /// judged. Errors are NaN for a lattice or a list.
+    stats::Checkpoint all;
+    std::string verdict;                ///< one line
+    std::vector<std::string> warnings;  ///< what a reader must know before quoting the figures
+};
+
+[[nodiscard]] History history_of(const Responses& responses, const ResponseColumn& response);
+
+/// One lattice of a family (same scene, factors and ranges) and how far its moments moved since the one before.
+struct LatticeStep {
+    std::string campaign;
+    std::int64_t points = 0;
+    stats::Summary summary;
+    std::vector<double> changes;  ///< per stats::statistics, as a rule compares them; NaN at the first
+};
+
+/// A lattice is judged by its finer and coarser siblings: all lattices of the database that ask the same scene about
+/// the same factors and ranges, by growing number of points. Empty where there is no second one.
+[[nodiscard]] std::vector<LatticeStep> lattice_family(const store::Store& store, const Responses& responses,
+                                                      const ResponseColumn& response);
+
+}  // namespace grainsweep::report

@@ -1,0 +1,263 @@
+#include "sweep/report/responses.hpp"
+
+#include "solver/scenes/scene.hpp"
+#include "sweep/campaign/json_text.hpp"
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/schedule/judge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace grainsweep::report {
+namespace {
+
+using campaign::Json;
+using Cell = store::Table::Cell;
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+// Columns of a campaign's view before its factors: point, sequence, replicate, case_id, seed, outcome, attempts,
+// wall_seconds.
+constexpr std::size_t point_column = 0, replicate_column = 2, case_column = 3, outcome_column = 5, first_factor = 8;
+
+std::string listed(const std::vector<std::string>& names) {
+    std::string text;
+    for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text;
+}
+
+std::int64_t integer(const Cell& cell) {
+    const auto* value = std::get_if<std::int64_t>(&cell);
+    return value == nullptr ? 0 : *value;
+}
+
+double number(const Cell& cell) {
+    if (const auto* real = std::get_if<double>(&cell)) return *real;
+    if (const auto* whole = std::get_if<std::int64_t>(&cell)) return static_cast<double>(*whole);
+    return none;
+}
+
+/// A level as it is shown; a file by its name.
+std::string level_text(const Cell& cell) {
+    if (const auto* word = std::get_if<std::string>(&cell)) {
+        const auto file = file_word(*word);
+        return file ? std::filesystem::path(file->path).filename().string() : *word;
+    }
+    return fmt::format("{:.6g}", number(cell));
+}
+
+std::string level_text(const Json& level) {
+    return level.is_string() ? level.get<std::string>() : fmt::format("{:.6g}", level.get<double>());
+}
+
+std::vector<Cell> column_of(const store::Table& table, std::size_t column) {
+    std::vector<Cell> cells;
+    cells.reserve(table.rows.size());
+    for (const auto& row : table.rows) cells.push_back(row[column]);
+    return cells;
+}
+
+/// Levels that occur, in the order of the campaign file; those it does not name (files) after them.
+void read_levels(FactorColumn& factor, const std::vector<Cell>& cells, const Json* listed) {
+    std::vector<std::string> texts;
+    texts.reserve(cells.size());
+    for (const auto& cell : cells) texts.push_back(level_text(cell));
+    std::vector<std::string> order;
+    if (listed != nullptr)
+        for (const auto& level : *listed) order.push_back(level_text(level));
+    std::map<std::string, std::size_t> index;
+    for (const auto& level : order)
+        if (std::ranges::find(texts, level) != texts.end()) index.try_emplace(level, index.size());
+    for (const auto& text : texts) index.try_emplace(text, index.size());
+    factor.levels.resize(index.size());
+    for (const auto& [text, place] : index) factor.levels[place] = text;
+    for (const auto& text : texts) factor.values.push_back(static_cast<double>(index.at(text)));
+}
+
+FactorColumn read_factor(const Json& given, const std::vector<Cell>& cells, const SceneInfo* scene) {
+    FactorColumn factor;
+    factor.name = given.at("name").get<std::string>();
+    if (const auto* parameter = scene == nullptr ? nullptr : scene->find_parameter(factor.name)) {
+        factor.unit = parameter->unit;
+        factor.meaning = parameter->meaning;
+    }
+    factor.log = given.value("scale", "linear") == "log";
+    if (given.contains("between")) {
+        factor.low = given.at("between").at(0).get<double>();
+        factor.high = given.at("between").at(1).get<double>();
+    }
+    const bool words = std::ranges::any_of(cells, [](const Cell& c) { return std::holds_alternative<std::string>(c); });
+    if (given.contains("levels") || words) {
+        read_levels(factor, cells, given.contains("levels") ? &given.at("levels") : nullptr);
+    } else {
+        for (const auto& cell : cells) factor.values.push_back(number(cell));
+    }
+    return factor;
+}
+
+/// A view calls an observable that bears the name of a factor "NAME_observed".
+std::string observable_name(const std::string& column, const SceneInfo* scene) {
+    constexpr std::string_view suffix = "_observed";
+    if (scene == nullptr || scene->find_observable(column) != nullptr || !column.ends_with(suffix)) return column;
+    return column.substr(0, column.size() - suffix.size());
+}
+
+bool has_last_word(const std::optional<campaign::Outcome>& outcome) {
+    return outcome && *outcome != campaign::Outcome::abandoned;
+}
+
+void find_settled(Responses& responses) {
+    const auto& record = responses.campaign;
+    if (record.stopped_at) {
+        responses.settled_points = *record.stopped_at;
+        const auto end = std::ranges::lower_bound(responses.points, *record.stopped_at);
+        responses.settled = static_cast<std::size_t>(end - responses.points.begin());
+        return;
+    }
+    const auto open = std::ranges::find_if_not(responses.outcomes, has_last_word);
+    responses.settled = static_cast<std::size_t>(open - responses.outcomes.begin());
+    responses.settled_points =
+        open == responses.outcomes.end() ? responses.candidates : responses.points[responses.settled];
+    // A point counts when all its repeats are there.
+    while (responses.settled > 0 && responses.points[responses.settled - 1] >= responses.settled_points)
+        --responses.settled;
+}
+
+}  // namespace
+
+double FactorColumn::coordinate(std::size_t row) const {
+    const double value = values[row];
+    if (!continuous()) return levels.size() < 2 ? 0 : value / static_cast<double>(levels.size() - 1);
+    return log ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
+}
+
+const ResponseColumn* Responses::main_observable() const {
+    if (campaign.convergence) {
+        const auto named = std::ranges::find(observables, campaign.convergence->observable, &ResponseColumn::name);
+        if (named != observables.end()) return &*named;
+    }
+    const auto measured = std::ranges::find_if(observables, [](const ResponseColumn& response) {
+        return std::ranges::any_of(response.values, [](double x) { return std::isfinite(x); });
+    });
+    if (measured != observables.end()) return &*measured;
+    return observables.empty() ? nullptr : &observables.front();
+}
+
+const ResponseColumn& Responses::observable(std::string_view name) const {
+    if (name.empty()) {
+        if (const auto* main = main_observable()) return *main;
+        throw campaign::wrong_question("campaign " + campaign.name, "", "its scene measures no scalar");
+    }
+    const auto found = std::ranges::find(observables, name, &ResponseColumn::name);
+    if (found != observables.end()) return *found;
+    std::vector<std::string> names;
+    for (const auto& response : observables) names.push_back(response.name);
+    throw campaign::wrong_question(
+        "--observable", fmt::format("'{}'", name),
+        fmt::format("scene '{}' measures no such scalar; it measures {}", campaign.scene, listed(names)),
+        campaign::nearest_word(name, names));
+}
+
+bool Responses::measures(std::string_view name) const {
+    return name.empty() ? !observables.empty()
+                        : std::ranges::find(observables, name, &ResponseColumn::name) != observables.end();
+}
+
+bool Responses::ordered_sample() const {
+    return campaign.design != "lattice" && campaign.design != "list";
+}
+
+bool repeats(const Responses& responses) {
+    const auto sequences = static_cast<std::size_t>(responses.campaign.sequences);
+    return schedule::independent_sequences(responses.campaign.design, sequences) > 1;
+}
+
+Responses read_responses(const store::Store& store, const store::CampaignRecord& record) {
+    Responses responses;
+    responses.campaign = record;
+    const SceneInfo* scene = find_scene(record.scene);
+    // The campaign's view is the archive's public face; its columns are promised to users, too.
+    const auto table = store.query(fmt::format("SELECT * FROM \"{}\" ORDER BY point, replicate", record.name));
+    for (const auto& row : table.rows) {
+        responses.points.push_back(integer(row[point_column]));
+        responses.replicates.push_back(integer(row[replicate_column]));
+        responses.case_ids.push_back(std::get<std::string>(row[case_column]));
+        const auto* outcome = std::get_if<std::string>(&row[outcome_column]);
+        responses.outcomes.push_back(outcome == nullptr ? std::nullopt : campaign::outcome_named(*outcome));
+    }
+
+    const Json text = campaign::parse_json(record.text);
+    std::size_t column = first_factor;
+    for (const auto& given : text.at("factors"))
+        responses.factors.push_back(read_factor(given, column_of(table, column++), scene));
+    for (; column < table.columns.size(); ++column) {
+        ResponseColumn response;
+        response.name = observable_name(table.columns[column], scene);
+        if (const auto* spec = scene == nullptr ? nullptr : scene->find_observable(response.name)) {
+            response.unit = spec->unit;
+            response.meaning = spec->meaning;
+        }
+        response.values.reserve(table.rows.size());
+        for (const auto& row : table.rows) response.values.push_back(number(row[column]));
+        responses.observables.push_back(std::move(response));
+    }
+
+    responses.candidates = responses.points.empty() ? 0 : responses.points.back() + 1;
+    const auto& design = text.at("design");
+    if (design.contains("points")) {
+        responses.candidates = std::max(responses.candidates, design.at("points").get<std::int64_t>());
+    }
+    find_settled(responses);
+    return responses;
+}
+
+std::vector<store::CampaignRecord> find_campaigns(const store::Store& store, std::string_view name) {
+    auto records = store.campaigns();
+    if (records.empty()) throw campaign::wrong_question("", "", "the database holds no campaign yet");
+    if (name.empty()) return records;
+    std::vector<std::string> names;
+    for (const auto& record : records) names.push_back(record.name);
+    std::erase_if(records, [&](const auto& record) { return record.name != name; });
+    if (!records.empty()) return records;
+    throw campaign::wrong_question("--campaign", fmt::format("'{}'", name),
+                                   fmt::format("the database holds {}", listed(names)),
+                                   campaign::nearest_word(name, names));
+}
+
+std::vector<std::pair<std::string, std::int64_t>> count_outcomes(const Responses& responses) {
+    std::vector<std::pair<std::string, std::int64_t>> counts;
+    for (const auto outcome : campaign::outcomes) {
+        counts.emplace_back(campaign::to_string(outcome),
+                            std::ranges::count(responses.outcomes, std::optional(outcome)));
+    }
+    counts.emplace_back("not yet", std::ranges::count(responses.outcomes, std::optional<campaign::Outcome>{}));
+    return counts;
+}
+
+std::vector<std::size_t> extreme_rows(std::span<const double> values, std::size_t count, bool largest) {
+    std::vector<std::size_t> rows;
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (std::isfinite(values[i])) rows.push_back(i);
+    const auto before = [&](std::size_t a, std::size_t b) {
+        if (values[a] != values[b]) return largest ? values[a] > values[b] : values[a] < values[b];
+        return a < b;
+    };
+    const auto kept = std::min(count, rows.size());
+    std::ranges::partial_sort(rows, rows.begin() + static_cast<std::ptrdiff_t>(kept), before);
+    rows.resize(kept);
+    return rows;
+}
+
+std::string factor_text(const FactorColumn& factor, std::size_t row) {
+    const double value = factor.values[row];
+    if (factor.continuous()) return std::isnan(value) ? "" : fmt::format("{:.6g}", value);
+    return factor.levels[static_cast<std::size_t>(value)];
+}
+
+}  // namespace grainsweep::report

@@ -1,0 +1,83 @@
+// A campaign as the study needs it: factors and responses, column by column.
+#pragma once
+
+#include "sweep/store/store.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace grainsweep::report {
+
+/// What was varied. Continuous: `values` in its unit. With levels: `values` are indices into `levels`.
+struct FactorColumn {
+    std::string name, unit, meaning;
+    std::vector<std::string> levels;  ///< as text, in the order of the campaign file; empty: continuous
+    double low = 0, high = 0;         ///< continuous: the range
+    bool log = false;                 ///< the range is divided logarithmically
+    std::vector<double> values;       ///< one per row
+
+    [[nodiscard]] bool continuous() const { return levels.empty(); }
+    /// Where the row stands in the range: 0 to 1; a level by its index over their number less one.
+    [[nodiscard]] double coordinate(std::size_t row) const;
+};
+
+/// What was measured: one scalar observable, NaN where a case has none.
+struct ResponseColumn {
+    std::string name, unit, meaning;
+    std::vector<double> values;
+};
+
+/// One row per placed case, ordered by (point, replicate).
+struct Responses {
+    store::CampaignRecord campaign;
+    std::vector<std::int64_t> points, replicates;
+    std::vector<std::string> case_ids;
+    std::vector<std::optional<campaign::Outcome>> outcomes;
+    std::vector<FactorColumn> factors;
+    std::vector<ResponseColumn> observables;
+    std::int64_t candidates = 0;  ///< points the design numbers, those filtered out by `where` included
+    /// Rows of the gapless beginning that has its last word, cut where the campaign converged and stopped: what
+    /// statistics are over. A case that crashed counts as having its last word.
+    std::size_t settled = 0;
+    std::int64_t settled_points = 0;  ///< design points in that beginning
+
+    [[nodiscard]] std::size_t rows() const { return points.size(); }
+    /// The first `settled` values of a response.
+    [[nodiscard]] std::span<const double> judged(const ResponseColumn& response) const {
+        return std::span(response.values).first(settled);
+    }
+    /// The observable of the convergence rule, else the scene's first that has a value, else the first; none where
+    /// the scene measures no scalar.
+    [[nodiscard]] const ResponseColumn* main_observable() const;
+    /// Throws WrongQuestion with the nearest name. Empty: the main observable.
+    [[nodiscard]] const ResponseColumn& observable(std::string_view name) const;
+    /// Whether it has a scalar of this name; any, where the name is empty.
+    [[nodiscard]] bool measures(std::string_view name) const;
+    /// A lattice or a list has no order in which statistics could settle: its beginnings are no samples of it.
+    [[nodiscard]] bool ordered_sample() const;
+};
+
+/// Whether the sequences of the design repeat one another independently.
+[[nodiscard]] bool repeats(const Responses& responses);
+
+[[nodiscard]] Responses read_responses(const store::Store& store, const store::CampaignRecord& campaign);
+
+/// The records of the named campaign, or of all where the name is empty. Throws WrongQuestion with the nearest name,
+/// or where the database holds no campaign.
+[[nodiscard]] std::vector<store::CampaignRecord> find_campaigns(const store::Store& store, std::string_view name);
+
+/// Number of rows with each outcome, in the order of campaign::outcomes; the last entry counts rows not there yet.
+[[nodiscard]] std::vector<std::pair<std::string, std::int64_t>> count_outcomes(const Responses& responses);
+
+/// The `count` rows with the largest (or smallest) finite values, best first; equal values by row.
+[[nodiscard]] std::vector<std::size_t> extreme_rows(std::span<const double> values, std::size_t count, bool largest);
+
+/// A factor's value at a row as text: the level's word, or the number to 6 digits.
+[[nodiscard]] std::string factor_text(const FactorColumn& factor, std::size_t row);
+
+}  // namespace grainsweep::report

@@ -1,0 +1,251 @@
+#include "sweep/report/study_tables.hpp"
+
+#include "sweep/report/summary.hpp"
+#include "sweep/report/table.hpp"
+#include "sweep/schedule/judge.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace grainsweep::report {
+namespace {
+
+using Cell = store::Table::Cell;
+using Json = nlohmann::ordered_json;
+
+bool is_gate(const History& history, stats::Statistic statistic) {
+    return std::ranges::find(history.settings.gates, statistic) != history.settings.gates.end();
+}
+
+std::string percent(double share) {
+    return std::isfinite(share) ? fmt::format("{:.2g} %", 100 * share) : "-";
+}
+
+/// The check the verdict speaks of: complete, else of all points.
+const stats::Checkpoint& judged_check(const History& history) {
+    return history.checks.empty() ? history.all : history.checks.back();
+}
+
+std::string gate_text(const History& history, stats::Statistic statistic) {
+    if (!history.has_rule || !is_gate(history, statistic) || history.checks.empty()) return "";
+    return judged_check(history).of(statistic).measure < history.settings.tolerance ? "within" : "holds it back";
+}
+
+std::string_view method_name(Influence::Method method) {
+    switch (method) {
+        case Influence::Method::given_data:
+            return "given_data";
+        case Influence::Method::saltelli:
+            return "saltelli";
+        case Influence::Method::morris:
+            return "morris";
+    }
+    return "";
+}
+
+/// What factors are ordered by: the most telling figure the method gives.
+double weight(const FactorInfluence& factor) {
+    const double value = factor.effects                      ? factor.effects->mu_star
+                         : std::isfinite(factor.total.value) ? factor.total.value
+                                                             : factor.first.value;
+    return std::isfinite(value) ? value : -1;
+}
+
+Cell points_needed(const History& history) {
+    const auto& check = judged_check(history);
+    return check.points_needed ? Cell{*check.points_needed} : Cell{};
+}
+
+Json number(double x) {
+    return to_json(to_cell(x));
+}
+
+}  // namespace
+
+store::Table statistics_table(const History& history) {
+    store::Table table{{"statistic", "value", "error", "measure", "gate"}, {}};
+    for (const auto statistic : stats::statistics) {
+        const auto& all = history.all.of(statistic);
+        const double measure = judged_check(history).of(statistic).measure;
+        table.rows.push_back({std::string(to_string(statistic)), to_cell(all.value), to_cell(all.error),
+                              percent(measure), gate_text(history, statistic)});
+    }
+    return table;
+}
+
+store::Table checks_table(const History& history) {
+    store::Table table{{"points", "mean", "sd", "skewness", "g1", "kurtosis", "excluded", "zeros", ""}, {}};
+    const auto add = [&](const stats::Checkpoint& check, const std::string& remark) {
+        std::vector<Cell> row = {check.points};
+        for (const auto statistic : stats::statistics)
+            row.emplace_back(with_error(check.of(statistic).value, check.of(statistic).error));
+        row.emplace_back(check.excluded);
+        row.emplace_back(percent(check.zero_share));
+        row.emplace_back(remark);
+        table.rows.push_back(std::move(row));
+    };
+    for (const auto& check : history.checks) add(check, check.converged ? "converged" : "");
+    if (history.all.points > 0 && (history.checks.empty() || history.checks.back().points != history.all.points))
+        add(history.all, "not a check");
+    return table;
+}
+
+store::Table checks_rows(const Responses& responses, const ResponseColumn& response, const History& history) {
+    store::Table table{
+        {"campaign", "observable", "points", "mean", "sd", "skewness", "g1", "kurtosis", "mean_error", "sd_error",
+         "skewness_error", "g1_error", "kurtosis_error", "zero_share", "excluded", "converged"},
+        {}};
+    const auto add = [&](const stats::Checkpoint& check, bool converged) {
+        std::vector<Cell> row = {responses.campaign.name, response.name, check.points};
+        for (const auto statistic : stats::statistics) row.push_back(to_cell(check.of(statistic).value));
+        for (const auto statistic : stats::statistics) row.push_back(to_cell(check.of(statistic).error));
+        row.push_back(to_cell(check.zero_share));
+        row.emplace_back(check.excluded);
+        row.emplace_back(std::int64_t{converged});
+        table.rows.push_back(std::move(row));
+    };
+    for (const auto& check : history.checks) add(check, check.converged);
+    if (history.all.points > 0 && (history.checks.empty() || history.checks.back().points != history.all.points))
+        add(history.all, false);
+    return table;
+}
+
+store::Table lattice_table(std::span<const LatticeStep> steps) {
+    store::Table table{{"campaign", "points", "values"}, {}};
+    for (const auto statistic : stats::statistics) {
+        table.columns.emplace_back(to_string(statistic));
+        table.columns.push_back(fmt::format("{}_change", to_string(statistic)));
+    }
+    for (const auto& step : steps) {
+        std::vector<Cell> row = {step.campaign, step.points, step.summary.count};
+        for (std::size_t s = 0; s < stats::statistics.size(); ++s) {
+            row.push_back(to_cell(step.summary.of(stats::statistics[s])));
+            row.push_back(to_cell(step.changes[s]));
+        }
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+Json to_json(const Responses& responses, const ResponseColumn& response, const History& history,
+             std::span<const LatticeStep> lattices) {
+    Json value = {{"campaign", responses.campaign.name},
+                  {"observable", response.name},
+                  {"unit", response.unit},
+                  {"design", responses.campaign.design},
+                  {"points", history.all.points},
+                  {"values", history.all.count},
+                  {"excluded", history.all.excluded},
+                  {"zero_share", number(history.all.zero_share)}};
+    value["rule"] = history.has_rule ? Json(stats::to_string(history.settings.rule)) : Json(nullptr);
+    value["tolerance"] = history.has_rule ? Json(history.settings.tolerance) : Json(nullptr);
+    value["gates"] = Json::array();
+    if (history.has_rule)
+        for (const auto gate : history.settings.gates) value["gates"].push_back(stats::to_string(gate));
+    for (const auto statistic : stats::statistics) {
+        const auto& all = history.all.of(statistic);
+        value["statistics"][std::string(stats::to_string(statistic))] = {
+            {"value", number(all.value)},
+            {"error", number(all.error)},
+            {"measure", number(judged_check(history).of(statistic).measure)}};
+    }
+    const auto converged = std::ranges::find(history.checks, true, &stats::Checkpoint::converged);
+    const bool judged = history.has_rule && converged != history.checks.end();
+    value["converged"] = judged;
+    value["converged_at"] = judged ? Json(converged->points) : Json(nullptr);
+    const auto& held_back = judged_check(history).held_back;
+    value["held_back_by"] = !judged && held_back ? Json(stats::to_string(*held_back)) : Json(nullptr);
+    value["points_needed"] = to_json(points_needed(history));
+    value["verdict"] = history.verdict;
+    value["notes"] = history.warnings;
+    value["checks"] = to_json(checks_rows(responses, response, history));
+    if (!lattices.empty()) value["lattices"] = to_json(lattice_table(lattices));
+    return value;
+}
+
+store::Table influence_table(const Influence& influence) {
+    std::vector<const FactorInfluence*> order;
+    for (const auto& factor : influence.factors) order.push_back(&factor);
+    std::ranges::stable_sort(order, std::ranges::greater{}, [](const auto* factor) { return weight(*factor); });
+    store::Table table{{"factor"}, {}};
+    const bool morris = influence.method == Influence::Method::morris;
+    if (morris) {
+        table.columns.insert(table.columns.end(), {"mu*", "mu", "sigma", "effects"});
+    } else {
+        table.columns.emplace_back("first order");
+        if (influence.method == Influence::Method::saltelli) table.columns.emplace_back("total");
+    }
+    for (const auto* factor : order) {
+        std::vector<Cell> row = {factor->factor};
+        if (morris && factor->effects) {
+            row.emplace_back(with_error(factor->effects->mu_star, factor->effects->mu_star_half_width));
+            row.push_back(to_cell(factor->effects->mu));
+            row.push_back(to_cell(factor->effects->sigma));
+            row.emplace_back(factor->effects->count);
+        } else if (!morris) {
+            row.emplace_back(with_error(factor->first.value, factor->first.half_width));
+            if (influence.method == Influence::Method::saltelli)
+                row.emplace_back(with_error(factor->total.value, factor->total.half_width));
+        }
+        row.resize(table.columns.size());
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+store::Table influence_rows(const Responses& responses, const ResponseColumn& response, const Influence& influence) {
+    store::Table table{
+        {"campaign", "observable", "method", "factor", "first", "first_error", "first_saltelli", "first_saltelli_error",
+         "total", "total_error", "mu", "mu_star", "mu_star_error", "sigma", "used", "excluded"},
+        {}};
+    for (const auto& factor : influence.factors) {
+        std::vector<Cell> row = {responses.campaign.name, response.name, std::string(method_name(influence.method)),
+                                 factor.factor};
+        for (const auto& index : {factor.first, factor.first_saltelli, factor.total}) {
+            row.push_back(to_cell(index.value));
+            row.push_back(to_cell(index.half_width));
+        }
+        const auto effects = factor.effects.value_or(stats::ElementaryEffects{});
+        for (const double x : {effects.mu, effects.mu_star, effects.mu_star_half_width, effects.sigma})
+            row.push_back(to_cell(x));
+        row.emplace_back(influence.used);
+        row.emplace_back(influence.excluded);
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+Json to_json(const Responses& responses, const ResponseColumn& response, const Influence& influence) {
+    Json value = {{"campaign", responses.campaign.name},
+                  {"observable", response.name},
+                  {"method", method_name(influence.method)},
+                  {"used", influence.used},
+                  {"excluded", influence.excluded}};
+    value["bins"] = influence.bins > 0 ? Json(influence.bins) : Json(nullptr);
+    value["factors"] = Json::array();
+    for (const auto& factor : influence.factors) {
+        Json one = {{"name", factor.factor}};
+        const auto put = [&](const char* name, const stats::SensitivityIndex& index) {
+            one[name] = {{"value", number(index.value)}, {"error", number(index.half_width)}};
+        };
+        if (influence.method != Influence::Method::morris) put("first", factor.first);
+        if (influence.method == Influence::Method::saltelli) {
+            put("first_saltelli", factor.first_saltelli);
+            put("total", factor.total);
+        }
+        if (factor.effects) {
+            one["mu_star"] = {{"value", number(factor.effects->mu_star)},
+                              {"error", number(factor.effects->mu_star_half_width)}};
+            one["mu"] = number(factor.effects->mu);
+            one["sigma"] = number(factor.effects->sigma);
+        }
+        value["factors"].push_back(std::move(one));
+    }
+    value["notes"] = influence.notes;
+    return value;
+}
+
+}  // namespace grainsweep::report

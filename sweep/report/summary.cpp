@@ -1,0 +1,123 @@
+#include "sweep/report/summary.hpp"
+
+#include "sweep/report/history.hpp"
+#include "sweep/report/table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace grainsweep::report {
+namespace {
+
+constexpr std::size_t shown_extremes = 3;
+
+std::vector<const ResponseColumn*> main_first(const Responses& responses) {
+    std::vector<const ResponseColumn*> order;
+    const auto* main = responses.main_observable();
+    if (main != nullptr) order.push_back(main);
+    for (const auto& response : responses.observables)
+        if (&response != main) order.push_back(&response);
+    return order;
+}
+
+void add_extreme(store::Table& table, const Responses& responses, const ResponseColumn& response, std::size_t row,
+                 const std::string& rank) {
+    std::vector<store::Table::Cell> cells = {rank, responses.points[row]};
+    if (responses.campaign.replicates > 1) cells.emplace_back(responses.replicates[row]);
+    for (const auto& factor : responses.factors) {
+        if (factor.continuous()) {
+            cells.push_back(to_cell(factor.values[row]));
+        } else {
+            cells.emplace_back(factor_text(factor, row));
+        }
+    }
+    cells.push_back(to_cell(response.values[row]));
+    table.rows.push_back(std::move(cells));
+}
+
+}  // namespace
+
+std::string with_error(double value, double error) {
+    if (!std::isfinite(value)) return "-";
+    if (!std::isfinite(error)) return fmt::format("{:.5g}", value);
+    if (!(error > 0)) return fmt::format("{:.5g} ± 0", value);
+    const double magnitude = std::max(std::abs(value), error);
+    const int place = 1 - static_cast<int>(std::floor(std::log10(error)));  // decimals for two digits of the error
+    if (magnitude >= 1e6 || magnitude < 1e-3) {
+        const int exponent = static_cast<int>(std::floor(std::log10(magnitude)));
+        const double unit = std::pow(10.0, exponent);
+        const int decimals = std::clamp(place + exponent, 0, 15);
+        return fmt::format("({:.{}f} ± {:.{}f})e{}", value / unit, decimals, error / unit, decimals, exponent);
+    }
+    const int decimals = std::clamp(place, 0, 15);
+    return fmt::format("{:.{}f} ± {:.{}f}", value, decimals, error, decimals);
+}
+
+std::string outcome_line(const Responses& responses) {
+    std::string line;
+    for (const auto& [outcome, count] : count_outcomes(responses)) {
+        if (count > 0) line += fmt::format("{}{} {}", line.empty() ? "" : ", ", count, outcome);
+    }
+    return line.empty() ? "no cases" : line;
+}
+
+store::Table moments_table(const Responses& responses) {
+    store::Table table;
+    table.columns = {"observable", "unit", "mean", "sd", "skewness", "g1", "kurtosis", "values"};
+    for (const auto* response : main_first(responses)) {
+        const auto all = history_of(responses, *response).all;
+        std::vector<store::Table::Cell> row = {response->name, response->unit};
+        for (const auto statistic : stats::statistics)
+            row.emplace_back(with_error(all.of(statistic).value, all.of(statistic).error));
+        row.emplace_back(all.count);
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+store::Table extremes_table(const Responses& responses, const ResponseColumn& response, std::size_t count) {
+    store::Table table;
+    table.columns = {"", "point"};
+    if (responses.campaign.replicates > 1) table.columns.emplace_back("replicate");
+    for (const auto& factor : responses.factors) table.columns.push_back(factor.name);
+    table.columns.push_back(response.name);
+    const auto values = responses.judged(response);
+    const auto finite =
+        static_cast<std::size_t>(std::ranges::count_if(values, [](double x) { return std::isfinite(x); }));
+    const std::size_t large = finite <= 2 * count ? finite : count;
+    for (const auto row : extreme_rows(values, large, true)) {
+        add_extreme(table, responses, response, row, table.rows.empty() ? "largest" : "");
+    }
+    if (large == finite) return table;
+    auto smallest = extreme_rows(values, count, false);
+    std::ranges::reverse(smallest);
+    for (const auto row : smallest) {
+        add_extreme(table, responses, response, row, row == smallest.back() ? "smallest" : "");
+    }
+    return table;
+}
+
+std::string closing_summary(const store::Store& store, const std::string& campaign,
+                            const std::filesystem::path& database) {
+    const auto responses = read_responses(store, find_campaigns(store, campaign).front());
+    std::ostringstream text;
+    text << fmt::format("{}: {} cases of {}: {}\n", campaign, responses.rows(), responses.campaign.scene,
+                        outcome_line(responses));
+    if (const auto* main = responses.main_observable()) {
+        const auto history = history_of(responses, *main);
+        if (history.has_rule) text << fmt::format("{}: {}\n", main->name, history.verdict);
+        for (const auto& warning : history.warnings) text << "note: " << warning << '\n';
+        text << fmt::format("\nmoments over {} points, 95 % errors\n", responses.settled_points);
+        write(text, moments_table(responses), Format::text);
+        text << '\n';
+        write(text, extremes_table(responses, *main, shown_extremes), Format::text);
+    }
+    text << fmt::format("\ndatabase {0}; next: grainsweep report {0}, grainsweep query {0} \"SELECT * FROM {1}\"\n",
+                        database.string(), campaign);
+    return text.str();
+}
+
+}  // namespace grainsweep::report

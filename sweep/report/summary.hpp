@@ -1,0 +1,31 @@
+// What a run ends with: counts by outcome, moments with errors, extremes, where everything is.
+#pragma once
+
+#include "sweep/report/responses.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+
+namespace grainsweep::report {
+
+/// "0.2702 ± 0.0011": the error to two digits, the value to the same place. No error: the value to 5 digits.
+/// NaN: "-".
+[[nodiscard]] std::string with_error(double value, double error);
+
+/// "640 completed, 12 unstable": outcomes that occur.
+[[nodiscard]] std::string outcome_line(const Responses& responses);
+
+/// One row per scalar observable, the main one first: moments with their 95 % errors over the settled beginning.
+[[nodiscard]] store::Table moments_table(const Responses& responses);
+
+/// The rows with the `count` largest and the `count` smallest values of a response: point, factors, value. Where there
+/// are no more than twice as many, all of them.
+[[nodiscard]] store::Table extremes_table(const Responses& responses, const ResponseColumn& response,
+                                          std::size_t count);
+
+/// The text `run` ends with. `campaign` must be in the store.
+[[nodiscard]] std::string closing_summary(const store::Store& store, const std::string& campaign,
+                                          const std::filesystem::path& database);
+
+}  // namespace grainsweep::report

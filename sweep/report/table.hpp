@@ -1,0 +1,39 @@
+// Rows for people and programs: one renderer for every command.
+//
+//   text  columns aligned, numbers to 6 digits; for reading
+//   csv   RFC 4180: CRLF, a cell quoted where it must be; an absent value is empty, an empty text is ""
+//   json  a list of objects, keys in column order; an absent value, NaN and infinity are null
+//
+// Numbers in csv and json are the shortest that read back as the same double.
+#pragma once
+
+#include "solver/scenes/values.hpp"
+#include "sweep/store/store.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace grainsweep::report {
+
+enum class Format { text, csv, json };
+
+[[nodiscard]] std::optional<Format> format_named(std::string_view word);
+
+/// Writes the table; json is exactly one value and a line end.
+void write(std::ostream& out, const store::Table& table, Format format);
+
+/// The table as a list of objects, to be part of a larger value.
+[[nodiscard]] nlohmann::ordered_json to_json(const store::Table& table);
+[[nodiscard]] nlohmann::ordered_json to_json(const store::Table::Cell& cell);
+/// One JSON value and a line end; bytes that are no UTF-8 are replaced.
+void write(std::ostream& out, const nlohmann::ordered_json& value);
+
+[[nodiscard]] store::Table::Cell to_cell(const Value& value);
+/// NaN is an absent value.
+[[nodiscard]] store::Table::Cell to_cell(double number);
+
+}  // namespace grainsweep::report

@@ -1,0 +1,153 @@
+#include "sweep/schedule/judge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <stdexcept>
+
+namespace grainsweep::schedule {
+namespace {
+
+using stats::ConvergenceRule;
+
+std::string percent(double share) {
+    return share < 1 ? fmt::format("{:.2g} %", 100 * share) : fmt::format("{:.0f} %", 100 * share);
+}
+
+/// What the rule compares, by its name: "kurtosis" or "change of kurtosis".
+std::string measure_name(stats::Statistic statistic, const stats::ConvergenceSettings& settings) {
+    const auto name = stats::to_string(statistic);
+    return settings.rule == ConvergenceRule::replicates ? std::string(name) : fmt::format("change of {}", name);
+}
+
+std::string points_left(const stats::Checkpoint& check, std::int64_t candidates) {
+    if (!check.points_needed) return "";
+    const std::int64_t more = *check.points_needed - check.points;
+    const auto text = fmt::format(", about {} more point{}", more, more == 1 ? "" : "s");
+    return *check.points_needed > candidates ? fmt::format("{} (the design has {})", text, candidates) : text;
+}
+
+}  // namespace
+
+std::size_t independent_sequences(std::string_view design, std::size_t sequences) {
+    return design == "saltelli" || design == "morris" ? 1 : sequences;
+}
+
+stats::ConvergenceSettings settings_of(const campaign::Convergence& wanted, std::size_t sequences) {
+    stats::ConvergenceSettings settings;
+    const auto rule = stats::convergence_rule_named(wanted.rule);
+    if (!rule) throw std::invalid_argument("no convergence rule is called '" + wanted.rule + "'");
+    settings.rule = *rule;
+    settings.gates.clear();
+    for (const auto& word : wanted.gates) {
+        const auto gate = stats::statistic_named(word);
+        if (!gate) throw std::invalid_argument("no statistic is called '" + word + "'");
+        settings.gates.push_back(*gate);
+    }
+    settings.tolerance = wanted.tolerance;
+    settings.block = wanted.block;
+    settings.sequences = static_cast<std::int64_t>(sequences);
+    return settings;
+}
+
+store::ConvergenceRow row_of(const stats::Checkpoint& check, std::string_view observable) {
+    using stats::Statistic;
+    return {.observable = std::string(observable),
+            .points = check.points,
+            .mean = check.of(Statistic::mean).value,
+            .sd = check.of(Statistic::sd).value,
+            .skewness = check.of(Statistic::skewness).value,
+            .g1 = check.of(Statistic::g1).value,
+            .kurtosis = check.of(Statistic::kurtosis).value,
+            .mean_error = check.of(Statistic::mean).error,
+            .sd_error = check.of(Statistic::sd).error,
+            .skewness_error = check.of(Statistic::skewness).error,
+            .g1_error = check.of(Statistic::g1).error,
+            .kurtosis_error = check.of(Statistic::kurtosis).error,
+            .zero_share = check.zero_share,
+            .excluded = check.excluded,
+            .converged = check.converged};
+}
+
+std::string verdict_of(const stats::Checkpoint& check, const stats::ConvergenceSettings& settings,
+                       std::int64_t candidates) {
+    if (check.converged) {
+        std::string text;
+        for (const auto gate : settings.gates) {
+            const double measure = check.of(gate).measure;
+            if (!(measure < settings.tolerance)) continue;  // under any_change one is enough
+            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", measure_name(gate, settings), percent(measure));
+        }
+        return fmt::format("{} < {}", text, percent(settings.tolerance));
+    }
+    if (check.passes || !check.held_back) {
+        return fmt::format("every gate within {} for the first time, the next check may confirm it{}",
+                           percent(settings.tolerance), points_left(check, candidates));
+    }
+    const double measure = check.of(*check.held_back).measure;
+    if (!std::isnan(measure)) {
+        return fmt::format("{} {} > {}{}", measure_name(*check.held_back, settings), percent(measure),
+                           percent(settings.tolerance), points_left(check, candidates));
+    }
+    const bool first_of_changes = settings.rule != ConvergenceRule::replicates && check.points <= settings.block;
+    if (first_of_changes) return fmt::format("{} points, nothing to compare with yet", check.points);
+    if (*check.held_back == stats::Statistic::skewness && stats::median_is_unsound(check.zero_share)) {
+        return fmt::format("skewness cannot be judged: {} of the values are zero, so the median jumps",
+                           percent(check.zero_share));
+    }
+    return fmt::format("{} is undefined after {} points ({} values)", measure_name(*check.held_back, settings),
+                       check.points, check.count);
+}
+
+Judge::Judge(const campaign::Convergence& wanted, std::span<const campaign::PlacedCase> placed, std::size_t sequences,
+             std::span<const double> known, std::optional<std::int64_t> candidates)
+    : wanted_(wanted),
+      settings_(settings_of(wanted, sequences)),
+      convergence_(settings_),
+      candidates_(placed.empty() ? 0 : placed.back().point + 1),
+      values_(known.begin(), known.end()),
+      verdict_(fmt::format("first check of {} at {} points", wanted.observable, wanted.block)) {
+    assert(known.size() == placed.size());
+    if (candidates) candidates_ = std::max(candidates_, *candidates);
+    points_.reserve(placed.size());
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+        assert(i == 0 || placed[i - 1].point <= placed[i].point);
+        points_.push_back(placed[i].point);
+        places_[placed[i].question.id].push_back(i);
+    }
+}
+
+void Judge::learn(const campaign::CaseId& id, const Observations& observations) {
+    const auto found = places_.find(id);
+    if (found == places_.end()) return;
+    const auto scalar = observations.scalars.find(wanted_.observable);
+    const double value =
+        scalar == observations.scalars.end() ? std::numeric_limits<double>::quiet_NaN() : scalar->second;
+    for (const std::size_t place : found->second) values_[place] = value;
+}
+
+std::optional<std::int64_t> Judge::converged_at() const {
+    const auto* check = convergence_.converged();
+    return check == nullptr ? std::nullopt : std::optional(check->points);
+}
+
+std::vector<store::ConvergenceRow> Judge::judge(std::size_t settled) {
+    assert(settled <= points_.size());
+    const bool over = stops() && converged_at();
+    for (; !over && fed_ < settled; ++fed_) convergence_.add(points_[fed_], values_[fed_]);
+    if (!over && fed_ == settled) convergence_.settle(settled == points_.size() ? candidates_ : points_[settled]);
+
+    std::vector<store::ConvergenceRow> rows;
+    const auto checks = convergence_.checkpoints();
+    while (judged_ < checks.size()) {
+        const auto& check = checks[judged_++];
+        rows.push_back(row_of(check, wanted_.observable));
+        verdict_ = verdict_of(check, settings_, candidates_);
+        if (stops() && check.converged) judged_ = checks.size();
+    }
+    return rows;
+}
+
+}  // namespace grainsweep::schedule

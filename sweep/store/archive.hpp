@@ -1,0 +1,61 @@
+// What the files of the store share: the open database and what it remembers between calls.
+#pragma once
+
+#include "sweep/store/database.hpp"
+#include "sweep/store/store.hpp"
+#include "sweep/store/writer_lock.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace grainsweep::store {
+
+struct Store::Impl {
+    using Keys = std::map<std::string, std::int64_t, std::less<>>;  ///< name -> key
+
+    Impl(std::filesystem::path path, std::optional<WriterLock> held, Connection connection)
+        : file(std::move(path)), lock(std::move(held)), db(std::move(connection)) {}
+
+    std::filesystem::path file;
+    std::optional<WriterLock> lock;  ///< none: opened to read
+    Connection db;
+
+    std::optional<std::int64_t> provenance;  ///< of this run, once a campaign is enrolled
+    std::int64_t provenance_campaign = 0;
+    bool dead_attempts_closed = false;
+    bool in_group = false;
+    std::int64_t settled_in_group = 0;
+    std::map<std::pair<std::string, std::int64_t>, Keys> observables;  ///< (scene, revision) -> keys
+
+    void require_writer() const;
+    void require_group() const;
+    /// Throws WrongQuestion with the nearest name where there is none.
+    [[nodiscard]] std::int64_t campaign_key(std::string_view name) const;
+    /// Key of an observable; one that the scene did not declare is declared, so that no answer is lost.
+    [[nodiscard]] std::int64_t observable_key(const std::string& scene, std::int64_t revision, std::string_view name,
+                                              Shape shape);
+};
+
+/// The campaign's identity as text, one line per factor, value or option.
+struct CampaignTexts {
+    std::string factors, fixed, options, extent;
+};
+[[nodiscard]] CampaignTexts texts_of(const campaign::Campaign& campaign);
+/// Sequences of the design: point p belongs to sequence p mod this.
+[[nodiscard]] std::int64_t sequences_of(const campaign::Campaign& campaign);
+
+/// Throws WrongQuestion where the stored campaign of that name asks something else; returns its key, none where
+/// it is new.
+[[nodiscard]] std::optional<std::int64_t> match_campaign(const Store::Impl& archive,
+                                                         const campaign::Campaign& campaign);
+
+/// Creates or renews the view that bears the campaign's name.
+void make_campaign_view(Store::Impl& archive, const campaign::Campaign& campaign, std::int64_t campaign_key);
+
+}  // namespace grainsweep::store

@@ -1,0 +1,171 @@
+// One file per key: magic, length of the key, length of the contents, XXH3 128-bit of both, key, contents.
+#include "sweep/store/artefacts.hpp"
+
+#include "sweep/campaign/case.hpp"
+#include "sweep/store/broken_world.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+namespace grainsweep::store {
+
+namespace {
+
+constexpr std::array<char, 8> magic = {'g', 's', 'w', 'p', 'a', 'r', 't', '1'};
+
+struct Header {
+    std::array<char, 8> magic{};
+    std::uint64_t key_length = 0;
+    std::uint64_t length = 0;
+    std::array<std::uint64_t, 2> checksum{};
+};
+static_assert(sizeof(Header) == 40 && std::is_trivially_copyable_v<Header>);
+
+std::array<std::uint64_t, 2> checksum_of(std::string_view key, std::span<const std::byte> contents) {
+    struct Free {
+        void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
+    };
+    const std::unique_ptr<XXH3_state_t, Free> state(XXH3_createState());
+    XXH3_128bits_reset(state.get());
+    XXH3_128bits_update(state.get(), key.data(), key.size());
+    XXH3_128bits_update(state.get(), contents.data(), contents.size());
+    const auto hash = XXH3_128bits_digest(state.get());
+    return {hash.low64, hash.high64};
+}
+
+[[noreturn]] void broken(const std::filesystem::path& file, std::string_view what) {
+    throw BrokenWorld(fmt::format("'{}': cannot be {}: {}", file.string(), what, std::strerror(errno)));
+}
+
+/// A file being written aside: gone unless renamed into place.
+class AsideFile {
+public:
+    explicit AsideFile(std::filesystem::path file) : file_(std::move(file)) {
+        descriptor_ = open(file_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (descriptor_ < 0) broken(file_, "made");
+    }
+    AsideFile(const AsideFile&) = delete;
+    AsideFile& operator=(const AsideFile&) = delete;
+    ~AsideFile() {
+        if (descriptor_ >= 0) close(descriptor_);
+        if (!file_.empty()) unlink(file_.c_str());
+    }
+
+    void write(std::span<const std::byte> bytes) {
+        while (!bytes.empty()) {
+            const auto written = ::write(descriptor_, bytes.data(), bytes.size());
+            if (written < 0 && errno == EINTR) continue;
+            if (written < 0) broken(file_, "written");
+            bytes = bytes.subspan(static_cast<std::size_t>(written));
+        }
+    }
+
+    void become(const std::filesystem::path& target) {
+        if (fsync(descriptor_) != 0) broken(file_, "synced");
+        if (close(std::exchange(descriptor_, -1)) != 0) broken(file_, "closed");
+        if (rename(file_.c_str(), target.c_str()) != 0) broken(target, "put in place");
+        file_.clear();
+    }
+
+private:
+    std::filesystem::path file_;
+    int descriptor_ = -1;
+};
+
+void sync_folder(const std::filesystem::path& folder) {
+    const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0) broken(folder, "opened");
+    const bool synced = fsync(descriptor) == 0 || errno == EINVAL;  // EINVAL: a file system without folder syncs
+    close(descriptor);
+    if (!synced) broken(folder, "synced");
+}
+
+std::filesystem::path file_of(const std::filesystem::path& folder, std::string_view key) {
+    return folder / (campaign::content_hash(key) + ".artefact");
+}
+
+/// Of this process, thread and moment alone.
+std::filesystem::path aside_of(const std::filesystem::path& file) {
+    static std::atomic<unsigned> count = 0;
+    std::array<char, 65> host{};
+    gethostname(host.data(), host.size() - 1);
+    auto aside = file;
+    return aside += fmt::format(".{}.{}.{}.aside", host.data(), getpid(), count++);
+}
+
+/// What killed processes left half written: nobody writes one file for a day.
+void sweep_leftovers(const std::filesystem::path& folder) {
+    const auto yesterday = std::filesystem::file_time_type::clock::now() - std::chrono::hours(24);
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+        if (entry.path().extension() != ".aside") continue;
+        const auto written = entry.last_write_time(ignored);
+        if (!ignored && written < yesterday) std::filesystem::remove(entry.path(), ignored);
+    }
+}
+
+}  // namespace
+
+std::optional<Bytes> ArtefactFolder::get(std::string_view key) {
+    std::ifstream stream(file_of(folder_, key), std::ios::binary | std::ios::ate);
+    if (!stream) return std::nullopt;
+    const auto size = static_cast<std::uint64_t>(std::max<std::streamoff>(stream.tellg(), 0));
+    stream.seekg(0);
+    Header header;
+    if (size < sizeof header || !stream.read(reinterpret_cast<char*>(&header), sizeof header)) return std::nullopt;
+    const std::uint64_t rest = size - sizeof header;
+    if (header.magic != magic || header.key_length != key.size() || key.size() > rest ||
+        header.length != rest - key.size()) {
+        return std::nullopt;
+    }
+    std::string stored_key(key.size(), '\0');
+    Bytes contents(header.length);
+    if (!stream.read(stored_key.data(), static_cast<std::streamsize>(stored_key.size())) || stored_key != key)
+        return std::nullopt;
+    if (!stream.read(reinterpret_cast<char*>(contents.data()), static_cast<std::streamsize>(contents.size())))
+        return std::nullopt;
+    if (header.checksum != checksum_of(key, contents)) return std::nullopt;
+    return contents;
+}
+
+void ArtefactFolder::put(std::string_view key, std::span<const std::byte> contents) {
+    std::error_code error;
+    if (!std::filesystem::is_directory(folder_, error)) {
+        std::filesystem::create_directories(folder_, error);
+        if (error) throw BrokenWorld(fmt::format("folder '{}': cannot be made: {}", folder_.string(), error.message()));
+        const auto parent = std::filesystem::absolute(folder_).parent_path();
+        sync_folder(parent);
+    }
+    if (!std::exchange(swept_, true)) sweep_leftovers(folder_);
+    const auto file = file_of(folder_, key);
+    const Header header{magic, key.size(), contents.size(), checksum_of(key, contents)};
+    AsideFile aside(aside_of(file));
+    aside.write(std::as_bytes(std::span(&header, 1)));
+    aside.write(std::as_bytes(std::span(key)));
+    aside.write(contents);
+    aside.become(file);
+    sync_folder(folder_);
+}
+
+void ArtefactFolder::remove(std::string_view key) {
+    std::error_code error;
+    std::filesystem::remove(file_of(folder_, key), error);
+    if (error)
+        throw BrokenWorld(fmt::format("'{}': cannot be removed: {}", file_of(folder_, key).string(), error.message()));
+}
+
+}  // namespace grainsweep::store

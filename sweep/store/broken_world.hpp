@@ -1,0 +1,13 @@
+// Disk full, database locked or damaged: nothing the question can do about it. Exit code 3.
+#pragma once
+
+#include <stdexcept>
+
+namespace grainsweep::store {
+
+class BrokenWorld : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+}  // namespace grainsweep::store

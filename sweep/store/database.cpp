@@ -1,0 +1,399 @@
+#include "sweep/store/database.hpp"
+
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <array>
+#include <cctype>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <new>
+#include <stdexcept>
+#include <utility>
+
+namespace grainsweep::store {
+
+namespace {
+
+/// How long a statement waits for another process to let go of the file.
+constexpr std::chrono::milliseconds patience = std::chrono::seconds(30);
+
+std::string file_of(sqlite3* database) {
+    const char* file = database == nullptr ? nullptr : sqlite3_db_filename(database, "main");
+    return file == nullptr || *file == '\0' ? "the database" : fmt::format("database '{}'", file);
+}
+
+/// Turns SQLite's result code into the exception and the sentence it deserves.
+[[noreturn]] void fail(sqlite3* database, int code) {
+    const std::string words = database == nullptr ? sqlite3_errstr(code) : sqlite3_errmsg(database);
+    const std::string file = file_of(database);
+    const auto cause = [&] {
+        const int number = database == nullptr ? 0 : sqlite3_system_errno(database);
+        return number == 0 ? words : fmt::format("{} ({})", words, std::strerror(number));
+    };
+    switch (code & 0xff) {
+        case SQLITE_FULL:
+            throw BrokenWorld(fmt::format("{}: the disk is full; free some space and run again to resume", file));
+        case SQLITE_BUSY:
+        case SQLITE_LOCKED:
+        case SQLITE_PROTOCOL:
+            throw BrokenWorld(fmt::format("{}: locked by another process for more than {} s", file,
+                                          std::chrono::duration_cast<std::chrono::seconds>(patience).count()));
+        case SQLITE_CORRUPT:
+        case SQLITE_NOTADB:
+        case SQLITE_FORMAT:
+            throw BrokenWorld(
+                fmt::format("{}: damaged ({}); what is readable can be copied out with "
+                            "`sqlite3 FILE .recover`",
+                            file, words));
+        case SQLITE_IOERR:
+            throw BrokenWorld(fmt::format("{}: reading or writing failed: {}", file, cause()));
+        case SQLITE_CANTOPEN:
+        case SQLITE_PERM:
+            throw BrokenWorld(fmt::format("{}: cannot be opened: {}", file, cause()));
+        case SQLITE_READONLY:
+            throw BrokenWorld(fmt::format("{}: is not writable: {}", file, cause()));
+        case SQLITE_NOMEM:
+            throw std::bad_alloc();
+        default:
+            throw RefusedSql(words, file);
+    }
+}
+
+void check(sqlite3* database, int code) {
+    if (code != SQLITE_OK) fail(database, code);
+}
+
+sqlite3* owner(sqlite3_stmt* statement) {
+    return sqlite3_db_handle(statement);
+}
+
+sqlite3* open(const char* name, int flags) {
+    sqlite3* handle = nullptr;
+    const int code = sqlite3_open_v2(name, &handle, flags | SQLITE_OPEN_NOMUTEX, nullptr);
+    if (code == SQLITE_OK) return handle;
+    const std::unique_ptr<sqlite3, int (*)(sqlite3*)> closing(handle, sqlite3_close_v2);
+    const int number = handle == nullptr ? 0 : sqlite3_system_errno(handle);
+    throw BrokenWorld(fmt::format("database '{}': cannot be opened: {}", name,
+                                  number == 0 ? sqlite3_errstr(code) : std::strerror(number)));
+}
+
+/// A file name as a URI, whatever characters it has.
+std::string uri(const std::filesystem::path& file, std::string_view query) {
+    std::string text = "file:";
+    for (const char c : std::filesystem::absolute(file).string()) {
+        const bool plain = (std::isalnum(static_cast<unsigned char>(c)) != 0) || std::strchr("/._-", c) != nullptr;
+        if (plain) {
+            text += c;
+        } else {
+            text += fmt::format("%{:02x}", static_cast<unsigned char>(c));
+        }
+    }
+    return text.append("?").append(query);
+}
+
+}  // namespace
+
+// --- Statement
+
+void Statement::Finalize::operator()(sqlite3_stmt* statement) const {
+    sqlite3_finalize(statement);
+}
+
+Statement::Statement(sqlite3* database, std::string_view sql) {
+    sqlite3_stmt* handle = nullptr;
+    const char* rest = nullptr;
+    if (sql.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) throw RefusedSql("statement too long");
+    check(database, sqlite3_prepare_v3(database, sql.data(), static_cast<int>(sql.size()), SQLITE_PREPARE_PERSISTENT,
+                                       &handle, &rest));
+    handle_.reset(handle);
+    tail_ = sql.substr(static_cast<std::size_t>(rest - sql.data()));
+}
+
+void Statement::bind(int parameter, std::nullopt_t) {
+    check(owner(handle_.get()), sqlite3_bind_null(handle_.get(), parameter));
+}
+void Statement::bind(int parameter, std::int64_t value) {
+    check(owner(handle_.get()), sqlite3_bind_int64(handle_.get(), parameter, value));
+}
+void Statement::bind(int parameter, double value) {
+    const int code = std::isnan(value) ? sqlite3_bind_null(handle_.get(), parameter)
+                                       : sqlite3_bind_double(handle_.get(), parameter, value);
+    check(owner(handle_.get()), code);
+}
+void Statement::bind(int parameter, std::string_view value) {
+    const char* data = value.data() == nullptr ? "" : value.data();
+    check(owner(handle_.get()),
+          sqlite3_bind_text64(handle_.get(), parameter, data, value.size(), SQLITE_STATIC, SQLITE_UTF8));
+}
+void Statement::bind(int parameter, const Value& value) {
+    std::visit([&](const auto& held) { bind(parameter, held); }, value);
+}
+
+bool Statement::step() {
+    const int code = sqlite3_step(handle_.get());
+    if (code == SQLITE_ROW) return true;
+    if (code == SQLITE_DONE) return false;
+    fail(owner(handle_.get()), code);
+}
+
+void Statement::reset() {
+    sqlite3_reset(handle_.get());
+}  // repeats the error of the last step: already thrown
+
+bool Statement::busy() const {
+    return sqlite3_stmt_busy(handle_.get()) != 0;
+}
+bool Statement::read_only() const {
+    return sqlite3_stmt_readonly(handle_.get()) != 0;
+}
+int Statement::parameters() const {
+    return sqlite3_bind_parameter_count(handle_.get());
+}
+int Statement::columns() const {
+    return sqlite3_column_count(handle_.get());
+}
+std::string Statement::column_name(int column) const {
+    return sqlite3_column_name(handle_.get(), column);
+}
+bool Statement::is_null(int column) const {
+    return sqlite3_column_type(handle_.get(), column) == SQLITE_NULL;
+}
+std::int64_t Statement::integer(int column) const {
+    return sqlite3_column_int64(handle_.get(), column);
+}
+double Statement::real(int column) const {
+    return is_null(column) ? std::numeric_limits<double>::quiet_NaN() : sqlite3_column_double(handle_.get(), column);
+}
+std::string_view Statement::text(int column) const {
+    const auto* bytes = reinterpret_cast<const char*>(sqlite3_column_text(handle_.get(), column));
+    return bytes == nullptr
+               ? std::string_view{}
+               : std::string_view(bytes, static_cast<std::size_t>(sqlite3_column_bytes(handle_.get(), column)));
+}
+
+SqlValue Statement::cell(int column) const {
+    switch (sqlite3_column_type(handle_.get(), column)) {
+        case SQLITE_NULL:
+            return {};
+        case SQLITE_INTEGER:
+            return integer(column);
+        case SQLITE_FLOAT:
+            return real(column);
+        case SQLITE_TEXT:
+            return std::string(text(column));
+        default:
+            break;
+    }
+    const auto* bytes = static_cast<const unsigned char*>(sqlite3_column_blob(handle_.get(), column));
+    std::string hexadecimal;
+    for (int k = 0; k < sqlite3_column_bytes(handle_.get(), column); ++k)
+        hexadecimal += fmt::format("{:02x}", bytes[k]);
+    return hexadecimal;
+}
+
+Value Statement::value(int column) const {
+    SqlValue held = cell(column);
+    if (auto* whole = std::get_if<std::int64_t>(&held)) return *whole;
+    if (auto* word = std::get_if<std::string>(&held)) return std::move(*word);
+    return real(column);
+}
+
+// --- Connection
+
+void Connection::Close::operator()(sqlite3* database) const {
+    sqlite3_close_v2(database);
+}
+
+Connection::Connection(sqlite3* handle) : handle_(handle) {
+    configure();
+}
+
+Connection::Connection(const std::filesystem::path& file, Access access) {
+    if (access == Access::write) {
+        handle_.reset(open(file.c_str(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE));
+        configure();
+        execute("PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON; PRAGMA cache_size = -65536");
+        return;
+    }
+    handle_.reset(open(file.c_str(), SQLITE_OPEN_READONLY));
+    configure();
+    // A write-ahead database needs its shared-memory file beside it. Where that cannot be made and no log is
+    // waiting, nobody writes either.
+    try {
+        auto rows = ask("SELECT count(*) FROM sqlite_schema");
+        (void)rows.next();
+    } catch (const BrokenWorld&) {
+        const int code = sqlite3_errcode(handle_.get()) & 0xff;
+        auto log = file;
+        log += "-wal";
+        if ((code != SQLITE_CANTOPEN && code != SQLITE_READONLY) || std::filesystem::exists(log)) throw;
+        kept_.clear();
+        handle_.reset(open(uri(file, "immutable=1").c_str(), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI));
+        configure();
+    }
+}
+
+Connection Connection::in_memory() {
+    return Connection(open(":memory:", SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE));
+}
+
+void Connection::configure() {
+    sqlite3* database = handle_.get();
+    sqlite3_extended_result_codes(database, 1);
+    sqlite3_busy_timeout(database, static_cast<int>(patience.count()));
+    // A misspelt "name" must be an unknown column, not a word.
+    sqlite3_db_config(database, SQLITE_DBCONFIG_DQS_DML, 0, nullptr);
+    sqlite3_db_config(database, SQLITE_DBCONFIG_DQS_DDL, 0, nullptr);
+    sqlite3_db_config(database, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+}
+
+void Connection::use(Journal journal) {
+    const bool ahead = journal == Journal::write_ahead;
+    auto statement = prepare(ahead ? "PRAGMA journal_mode = WAL" : "PRAGMA journal_mode = DELETE");
+    const std::string got = statement.step() ? statement.get<std::string>(0) : "";
+    if (got != (ahead ? "wal" : "delete")) {
+        throw BrokenWorld(fmt::format("{}: its journal could not be set to '{}' (it is '{}')", file_of(handle_.get()),
+                                      ahead ? "wal" : "delete", got));
+    }
+}
+
+void Connection::execute(std::string_view script) {
+    while (!script.empty()) {
+        Statement statement(handle_.get(), script);
+        script = statement.tail();
+        if (!statement.valid()) continue;  // white space or a comment
+        while (statement.step()) {
+        }
+    }
+}
+
+Statement& Connection::kept(std::string_view sql) const {
+    if (const auto found = kept_.find(sql); found != kept_.end()) {
+        if (found->second.busy()) throw std::logic_error(fmt::format("statement in use twice: {}", sql));
+        return found->second;
+    }
+    return kept_.emplace(sql, Statement(handle_.get(), sql)).first->second;
+}
+
+std::int64_t Connection::last_row() const {
+    return sqlite3_last_insert_rowid(handle_.get());
+}
+std::int64_t Connection::changes() const {
+    return sqlite3_changes64(handle_.get());
+}
+bool Connection::in_transaction() const {
+    return sqlite3_get_autocommit(handle_.get()) == 0;
+}
+
+namespace {
+
+int call_authorizer(void* user, int action, const char* first, const char* second, const char*, const char*) {
+    const auto& authorizer = *static_cast<const Authorizer*>(user);
+    const auto text = [](const char* words) { return words == nullptr ? std::string_view{} : std::string_view(words); };
+    const auto ask = [&](SqlAction kind, const char* a, const char* b) {
+        return authorizer(kind, text(a), text(b)) ? SQLITE_OK : SQLITE_DENY;
+    };
+    switch (action) {
+        case SQLITE_SELECT:
+            return ask(SqlAction::select, nullptr, nullptr);
+        case SQLITE_RECURSIVE:
+            return ask(SqlAction::recursive, nullptr, nullptr);
+        case SQLITE_READ:
+            return ask(SqlAction::read, first, second);
+        case SQLITE_FUNCTION:
+            return ask(SqlAction::function, second, nullptr);
+        case SQLITE_PRAGMA:
+            return ask(SqlAction::pragma, first, second);
+        case SQLITE_ATTACH:
+        case SQLITE_DETACH:
+        case SQLITE_TRANSACTION:
+        case SQLITE_SAVEPOINT:
+            return ask(SqlAction::control, first, second);
+        default:
+            return ask(SqlAction::other, first, second);
+    }
+}
+
+using Statistic = std::optional<double> (*)(std::span<double>);
+
+struct Group {
+    std::vector<double>* numbers = nullptr;  // made at the first row
+};
+
+void add_to_group(sqlite3_context* context, int, sqlite3_value** arguments) {
+    auto* group = static_cast<Group*>(sqlite3_aggregate_context(context, sizeof(Group)));
+    if (group == nullptr) return sqlite3_result_error_nomem(context);
+    try {
+        if (group->numbers == nullptr) group->numbers = new std::vector<double>();
+        switch (sqlite3_value_type(arguments[0])) {
+            case SQLITE_NULL:
+                return;
+            case SQLITE_INTEGER:
+            case SQLITE_FLOAT:
+                group->numbers->push_back(sqlite3_value_double(arguments[0]));
+                return;
+            default:
+                return sqlite3_result_error(context, "a statistic is asked of numbers, this is a word", -1);
+        }
+    } catch (const std::bad_alloc&) {
+        sqlite3_result_error_nomem(context);
+    }
+}
+
+void finish_group(sqlite3_context* context) {
+    auto* group = static_cast<Group*>(sqlite3_aggregate_context(context, 0));
+    if (group == nullptr || group->numbers == nullptr) return sqlite3_result_null(context);
+    const std::unique_ptr<std::vector<double>> numbers(std::exchange(group->numbers, nullptr));
+    const auto statistic = reinterpret_cast<Statistic>(sqlite3_user_data(context));
+    const auto answer = numbers->empty() ? std::nullopt : statistic(*numbers);
+    answer ? sqlite3_result_double(context, *answer) : sqlite3_result_null(context);
+}
+
+}  // namespace
+
+void Connection::authorize(Authorizer authorizer) const {
+    authorizer_ = authorizer ? std::make_unique<Authorizer>(std::move(authorizer)) : nullptr;
+    sqlite3_set_authorizer(handle_.get(), authorizer_ ? call_authorizer : nullptr, authorizer_.get());
+}
+
+void Connection::add_aggregate(const char* name, Statistic statistic) {
+    check(handle_.get(),
+          sqlite3_create_function_v2(handle_.get(), name, 1, SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_INNOCUOUS,
+                                     reinterpret_cast<void*>(statistic), nullptr, add_to_group, finish_group, nullptr));
+}
+
+// --- Transaction
+
+Transaction::Transaction(Connection& connection, Kind kind) : connection_(&connection) {
+    connection.run(kind == Kind::write ? "BEGIN IMMEDIATE" : "BEGIN");
+}
+
+Transaction::~Transaction() {
+    if (connection_ == nullptr || !connection_->in_transaction()) return;  // a full disk may have rolled back already
+    try {
+        connection_->run("ROLLBACK");
+    } catch (const std::exception&) {  // the file is rolled back by whoever opens it next
+    }
+}
+
+void Transaction::commit() {
+    connection_->run("COMMIT");
+    connection_ = nullptr;
+}
+
+std::string quoted_name(std::string_view name) {
+    std::string text = "\"";
+    for (const char c : name) text.append(c == '"' ? 2 : 1, c);
+    return text += '"';
+}
+
+std::string quoted_text(std::string_view words) {
+    std::string text = "'";
+    for (const char c : words) text.append(c == '\'' ? 2 : 1, c);
+    return text += '\'';
+}
+
+}  // namespace grainsweep::store

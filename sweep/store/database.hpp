@@ -1,0 +1,231 @@
+// SQLite, thinly: a connection, a prepared statement with typed columns, a transaction.
+//
+//     auto row = db.ask("SELECT name FROM campaign WHERE seed > ?", 7);
+//     while (row.next()) use(row.get<std::string>(0));
+//
+// Statements are prepared once per text and kept. What the disk or another process did throws BrokenWorld with
+// a sentence; what SQLite found wrong with the text of a statement throws RefusedSql with SQLite's words.
+#pragma once
+
+#include "solver/scenes/values.hpp"
+#include "sweep/store/broken_world.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+#include <variant>
+#include <vector>
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace grainsweep::store {
+
+/// SQLite does not accept the statement: syntax, unknown name, not authorised, a constraint. Of a statement of our
+/// own this says that the file is not as we made it; one who passes on a stranger's statement catches it.
+class RefusedSql : public BrokenWorld {
+public:
+    explicit RefusedSql(std::string words, const std::string& file = "the database")
+        : BrokenWorld(file + ": not as this program made it, damaged or altered (" + words + ")"),
+          words_(std::move(words)) {}
+    [[nodiscard]] const std::string& words() const { return words_; }  ///< SQLite's
+
+private:
+    std::string words_;
+};
+
+/// NULL, integer, real, text.
+using SqlValue = std::variant<std::monostate, std::int64_t, double, std::string>;
+
+/// A prepared statement. Parameters count from 1, columns from 0.
+class Statement {
+public:
+    Statement() = default;
+    Statement(sqlite3* database, std::string_view sql);
+
+    void bind(int parameter, std::nullopt_t);
+    void bind(int parameter, std::int64_t value);
+    void bind(int parameter, int value) { bind(parameter, std::int64_t{value}); }
+    void bind(int parameter, bool value) { bind(parameter, std::int64_t{value}); }
+    void bind(int parameter, double value);            ///< NaN is NULL
+    void bind(int parameter, std::string_view value);  ///< refers to the text until reset()
+    void bind(int parameter, const char* value) { bind(parameter, std::string_view(value)); }
+    void bind(int parameter, const std::string& value) { bind(parameter, std::string_view(value)); }
+    void bind(int parameter, const Value& value);
+    template <class T>
+    void bind(int parameter, const std::optional<T>& value) {
+        value ? bind(parameter, *value) : bind(parameter, std::nullopt);
+    }
+
+    [[nodiscard]] bool step();  ///< true: a row is there
+    void reset();
+    [[nodiscard]] bool valid() const { return handle_ != nullptr; }
+    [[nodiscard]] bool busy() const;  ///< between its first row and its reset
+    [[nodiscard]] bool read_only() const;
+    [[nodiscard]] int parameters() const;
+    [[nodiscard]] int columns() const;
+    [[nodiscard]] std::string column_name(int column) const;
+
+    [[nodiscard]] bool is_null(int column) const;
+    /// int64, double (NULL is NaN), string, string_view (until the next step) or an optional of them.
+    template <class T>
+    [[nodiscard]] T get(int column) const;
+    [[nodiscard]] SqlValue cell(int column) const;
+    [[nodiscard]] Value value(int column) const;  ///< of a column that is never NULL
+    /// What of the text was left after the first statement (the text given to the constructor must still live).
+    [[nodiscard]] std::string_view tail() const { return tail_; }
+
+private:
+    struct Finalize {
+        void operator()(sqlite3_stmt* statement) const;
+    };
+    [[nodiscard]] std::int64_t integer(int column) const;
+    [[nodiscard]] double real(int column) const;
+    [[nodiscard]] std::string_view text(int column) const;
+
+    std::unique_ptr<sqlite3_stmt, Finalize> handle_;
+    std::string_view tail_;
+};
+
+/// A kept statement in use: reset for the next user when it goes.
+class Rows {
+public:
+    explicit Rows(Statement& statement) : statement_(&statement) {}
+    Rows(Rows&& other) noexcept : statement_(std::exchange(other.statement_, nullptr)) {}
+    Rows& operator=(Rows&&) = delete;
+    ~Rows() {
+        if (statement_ != nullptr) statement_->reset();
+    }
+    [[nodiscard]] bool next() { return statement_->step(); }
+    template <class T>
+    [[nodiscard]] T get(int column) const {
+        return statement_->get<T>(column);
+    }
+    [[nodiscard]] bool is_null(int column) const { return statement_->is_null(column); }
+    [[nodiscard]] Value value(int column) const { return statement_->value(column); }
+    [[nodiscard]] SqlValue cell(int column) const { return statement_->cell(column); }
+
+private:
+    Statement* statement_;
+};
+
+/// What a statement wants to do, as SQLite's authorizer reports it while preparing. `control`: attach, detach,
+/// transactions, savepoints.
+enum class SqlAction { select, recursive, read, function, pragma, control, other };
+/// Says yes to an action; for `read` table and column, for `function` its name, for `pragma` name and argument.
+using Authorizer = std::function<bool(SqlAction action, std::string_view first, std::string_view second)>;
+
+class Connection {
+public:
+    enum class Access { write, read };
+    enum class Journal { write_ahead, rollback };
+
+    /// write: makes the file where absent, synchronous FULL. read: the file is never written; a file in a folder
+    /// nobody may write to is read as it lies.
+    Connection(const std::filesystem::path& file, Access access);
+    [[nodiscard]] static Connection in_memory();
+
+    /// A write-ahead log lets readers and the writer go on side by side but needs shared memory, which
+    /// network file systems do not give: there the rollback journal. Both are synced at every commit.
+    void use(Journal journal);
+
+    /// Runs every statement of a script.
+    void execute(std::string_view script);
+    /// Runs one kept statement to its end; returns the number of rows it changed.
+    template <class... Arguments>
+    std::int64_t run(std::string_view sql, const Arguments&... arguments) {
+        Statement& statement = kept(sql);
+        const Rows guard(statement);
+        int parameter = 0;
+        (statement.bind(++parameter, arguments), ...);
+        while (statement.step()) {
+        }
+        return changes();
+    }
+    /// Starts one kept statement. Text arguments must outlive the rows.
+    template <class... Arguments>
+    [[nodiscard]] Rows ask(std::string_view sql, const Arguments&... arguments) const {
+        Statement& statement = kept(sql);
+        int parameter = 0;
+        (statement.bind(++parameter, arguments), ...);
+        return Rows(statement);
+    }
+    /// A statement of its own, not kept.
+    [[nodiscard]] Statement prepare(std::string_view sql) const { return {handle_.get(), sql}; }
+
+    [[nodiscard]] std::int64_t last_row() const;
+    [[nodiscard]] std::int64_t changes() const;
+    [[nodiscard]] bool in_transaction() const;
+
+    /// Every statement prepared from now on must please the authorizer; empty: all do.
+    void authorize(Authorizer authorizer) const;
+    /// Adds an aggregate over the numbers of a group (NULL skipped); an empty answer is NULL.
+    void add_aggregate(const char* name, std::optional<double> (*statistic)(std::span<double> numbers));
+
+private:
+    struct Close {
+        void operator()(sqlite3* database) const;
+    };
+    explicit Connection(sqlite3* handle);
+    [[nodiscard]] Statement& kept(std::string_view sql) const;
+    void configure();
+
+    struct TextHash : std::hash<std::string_view> {
+        using is_transparent = void;
+    };
+    std::unique_ptr<sqlite3, Close> handle_;
+    mutable std::unordered_map<std::string, Statement, TextHash, std::equal_to<>> kept_;
+    mutable std::unique_ptr<Authorizer> authorizer_;
+};
+
+/// BEGIN ... COMMIT; rolls back unless committed. A transaction that only reads sees one state of the file.
+class Transaction {
+public:
+    enum class Kind { write, read };
+    explicit Transaction(Connection& connection, Kind kind = Kind::write);
+    Transaction(const Transaction&) = delete;
+    Transaction& operator=(const Transaction&) = delete;
+    ~Transaction();
+    void commit();
+
+private:
+    Connection* connection_;
+};
+
+/// An identifier or a word of text as SQL writes it.
+[[nodiscard]] std::string quoted_name(std::string_view name);
+[[nodiscard]] std::string quoted_text(std::string_view text);
+
+template <>
+inline std::int64_t Statement::get<std::int64_t>(int column) const {
+    return integer(column);
+}
+template <>
+inline double Statement::get<double>(int column) const {
+    return real(column);
+}
+template <>
+inline std::string_view Statement::get<std::string_view>(int column) const {
+    return text(column);
+}
+template <>
+inline std::string Statement::get<std::string>(int column) const {
+    return std::string(text(column));
+}
+template <>
+inline std::optional<std::int64_t> Statement::get<std::optional<std::int64_t>>(int column) const {
+    return is_null(column) ? std::nullopt : std::optional(integer(column));
+}
+template <>
+inline std::optional<std::string> Statement::get<std::optional<std::string>>(int column) const {
+    return is_null(column) ? std::nullopt : std::optional(std::string(text(column)));
+}
+
+}  // namespace grainsweep::store

@@ -1,0 +1,139 @@
+// The archive as canonical text: two archives with the same answers give the same lines, whatever the order of
+// completion, the number of attempts, the machine or the day.
+//
+//     case ID scene=NAME revision=N seed=N outcome=WORD
+//       NAME = VALUE                      inputs that differ from the scene's defaults
+//       message TEXT                      why: skipped, unstable, rejected (a crash speaks of the machine)
+//       scalar NAME = VALUE
+//       series NAME K time bin value      "-" where undefined
+//     campaign NAME scene=NAME revision=N seed=N design=KIND [stopped_at=N]
+//       POINT REPLICATE SEQUENCE ID       its design
+//       convergence OBSERVABLE POINTS ...
+//
+// Cases in order of their id, everything else in order of name or number, doubles in shortest round-trip form.
+// A case counts where a campaign counts it: answers beyond the point at which a campaign converged and stopped,
+// and those no present design asks for, are in the archive but not in this text.
+#include "sweep/store/archive.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+namespace grainsweep::store {
+
+namespace {
+
+using Sink = std::function<void(std::string_view line)>;
+
+std::string number(double x) {
+    return std::isnan(x) ? "-" : campaign::shortest(x);
+}
+
+/// One line whatever the text holds.
+std::string escaped(std::string_view text) {
+    std::string line;
+    for (const char c : text) {
+        if (c == '\n') {
+            line += "\\n";
+        } else if (c == '\\') {
+            line += "\\\\";
+        } else {
+            line += c;
+        }
+    }
+    return line;
+}
+
+void dump_inputs(const Connection& db, std::int64_t key, const Sink& sink) {
+    auto rows = db.ask(
+        "SELECT q.name, i.value FROM case_input AS i JOIN parameter AS q ON q.parameter_id = i.parameter_id "
+        "WHERE i.case_key = ? ORDER BY q.name",
+        key);
+    while (rows.next())
+        sink(fmt::format("  {} = {}", rows.get<std::string_view>(0), escaped(campaign::to_text(rows.value(1)))));
+}
+
+void dump_observations(const Connection& db, std::int64_t key, const Sink& sink) {
+    auto rows = db.ask(
+        "SELECT b.name, b.shape, o.sample, o.time, o.bin, o.value FROM observation AS o "
+        "JOIN observable AS b ON b.observable_id = o.observable_id WHERE o.case_key = ? "
+        "ORDER BY b.shape <> 'scalar', b.name, o.sample",
+        key);
+    while (rows.next()) {
+        const auto name = rows.get<std::string_view>(0);
+        if (rows.get<std::string_view>(1) == "scalar") {
+            sink(fmt::format("  scalar {} = {}", name, number(rows.get<double>(5))));
+        } else {
+            sink(fmt::format("  series {} {} {} {} {}", name, rows.get<std::int64_t>(2), number(rows.get<double>(3)),
+                             number(rows.get<double>(4)), number(rows.get<double>(5))));
+        }
+    }
+}
+
+void dump_cases(const Connection& db, const Sink& sink) {
+    auto rows = db.ask(
+        "SELECT case_key, case_id, scene, revision, seed, outcome, CASE WHEN outcome IN ('skipped', 'unstable', "
+        "'rejected') "
+        "THEN (SELECT message FROM attempt AS t WHERE t.case_key = c.case_key AND t.outcome IS NOT NULL "
+        "ORDER BY number DESC LIMIT 1) END FROM sim_case AS c WHERE outcome <> 'abandoned' AND case_key IN "
+        "(SELECT p.case_key FROM campaign_case AS p JOIN campaign AS g ON g.campaign_id = p.campaign_id "
+        "WHERE g.stopped_at IS NULL OR p.point < g.stopped_at) ORDER BY case_id");
+    while (rows.next()) {
+        const auto key = rows.get<std::int64_t>(0);
+        sink(fmt::format("case {} scene={} revision={} seed={} outcome={}", rows.get<std::string_view>(1),
+                         rows.get<std::string_view>(2), rows.get<std::int64_t>(3), rows.get<std::int64_t>(4),
+                         rows.get<std::string_view>(5)));
+        dump_inputs(db, key, sink);
+        if (!rows.is_null(6)) sink(fmt::format("  message {}", escaped(rows.get<std::string_view>(6))));
+        dump_observations(db, key, sink);
+    }
+}
+
+void dump_convergence(const Connection& db, std::int64_t campaign, std::optional<std::int64_t> stopped_at,
+                      const Sink& sink) {
+    auto rows = db.ask(
+        "SELECT observable, points, excluded, converged, mean, sd, skewness, g1, kurtosis, mean_error, sd_error, "
+        "skewness_error, g1_error, kurtosis_error, zero_share FROM convergence WHERE campaign_id = ? "
+        "AND (?2 IS NULL OR points <= ?2) ORDER BY observable, points",
+        campaign, stopped_at);
+    while (rows.next()) {
+        std::string line = fmt::format("  convergence {} {} excluded={} converged={}", rows.get<std::string_view>(0),
+                                       rows.get<std::int64_t>(1), rows.get<std::int64_t>(2), rows.get<std::int64_t>(3));
+        for (int column = 4; column < 15; ++column) line += ' ' + number(rows.get<double>(column));
+        sink(line);
+    }
+}
+
+void dump_campaigns(const Connection& db, const Sink& sink) {
+    auto campaigns =
+        db.ask("SELECT campaign_id, name, scene, revision, seed, design, stopped_at FROM campaign ORDER BY name");
+    while (campaigns.next()) {
+        const auto key = campaigns.get<std::int64_t>(0);
+        const auto stopped_at = campaigns.get<std::optional<std::int64_t>>(6);
+        sink(fmt::format("campaign {} scene={} revision={} seed={} design={}{}", campaigns.get<std::string_view>(1),
+                         campaigns.get<std::string_view>(2), campaigns.get<std::int64_t>(3),
+                         static_cast<std::uint64_t>(campaigns.get<std::int64_t>(4)), campaigns.get<std::string_view>(5),
+                         stopped_at ? fmt::format(" stopped_at={}", *stopped_at) : ""));
+        auto places = db.ask(
+            "SELECT point, replicate, sequence, case_id FROM campaign_case AS p JOIN sim_case AS c ON c.case_key = "
+            "p.case_key "
+            "WHERE p.campaign_id = ?1 AND (?2 IS NULL OR point < ?2) ORDER BY point, replicate",
+            key, stopped_at);
+        while (places.next()) {
+            sink(fmt::format("  {} {} {} {}", places.get<std::int64_t>(0), places.get<std::int64_t>(1),
+                             places.get<std::int64_t>(2), places.get<std::string_view>(3)));
+        }
+        dump_convergence(db, key, stopped_at, sink);
+    }
+}
+
+}  // namespace
+
+void Store::dump(const Sink& sink) const {
+    const Transaction one_state(impl_->db, Transaction::Kind::read);
+    dump_cases(impl_->db, sink);
+    dump_campaigns(impl_->db, sink);
+}
+
+}  // namespace grainsweep::store

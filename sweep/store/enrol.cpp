@@ -1,0 +1,322 @@
+// Enrolling: a campaign and its cases enter the archive, or meet what is there already.
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/store/archive.hpp"
+#include "sweep/store/moment.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <numeric>
+#include <stdexcept>
+
+namespace grainsweep::store {
+
+using campaign::Campaign;
+using campaign::PlacedCase;
+
+namespace {
+
+/// A campaign's name becomes that of a view: no table, fixed view or index may have it.
+void refuse_taken_name(const Connection& db, const Campaign& campaign) {
+    std::string start = campaign.name.substr(0, 7);
+    std::ranges::transform(start, start.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    auto rows = db.ask("SELECT type FROM sqlite_schema WHERE name = ? COLLATE NOCASE", campaign.name);
+    const bool found = rows.next();
+    if (!found && start != "sqlite_") return;
+    throw campaign::wrong_question("$.campaign", campaign.name,
+                                   found ? fmt::format("the database has a {} of that name", rows.get<std::string>(0))
+                                         : "names that begin with sqlite_ are SQLite's own");
+}
+
+struct Parameter {
+    std::string name;
+    std::int64_t key = 0;
+    Value default_value;
+};
+
+/// Declares what the scene takes and measures; returns its parameters sorted by name.
+std::vector<Parameter> declare_scene(Store::Impl& archive, const SceneInfo& scene) {
+    auto& db = archive.db;
+    for (const auto& parameter : scene.parameters) {
+        db.run(
+            "INSERT INTO parameter (scene, revision, name, unit, meaning, default_value) VALUES (?, ?, ?, ?, ?, ?) "
+            "ON CONFLICT (scene, revision, name) DO UPDATE SET unit = excluded.unit, meaning = excluded.meaning",
+            scene.name, scene.revision, parameter.name, parameter.unit, parameter.meaning, parameter.default_value);
+    }
+    for (const auto& observable : scene.observables) {
+        const char* shape = observable.shape == Shape::scalar   ? "scalar"
+                            : observable.shape == Shape::series ? "series"
+                                                                : "profile";
+        db.run(
+            "INSERT INTO observable (scene, revision, name, unit, meaning, shape) VALUES (?, ?, ?, ?, ?, ?) "
+            "ON CONFLICT (scene, revision, name) DO UPDATE SET unit = excluded.unit, meaning = excluded.meaning, "
+            "shape = excluded.shape",
+            scene.name, scene.revision, observable.name, observable.unit, observable.meaning, shape);
+    }
+    std::vector<Parameter> parameters;
+    auto rows = db.ask(
+        "SELECT name, parameter_id, default_value FROM parameter WHERE scene = ? AND revision = ? "
+        "ORDER BY name",
+        scene.name, scene.revision);
+    while (rows.next()) {
+        parameters.push_back({rows.get<std::string>(0), rows.get<std::int64_t>(1), rows.value(2)});
+        const auto* spec = scene.find_parameter(parameters.back().name);
+        if (spec != nullptr && spec->default_value != parameters.back().default_value) {
+            // Ids leave out what is default: with another default the stored answers would be to another question.
+            throw campaign::wrong_question(
+                "$.scene", fmt::format("default {} = {}", spec->name, campaign::to_text(spec->default_value)),
+                fmt::format("'{}' holds revision {} of {} with default {}: a changed default needs a new revision",
+                            archive.file.string(), scene.revision, scene.name,
+                            campaign::to_text(parameters.back().default_value)));
+        }
+    }
+    return parameters;
+}
+
+/// The writer's lock is ours, so whoever began these attempts is dead.
+void close_dead_attempts(Store::Impl& archive) {
+    if (std::exchange(archive.dead_attempts_closed, true)) return;
+    auto& db = archive.db;
+    std::vector<std::int64_t> cases;
+    {
+        auto rows = db.ask("SELECT case_key FROM attempt WHERE outcome IS NULL");
+        while (rows.next()) cases.push_back(rows.get<std::int64_t>(0));
+    }
+    for (const auto key : cases) {
+        db.run(
+            "UPDATE attempt SET outcome = 'abandoned', message = 'the run that began it ended before it did' "
+            "WHERE case_key = ? AND outcome IS NULL",
+            key);
+        db.run("UPDATE sim_case SET outcome = 'abandoned', wall_seconds = NULL WHERE case_key = ?", key);
+        db.run("DELETE FROM observation WHERE case_key = ?", key);
+    }
+}
+
+/// Looks cases up by id, or enters them with the inputs that differ from the defaults.
+class CaseBook {
+public:
+    CaseBook(Connection& db, const std::vector<Parameter>& parameters) : db_(&db), parameters_(&parameters) {}
+
+    std::pair<std::int64_t, CaseState> enter(const campaign::Case& question) {
+        {
+            auto rows =
+                db_->ask("SELECT case_key, attempts, failures, outcome FROM sim_case WHERE case_id = ?", question.id);
+            if (rows.next()) {
+                CaseState state{rows.get<std::int64_t>(1), rows.get<std::int64_t>(2), {}};
+                if (!rows.is_null(3)) state.outcome = campaign::outcome_named(rows.get<std::string_view>(3));
+                return {rows.get<std::int64_t>(0), state};
+            }
+        }
+        db_->run("INSERT INTO sim_case (case_id, scene, revision, seed) VALUES (?, ?, ?, ?)", question.id,
+                 question.scene, question.revision, static_cast<std::int64_t>(question.seed));
+        const std::int64_t key = db_->last_row();
+        enter_inputs(key, question);
+        return {key, {}};
+    }
+
+private:
+    void enter_inputs(std::int64_t key, const campaign::Case& question) {
+        auto parameter = parameters_->begin();  // both are sorted by name
+        for (const auto& [name, value] : question.inputs) {
+            while (parameter != parameters_->end() && parameter->name < name) ++parameter;
+            if (parameter == parameters_->end() || parameter->name != name) {
+                throw std::logic_error(
+                    fmt::format("case {} has the input {}, which its scene does not", question.id, name));
+            }
+            if (value == parameter->default_value) continue;
+            db_->run("INSERT INTO case_input (case_key, parameter_id, value) VALUES (?, ?, ?)", key, parameter->key,
+                     value);
+        }
+    }
+
+    Connection* db_;
+    const std::vector<Parameter>* parameters_;
+};
+
+struct Place {
+    std::int64_t point = 0, replicate = 0, sequence = 0, case_key = 0;
+};
+
+bool before(const Place& a, const Place& b) {
+    return std::pair(a.point, a.replicate) < std::pair(b.point, b.replicate);
+}
+
+std::vector<Place> stored_places(const Connection& db, std::int64_t campaign_key) {
+    std::vector<Place> places;
+    auto rows = db.ask(
+        "SELECT point, replicate, sequence, case_key FROM campaign_case WHERE campaign_id = ? "
+        "ORDER BY point, replicate",
+        campaign_key);
+    while (rows.next()) {
+        places.push_back({rows.get<std::int64_t>(0), rows.get<std::int64_t>(1), rows.get<std::int64_t>(2),
+                          rows.get<std::int64_t>(3)});
+    }
+    return places;
+}
+
+/// The verdicts given so far were about other places than there are now.
+void forget_convergence(Connection& db, std::int64_t campaign_key) {
+    db.run("DELETE FROM convergence WHERE campaign_id = ?", campaign_key);
+    db.run("UPDATE campaign SET stopped_at = NULL WHERE campaign_id = ?", campaign_key);
+}
+
+/// Adds what is new; where points were renumbered the new design replaces the old one.
+void place(Store::Impl& archive, const Campaign& campaign, std::int64_t campaign_key, std::vector<Place> asked) {
+    auto& db = archive.db;
+    std::ranges::sort(asked, before);
+    const auto stored = stored_places(db, campaign_key);
+
+    std::vector<Place> fresh;
+    const Place* moved = nullptr;
+    auto old = stored.begin();
+    for (const auto& it : asked) {
+        while (old != stored.end() && before(*old, it)) ++old;
+        if (old == stored.end() || before(it, *old)) {
+            fresh.push_back(it);
+        } else if (old->case_key != it.case_key) {
+            moved = &it;
+            break;
+        }
+    }
+    if (moved != nullptr) {
+        if (campaign.design == "list") {
+            throw campaign::wrong_question(
+                "$.design.rows", fmt::format("another row {}", moved->point),
+                fmt::format("campaign '{}' stands in '{}' with its own: a list is extended at its end", campaign.name,
+                            archive.file.string()));
+        }
+        if (asked.size() < stored.size()) {
+            throw campaign::wrong_question(
+                "$.design", fmt::format("{} cases", asked.size()),
+                fmt::format("campaign '{}' stands in '{}' with {}, and this {} does not contain them: another question "
+                            "needs another name",
+                            campaign.name, archive.file.string(), stored.size(), campaign.design));
+        }
+        db.run("DELETE FROM campaign_case WHERE campaign_id = ?", campaign_key);
+        fresh = std::move(asked);
+    }
+    for (const auto& it : fresh) {
+        db.run("INSERT INTO campaign_case (campaign_id, point, replicate, sequence, case_key) VALUES (?, ?, ?, ?, ?)",
+               campaign_key, it.point, it.replicate, it.sequence, it.case_key);
+    }
+    const bool inside = !stored.empty() && !fresh.empty() && fresh.front().point <= stored.back().point;
+    if (moved != nullptr || inside) forget_convergence(db, campaign_key);
+}
+
+std::string gates_text(const campaign::Convergence& rule) {
+    std::string text;
+    for (const auto& gate : rule.gates) text += (text.empty() ? "" : " ") + gate;
+    return text;
+}
+
+/// Stores the present rule; verdicts by another rule, and a stop that is no longer wanted, are forgotten.
+void store_rule(Connection& db, std::int64_t campaign_key, const std::optional<campaign::Convergence>& rule) {
+    if (!rule) {
+        const auto changed = db.run(
+            "UPDATE campaign SET convergence_observable = NULL, convergence_rule = NULL, convergence_gates = NULL, "
+            "convergence_tolerance = NULL, convergence_block = NULL, convergence_stop = NULL "
+            "WHERE campaign_id = ? AND convergence_rule IS NOT NULL",
+            campaign_key);
+        if (changed > 0) forget_convergence(db, campaign_key);
+        return;
+    }
+    const auto changed = db.run(
+        "UPDATE campaign SET convergence_observable = ?1, convergence_rule = ?2, convergence_gates = ?3, "
+        "convergence_tolerance = ?4, convergence_block = ?5 WHERE campaign_id = ?6 AND (convergence_observable, "
+        "convergence_rule, convergence_gates, convergence_tolerance, convergence_block) IS NOT (?1, ?2, ?3, ?4, ?5)",
+        rule->observable, rule->rule, gates_text(*rule), rule->tolerance, rule->block, campaign_key);
+    if (changed > 0) forget_convergence(db, campaign_key);
+    db.run("UPDATE campaign SET convergence_stop = ?1, stopped_at = iif(?1, stopped_at, NULL) WHERE campaign_id = ?2",
+           rule->stop, campaign_key);
+}
+
+std::int64_t store_campaign(Store::Impl& archive, const Campaign& campaign) {
+    auto& db = archive.db;
+    auto key = match_campaign(archive, campaign);
+    const auto texts = texts_of(campaign);
+    if (!key) {
+        refuse_taken_name(db, campaign);
+        db.run(
+            "INSERT INTO campaign (name, scene, revision, seed, factors, fixed, condition, design, design_options, "
+            "design_extent, sequences, replicates) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+            campaign.name, campaign.scene().name, campaign.scene().revision, static_cast<std::int64_t>(campaign.seed),
+            texts.factors, texts.fixed, campaign.where, campaign.design, texts.options, texts.extent,
+            sequences_of(campaign), campaign.replicates);
+        key = db.last_row();
+    } else {
+        db.run(
+            "UPDATE campaign SET factors = ?, design_extent = ?, replicates = max(replicates, ?) WHERE campaign_id = ?",
+            texts.factors, texts.extent, campaign.replicates, *key);
+    }
+    store_rule(db, *key, campaign.convergence);
+    return *key;
+}
+
+void store_provenance(Store::Impl& archive, const Campaign& campaign, std::int64_t key, const Provenance& by) {
+    if (archive.provenance && archive.provenance_campaign == key) return;  // the same run, its design refined
+    archive.db.run(
+        "INSERT INTO provenance (campaign_id, version, \"commit\", compiler, flags, instruction_path, processor, host, "
+        "start, campaign_text, campaign_hash) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+        key, by.version, by.commit, by.compiler, by.flags, by.instruction_path, by.processor, by.host, utc_now(),
+        campaign.text, campaign::content_hash(campaign.text));
+    archive.provenance = archive.db.last_row();
+    archive.provenance_campaign = key;
+}
+
+/// What the archive remembers of the file, put back where enrolling fails and is rolled back.
+class Remembered {
+public:
+    explicit Remembered(Store::Impl& archive)
+        : archive_(&archive),
+          provenance_(archive.provenance),
+          campaign_(archive.provenance_campaign),
+          closed_(archive.dead_attempts_closed) {}
+    Remembered(const Remembered&) = delete;
+    Remembered& operator=(const Remembered&) = delete;
+    ~Remembered() {
+        if (archive_ == nullptr) return;
+        archive_->provenance = provenance_;
+        archive_->provenance_campaign = campaign_;
+        archive_->dead_attempts_closed = closed_;
+    }
+    void keep() { archive_ = nullptr; }
+
+private:
+    Store::Impl* archive_;
+    std::optional<std::int64_t> provenance_;
+    std::int64_t campaign_;
+    bool closed_;
+};
+
+}  // namespace
+
+std::vector<CaseState> Store::enrol(const Campaign& campaign, std::span<const PlacedCase> cases,
+                                    const Provenance& provenance) {
+    impl_->require_writer();
+    Remembered remembered(*impl_);
+    Transaction transaction(impl_->db);
+    close_dead_attempts(*impl_);
+    const std::int64_t key = store_campaign(*impl_, campaign);
+    const auto parameters = declare_scene(*impl_, campaign.scene());
+    impl_->observables.clear();
+    store_provenance(*impl_, campaign, key, provenance);
+
+    std::vector<CaseState> states;
+    std::vector<Place> places;
+    states.reserve(cases.size());
+    places.reserve(cases.size());
+    CaseBook book(impl_->db, parameters);
+    for (const auto& placed : cases) {
+        const auto [case_key, state] = book.enter(placed.question);
+        states.push_back(state);
+        places.push_back({placed.point, placed.replicate, placed.sequence, case_key});
+    }
+    place(*impl_, campaign, key, std::move(places));
+    make_campaign_view(*impl_, campaign, key);
+    transaction.commit();
+    remembered.keep();
+    return states;
+}
+
+}  // namespace grainsweep::store

@@ -1,0 +1,152 @@
+#include "sweep/store/expression.hpp"
+
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/store/database.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+namespace grainsweep::store {
+
+namespace {
+
+/// Functions whose answer depends on nothing but their arguments.
+constexpr std::array deterministic = {
+    "abs",     "acos",      "acosh",   "asin",   "asinh",   "atan",   "atan2",  "atanh",    "ceil",
+    "ceiling", "coalesce",  "cos",     "cosh",   "degrees", "exp",    "floor",  "format",   "glob",
+    "ifnull",  "iif",       "instr",   "length", "like",    "likely", "ln",     "log",      "log10",
+    "log2",    "lower",     "ltrim",   "max",    "min",     "mod",    "nullif", "pi",       "pow",
+    "power",   "radians",   "replace", "round",  "rtrim",   "sign",   "sin",    "sinh",     "sqrt",
+    "substr",  "substring", "tan",     "tanh",   "trim",    "trunc",  "typeof", "unlikely", "upper",
+};
+
+campaign::WrongQuestion refusal(std::string_view expression, std::string_view why, std::string_view suggestion = {}) {
+    return campaign::wrong_question("$.where", expression, why, suggestion);
+}
+
+/// SQLite's words, and the nearest name where it did not know one.
+campaign::WrongQuestion refusal_by_sqlite(std::string_view expression, std::string_view words,
+                                          std::span<const std::string> names) {
+    constexpr std::string_view unknown_column = "no such column: ";
+    constexpr std::string_view unknown_function = "no such function: ";
+    if (words.starts_with(unknown_column)) {
+        return refusal(expression, words, campaign::nearest_word(words.substr(unknown_column.size()), names));
+    }
+    if (words.starts_with(unknown_function)) {
+        const std::vector<std::string> functions(deterministic.begin(), deterministic.end());
+        return refusal(expression, words, campaign::nearest_word(words.substr(unknown_function.size()), functions));
+    }
+    return refusal(expression, words);
+}
+
+std::string columns_of(std::span<const std::string> names) {
+    std::string text;
+    for (const auto& name : names) text += (text.empty() ? "" : ", ") + quoted_name(name);
+    return text;
+}
+
+/// Prepares the expression as the only output of one SELECT over one row of inputs, and reports which columns it
+/// reads. The authorizer sees everything the expression would do.
+std::set<std::string> check(Connection& db, std::string_view expression, std::span<const std::string> names) {
+    db.execute(fmt::format("CREATE TABLE inputs ({})", columns_of(names)));
+    std::set<std::string> read;
+    int selects = 0;
+    std::string forbidden;
+    db.authorize([&](SqlAction action, std::string_view first, std::string_view second) {
+        switch (action) {
+            case SqlAction::select:
+                return ++selects == 1;
+            case SqlAction::read:
+                if (std::ranges::find(names, second) == names.end()) return second.empty();
+                read.emplace(second);
+                return true;
+            case SqlAction::function:
+                if (std::ranges::find(deterministic, first) != deterministic.end()) return true;
+                forbidden = first;
+                return false;
+            default:
+                return false;
+        }
+    });
+    const auto finish = [&] { db.authorize({}); };
+    try {
+        // The line break ends a comment. An expression that closes our bracket and goes on as a statement of its
+        // own is caught by the second form, which has a bracket more.
+        const std::string plain = fmt::format("SELECT ({}\n) FROM inputs", expression);
+        const Statement first = db.prepare(plain);
+        if (first.parameters() > 0) throw RefusedSql("names stand as they are, without ? or :");
+        if (first.columns() != 1 || !first.tail().empty()) throw RefusedSql("one expression is expected");
+        selects = 0;
+        const std::string nested = fmt::format("SELECT (({}\n)) FROM inputs", expression);
+        const Statement second = db.prepare(nested);
+        if (second.columns() != 1 || !second.tail().empty()) throw RefusedSql("one expression is expected");
+    } catch (const RefusedSql& refused) {
+        finish();
+        if (!forbidden.empty()) {
+            throw refusal(expression,
+                          fmt::format("'{}' is not among the deterministic functions of SQLite", forbidden));
+        }
+        if (selects > 1) throw refusal(expression, "a condition is asked of one case: no SELECT inside");
+        throw refusal_by_sqlite(expression, refused.words(), names);
+    }
+    finish();
+    return read;
+}
+
+/// The compiled expression and the columns it reads, bound anew for every case.
+class Condition {
+public:
+    Condition(std::string_view expression, std::span<const std::string> names)
+        : text_(expression), db_(Connection::in_memory()) {
+        const auto read = check(db_, expression, names);
+        columns_.assign(read.begin(), read.end());
+        std::string row;
+        for (std::size_t k = 0; k < columns_.size(); ++k) {
+            row += fmt::format("{}?{} AS {}", k == 0 ? "" : ", ", k + 1, quoted_name(columns_[k]));
+        }
+        const std::string sql =
+            fmt::format("SELECT (({}\n)) IS TRUE FROM (SELECT {}) AS inputs", expression, row.empty() ? "NULL" : row);
+        statement_ = db_.prepare(sql);
+    }
+
+    [[nodiscard]] bool holds(const Inputs& inputs) {
+        int parameter = 0;
+        for (const auto& name : columns_) {
+            const auto found = inputs.find(name);
+            if (found == inputs.end()) throw std::invalid_argument(fmt::format("a case without the input {}", name));
+            statement_.bind(++parameter, found->second);
+        }
+        const Rows rows(statement_);
+        try {
+            return statement_.step() && statement_.get<std::int64_t>(0) != 0;
+        } catch (const RefusedSql& refused) {
+            throw refusal(text_, refused.words());
+        }
+    }
+
+private:
+    std::string text_;
+    Connection db_;
+    std::vector<std::string> columns_;
+    Statement statement_;
+};
+
+}  // namespace
+
+campaign::Filter make_filter(std::string_view expression, std::span<const std::string> names) {
+    if (expression.find_first_not_of(" \t\r\n") == std::string_view::npos) {
+        return [](const Inputs&) { return true; };
+    }
+    if (expression.find('\0') != std::string_view::npos)
+        throw refusal("an expression with a NUL byte", "text is expected");
+    if (names.empty()) throw refusal(expression, "there is nothing it could speak about");
+    auto condition = std::make_shared<Condition>(expression, names);
+    return [condition = std::move(condition)](const Inputs& inputs) { return condition->holds(inputs); };
+}
+
+}  // namespace grainsweep::store

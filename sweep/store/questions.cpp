@@ -1,0 +1,295 @@
+// What the archive is asked: by the scheduler, the statistics and the commands.
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/store/archive.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <sstream>
+
+namespace grainsweep::store {
+
+using campaign::Outcome;
+
+namespace {
+
+std::optional<Outcome> outcome_at(const Rows& rows, int column) {
+    return rows.is_null(column) ? std::nullopt : campaign::outcome_named(rows.get<std::string_view>(column));
+}
+
+std::vector<std::string> words_of(std::string_view text) {
+    std::vector<std::string> words;
+    std::istringstream stream{std::string(text)};
+    for (std::string word; stream >> word;) words.push_back(word);
+    return words;
+}
+
+std::string listed(const std::vector<std::string>& names) {
+    std::string text;
+    for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text.empty() ? "none" : text;
+}
+
+std::optional<campaign::Convergence> rule_at(const Rows& rows, int first) {
+    if (rows.is_null(first)) return std::nullopt;
+    campaign::Convergence rule;
+    rule.observable = rows.get<std::string>(first);
+    rule.rule = rows.get<std::string>(first + 1);
+    rule.gates = words_of(rows.get<std::string_view>(first + 2));
+    rule.tolerance = rows.get<double>(first + 3);
+    rule.block = rows.get<std::int64_t>(first + 4);
+    rule.stop = rows.get<std::int64_t>(first + 5) != 0;
+    return rule;
+}
+
+std::optional<std::int64_t> case_key(const Connection& db, std::string_view case_id) {
+    auto rows = db.ask("SELECT case_key FROM sim_case WHERE case_id = ?", case_id);
+    return rows.next() ? std::optional(rows.get<std::int64_t>(0)) : std::nullopt;
+}
+
+Inputs inputs_of(const Connection& db, std::string_view case_id) {
+    Inputs inputs;
+    auto rows = db.ask("SELECT name, value FROM inputs WHERE case_id = ?", case_id);
+    while (rows.next()) inputs.emplace(rows.get<std::string>(0), rows.value(1));
+    return inputs;
+}
+
+Observations observations_of(const Connection& db, std::int64_t key) {
+    Observations observations;
+    auto rows = db.ask(
+        "SELECT b.name, b.shape, o.time, o.bin, o.value FROM observation AS o "
+        "JOIN observable AS b ON b.observable_id = o.observable_id "
+        "WHERE o.case_key = ? ORDER BY o.observable_id, o.sample",
+        key);
+    while (rows.next()) {
+        auto name = rows.get<std::string>(0);
+        if (rows.get<std::string_view>(1) == "scalar") {
+            observations.scalars.emplace(std::move(name), rows.get<double>(4));
+        } else {
+            observations.series[std::move(name)].push_back(
+                {.time = rows.get<double>(2), .bin = rows.get<double>(3), .value = rows.get<double>(4)});
+        }
+    }
+    return observations;
+}
+
+}  // namespace
+
+std::int64_t Store::Impl::campaign_key(std::string_view name) const {
+    {
+        auto rows = db.ask("SELECT campaign_id FROM campaign WHERE name = ?", name);
+        if (rows.next()) return rows.get<std::int64_t>(0);
+    }
+    std::vector<std::string> names;
+    auto rows = db.ask("SELECT name FROM campaign ORDER BY campaign_id");
+    while (rows.next()) names.push_back(rows.get<std::string>(0));
+    throw campaign::wrong_question("campaign", name, fmt::format("'{}' holds {}", file.string(), listed(names)),
+                                   campaign::nearest_word(name, names));
+}
+
+std::vector<CampaignRecord> Store::campaigns() const {
+    std::vector<CampaignRecord> records;
+    auto rows = impl_->db.ask(
+        "SELECT name, scene, coalesce((SELECT campaign_text FROM provenance AS v WHERE v.campaign_id = g.campaign_id "
+        "ORDER BY provenance_id DESC LIMIT 1), ''), design, revision, sequences, replicates, stopped_at, "
+        "convergence_observable, convergence_rule, convergence_gates, convergence_tolerance, convergence_block, "
+        "convergence_stop FROM campaign AS g ORDER BY campaign_id");
+    while (rows.next()) {
+        CampaignRecord record;
+        record.name = rows.get<std::string>(0);
+        record.scene = rows.get<std::string>(1);
+        record.text = rows.get<std::string>(2);
+        record.design = rows.get<std::string>(3);
+        record.revision = static_cast<int>(rows.get<std::int64_t>(4));
+        record.sequences = rows.get<std::int64_t>(5);
+        record.replicates = rows.get<std::int64_t>(6);
+        record.stopped_at = rows.get<std::optional<std::int64_t>>(7);
+        record.convergence = rule_at(rows, 8);
+        records.push_back(std::move(record));
+    }
+    return records;
+}
+
+std::optional<campaign::Case> Store::find_case(std::string_view id_or_prefix) const {
+    std::string prefix(id_or_prefix);
+    std::ranges::transform(prefix, prefix.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string end = prefix + "g";  // above every hexadecimal digit
+    std::vector<campaign::Case> found;
+    {
+        auto rows = impl_->db.ask(
+            "SELECT case_id, scene, revision, seed FROM sim_case WHERE case_id >= ? AND case_id < ? LIMIT 2", prefix,
+            end);
+        while (rows.next()) {
+            found.push_back({rows.get<std::string>(0),
+                             rows.get<std::string>(1),
+                             static_cast<int>(rows.get<std::int64_t>(2)),
+                             {},
+                             static_cast<std::uint64_t>(rows.get<std::int64_t>(3))});
+        }
+    }
+    if (found.empty()) return std::nullopt;
+    if (found.size() > 1) {
+        throw campaign::wrong_question(
+            "case", id_or_prefix,
+            fmt::format("several cases begin so, {} and {} among them; give more digits", found[0].id, found[1].id));
+    }
+    found.front().inputs = inputs_of(impl_->db, found.front().id);
+    return std::move(found.front());
+}
+
+std::vector<LoggedAttempt> Store::attempts(std::string_view case_id) const {
+    std::vector<LoggedAttempt> attempts;
+    const auto key = case_key(impl_->db, case_id);
+    if (!key) return attempts;
+    auto rows = impl_->db.ask(
+        "SELECT number, outcome, coalesce(message, ''), coalesce(wall_seconds, 0.0), started, host, "
+        "version || ' (' || \"commit\" || ')', instruction_path "
+        "FROM attempt AS t JOIN provenance AS v ON v.provenance_id = t.provenance_id "
+        "WHERE case_key = ? ORDER BY number",
+        *key);
+    while (rows.next()) {
+        attempts.push_back({.number = rows.get<std::int64_t>(0),
+                            .outcome = outcome_at(rows, 1),
+                            .message = rows.get<std::string>(2),
+                            .wall_seconds = rows.get<double>(3),
+                            .started = rows.get<std::string>(4),
+                            .host = rows.get<std::string>(5),
+                            .version = rows.get<std::string>(6),
+                            .instruction_path = rows.get<std::string>(7)});
+    }
+    return attempts;
+}
+
+std::optional<campaign::CaseResult> Store::result(std::string_view case_id) const {
+    const auto key = case_key(impl_->db, case_id);
+    if (!key) return std::nullopt;
+    campaign::CaseResult result;
+    std::string phases;
+    {
+        auto rows = impl_->db.ask(
+            "SELECT number, outcome, coalesce(message, ''), coalesce(wall_seconds, 0.0), coalesce(cpu_seconds, 0.0), "
+            "coalesce(particle_steps, 0.0), coalesce(phases, '{}') FROM attempt "
+            "WHERE case_key = ? AND outcome IS NOT NULL ORDER BY number DESC LIMIT 1",
+            *key);
+        if (!rows.next()) return std::nullopt;
+        result.attempt = {std::string(case_id), rows.get<std::int64_t>(0)};
+        result.outcome = outcome_at(rows, 1).value_or(Outcome::abandoned);
+        result.message = rows.get<std::string>(2);
+        result.cost.wall_seconds = rows.get<double>(3);
+        result.cost.cpu_seconds = rows.get<double>(4);
+        result.cost.particle_steps = rows.get<double>(5);
+        phases = rows.get<std::string>(6);
+    }
+    auto rows = impl_->db.ask("SELECT key, value FROM json_each(?)", phases);
+    while (rows.next()) result.cost.phases.emplace(rows.get<std::string>(0), rows.get<double>(1));
+    result.observations = observations_of(impl_->db, *key);
+    return result;
+}
+
+std::vector<PlacedValue> Store::values(std::string_view campaign, std::string_view observable) const {
+    const auto& db = impl_->db;
+    const std::int64_t key = impl_->campaign_key(campaign);
+    std::int64_t observable_key = 0;
+    std::vector<std::string> scalars;
+    {
+        auto rows = db.ask(
+            "SELECT b.name, b.observable_id FROM observable AS b JOIN campaign AS g ON b.scene = g.scene AND "
+            "b.revision = g.revision WHERE g.campaign_id = ? AND b.shape = 'scalar' ORDER BY b.observable_id",
+            key);
+        while (rows.next()) {
+            scalars.push_back(rows.get<std::string>(0));
+            if (scalars.back() == observable) observable_key = rows.get<std::int64_t>(1);
+        }
+    }
+    if (observable_key == 0) {
+        throw campaign::wrong_question("observable", observable,
+                                       fmt::format("the scalars of '{}' are {}", campaign, listed(scalars)),
+                                       campaign::nearest_word(observable, scalars));
+    }
+    std::vector<PlacedValue> values;
+    auto rows = db.ask(
+        "SELECT p.point, p.sequence, p.replicate, c.outcome, (SELECT o.value FROM observation AS o WHERE o.case_key = "
+        "p.case_key AND o.observable_id = ?1 AND o.sample = 0) FROM campaign_case AS p JOIN sim_case AS c ON "
+        "c.case_key = "
+        "p.case_key WHERE p.campaign_id = ?2 ORDER BY p.point, p.replicate",
+        observable_key, key);
+    while (rows.next()) {
+        values.push_back({.point = rows.get<std::int64_t>(0),
+                          .sequence = rows.get<std::int64_t>(1),
+                          .replicate = rows.get<std::int64_t>(2),
+                          .outcome = outcome_at(rows, 3),
+                          .value = rows.get<double>(4)});
+    }
+    return values;
+}
+
+std::vector<ConvergenceRow> Store::convergence(std::string_view campaign, std::string_view observable) const {
+    std::vector<ConvergenceRow> history;
+    const std::int64_t key = impl_->campaign_key(campaign);
+    auto rows = impl_->db.ask(
+        "SELECT points, mean, sd, skewness, g1, kurtosis, mean_error, sd_error, skewness_error, g1_error, "
+        "kurtosis_error, "
+        "zero_share, excluded, converged FROM convergence WHERE campaign_id = ? AND observable = ? ORDER BY points",
+        key, observable);
+    while (rows.next()) {
+        history.push_back({.observable = std::string(observable),
+                           .points = rows.get<std::int64_t>(0),
+                           .mean = rows.get<double>(1),
+                           .sd = rows.get<double>(2),
+                           .skewness = rows.get<double>(3),
+                           .g1 = rows.get<double>(4),
+                           .kurtosis = rows.get<double>(5),
+                           .mean_error = rows.get<double>(6),
+                           .sd_error = rows.get<double>(7),
+                           .skewness_error = rows.get<double>(8),
+                           .g1_error = rows.get<double>(9),
+                           .kurtosis_error = rows.get<double>(10),
+                           .zero_share = rows.get<double>(11),
+                           .excluded = rows.get<std::int64_t>(12),
+                           .converged = rows.get<std::int64_t>(13) != 0});
+    }
+    return history;
+}
+
+Table Store::status() const {
+    Table table;
+    table.columns = {"campaign", "scene", "cases"};
+    for (const auto outcome : campaign::outcomes) table.columns.emplace_back(campaign::to_string(outcome));
+    for (const char* name : {"waiting", "stopped_at", "rate", "time_left"}) table.columns.emplace_back(name);
+
+    // rate: answers per second of the last run; time_left: s, for what is waiting or abandoned, at that rate.
+    auto rows = impl_->db.ask(
+        "WITH count AS (SELECT p.campaign_id, c.outcome, count(*) AS cases FROM campaign_case AS p "
+        "  JOIN sim_case AS c ON c.case_key = p.case_key GROUP BY p.campaign_id, c.outcome), "
+        "last AS (SELECT campaign_id, max(provenance_id), "
+        "  settled / nullif((julianday(last_result) - julianday(start)) * 86400.0, 0) AS rate "
+        "  FROM provenance WHERE settled > 0 GROUP BY campaign_id), "
+        "total AS (SELECT g.campaign_id, g.name, g.scene, g.stopped_at, "
+        "  coalesce((SELECT sum(cases) FROM count AS n WHERE n.campaign_id = g.campaign_id), 0) AS cases, "
+        "  coalesce((SELECT sum(cases) FROM count AS n WHERE n.campaign_id = g.campaign_id "
+        "    AND (n.outcome IS NULL OR n.outcome = 'abandoned')), 0) AS open, l.rate "
+        "  FROM campaign AS g LEFT JOIN last AS l ON l.campaign_id = g.campaign_id) "
+        "SELECT t.name, t.scene, t.cases, t.stopped_at, t.rate, iif(t.stopped_at IS NULL, t.open / t.rate, 0.0), "
+        "  n.outcome, n.cases FROM total AS t LEFT JOIN count AS n ON n.campaign_id = t.campaign_id "
+        "ORDER BY t.campaign_id");
+    const std::size_t first_outcome = 3;
+    const std::size_t waiting = first_outcome + campaign::outcomes.size();
+    while (rows.next()) {
+        const Table::Cell name = rows.get<std::string>(0);
+        if (table.rows.empty() || table.rows.back().front() != name) {
+            auto& row = table.rows.emplace_back(table.columns.size(), Table::Cell(std::int64_t{0}));
+            row[0] = name;
+            row[1] = rows.cell(1);
+            row[2] = rows.cell(2);
+            for (std::size_t k = 0; k < 3; ++k) row[waiting + 1 + k] = rows.cell(3 + static_cast<int>(k));
+        }
+        if (rows.is_null(7)) continue;  // a campaign without cases
+        const auto outcome = outcome_at(rows, 6);
+        table.rows.back()[outcome ? first_outcome + static_cast<std::size_t>(*outcome) : waiting] = rows.cell(7);
+    }
+    return table;
+}
+
+}  // namespace grainsweep::store

@@ -1,0 +1,251 @@
+// Opening the archive, and what is written while a campaign runs.
+#include "sweep/store/store.hpp"
+
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/store/aggregates.hpp"
+#include "sweep/store/archive.hpp"
+#include "sweep/store/moment.hpp"
+#include "sweep/store/schema.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <stdexcept>
+
+namespace grainsweep::store {
+
+using campaign::WrongQuestion;
+
+namespace {
+
+constexpr std::int64_t application = 0x67737770;  // "gswp" in the file's header: application_id
+
+std::int64_t pragma(const Connection& db, std::string_view name) {
+    auto statement = db.prepare(fmt::format("PRAGMA {}", name));
+    return statement.step() ? statement.get<std::int64_t>(0) : 0;
+}
+
+/// A file that never was SQLite's is a wrong question; one whose header is gone is damage.
+void check_header(const std::filesystem::path& file) {
+    std::array<char, 16> header{};
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw BrokenWorld(fmt::format("database '{}': cannot be read", file.string()));
+    stream.read(header.data(), header.size());
+    const std::string_view seen(header.data(), static_cast<std::size_t>(stream.gcount()));
+    if (seen.empty() || seen == std::string_view("SQLite format 3\0", 16)) return;
+    if (seen.front() == '\0')
+        throw BrokenWorld(fmt::format("database '{}': damaged, its header is gone", file.string()));
+    throw WrongQuestion(fmt::format("'{}' is not a grainsweep database.", file.string()));
+}
+
+void check_readable(const std::filesystem::path& file) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored))
+        throw WrongQuestion(fmt::format("there is no database '{}'.", file.string()));
+    if (!std::filesystem::is_regular_file(file, ignored))
+        throw WrongQuestion(fmt::format("'{}' is not a file.", file.string()));
+    check_header(file);
+}
+
+/// Version of the schema in the file; 0: nothing there yet.
+std::int64_t schema_version(const Connection& db, const std::filesystem::path& file) {
+    const std::int64_t version = pragma(db, "user_version");
+    const std::int64_t id = pragma(db, "application_id");
+    auto objects = db.prepare("SELECT count(*) FROM sqlite_schema");
+    const bool empty = objects.step() && objects.get<std::int64_t>(0) == 0;
+    if (version == 0 && id == 0 && empty) return 0;
+    if (id != application || version < 1) {
+        throw WrongQuestion(fmt::format("'{}' is a database of another program, not grainsweep's.", file.string()));
+    }
+    const auto known = static_cast<std::int64_t>(schema_migrations().size());
+    if (version > known) {
+        throw WrongQuestion(fmt::format("'{}' was written by a newer grainsweep (schema {}, this one knows {}).",
+                                        file.string(), version, known));
+    }
+    return version;
+}
+
+/// Brings the file to the newest schema, in one transaction.
+void migrate(Connection& db, const std::filesystem::path& file) {
+    const auto migrations = schema_migrations();
+    if (schema_version(db, file) == static_cast<std::int64_t>(migrations.size())) return;
+    Transaction transaction(db);
+    const auto seen = static_cast<std::size_t>(schema_version(db, file));
+    for (const auto migration : migrations.subspan(seen)) db.execute(migration);
+    db.execute(schema_views());
+    db.execute(fmt::format("PRAGMA user_version = {}; PRAGMA application_id = {}", migrations.size(), application));
+    transaction.commit();
+}
+
+std::unique_ptr<Store::Impl> open_to_write(const std::filesystem::path& file) {
+    std::error_code ignored;
+    if (std::filesystem::exists(file, ignored)) check_readable(file);
+    std::optional<WriterLock> lock(std::in_place, file);
+    Connection db(file, Connection::Access::write);
+    (void)schema_version(db, file);  // before anything is changed in a stranger's file
+    db.use(on_network(file) ? Connection::Journal::rollback : Connection::Journal::write_ahead);
+    migrate(db, file);
+    return std::make_unique<Store::Impl>(file, std::move(lock), std::move(db));
+}
+
+std::unique_ptr<Store::Impl> open_to_read(const std::filesystem::path& file) {
+    check_readable(file);
+    Connection db(file, Connection::Access::read);
+    const std::int64_t version = schema_version(db, file);
+    if (version == 0)
+        throw WrongQuestion(fmt::format("'{}' is empty: no campaign has been run into it.", file.string()));
+    if (version < static_cast<std::int64_t>(schema_migrations().size())) {
+        throw WrongQuestion(fmt::format("'{}' has the older schema {}; `grainsweep run` into it brings it up to date.",
+                                        file.string(), version));
+    }
+    return std::make_unique<Store::Impl>(file, std::nullopt, std::move(db));
+}
+
+/// Seconds by phase as a JSON object; names are the program's own, letters and underscores.
+std::optional<std::string> phases_text(const Cost& cost) {
+    if (cost.phases.empty()) return std::nullopt;
+    std::string text;
+    for (const auto& [name, seconds] : cost.phases) {
+        if (!std::isfinite(seconds)) continue;
+        text += fmt::format("{}\"{}\":{}", text.empty() ? "" : ",", name, campaign::shortest(seconds));
+    }
+    return "{" + text + "}";
+}
+
+}  // namespace
+
+Store::Store(const std::filesystem::path& file, Mode mode)
+    : impl_(mode == Mode::create ? open_to_write(file) : open_to_read(file)) {
+    add_statistics(impl_->db);
+}
+Store::~Store() = default;
+Store::Store(Store&&) noexcept = default;
+Store& Store::operator=(Store&&) noexcept = default;
+
+void Store::Impl::require_writer() const {
+    if (!lock) throw std::logic_error("the store was opened to read");
+}
+void Store::Impl::require_group() const {
+    if (!in_group) throw std::logic_error("results are written inside Store::group()");
+}
+
+std::int64_t Store::Impl::observable_key(const std::string& scene, std::int64_t revision, std::string_view name,
+                                         Shape shape) {
+    Keys& keys = observables[{scene, revision}];
+    if (keys.empty()) {
+        auto rows =
+            db.ask("SELECT name, observable_id FROM observable WHERE scene = ? AND revision = ?", scene, revision);
+        while (rows.next()) keys.emplace(rows.get<std::string>(0), rows.get<std::int64_t>(1));
+    }
+    if (const auto found = keys.find(name); found != keys.end()) return found->second;
+    db.run("INSERT INTO observable (scene, revision, name, unit, meaning, shape) VALUES (?, ?, ?, '', '', ?)", scene,
+           revision, name, shape == Shape::scalar ? "scalar" : "series");
+    return keys.emplace(name, db.last_row()).first->second;
+}
+
+void Store::group(const std::function<void()>& writes) {
+    impl_->require_writer();
+    if (impl_->in_group) throw std::logic_error("a group inside a group");
+    struct Membership {  // whatever happens, the group ends here
+        Impl& impl;
+        bool committed = false;
+        explicit Membership(Impl& of) : impl(of) {
+            impl.in_group = true;
+            impl.settled_in_group = 0;
+        }
+        Membership(const Membership&) = delete;
+        ~Membership() {
+            impl.in_group = false;
+            if (!committed) impl.observables.clear();  // keys of rows that were rolled back
+        }
+    } membership(*impl_);
+    Transaction transaction(impl_->db);
+    writes();
+    if (impl_->settled_in_group > 0) {
+        impl_->db.run("UPDATE provenance SET settled = settled + ?, last_result = ? WHERE provenance_id = ?",
+                      impl_->settled_in_group, utc_now(), impl_->provenance);
+    }
+    transaction.commit();
+    membership.committed = true;
+}
+
+void Store::begin(const campaign::Attempt& attempt) {
+    impl_->require_group();
+    auto& db = impl_->db;
+    if (!impl_->provenance) throw std::logic_error("an attempt begins before its campaign is enrolled");
+    const auto changed = db.run("UPDATE sim_case SET attempts = ?1 WHERE case_id = ?2 AND attempts < ?1",
+                                attempt.number, attempt.case_id);
+    if (changed != 1) {
+        throw std::logic_error(fmt::format("attempt {} of case {} begins, which is unknown or has begun a later one",
+                                           attempt.number, attempt.case_id));
+    }
+    db.run(
+        "INSERT INTO attempt (case_key, number, provenance_id, started) "
+        "SELECT case_key, ?1, ?2, ?3 FROM sim_case WHERE case_id = ?4",
+        attempt.number, impl_->provenance, utc_now(), attempt.case_id);
+}
+
+bool Store::finish(const campaign::CaseResult& result) {
+    impl_->require_group();
+    auto& db = impl_->db;
+    std::int64_t key = 0, revision = 0;
+    std::string scene;
+    bool answered_before = false;
+    {
+        auto rows = db.ask("SELECT case_key, scene, revision, outcome, attempts FROM sim_case WHERE case_id = ?",
+                           result.attempt.case_id);
+        if (!rows.next()) throw std::logic_error(fmt::format("case {} is not enrolled", result.attempt.case_id));
+        if (rows.get<std::int64_t>(4) != result.attempt.number) return false;
+        key = rows.get<std::int64_t>(0);
+        scene = rows.get<std::string>(1);
+        revision = rows.get<std::int64_t>(2);
+        answered_before = !rows.is_null(3);
+    }
+    const auto outcome = campaign::to_string(result.outcome);
+    const std::optional<std::string> message = result.message.empty() ? std::nullopt : std::optional(result.message);
+    const auto closed = db.run(
+        "UPDATE attempt SET outcome = ?1, message = ?2, wall_seconds = ?3, cpu_seconds = ?4, particle_steps = ?5, "
+        "phases = ?6 WHERE case_key = ?7 AND number = ?8 AND outcome IS NULL",
+        outcome, message, result.cost.wall_seconds, result.cost.cpu_seconds, result.cost.particle_steps,
+        phases_text(result.cost), key, result.attempt.number);
+    if (closed != 1) return false;  // closed already: given up as abandoned, or told twice
+
+    const bool failed = result.outcome == campaign::Outcome::crashed || result.outcome == campaign::Outcome::timed_out;
+    db.run("UPDATE sim_case SET outcome = ?1, failures = failures + ?2, wall_seconds = ?3 WHERE case_key = ?4", outcome,
+           failed, result.cost.wall_seconds, key);
+    if (answered_before) db.run("DELETE FROM observation WHERE case_key = ?", key);
+
+    constexpr std::string_view insert =
+        "INSERT INTO observation (case_key, observable_id, sample, time, bin, value) VALUES (?, ?, ?, ?, ?, ?)";
+    for (const auto& [name, value] : result.observations.scalars) {
+        if (std::isnan(value)) continue;  // undefined: no row, NULL in every view
+        const auto observable = impl_->observable_key(scene, revision, name, Shape::scalar);
+        db.run(insert, key, observable, 0, std::nullopt, std::nullopt, value);
+    }
+    for (const auto& [name, samples] : result.observations.series) {
+        if (samples.empty()) continue;
+        const auto observable = impl_->observable_key(scene, revision, name, Shape::series);
+        std::int64_t number = 0;
+        for (const auto& sample : samples)
+            db.run(insert, key, observable, number++, sample.time, sample.bin, sample.value);
+    }
+    ++impl_->settled_in_group;
+    return true;
+}
+
+void Store::record(std::string_view campaign, const ConvergenceRow& row) {
+    impl_->require_group();
+    impl_->db.run("INSERT OR REPLACE INTO convergence VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                  impl_->campaign_key(campaign), row.observable, row.points, row.mean, row.sd, row.skewness, row.g1,
+                  row.kurtosis, row.mean_error, row.sd_error, row.skewness_error, row.g1_error, row.kurtosis_error,
+                  row.zero_share, row.excluded, row.converged);
+}
+
+void Store::stop(std::string_view campaign, std::int64_t points) {
+    impl_->require_group();
+    impl_->db.run("UPDATE campaign SET stopped_at = ? WHERE campaign_id = ?", points, impl_->campaign_key(campaign));
+}
+
+}  // namespace grainsweep::store

@@ -1,0 +1,134 @@
+// The commands that need no database, through the real executable.
+#include "tests/support/process.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+
+using namespace grainsweep::test;
+using nlohmann::json;
+
+namespace {
+
+const char* config = R"({"campaign": "c", "scene": "rehearsal",
+  "factors": [{"name": "x1", "between": [0.1, 0.3]}, {"name": "x2", "between": [0.001, 0.1], "scale": "log"},
+              {"name": "response", "levels": ["sum", "ishigami"]}],
+  "fixed": {"x3": 0.25}, "design": {"kind": "halton", "points": 20}, "replicates": 2})";
+
+Ended in_folder(const Folder& folder, const std::vector<std::string>& arguments) {
+    return grainsweep::test::grainsweep(arguments, folder.path());
+}
+
+json solved(const Folder& folder, std::vector<std::string> arguments, int code = 0) {
+    arguments.insert(arguments.begin(), {"solve", "c.json", "--format", "json"});
+    const auto ended = in_folder(folder, arguments);
+    EXPECT_EQ(ended.code, code) << ended.err;
+    EXPECT_EQ(ended.err, "");
+    return json::parse(ended.out);
+}
+
+}  // namespace
+
+TEST(Commands, PlanShowsEveryCaseAndTheCost) {
+    const Folder folder;
+    folder.write("c.json", config);
+    const auto whole = json::parse(in_folder(folder, {"plan", "c.json", "--format", "json"}).out);
+    EXPECT_EQ(whole["points"], 20);
+    EXPECT_EQ(whole["cases"], 40);
+    EXPECT_EQ(whole["rows"].size(), 40U);
+    EXPECT_EQ(whole["design"]["scramble"], "random");
+    EXPECT_NEAR(whole["predicted_seconds"], 4e-4, 1e-12);
+    const auto csv = in_folder(folder, {"plan", "c.json", "--format", "csv"}).out;
+    EXPECT_EQ(std::ranges::count(csv, '\n'), 41);
+    EXPECT_TRUE(csv.starts_with("point,sequence,replicate,case_id,seed,x1,x2,response\r\n0,0,0,"));
+    const auto text = in_folder(folder, {"plan", "c.json"});
+    EXPECT_EQ(text.code, 0);
+    EXPECT_NE(text.out.find("cases      40"), std::string::npos) << text.out;
+}
+
+TEST(Commands, SolveTakesTheMiddleAndWhatIsSet) {
+    const Folder folder;
+    folder.write("c.json", config);
+    const auto middle = solved(folder, {});
+    EXPECT_EQ(middle["inputs"]["x1"], 0.1 + 0.5 * (0.3 - 0.1));
+    EXPECT_NEAR(middle["inputs"]["x2"], 0.01, 1e-15);
+    EXPECT_EQ(middle["inputs"]["x3"], 0.25);
+    EXPECT_EQ(middle["inputs"]["response"], "sum");
+    EXPECT_EQ(middle["inputs"].size(), 21U);
+    EXPECT_EQ(middle["outcome"], "completed");
+    EXPECT_NEAR(middle["scalars"]["y"], 0.2 + 0.01 + 0.25 + 13 * 0.5, 1e-12);
+    EXPECT_TRUE(middle["series"].contains("y_series"));
+    for (const char* key : {"wall_seconds", "cpu_seconds", "particle_steps", "phases"}) {
+        EXPECT_TRUE(middle["cost"].contains(key)) << key;
+    }
+    const auto set = solved(folder, {"--set", "x1=0.5", "--set", "response=ishigami", "--seed", "7"});
+    EXPECT_EQ(set["inputs"]["x1"], 0.5);
+    EXPECT_EQ(set["inputs"]["response"], "ishigami");
+    EXPECT_EQ(set["seed"], 7);
+    EXPECT_EQ(solved(folder, {"--set", "behaviour=unstable"}, 1)["outcome"], "unstable");
+}
+
+TEST(Commands, SolveAsksTheCampaignsOwnCase) {
+    const Folder folder;
+    folder.write("c.json", R"({"campaign": "c", "scene": "rehearsal", "factors": [{"name": "x1", "levels": [0.5, 1]}],
+        "fixed": {"noise": 0.5}, "design": {"kind": "lattice"}})");
+    const auto planned = json::parse(in_folder(folder, {"plan", "c.json", "--format", "json"}).out)["rows"];
+    EXPECT_EQ(solved(folder, {})["case_id"], planned[0]["case_id"]);
+    EXPECT_EQ(solved(folder, {"--set", "x1=1"})["seed"], planned[1]["seed"]);
+}
+
+TEST(Commands, CataloguesAreOneJsonValueEach) {
+    const Folder folder;
+    for (const auto& arguments : std::vector<std::vector<std::string>>{
+             {"scenes"}, {"scenes", "rehearsal"}, {"designs"}, {"designs", "lattice"}, {"schema"}}) {
+        auto with_format = arguments;
+        with_format.insert(with_format.end(), {"--format", "json"});
+        const auto ended = in_folder(folder, with_format);
+        EXPECT_EQ(ended.code, 0) << ended.err;
+        EXPECT_TRUE(json::accept(ended.out)) << ended.out;
+        EXPECT_EQ(in_folder(folder, arguments).code, 0);
+    }
+    EXPECT_TRUE(json::accept(in_folder(folder, {"schema"}).out));
+}
+
+TEST(Commands, WrongArgumentsAreOneSentenceAndTwo) {
+    const Folder folder;
+    folder.write("c.json", config);
+    const std::vector<std::pair<std::vector<std::string>, std::string>> wrongs = {
+        {{}, "grainsweep: name a command; grainsweep --help lists them.\n"},
+        {{"plna"}, "grainsweep: there is no command 'plna'; grainsweep --help lists them. Did you mean 'plan'?\n"},
+        {{"plan"}, "grainsweep: CONFIG is required.\n"},
+        {{"plan", "d.json"}, "grainsweep: d.json: there is no such campaign file. Did you mean 'c.json'?\n"},
+        {{"plan", "c.json", "more"}, "grainsweep: plan: there is one argument too many: 'more'.\n"},
+        {{"plan", "c.json", "--fromat", "csv"},
+         "grainsweep: plan has no option '--fromat'. Did you mean '--format'?\n"},
+        {{"plan", "c.json", "--format", "xml"}, "grainsweep: --format: must be 'text', 'csv' or 'json', not 'xml'.\n"},
+        {{"solve", "c.json", "--set", "x1"}, "grainsweep: --set: got x1; must be NAME=VALUE.\n"},
+        {{"solve", "c.json", "--set", "x1=2"}, "grainsweep: --set x1: got 2; 'x1' must be a number from 0 to 1.\n"},
+        {{"solve", "c.json", "--set", "x1=nan"},
+         "grainsweep: --set x1: got \"nan\"; 'x1' must be a number from 0 to 1.\n"},
+        {{"solve", "c.json", "--set", "x1=0", "--set", "x1=1"}, "grainsweep: --set x1: this parameter is set twice.\n"},
+        {{"solve", "c.json", "--set", "nois=1"},
+         "grainsweep: --set nois: scene 'rehearsal' has no parameter of this name. Did you mean 'noise'?\n"},
+        {{"scenes", "rehersal"},
+         "grainsweep: NAME: got rehersal; there is no such scene; grainsweep scenes lists them. Did you mean "
+         "'rehearsal'?\n"},
+    };
+    for (const auto& [arguments, sentence] : wrongs) {
+        const auto ended = in_folder(folder, arguments);
+        EXPECT_EQ(ended.code, 2);
+        EXPECT_EQ(ended.err, sentence);
+        EXPECT_EQ(ended.out, "");
+    }
+}
+
+TEST(Commands, VersionNamesTheBuild) {
+    const Folder folder;
+    const auto ended = in_folder(folder, {"--version"});
+    EXPECT_EQ(ended.code, 0);
+    for (const char* word : {"grainsweep ", "\ncommit ", "\ncompiler ", "\nflags -O", "\ninstruction path "}) {
+        EXPECT_NE(ended.out.find(word), std::string::npos) << word << " is not in " << ended.out;
+    }
+}

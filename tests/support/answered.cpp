@@ -1,0 +1,41 @@
+#include "tests/support/answered.hpp"
+
+#include "sweep/campaign/reader.hpp"
+#include "sweep/store/expression.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace grainsweep::tests {
+
+campaign::Campaign answer_by(store::Store& store, const std::string& text, const Formula& formula, std::size_t cases) {
+    auto campaign = campaign::parse_campaign(text, std::filesystem::temp_directory_path());
+    const auto placed =
+        campaign::unfold(campaign, store::make_filter(campaign.where, campaign::filter_names(campaign)));
+    const auto states = store.enrol(campaign, placed, here());
+    store.group([&] {
+        std::set<campaign::CaseId> settled;
+        for (std::size_t i = 0; i < std::min(cases, placed.size()); ++i) {
+            const auto& question = placed[i].question;
+            const bool known = states[i].outcome && settles(*states[i].outcome);
+            if (known || !settled.insert(question.id).second) continue;
+            campaign::CaseResult result;
+            result.attempt = {question.id, states[i].attempts + 1};
+            if (const auto y = formula(question.inputs)) {
+                result.observations.scalars["y"] = *y;
+            } else {
+                result.outcome = campaign::Outcome::unstable;
+                result.message = "the formula has no answer";
+            }
+            store.begin(result.attempt);
+            store.finish(result);
+        }
+    });
+    return campaign;
+}
+
+double input(const Inputs& inputs, std::string_view name) {
+    return std::get<double>(inputs.find(name)->second);
+}
+
+}  // namespace grainsweep::tests

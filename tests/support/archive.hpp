@@ -1,0 +1,45 @@
+// Campaigns of the rehearsal scene made by hand, answers made up from their ids, and a folder that goes away:
+// what the tests of the store need.
+#pragma once
+
+#include "sweep/campaign/campaign.hpp"
+#include "sweep/store/store.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace grainsweep::tests {
+
+/// A new empty folder, removed with everything in it at the end.
+class Folder {
+public:
+    Folder();
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    ~Folder();
+    [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+};
+
+/// `factors` factors x1, x2, ... between 0 and 1 over the rehearsal scene, a Halton design.
+[[nodiscard]] campaign::Campaign small_campaign(const std::string& name, std::size_t factors = 2);
+/// Points 0 ... points-1 with evenly spread coordinates, each `campaign.replicates` times.
+[[nodiscard]] std::vector<campaign::PlacedCase> small_design(const campaign::Campaign& campaign, std::int64_t points);
+[[nodiscard]] campaign::Case question(const campaign::Campaign& campaign, const Inputs& inputs, std::int64_t replicate);
+
+[[nodiscard]] store::Provenance here();
+/// The answer every run would give to the case: y from its id.
+[[nodiscard]] campaign::CaseResult answer(const campaign::Case& question, std::int64_t attempt);
+/// begin and finish, in one group.
+void settle(store::Store& store, const campaign::Case& question, std::int64_t attempt);
+
+[[nodiscard]] std::string dump_of(const store::Store& store);
+/// The only cell of a query's answer, as text.
+[[nodiscard]] std::string only_cell(const store::Store& store, std::string_view sql);
+[[nodiscard]] std::string text_of(const store::Table::Cell& cell);
+
+}  // namespace grainsweep::tests

@@ -1,0 +1,69 @@
+// A sound campaign file is read as it was meant.
+#include "sweep/campaign/forecast.hpp"
+#include "sweep/campaign/reader.hpp"
+
+#include <gtest/gtest.h>
+
+using namespace grainsweep;
+using namespace grainsweep::campaign;
+
+TEST(CampaignFile, IsReadAsItWasMeant) {
+    const std::string text = R"({
+      "notes": ["one", "two"],
+      "campaign": "full_1", "scene": "rehearsal",
+      "factors": [{"name": "x2", "between": [0.001, 0.1], "scale": "log"}, {"name": "x1", "between": [0, 1]},
+                  {"name": "response", "levels": ["sum", "ishigami"]}],
+      "fixed": {"notes": "kept apart", "noise": 0.1, "behave_attempts": 2, "behaviour": "crash"},
+      "where": "x1 > x2",
+      "design": {"kind": "halton", "sequences": 8, "points": 1e3},
+      "replicates": 2, "seed": 9007199254740993,
+      "convergence": {"observable": "y", "rule": "all_change", "gates": ["mean", "skewness"], "tolerance": 0.05,
+                      "block": 100, "stop": false},
+      "limits": {"wall_seconds": 60, "attempts": 5},
+      "execution": {"workers": 3, "launcher": ["srun", "-n1"]}
+    })";
+    const Campaign campaign = parse_campaign(text, ".");
+    EXPECT_EQ(campaign.name, "full_1");
+    EXPECT_EQ(campaign.scene().name, "rehearsal");
+    EXPECT_EQ(campaign.text, text);
+    EXPECT_EQ(campaign.where, "x1 > x2");
+    EXPECT_EQ(campaign.replicates, 2);
+    EXPECT_EQ(campaign.seed, 9007199254740993U);  // beyond 2^53: read as the whole number it is
+    const std::vector<Factor> factors = {{"x2", Between{0.001, 0.1, Scale::log}},
+                                         {"x1", Between{0, 1, Scale::linear}},
+                                         {"response", Levels{{std::string("sum"), std::string("ishigami")}}}};
+    EXPECT_EQ(campaign.space.factors, factors);
+    EXPECT_EQ(campaign.space.fixed,
+              (Inputs{{"noise", 0.1}, {"behave_attempts", std::int64_t{2}}, {"behaviour", std::string("crash")}}));
+    EXPECT_EQ(campaign.design, "halton");
+    EXPECT_EQ(campaign.request.levels, (std::vector<std::size_t>{0, 0, 2}));
+    EXPECT_EQ(campaign.request.seed, campaign.seed);
+    EXPECT_EQ(campaign.request.count("points"), 1000);
+    EXPECT_EQ(campaign.request.count("first"), 1);
+    EXPECT_EQ(campaign.request.word("scramble"), "random");
+    EXPECT_EQ(*campaign.convergence, (Convergence{"y", "all_change", {"mean", "skewness"}, 0.05, 100, false}));
+    EXPECT_EQ(campaign.limits.wall_seconds, 60);
+    EXPECT_EQ(campaign.limits.attempts, 5);
+    EXPECT_EQ(campaign.execution.workers, 3);
+    EXPECT_EQ(campaign.execution.launcher, (std::vector<std::string>{"srun", "-n1"}));
+}
+
+TEST(CampaignFile, ALatticeOfLevelsNeedsNoNumberOfThem) {
+    const Campaign campaign = parse_campaign(R"({"campaign": "c", "scene": "rehearsal",
+        "factors": [{"name": "x1", "levels": [0, 1]}, {"name": "x2", "levels": [0, 0.5, 1]}],
+        "design": {"kind": "lattice"}})",
+                                             ".");
+    EXPECT_EQ(unfold(campaign, {}).size(), 6U);
+}
+
+TEST(Forecast, CountsEveryQuestionOnce) {
+    const Campaign campaign = parse_campaign(R"({"campaign": "c", "scene": "rehearsal",
+        "factors": [{"name": "wait_seconds", "levels": [1, 2]}],
+        "design": {"kind": "list", "rows": [[1], [2], [1], [1]]}})",
+                                             ".");
+    const auto cost = forecast(campaign.scene(), unfold(campaign, {}));
+    EXPECT_EQ(cost.places, 4);
+    EXPECT_EQ(cost.questions, 2);
+    EXPECT_NEAR(cost.total_seconds, 3, 1e-4);
+    EXPECT_NEAR(cost.longest_seconds, 2, 1e-4);
+}

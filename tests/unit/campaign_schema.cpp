@@ -1,0 +1,148 @@
+// The schema and the reader know the same keys: whatever one refuses, so does the other.
+#include "sweep/campaign/keys.hpp"
+#include "sweep/campaign/reader.hpp"
+#include "sweep/campaign/schema.hpp"
+#include "sweep/campaign/wrong_question.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+using namespace grainsweep;
+using namespace grainsweep::campaign;
+using nlohmann::json;
+
+namespace {
+
+std::set<std::string> keys_of(const json& object) {
+    std::set<std::string> keys;
+    for (const auto& [key, value] : object.items()) keys.insert(key);
+    return keys;
+}
+
+std::set<std::string> names_of(std::span<const Key> keys) {
+    std::set<std::string> names = {std::string(notes_key)};
+    for (const auto& key : keys) names.insert(key.name);
+    return names;
+}
+
+const json& schema() {
+    static const json parsed = json::parse(campaign_schema());
+    return parsed;
+}
+
+bool reads(const json& document) {
+    try {
+        (void)parse_campaign(document.dump(), ".");
+        return true;
+    } catch (const WrongQuestion&) {
+        return false;
+    }
+}
+
+const json sound = json::parse(R"({"campaign": "trial", "scene": "rehearsal",
+    "factors": [{"name": "x1", "between": [0, 1]}], "fixed": {"noise": 0.1},
+    "design": {"kind": "halton", "points": 64, "sequences": 4},
+    "convergence": {"observable": "y"}, "limits": {"attempts": 1}, "execution": {"workers": 1}})");
+
+}  // namespace
+
+TEST(Schema, IsDraft2020AndRefusesUnknownKeysEverywhere) {
+    EXPECT_EQ(schema()["$schema"], "https://json-schema.org/draft/2020-12/schema");
+    EXPECT_EQ(schema()["additionalProperties"], false);
+    for (const char* section : {"convergence", "limits", "execution"}) {
+        EXPECT_EQ(schema()["properties"][section]["additionalProperties"], false) << section;
+    }
+    for (const auto& design : schema()["properties"]["design"]["oneOf"]) {
+        EXPECT_EQ(design["additionalProperties"], false);
+    }
+}
+
+TEST(Schema, HasTheKeysOfTheReader) {
+    const auto& properties = schema()["properties"];
+    EXPECT_EQ(keys_of(properties), names_of(campaign_keys()));
+    EXPECT_EQ(keys_of(properties["convergence"]["properties"]), names_of(convergence_keys()));
+    EXPECT_EQ(keys_of(properties["limits"]["properties"]), names_of(limits_keys()));
+    EXPECT_EQ(keys_of(properties["execution"]["properties"]), names_of(execution_keys()));
+    const auto designs = designs::design_catalogue();
+    ASSERT_EQ(properties["design"]["oneOf"].size(), designs.size());
+    for (std::size_t k = 0; k < designs.size(); ++k) {
+        EXPECT_EQ(keys_of(properties["design"]["oneOf"][k]["properties"]), names_of(design_keys(designs[k])));
+    }
+}
+
+TEST(Schema, HasEveryParameterOfEveryScene) {
+    const auto scenes = scene_catalogue();
+    ASSERT_EQ(schema()["allOf"].size(), scenes.size());
+    for (std::size_t k = 0; k < scenes.size(); ++k) {
+        const auto& rule = schema()["allOf"][k];
+        EXPECT_EQ(rule["if"]["properties"]["scene"]["const"], scenes[k].name);
+        const auto& fixed = rule["then"]["properties"]["fixed"]["properties"];
+        const auto& factors = rule["then"]["properties"]["factors"]["items"]["oneOf"];
+        ASSERT_EQ(factors.size(), scenes[k].parameters.size());
+        for (std::size_t j = 0; j < factors.size(); ++j) {
+            const auto& parameter = scenes[k].parameters[j];
+            EXPECT_EQ(factors[j]["properties"]["name"]["const"], parameter.name);
+            ASSERT_TRUE(fixed.contains(parameter.name));
+            const auto* bounds = std::get_if<Interval>(&parameter.bounds);
+            if (bounds != nullptr && std::isfinite(bounds->high)) {
+                EXPECT_EQ(fixed[parameter.name][bounds->high_open ? "exclusiveMaximum" : "maximum"], bounds->high);
+            }
+            const bool real = std::holds_alternative<double>(parameter.default_value);
+            EXPECT_EQ(factors[j]["properties"].contains("between"), real) << parameter.name;
+        }
+    }
+}
+
+TEST(Schema, EveryKeyItHasIsReadAndEveryOtherRefused) {
+    ASSERT_TRUE(reads(sound));
+    for (const char* section : {"", "/convergence", "/limits", "/execution", "/design", "/factors/0", "/fixed"}) {
+        const json::json_pointer place{std::string(section)};
+        json noted = sound;
+        noted[place]["notes"] = {"a remark", "and another"};
+        EXPECT_TRUE(reads(noted)) << section;
+        json unknown = sound;
+        unknown[place]["note"] = "a remark";
+        EXPECT_FALSE(reads(unknown)) << section;
+    }
+    for (const auto& key : campaign_keys()) {
+        json without = sound;
+        without.erase(key.name);
+        EXPECT_EQ(reads(without), !key.required) << key.name;
+    }
+}
+
+TEST(Schema, DefaultsAreThoseOfTheReader) {
+    json bare = sound;
+    bare.erase("limits");
+    bare.erase("execution");
+    const auto campaign = parse_campaign(bare.dump(), ".");
+    const auto& properties = schema()["properties"];
+    EXPECT_EQ(properties["seed"]["default"], campaign.seed);
+    EXPECT_EQ(properties["replicates"]["default"], campaign.replicates);
+    EXPECT_EQ(properties["limits"]["properties"]["attempts"]["default"], campaign.limits.attempts);
+    EXPECT_EQ(properties["limits"]["properties"]["wall_seconds"]["default"], campaign.limits.wall_seconds);
+    EXPECT_EQ(properties["execution"]["properties"]["workers"]["default"], campaign.execution.workers);
+    const auto& convergence = properties["convergence"]["properties"];
+    EXPECT_EQ(convergence["rule"]["default"], campaign.convergence->rule);
+    EXPECT_EQ(convergence["gates"]["default"], campaign.convergence->gates);
+    EXPECT_EQ(convergence["tolerance"]["default"], campaign.convergence->tolerance);
+    EXPECT_EQ(convergence["block"]["default"], campaign.convergence->block);
+    EXPECT_EQ(convergence["stop"]["default"], campaign.convergence->stop);
+}
+
+TEST(Configs, EveryFileReadsWithoutError) {
+    std::size_t read = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(std::string(GRAINSWEEP_SOURCE) + "/configs")) {
+        if (entry.path().extension() != ".json") continue;
+        EXPECT_NO_THROW({
+            const auto campaign = read_campaign(entry.path());
+            EXPECT_EQ(campaign.name, entry.path().stem().string());
+        }) << entry.path();
+        ++read;
+    }
+    EXPECT_GT(read, 0U);
+}

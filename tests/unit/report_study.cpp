@@ -1,0 +1,319 @@
+// The study: moments, verdicts and influences recomputed from stored answers, and what is said about them.
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/report/effects.hpp"
+#include "sweep/report/history.hpp"
+#include "sweep/report/influence.hpp"
+#include "sweep/report/study_tables.hpp"
+#include "sweep/report/summary.hpp"
+#include "tests/support/answered.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace grainsweep::tests {
+namespace {
+
+using report::Responses;
+using store::Store;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+std::string halton(const std::string& name, int points, const std::string& more = "") {
+    return R"({"campaign": ")" + name + R"(", "scene": "rehearsal",
+        "factors": [{"name": "x1", "between": [0, 1]}, {"name": "x2", "between": [0, 0.5]}],
+        "design": {"kind": "halton", "sequences": 8, "points": )" +
+           std::to_string(points) + "}" + more + "}";
+}
+
+/// First-order indices 0.8 and 0.2 (x2 spans half of its unit): V = 4 a^2/12 + a^2/12 with 2 x1 and 2 x2.
+double linear(const Inputs& inputs) {
+    return 1 + 2 * input(inputs, "x1") + 2 * input(inputs, "x2");
+}
+
+struct Study : testing::Test {
+    Folder folder;
+    Store store{folder / "a.db", Store::Mode::create};
+
+    Responses ask(const std::string& name) {
+        return read_responses(store, report::find_campaigns(store, name).front());
+    }
+};
+
+TEST_F(Study, ReadsFactorsAndResponsesInOrderOfThePoints) {
+    answer_by(store, halton("c", 64), [](const Inputs& inputs) { return linear(inputs); });
+    const auto responses = ask("c");
+    ASSERT_EQ(responses.rows(), 64u);
+    EXPECT_EQ(responses.settled, 64u);
+    EXPECT_EQ(responses.settled_points, 64);
+    ASSERT_EQ(responses.factors.size(), 2u);
+    EXPECT_EQ(responses.factors[1].name, "x2");
+    EXPECT_EQ(responses.factors[1].high, 0.5);
+    ASSERT_NE(responses.main_observable(), nullptr);
+    EXPECT_EQ(responses.main_observable()->name, "y");
+    for (std::size_t row = 0; row < 64; ++row) {
+        const double x1 = responses.factors[0].values[row], x2 = responses.factors[1].values[row];
+        EXPECT_DOUBLE_EQ(responses.main_observable()->values[row], 1 + 2 * x1 + 2 * x2);
+        EXPECT_DOUBLE_EQ(responses.factors[1].coordinate(row), 2 * x2);
+    }
+}
+
+TEST_F(Study, LevelsKeepTheOrderOfTheFile) {
+    answer_by(store, R"({"campaign": "c", "scene": "rehearsal",
+        "factors": [{"name": "response", "levels": ["sum", "ishigami", "g_function"]}, {"name": "x1", "levels": [0.5, 0.25]}],
+        "design": {"kind": "lattice"}})",
+              [](const Inputs& inputs) { return input(inputs, "x1"); });
+    const auto responses = ask("c");
+    EXPECT_THAT(responses.factors[0].levels, ElementsAre("sum", "ishigami", "g_function"));
+    EXPECT_THAT(responses.factors[1].levels, ElementsAre("0.5", "0.25"));
+    EXPECT_THAT(responses.factors[0].values, ElementsAre(0, 0, 1, 1, 2, 2));
+    EXPECT_EQ(factor_text(responses.factors[0], 3), "ishigami");
+}
+
+TEST_F(Study, OnlyAGaplessBeginningIsJudged) {
+    answer_by(
+        store, halton("c", 64), [](const Inputs& inputs) { return linear(inputs); }, 30);
+    const auto responses = ask("c");
+    EXPECT_EQ(responses.rows(), 64u);
+    EXPECT_EQ(responses.settled, 30u);
+    EXPECT_EQ(responses.settled_points, 30);
+    const auto history = history_of(responses, responses.observable(""));
+    EXPECT_EQ(history.all.count, 30);
+    EXPECT_THAT(history.warnings, Contains(HasSubstr("34 of 64 cases are not settled")));
+}
+
+TEST_F(Study, AStoppedCampaignIsJudgedOnWhereItStopped) {
+    answer_by(store, halton("c", 64), [](const Inputs& inputs) { return linear(inputs); });
+    store.group([&] { store.stop("c", 40); });
+    const auto responses = ask("c");
+    EXPECT_EQ(responses.settled, 40u);
+    EXPECT_EQ(responses.settled_points, 40);
+    EXPECT_EQ(history_of(responses, responses.observable("y")).all.count, 40);
+}
+
+TEST_F(Study, MomentsOfAKnownResponseLieWithinTheirErrors) {
+    answer_by(store, halton("c", 1000, R"(, "convergence": {"observable": "y", "block": 400, "tolerance": 0.02})"),
+              [](const Inputs& inputs) { return linear(inputs); });
+    const auto responses = ask("c");
+    const auto history = history_of(responses, responses.observable("y"));
+    ASSERT_EQ(history.checks.size(), 2u);
+    EXPECT_EQ(history.checks[1].points, 800);
+    EXPECT_EQ(history.all.points, 1000);
+    EXPECT_TRUE(history.has_rule);
+    EXPECT_EQ(history.verdict.substr(0, 23), "converged at 800 points");
+    // mean 2.5; variance 4/12 + 1/12; kurtosis of the sum 3 + (excess -1.2)(4^2 + 1)/25.
+    const auto& mean = history.all.of(stats::Statistic::mean);
+    const auto& sd = history.all.of(stats::Statistic::sd);
+    const auto& kurtosis = history.all.of(stats::Statistic::kurtosis);
+    EXPECT_NEAR(mean.value, 2.5, 3 * mean.error);
+    EXPECT_NEAR(sd.value, std::sqrt(5.0 / 12), 3 * sd.error);
+    EXPECT_NEAR(kurtosis.value, 3 - 1.2 * 17 / 25, 3 * kurtosis.error);
+    EXPECT_LT(mean.error, 0.01);
+    EXPECT_GT(mean.error, 0);
+
+    const auto rows = checks_rows(responses, responses.observable("y"), history);
+    ASSERT_EQ(rows.rows.size(), 3u);
+    EXPECT_EQ(text_of(rows.rows[2][2]), "1000");
+    EXPECT_EQ(text_of(rows.rows[2].back()), "0");  // no multiple of the block: shown, not judged
+    EXPECT_EQ(text_of(rows.rows[1].back()), "1");
+}
+
+TEST_F(Study, FailedCasesAreLeftOutCountedAndSaid) {
+    answer_by(store, halton("c", 160), [](const Inputs& inputs) -> std::optional<double> {
+        if (input(inputs, "x1") > 0.9) return std::nullopt;
+        return linear(inputs);
+    });
+    const auto responses = ask("c");
+    EXPECT_EQ(responses.settled, 160u);
+    const auto& y = responses.observable("");
+    const auto history = history_of(responses, y);
+    const auto failed = std::ranges::count(responses.outcomes, std::optional(campaign::Outcome::unstable));
+    ASSERT_GT(failed, 8);
+    EXPECT_EQ(history.all.excluded, failed);
+    EXPECT_EQ(history.all.count, 160 - failed);
+    EXPECT_THAT(history.warnings, Contains(std::to_string(failed) + " of 160 cases have no value and are left out"));
+    const auto influence = influence_of(responses, y);
+    EXPECT_EQ(influence.excluded, failed);
+    EXPECT_THAT(influence.notes, Contains(HasSubstr("without a value are left out")));
+    EXPECT_EQ(outcome_line(responses),
+              std::to_string(160 - failed) + " completed, " + std::to_string(failed) + " unstable");
+}
+
+TEST_F(Study, WarnsOfRulesAndResponsesThatCannotBeTrusted) {
+    answer_by(store, halton("eager", 64, R"(, "convergence": {"observable": "y", "rule": "any_change", "block": 32})"),
+              [](const Inputs& inputs) { return input(inputs, "x1") < 0.5 ? 0 : 1 + input(inputs, "x1"); });
+    auto responses = ask("eager");
+    auto warnings = history_of(responses, responses.observable("y")).warnings;
+    EXPECT_THAT(warnings, Contains(HasSubstr("any_change stops too early in about half")));
+    EXPECT_THAT(warnings, Contains(HasSubstr("of the values are zero: the median jumps")));
+
+    answer_by(store, R"({"campaign": "grid", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
+        "design": {"kind": "lattice", "levels": 5}})",
+              [](const Inputs& inputs) { return input(inputs, "x1"); });
+    responses = ask("grid");
+    const auto history = history_of(responses, responses.observable("y"));
+    EXPECT_THAT(history.warnings, Contains(HasSubstr("a lattice has no errors")));
+    EXPECT_TRUE(history.checks.empty());
+    EXPECT_NEAR(history.all.of(stats::Statistic::mean).value, 0.5, 1e-15);
+    EXPECT_TRUE(std::isnan(history.all.of(stats::Statistic::mean).error));
+}
+
+TEST_F(Study, LatticesAreComparedWithTheirSiblings) {
+    const auto lattice = [](const std::string& name, int levels, const std::string& range) {
+        return R"({"campaign": ")" + name + R"(", "scene": "rehearsal", "factors": [{"name": "x1", "between": )" +
+               range + R"(}], "design": {"kind": "lattice", "levels": )" + std::to_string(levels) + "}}";
+    };
+    const auto x1 = [](const Inputs& inputs) { return input(inputs, "x1"); };
+    answer_by(store, lattice("fine", 10, "[0, 1]"), x1);
+    answer_by(store, lattice("coarse", 5, "[0, 1]"), x1);
+    answer_by(store, lattice("elsewhere", 5, "[0, 0.5]"), x1);
+    const auto responses = ask("fine");
+    const auto steps = lattice_family(store, responses, responses.observable("y"));
+    ASSERT_EQ(steps.size(), 2u);
+    EXPECT_EQ(steps[0].campaign, "coarse");
+    EXPECT_EQ(steps[1].campaign, "fine");
+    EXPECT_TRUE(std::isnan(steps[0].changes[0]));
+    // An endpoint lattice overestimates the spread by sqrt((k + 1)/(k - 1)).
+    const double coarse = std::sqrt(6.0 / 4), fine = std::sqrt(11.0 / 9);
+    EXPECT_NEAR(steps[1].changes[1], (coarse - fine) / fine, 1e-12);
+    const auto alone = ask("elsewhere");
+    EXPECT_TRUE(lattice_family(store, alone, alone.observable("y")).empty());
+}
+
+TEST_F(Study, SharesOfTheVarianceFromAnyDesign) {
+    answer_by(store, halton("c", 1600), [](const Inputs& inputs) { return linear(inputs); });
+    const auto responses = ask("c");
+    const auto influence = influence_of(responses, responses.observable("y"));
+    EXPECT_EQ(influence.method, report::Influence::Method::given_data);
+    EXPECT_EQ(influence.bins, 16u);
+    EXPECT_EQ(influence.used, 1600);
+    EXPECT_NEAR(influence.factors[0].first.value, 0.8, 0.01);
+    EXPECT_NEAR(influence.factors[1].first.value, 0.2, 0.01);
+    EXPECT_GT(influence.factors[0].first.half_width, 0);
+    EXPECT_LT(influence.factors[0].first.half_width, 0.05);
+    const auto table = influence_table(influence);
+    EXPECT_EQ(text_of(table.rows[0][0]), "x1");
+}
+
+TEST_F(Study, TotalIndicesFromSaltelliAndElementaryEffectsFromMorris) {
+    const std::string factors = R"("scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]},
+        {"name": "x2", "between": [0, 0.5]}], )";
+    answer_by(store, R"({"campaign": "s", )" + factors + R"("design": {"kind": "saltelli", "base_points": 512}})",
+              [](const Inputs& inputs) { return input(inputs, "x1") * input(inputs, "x2"); });
+    auto responses = ask("s");
+    const auto saltelli = influence_of(responses, responses.observable("y"));
+    EXPECT_EQ(saltelli.method, report::Influence::Method::saltelli);
+    EXPECT_EQ(saltelli.used, 512);
+    // y = u1 u2 / 2: both first-order indices 3/7, both total indices 4/7.
+    for (const auto& factor : saltelli.factors) {
+        EXPECT_NEAR(factor.first.value, 3.0 / 7, 0.02) << factor.factor;
+        EXPECT_NEAR(factor.first_saltelli.value, 3.0 / 7, 0.06) << factor.factor;
+        EXPECT_NEAR(factor.total.value, 4.0 / 7, 0.03) << factor.factor;
+    }
+
+    answer_by(store, R"({"campaign": "m", )" + factors + R"("design": {"kind": "morris", "trajectories": 12}})",
+              [](const Inputs& inputs) { return linear(inputs); });
+    responses = ask("m");
+    const auto morris = influence_of(responses, responses.observable("y"));
+    EXPECT_EQ(morris.method, report::Influence::Method::morris);
+    ASSERT_TRUE(morris.factors[0].effects && morris.factors[1].effects);
+    EXPECT_EQ(morris.used, 12);
+    EXPECT_NEAR(morris.factors[0].effects->mu_star, 2, 1e-12);  // per unit of the range
+    EXPECT_NEAR(morris.factors[1].effects->mu_star, 1, 1e-12);
+    EXPECT_NEAR(morris.factors[1].effects->sigma, 0, 1e-12);
+}
+
+TEST_F(Study, UnknownNamesGetTheNearestRightWord) {
+    answer_by(store, halton("spread", 16), [](const Inputs& inputs) { return linear(inputs); });
+    try {
+        (void)report::find_campaigns(store, "sprad");
+        FAIL();
+    } catch (const campaign::WrongQuestion& error) {
+        EXPECT_THAT(error.what(), HasSubstr("Did you mean 'spread'?"));
+    }
+    const auto responses = ask("spread");
+    try {
+        (void)responses.observable("yy");
+        FAIL();
+    } catch (const campaign::WrongQuestion& error) {
+        EXPECT_THAT(error.what(), HasSubstr("Did you mean 'y'?"));
+    }
+    Store empty(folder / "empty.db", Store::Mode::create);
+    EXPECT_THROW((void)report::find_campaigns(empty, ""), campaign::WrongQuestion);
+}
+
+TEST_F(Study, TheRunEndsWithCountsMomentsExtremesAndThePlace) {
+    answer_by(store, halton("c", 64), [](const Inputs& inputs) { return linear(inputs); });
+    const auto text = closing_summary(store, "c", folder / "a.db");
+    EXPECT_THAT(text, HasSubstr("c: 64 cases of rehearsal: 64 completed"));
+    EXPECT_THAT(text, HasSubstr("largest"));
+    EXPECT_THAT(text, HasSubstr("smallest"));
+    EXPECT_THAT(text, HasSubstr("±"));
+    EXPECT_THAT(text, HasSubstr((folder / "a.db").string()));
+
+    const auto responses = ask("c");
+    const auto& y = responses.observable("y");
+    const auto table = extremes_table(responses, y, 3);
+    ASSERT_EQ(table.rows.size(), 6u);
+    EXPECT_EQ(std::get<double>(table.rows[0].back()), *std::ranges::max_element(y.values));
+    EXPECT_EQ(std::get<double>(table.rows[5].back()), *std::ranges::min_element(y.values));
+    EXPECT_EQ(moments_table(responses).rows.size(), 1u);
+}
+
+TEST(Figures, ErrorsHaveTwoDigitsAndValuesTheirPlace) {
+    EXPECT_EQ(report::with_error(0.270150, 0.00112), "0.2702 ± 0.0011");
+    EXPECT_EQ(report::with_error(-12.34, 3.21), "-12.3 ± 3.2");
+    EXPECT_EQ(report::with_error(12345.6, 321), "12346 ± 321");
+    EXPECT_EQ(report::with_error(3.21e-7, 4.4e-9), "(3.210 ± 0.044)e-7");
+    EXPECT_EQ(report::with_error(0, 0.5), "0.00 ± 0.50");
+    EXPECT_EQ(report::with_error(1.5, none), "1.5");
+    EXPECT_EQ(report::with_error(1.5, 0), "1.5 ± 0");
+    EXPECT_EQ(report::with_error(none, 1), "-");
+}
+
+TEST(Effects, HistogramHoldsEveryFiniteValue) {
+    std::vector<double> values = {none, 1, 2, 2, 3, 5, std::numeric_limits<double>::infinity()};
+    const auto histogram = report::histogram_of(values);
+    EXPECT_EQ(histogram.low, 1);
+    EXPECT_EQ(histogram.high, 5);
+    EXPECT_EQ(std::accumulate(histogram.counts.begin(), histogram.counts.end(), std::int64_t{0}), 5);
+    EXPECT_EQ(histogram.counts.back(), 1);
+    EXPECT_THAT(report::histogram_of(std::vector<double>(4, 7.0)).counts, ElementsAre(4));
+    EXPECT_TRUE(report::histogram_of(std::vector<double>{none}).counts.empty());
+}
+
+TEST(Effects, BinsHoldEqualCountsAndLevelsAreBins) {
+    report::FactorColumn factor;
+    std::vector<double> response;
+    for (int i = 0; i < 320; ++i) {
+        factor.values.push_back(i / 320.0);
+        response.push_back(3 * i / 320.0);
+    }
+    response[7] = none;
+    const auto effect = main_effect(factor, response);
+    ASSERT_EQ(effect.size(), 16u);
+    std::int64_t total = 0;
+    for (const auto& bin : effect) {
+        EXPECT_NEAR(bin.mean, 3 * bin.at, 1e-12);
+        EXPECT_GT(bin.error, 0);
+        total += bin.count;
+    }
+    EXPECT_EQ(total, 319);
+
+    factor.levels = {"a", "b"};
+    for (std::size_t i = 0; i < factor.values.size(); ++i) factor.values[i] = i % 2 == 0 ? 0 : 1;
+    const auto levels = main_effect(factor, response);
+    ASSERT_EQ(levels.size(), 2u);
+    EXPECT_EQ(levels[1].at, 1);
+    EXPECT_EQ(levels[0].count, 160);
+    EXPECT_EQ(levels[1].count, 159);
+}
+
+}  // namespace
+}  // namespace grainsweep::tests

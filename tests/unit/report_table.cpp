@@ -1,0 +1,74 @@
+// One table, three formats: aligned text, RFC 4180, JSON; numbers read back as they were.
+#include "sweep/report/table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+using namespace grainsweep;
+using namespace grainsweep::report;
+
+namespace {
+
+using Cell = store::Table::Cell;
+
+std::string written(const store::Table& table, Format format) {
+    std::ostringstream out;
+    write(out, table, format);
+    return out.str();
+}
+
+const store::Table mixed{{"name", "count", "value"},
+                         {{std::string("plain"), std::int64_t{12}, 0.1},
+                          {std::string("a, \"b\"\nc"), Cell{}, -1e-300},
+                          {std::string(), std::int64_t{-3}, std::numeric_limits<double>::quiet_NaN()},
+                          {std::string("µm"), std::int64_t{9007199254740993}, 1.0 / 3}}};
+
+}  // namespace
+
+TEST(Table, TextIsAlignedAndStaysOnOneLineARow) {
+    EXPECT_EQ(written(mixed, Format::text),
+              "name                    count     value\n"
+              "plain                      12       0.1\n"
+              "a, \"b\"\\nc                        -1e-300\n"
+              "                           -3       nan\n"
+              "µm           9007199254740993  0.333333\n");
+}
+
+TEST(Table, CsvIsQuotedWhereItMustBe) {
+    EXPECT_EQ(written(mixed, Format::csv),
+              "name,count,value\r\n"
+              "plain,12,0.1\r\n"
+              "\"a, \"\"b\"\"\nc\",,-1e-300\r\n"
+              "\"\",-3,\r\n"
+              "µm,9007199254740993,0.3333333333333333\r\n");
+}
+
+TEST(Table, JsonIsOneValueWithKeysInOrder) {
+    const std::string text = written(mixed, Format::json);
+    EXPECT_EQ(text.find('\n'), text.size() - 1);
+    EXPECT_TRUE(text.starts_with(R"([{"name":"plain","count":12,"value":0.1},)"));
+    const auto rows = nlohmann::json::parse(text);
+    EXPECT_EQ(rows[1]["name"], "a, \"b\"\nc");
+    EXPECT_TRUE(rows[1]["count"].is_null());
+    EXPECT_TRUE(rows[2]["value"].is_null());
+    EXPECT_EQ(rows[3]["count"], 9007199254740993);
+    EXPECT_EQ(rows[3]["value"].get<double>(), 1.0 / 3);
+    EXPECT_EQ(written({{"a"}, {}}, Format::json), "[]\n");
+}
+
+TEST(Table, NumbersRoundTrip) {
+    for (const double x : {0.1, 1.0 / 3, 5e-324, 1.7976931348623157e308, 123456789.125, -2.5e-7}) {
+        const store::Table table{{"x"}, {{x}}};
+        EXPECT_EQ(std::stod(written(table, Format::csv).substr(3)), x);
+        EXPECT_EQ(nlohmann::json::parse(written(table, Format::json))[0]["x"].get<double>(), x);
+    }
+}
+
+TEST(Table, BytesThatAreNoUtf8DoNotBreakJson) {
+    const store::Table table{{"x"}, {{std::string("\xFF\xFE")}}};
+    EXPECT_TRUE(nlohmann::json::accept(written(table, Format::json)));
+}

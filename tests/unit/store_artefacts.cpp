@@ -1,0 +1,136 @@
+// Keyed files: whole or absent, whatever happened to them and whoever writes them at once.
+#include "sweep/store/artefacts.hpp"
+#include "sweep/store/broken_world.hpp"
+#include "tests/support/archive.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <iterator>
+
+namespace grainsweep::tests {
+namespace {
+
+using store::ArtefactFolder;
+
+Bytes bytes(std::size_t count, unsigned first = 0) {
+    Bytes contents(count);
+    for (std::size_t k = 0; k < count; ++k) contents[k] = static_cast<std::byte>((first + 31 * k) & 0xffU);
+    return contents;
+}
+
+struct StoreArtefacts : testing::Test {
+    Folder folder;
+    std::filesystem::path place = folder.path() / "new" / "artefacts";
+    ArtefactFolder artefacts{place};
+
+    std::filesystem::path only_file() const { return std::filesystem::directory_iterator(place)->path(); }
+    std::size_t files() const {
+        return static_cast<std::size_t>(
+            std::distance(std::filesystem::directory_iterator(place), std::filesystem::directory_iterator()));
+    }
+    static std::string read(const std::filesystem::path& file) {
+        std::ifstream stream(file, std::ios::binary);
+        return {std::istreambuf_iterator<char>(stream), {}};
+    }
+    static void write(const std::filesystem::path& file, std::string_view text) {
+        std::ofstream(file, std::ios::binary) << text;
+    }
+};
+
+TEST_F(StoreArtefacts, WhatIsPutIsGot) {
+    EXPECT_FALSE(artefacts.get("packing"));
+    for (const std::size_t size : {0u, 1u, 4096u, 100'000u}) {
+        artefacts.put("packing", bytes(size));
+        EXPECT_EQ(artefacts.get("packing"), bytes(size));
+    }
+    EXPECT_EQ(ArtefactFolder(place).get("packing"), bytes(100'000)) << "also by another process";
+    EXPECT_FALSE(artefacts.get("packing "));
+    EXPECT_EQ(files(), 1u) << "nothing is left aside";
+    artefacts.remove("packing");
+    artefacts.remove("packing");
+    EXPECT_FALSE(artefacts.get("packing"));
+}
+
+TEST_F(StoreArtefacts, ACutFileIsAbsent) {
+    artefacts.put("key", bytes(50));
+    const auto whole = read(only_file());
+    for (std::size_t length = 0; length < whole.size(); ++length) {
+        write(only_file(), whole.substr(0, length));
+        EXPECT_FALSE(artefacts.get("key")) << length;
+    }
+    write(only_file(), whole + "x");
+    EXPECT_FALSE(artefacts.get("key"));
+    write(only_file(), whole);
+    EXPECT_TRUE(artefacts.get("key"));
+}
+
+TEST_F(StoreArtefacts, AFlippedBitIsSeen) {
+    artefacts.put("key", bytes(50));
+    const auto whole = read(only_file());
+    for (std::size_t at = 0; at < whole.size(); ++at) {
+        for (const int bit : {0, 7}) {
+            auto damaged = whole;
+            damaged[at] = static_cast<char>(damaged[at] ^ (1 << bit));
+            write(only_file(), damaged);
+            EXPECT_FALSE(artefacts.get("key")) << at;
+        }
+    }
+}
+
+TEST_F(StoreArtefacts, AFileUnderAnotherKeysNameIsAbsent) {
+    artefacts.put("one", bytes(10));
+    const auto one = only_file();
+    const auto contents = read(one);
+    artefacts.put("two", bytes(10, 5));
+    for (const auto& entry : std::filesystem::directory_iterator(place)) write(entry.path(), contents);
+    EXPECT_EQ(artefacts.get("one"), bytes(10));
+    EXPECT_FALSE(artefacts.get("two"));
+}
+
+TEST_F(StoreArtefacts, ManyWritersLeaveOneWholeFile) {
+    constexpr int writers = 4;
+    for (int writer = 0; writer < writers; ++writer) {
+        const pid_t child = fork();
+        ASSERT_GE(child, 0);
+        if (child == 0) {
+            bool whole = true;
+            for (unsigned k = 0; k < 25; ++k) {
+                artefacts.put("key", bytes(20'000, k));
+                const auto got = artefacts.get("key");
+                whole = whole && got && got->size() == 20'000;
+            }
+            _exit(whole ? 0 : 1);
+        }
+    }
+    for (int writer = 0; writer < writers; ++writer) {
+        int status = -1;
+        ASSERT_GT(wait(&status), 0);
+        EXPECT_EQ(status, 0);
+    }
+    EXPECT_TRUE(artefacts.get("key"));
+    EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(StoreArtefacts, WhatAKilledWriterLeftIsSweptUpAfterADay) {
+    artefacts.put("key", bytes(3));
+    write(place / "old.aside", "half");
+    write(place / "young.aside", "half");
+    std::filesystem::last_write_time(place / "old.aside",
+                                     std::filesystem::file_time_type::clock::now() - std::chrono::hours(48));
+    ArtefactFolder(place).put("key", bytes(3));
+    EXPECT_FALSE(std::filesystem::exists(place / "old.aside"));
+    EXPECT_TRUE(std::filesystem::exists(place / "young.aside"));
+}
+
+TEST_F(StoreArtefacts, AFolderThatCannotBeMadeIsABrokenWorld) {
+    write(folder / "file", "in the way");
+    ArtefactFolder impossible(folder.path() / "file" / "artefacts");
+    EXPECT_THROW(impossible.put("key", bytes(3)), store::BrokenWorld);
+    EXPECT_FALSE(impossible.get("key"));
+}
+
+}  // namespace
+}  // namespace grainsweep::tests

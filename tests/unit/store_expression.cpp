@@ -1,0 +1,130 @@
+// The `where` clause: true, false, NULL; what it may not do; what a slip of the pen is told.
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/store/expression.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace grainsweep::tests {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+const std::vector<std::string> names = {"cohesion_law", "diameter", "gap", "particles", "select"};
+const Inputs inputs = {{"cohesion_law", std::string("sjkr")},
+                       {"diameter", 1e-3},
+                       {"gap", 2e-3},
+                       {"particles", std::int64_t{7}},
+                       {"select", 1.0}};
+
+bool holds(std::string_view expression) {
+    return store::make_filter(expression, names)(inputs);
+}
+
+std::string refusal(std::string_view expression) {
+    try {
+        (void)store::make_filter(expression, names);
+    } catch (const campaign::WrongQuestion& wrong) {
+        return wrong.what();
+    }
+    return "accepted";
+}
+
+TEST(StoreExpression, Decides) {
+    EXPECT_TRUE(holds("gap > 0.8 * diameter"));
+    EXPECT_FALSE(holds("gap > 2.5 * diameter"));
+    EXPECT_TRUE(holds("gap / diameter between 1.5 and 2.5 and cohesion_law in ('sjkr', 'paper')"));
+    EXPECT_TRUE(holds("particles % 2 = 1"));
+    EXPECT_TRUE(holds("not cohesion_law like 'p%'"));
+    EXPECT_TRUE(holds("sqrt(gap * gap) = gap or pow(2, 3) = 7"));
+    EXPECT_TRUE(holds("max(gap, diameter) = gap"));
+    EXPECT_TRUE(holds("case when particles = 7 then true else false end"));
+    EXPECT_TRUE(holds("\"gap\" > diameter -- a remark"));
+    EXPECT_TRUE(holds("inputs.gap > diameter"));
+    EXPECT_TRUE(holds("\"select\" = 1"));
+    EXPECT_TRUE(holds("true"));
+    EXPECT_FALSE(holds("0"));
+    EXPECT_FALSE(holds("NULL"));
+    EXPECT_FALSE(holds("gap / 0 > 1")) << "NULL is no yes";
+    EXPECT_FALSE(holds("cohesion_law")) << "a word is no yes";
+}
+
+TEST(StoreExpression, NothingAsksNothing) {
+    EXPECT_TRUE(holds(""));
+    EXPECT_TRUE(holds(" \n\t"));
+    EXPECT_TRUE(store::make_filter("", {})({}));
+}
+
+TEST(StoreExpression, SeesEveryCaseAnew) {
+    const auto filter = store::make_filter("gap > 0.8 * diameter", names);
+    const auto copy = filter;
+    Inputs other = inputs;
+    for (int k = 0; k < 100; ++k) {
+        other["gap"] = 1e-5 * k;
+        EXPECT_EQ(filter(other), std::get<double>(other["gap"]) > 0.8 * 1e-3) << k;
+        EXPECT_TRUE(copy(inputs));
+    }
+    EXPECT_THROW((void)filter({}), std::invalid_argument);
+}
+
+TEST(StoreExpression, ASlipIsToldTheNearestName) {
+    EXPECT_THAT(refusal("gpa > 1"),
+                AllOf(HasSubstr("$.where"), HasSubstr("no such column: gpa"), HasSubstr("Did you mean 'gap'?")));
+    EXPECT_THAT(refusal("\"gpa\" > 1"), HasSubstr("Did you mean 'gap'?")) << "no misspelt name becomes a word";
+    EXPECT_THAT(refusal("sqtr(gap) > 1"), HasSubstr("Did you mean 'sqrt'?"));
+    EXPECT_THAT(refusal("gap >"), HasSubstr("$.where"));
+}
+
+TEST(StoreExpression, OnlyOneDeterministicExpressionOfTheCase) {
+    for (const std::string_view expression : {"random() > 0",
+                                              "abs(random()) > 0",
+                                              "datetime('now') > '2020'",
+                                              "strftime('%s') > 0",
+                                              "CURRENT_TIMESTAMP > 0",
+                                              "last_insert_rowid() = 0",
+                                              "changes() = 0",
+                                              "sqlite_version() > '3'",
+                                              "load_extension('x')",
+                                              "count(*) > 0",
+                                              "(SELECT 1)",
+                                              "gap > (SELECT max(1))",
+                                              "exists (SELECT 1)",
+                                              "gap in (SELECT 1)",
+                                              "1 in inputs",
+                                              "1 in sqlite_schema",
+                                              "gap, diameter",
+                                              "gap) FROM inputs; --",
+                                              "1); DROP TABLE inputs; --",
+                                              "gap) FROM inputs /*",
+                                              "gap)) FROM inputs /*",
+                                              "1) UNION SELECT (1",
+                                              "gap > ?",
+                                              "gap > :limit",
+                                              "gap; 1",
+                                              "randomblob(4) > 0",
+                                              "rowid = 1",
+                                              "row_number() over ()",
+                                              "sum(gap) > 0",
+                                              "-",
+                                              ")",
+                                              "("}) {
+        EXPECT_NE(refusal(expression), "accepted") << expression;
+    }
+    EXPECT_THAT(refusal("random() > 0"), HasSubstr("'random' is not among the deterministic functions"));
+    EXPECT_THAT(refusal("gap > (SELECT 1)"), HasSubstr("no SELECT inside"));
+}
+
+TEST(StoreExpression, AnErrorWhileEvaluatingIsAWrongQuestion) {
+    const auto filter = store::make_filter("abs(particles) > 0", names);
+    Inputs extreme = inputs;
+    extreme["particles"] = std::numeric_limits<std::int64_t>::min();
+    EXPECT_THROW((void)filter(extreme), campaign::WrongQuestion);
+    EXPECT_TRUE(filter(inputs)) << "and the next case is judged as ever";
+}
+
+}  // namespace
+}  // namespace grainsweep::tests
