@@ -24,11 +24,8 @@ Inputs SceneInfo::defaults() const {
 
 std::span<const SceneInfo> scene_catalogue() {
     static const std::vector<SceneInfo> scenes = {
-<<<<<<< HEAD
-        tpms_discharge_scene(),
-=======
         powder_spreading_scene(),
->>>>>>> main
+        tpms_discharge_scene(),
         rehearsal_scene(),
     };
     return scenes;

@@ -5,11 +5,8 @@
 
 namespace grainsweep {
 
-<<<<<<< HEAD
-[[nodiscard]] SceneInfo tpms_discharge_scene();
-=======
 [[nodiscard]] SceneInfo powder_spreading_scene();
->>>>>>> main
+[[nodiscard]] SceneInfo tpms_discharge_scene();
 [[nodiscard]] SceneInfo rehearsal_scene();
 
 }  // namespace grainsweep

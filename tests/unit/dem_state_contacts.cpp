@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "solver/observables/histogram.hpp"
 
 using namespace grainsweep;
