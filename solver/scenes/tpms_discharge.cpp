@@ -7,7 +7,7 @@
 // mobile centres in the cell over those at the start. Time is told in t* = sqrt(2 L/g), speed in sqrt(2 g L).
 //
 // Work that cannot matter is not done: frozen spheres that no mobile one can touch while overlaps stay below
-// a tenth of a diameter are dropped (particles/reach.hpp), a larger overlap is reported unstable; a case ends
+// a tenth of a diameter are dropped (particles/reach.hpp), a larger one at a sample is reported unstable; a case ends
 // when no mobile sphere is left, and, under the rule "quiet", when the powder has come to rest.
 #include "solver/dem/state_contacts.hpp"
 #include "solver/geometry/vector.hpp"
