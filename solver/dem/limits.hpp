@@ -8,6 +8,12 @@ namespace grainsweep::dem {
 /// 21 MPa.
 inline constexpr double largest_sound_overlap = 0.3;
 
+/// Phase through which a contact swings in one time step, dt sqrt(S_n/m*) with S_n = 2 E* sqrt(R* d) = dF/dd. The
+/// explicit step is unstable at 2 for one degree of freedom; the tangential one of a sphere free to spin is up to
+/// sqrt(2.9) = 1.7 times as fast as the normal one, so at 1 nothing has become unstable and nothing is resolved any
+/// more.
+inline constexpr double largest_sound_swing = 1.0;
+
 /// Distance covered in one time step over the particle's own radius: beyond, contacts could be jumped over.
 inline constexpr double largest_sound_displacement = 1.0;
 

@@ -1,5 +1,6 @@
 #include "solver/dem/clear/make.hpp"
 #include "solver/dem/engine.hpp"
+#include "solver/dem/fast/mixed_engine.hpp"
 #include "solver/geometry/vector.hpp"
 #include "solver/particles/neighbour_list.hpp"
 
@@ -83,13 +84,8 @@ std::unique_ptr<Engine> make_engine(const Setup& setup, const Method& method) {
     }
 
     // One line per precision: where an engine joins.
-    switch (method.precision) {
-        case Method::Precision::double_precision:
-            return clear::make_clear_engine(setup, method);
-        case Method::Precision::mixed:
-            break;
-    }
-    throw std::invalid_argument("mixed precision is not available in this build: ask for double precision");
+    return method.precision == Method::Precision::mixed ? fast::make_mixed_engine(setup, method.path, method.skin)
+                                                        : clear::make_clear_engine(setup, method);
 }
 
 }  // namespace grainsweep::dem

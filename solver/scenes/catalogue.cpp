@@ -1,5 +1,6 @@
 #include "solver/scenes/catalogue.hpp"
 
+#include "solver/dem/fast/mixed_engine.hpp"
 #include "solver/scenes/scene.hpp"
 
 #include <algorithm>
@@ -37,6 +38,15 @@ const SceneInfo* find_scene(std::string_view name) {
     return found == scenes.end() ? nullptr : &*found;
 }
 
-std::string_view instruction_path() { return "x86-64-v2"; }
+std::string_view instruction_path() {
+    switch (dem::fast::best_path()) {
+        case dem::Method::Path::avx512:
+            return "avx512";
+        case dem::Method::Path::avx2:
+            return "avx2";
+        default:
+            return "x86-64-v2";
+    }
+}
 
 }  // namespace grainsweep

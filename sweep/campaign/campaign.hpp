@@ -94,7 +94,7 @@ using Filter = std::function<bool(const Inputs&)>;
 [[nodiscard]] std::vector<std::string> filter_names(const Campaign& campaign);
 
 /// More than this is a slip of the keyboard, and would not fit into memory.
-inline constexpr std::int64_t most_cases = 10'000'000;
+inline constexpr std::int64_t most_cases = 1'000'000;
 
 /// A placed case for every point and replicate that passes the filter, ordered by point, then replicate.
 /// Point numbers keep the gaps of what was filtered out. Throws WrongQuestion when the design's options are

@@ -50,10 +50,10 @@ std::string sentence_of(const CLI::ParseError& error, const CLI::App& app) {
             for (const auto& name : option->get_lnames()) known.push_back("--" + name);
         }
     }
-    if (error.get_name() == "ExtrasError" && !extras.empty()) {
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError) && !extras.empty()) {
         const auto option = std::ranges::find_if(extras, [](const auto& extra) { return extra.starts_with("-"); });
         if (option == extras.end())
-            return fmt::format("{}: there is one argument too many: '{}'.", command, extras.back());
+            return fmt::format("{}: there is one argument too many: '{}'.", command, extras.front());
         const auto nearest = campaign::nearest_word(*option, known);
         return fmt::format("{} has no option '{}'.{}", command, *option,
                            nearest.empty() ? "" : fmt::format(" Did you mean '{}'?", nearest));

@@ -118,6 +118,19 @@ double at(const std::map<std::string, double, std::less<>>& scalars, const std::
     return found == scalars.end() ? std::nan("") : found->second;
 }
 
+/// Equal to the last bit; an empty series is as good as none.
+bool same_samples(const auto& a, const auto& b, const std::string& name) {
+    static const std::vector<Sample> none;
+    const auto of = [&](const auto& series) -> const std::vector<Sample>& {
+        const auto found = series.find(name);
+        return found == series.end() ? none : found->second;
+    };
+    return std::ranges::equal(of(a), of(b), [](const Sample& x, const Sample& y) {
+        return relative_difference(x.time, y.time) == 0 && relative_difference(x.bin, y.bin) == 0 &&
+               relative_difference(x.value, y.value) == 0;
+    });
+}
+
 int replay(const std::string& database, const std::string& id, Format format) {
     const Store archive(database, Store::Mode::read);
     const campaign::Case question = require_case(archive, id);
@@ -144,13 +157,11 @@ int replay(const std::string& database, const std::string& id, Format format) {
     for (const auto& [name, ignored] : names) {
         compare(name, at(stored->observations.scalars, name), at(now->observations.scalars, name));
     }
-    bool same_series = stored->observations.series.size() == now->observations.series.size();
-    for (const auto& [name, samples] : stored->observations.series) {
-        const auto found = now->observations.series.find(name);
-        same_series = same_series && found != now->observations.series.end() &&
-                      std::ranges::equal(samples, found->second, [](const Sample& a, const Sample& b) {
-                          return relative_difference(a.value, b.value) == 0;
-                      });
+    bool same_series = true;
+    auto series = stored->observations.series;
+    series.insert(now->observations.series.begin(), now->observations.series.end());
+    for (const auto& [name, ignored] : series) {
+        same_series = same_series && same_samples(stored->observations.series, now->observations.series, name);
     }
     const bool same_outcome = stored->outcome == now->outcome;
     const bool agrees =

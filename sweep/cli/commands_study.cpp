@@ -56,11 +56,14 @@ void print_history(const Responses& responses, const report::ResponseColumn& res
     report::write(std::cout, report::statistics_table(history), Format::text);
     std::cout << '\n';
     if (!history.checks.empty()) {
-        report::write(std::cout, report::checks_table(history), Format::text);
+        const auto checks = report::checks_table(history);
+        report::write(std::cout, checks, Format::text);
+        if (checks.rows.size() < history.checks.size())
+            std::cout << fmt::format("({} checks; --format csv has them all)\n", history.checks.size());
         std::cout << '\n';
     }
     if (!lattices.empty()) {
-        report::write(std::cout, report::lattice_table(lattices), Format::text);
+        report::write(std::cout, report::lattice_lines(lattices), Format::text);
         std::cout << '\n';
     }
     std::cout << history.verdict << '\n';
@@ -134,8 +137,9 @@ int write_report(const std::string& database, std::string output, Format format)
     if (fs::equivalent(output, database, ignored)) {
         throw campaign::wrong_question("-o", fmt::format("'{}'", output), "this is the database itself");
     }
-    std::ofstream file(output, std::ios::binary);
     errno = 0;
+    std::ofstream file(output, std::ios::binary);
+    if (!file) throw campaign::wrong_question("-o", fmt::format("'{}'", output), std::strerror(errno));
     report::write_page(file, store, fs::path(database).filename().string());
     file.close();
     if (!file) {

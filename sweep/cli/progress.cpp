@@ -17,6 +17,7 @@ using namespace std::chrono_literals;
 constexpr auto terminal_interval = 100ms;
 constexpr auto log_interval = 5s;
 constexpr std::size_t bar_width = 30;
+constexpr std::size_t shown_notes = 20;
 
 std::size_t terminal_width() {
     winsize size{};
@@ -39,6 +40,7 @@ ProgressLine::ProgressLine(bool quiet, std::size_t workers)
 
 ProgressLine::~ProgressLine() {
     if (line_open_) std::fputc('\n', stderr);
+    if (notes_ > shown_notes) fmt::print(stderr, "... and {} more failures; the database has them all\n", notes_ - shown_notes);
 }
 
 void ProgressLine::update(const schedule::Progress& progress) {
@@ -66,6 +68,7 @@ void ProgressLine::update(const schedule::Progress& progress) {
 }
 
 void ProgressLine::note(const std::string& text) {
+    if (++notes_ > shown_notes) return;
     erase();
     fmt::print(stderr, "{}\n", text);
     last_.clear();

@@ -17,7 +17,7 @@ public:
     ProgressLine& operator=(const ProgressLine&) = delete;
 
     void update(const schedule::Progress& progress);
-    /// One line above the bar.
+    /// One line above the bar. The first few are shown, the rest is counted: `explain` knows them all.
     void note(const std::string& text);
 
 private:
@@ -31,6 +31,7 @@ private:
     Clock::time_point shown_{};
     double predicted_at_start_ = -1;
     bool line_open_ = false;
+    std::size_t notes_ = 0;
     std::string last_;
 };
 

@@ -18,9 +18,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 #include <thread>
 #include <unordered_map>
+#include <utility>
 
 namespace grainsweep::cli {
 namespace {
@@ -61,16 +63,24 @@ Questions collect(const campaign::Campaign& campaign, const std::vector<PlacedCa
 std::unique_ptr<schedule::Judge> make_judge(const campaign::Campaign& campaign, const store::Store& store,
                                             const std::vector<PlacedCase>& placed) {
     if (!campaign.convergence) return nullptr;
+    std::map<std::pair<std::int64_t, std::int64_t>, double> stored;
+    for (const auto& value : store.values(campaign.name, campaign.convergence->observable)) {
+        if (value.outcome) stored.emplace(std::pair(value.point, value.replicate), value.value);
+    }
     std::vector<double> known;
     known.reserve(placed.size());
-    for (const auto& value : store.values(campaign.name, campaign.convergence->observable)) {
-        known.push_back(value.outcome ? value.value : std::numeric_limits<double>::quiet_NaN());
+    for (const auto& one : placed) {
+        const auto found = stored.find({one.point, one.replicate});
+        known.push_back(found == stored.end() ? std::numeric_limits<double>::quiet_NaN() : found->second);
     }
-    const auto sequences = campaign.request.options.find("sequences");
-    const std::size_t count = sequences == campaign.request.options.end()
-                                  ? 1
-                                  : static_cast<std::size_t>(campaign.request.count("sequences"));
-    return std::make_unique<schedule::Judge>(*campaign.convergence, placed, count, known);
+    const auto option = [&](const char* name) -> std::optional<std::int64_t> {
+        if (!campaign.request.options.contains(name)) return std::nullopt;
+        return campaign.request.count(name);
+    };
+    const auto sequences = static_cast<std::size_t>(option("sequences").value_or(1));
+    return std::make_unique<schedule::Judge>(*campaign.convergence, placed,
+                                             schedule::independent_sequences(campaign.design, sequences), known,
+                                             option("points"));
 }
 
 std::vector<std::string> worker_command(const campaign::Campaign& campaign, const fs::path& artefacts) {

@@ -21,11 +21,12 @@ constexpr std::int64_t blocks_of_small_campaigns = 8;
 /// Where no rule was given: blocks to look at, the campaign in about eight where it is small.
 stats::ConvergenceSettings settings_for_looking(const Responses& responses) {
     stats::ConvergenceSettings settings;
-    settings.rule = ConvergenceRule::all_change;
     settings.sequences = static_cast<std::int64_t>(schedule::independent_sequences(
         responses.campaign.design, static_cast<std::size_t>(responses.campaign.sequences)));
+    if (settings.sequences < 4) settings.rule = ConvergenceRule::all_change;
     const std::int64_t part = responses.candidates / blocks_of_small_campaigns;
-    settings.block = std::clamp<std::int64_t>(part - part % settings.sequences, settings.sequences, default_block);
+    const std::int64_t whole_rounds = part - part % settings.sequences;
+    settings.block = std::max(settings.sequences, std::min(whole_rounds, default_block));
     return settings;
 }
 
@@ -93,12 +94,17 @@ void warn(History& history, const Responses& responses, const ResponseColumn& re
 
 std::string verdict_of(const History& history, const Responses& responses) {
     if (!responses.ordered_sample()) return "not judged: no sample of growing size";
+    const auto& design = responses.campaign.design;
+    if (!history.has_rule && (design == "saltelli" || design == "morris"))
+        return fmt::format("not judged: no rule was given, and a {} design is made for sensitivity", design);
     if (history.checks.empty()) return fmt::format("first check at {} points", history.settings.block);
     // The first converged check is where the campaign might have stopped; without one, the last says what is missing.
     const auto converged = std::ranges::find(history.checks, true, &stats::Checkpoint::converged);
     const auto& check = converged == history.checks.end() ? history.checks.back() : *converged;
     const auto line = schedule::verdict_of(check, history.settings, responses.candidates);
-    if (!history.has_rule) return "no rule was given; by changes between blocks: " + line;
+    if (!history.has_rule)
+        return fmt::format("no rule was given; by '{}' it would say: {}", stats::to_string(history.settings.rule),
+                           line);
     return check.converged ? fmt::format("converged at {} points: {}", check.points, line) : "not converged: " + line;
 }
 
@@ -135,6 +141,19 @@ History history_of(const Responses& responses, const ResponseColumn& response) {
     history.verdict = verdict_of(history, responses);
     warn(history, responses, response);
     return history;
+}
+
+std::vector<const stats::Checkpoint*> checks_to_show(const History& history, std::size_t most) {
+    std::vector<const stats::Checkpoint*> shown;
+    const std::size_t step = history.checks.size() / most + 1;
+    const auto converged = std::ranges::find(history.checks, true, &stats::Checkpoint::converged);
+    for (auto check = history.checks.begin(); check != history.checks.end(); ++check) {
+        const auto left = static_cast<std::size_t>(history.checks.end() - check) - 1;
+        if (left % step == 0 || check == converged) shown.push_back(&*check);
+    }
+    if (history.all.points > 0 && (shown.empty() || shown.back()->points != history.all.points))
+        shown.push_back(&history.all);
+    return shown;
 }
 
 std::vector<LatticeStep> lattice_family(const store::Store& store, const Responses& responses,

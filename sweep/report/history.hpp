@@ -11,8 +11,9 @@
 namespace grainsweep::report {
 
 struct History {
-    stats::ConvergenceSettings settings;  ///< the campaign's rule; all_change with the default gates where it has none
-    bool has_rule = false;                ///< the campaign gives a rule
+    stats::ConvergenceSettings
+        settings;           ///< the campaign's; else the default rule, or all_change where it cannot be used
+    bool has_rule = false;  ///< the campaign gives a rule
     std::vector<stats::Checkpoint> checks;  ///< every complete block of the settled beginning
     /// All settled points: the figures to quote. Where the points are no multiple of the block it is shown, never
     /// judged. Errors are NaN for a lattice or a list.
@@ -20,6 +21,10 @@ struct History {
     std::string verdict;                ///< one line
     std::vector<std::string> warnings;  ///< what a reader must know before quoting the figures
 };
+
+/// At most about `most` of the checks, evenly thinned, the last and the one that converged among them; after them `all`
+/// where it is no check. Pointers into the history.
+[[nodiscard]] std::vector<const stats::Checkpoint*> checks_to_show(const History& history, std::size_t most);
 
 [[nodiscard]] History history_of(const Responses& responses, const ResponseColumn& response);
 

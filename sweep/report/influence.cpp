@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <stdexcept>
 
 namespace grainsweep::report {
@@ -62,33 +63,41 @@ std::vector<std::size_t> groups_of(const Responses& responses) {
     return labels;
 }
 
-std::size_t bins_for(std::int64_t cases) {
+/// A level is a bin of its own, and so is a coordinate of a lattice; else so many bins that each has 16 cases.
+std::size_t bins_for(const FactorColumn& factor, bool lattice, std::size_t settled, std::int64_t cases) {
+    if (lattice || !factor.continuous()) {
+        const auto judged = std::span(factor.values).first(settled);
+        return std::max<std::size_t>(2, std::set<double>(judged.begin(), judged.end()).size());
+    }
     return std::clamp<std::size_t>(static_cast<std::size_t>(cases) / 16, 4, 16);
 }
 
 void add_given_data(Influence& influence, const Responses& responses, const ResponseColumn& response) {
-    const std::size_t d = responses.factors.size();
-    std::vector<double> coordinates(responses.settled * d);
-    for (std::size_t row = 0; row < responses.settled; ++row)
-        for (std::size_t j = 0; j < d; ++j) coordinates[row * d + j] = responses.factors[j].values[row];
+    const bool lattice = responses.campaign.design == "lattice";
     const auto values = responses.judged(response);
-    influence.bins = bins_for(std::ranges::count_if(values, [](double x) { return std::isfinite(x); }));
+    const auto cases = std::ranges::count_if(values, [](double x) { return std::isfinite(x); });
     const auto labels = groups_of(responses);
-    const auto indices = stats::first_order_indices(coordinates, d, values, labels, influence.bins);
-    for (std::size_t j = 0; j < d; ++j) {
-        influence.factors[j].first = indices.first[j];
+    std::size_t most_bins = 0;
+    for (std::size_t j = 0; j < responses.factors.size(); ++j) {
+        const auto& factor = responses.factors[j];
+        auto& found = influence.factors[j];
+        found.bins = bins_for(factor, lattice, responses.settled, cases);
+        const auto coordinates = std::span(factor.values).first(responses.settled);
+        const auto indices = stats::first_order_indices(coordinates, 1, values, labels, found.bins);
+        found.first = indices.first[0];
         // Lines of a lattice are no sample of it: leaving some out tells nothing about the error.
-        if (responses.campaign.design == "lattice") influence.factors[j].first.half_width = none;
+        if (lattice) found.first.half_width = none;
+        influence.used = indices.count;
+        influence.excluded = indices.excluded;
+        most_bins = std::max(most_bins, found.bins);
     }
-    influence.used = indices.count;
-    influence.excluded = indices.excluded;
-    if (responses.campaign.design == "lattice")
+    if (lattice) {
         influence.notes.emplace_back("a lattice gives its indices without errors: compare campaigns of growing levels");
-    if (influence.used > 0 && responses.campaign.design != "lattice") {
-        const double floor = static_cast<double>(influence.bins - 1) / static_cast<double>(influence.used);
+    } else if (influence.used > 0) {
+        const double floor = static_cast<double>(most_bins - 1) / static_cast<double>(influence.used);
         influence.notes.push_back(
             fmt::format("with {} cases in {} bins an index below about {:.2g} cannot be told from zero", influence.used,
-                        influence.bins, floor));
+                        most_bins, floor));
     }
 }
 
@@ -141,7 +150,7 @@ void add_morris(Influence& influence, const Responses& responses, const Response
 Influence influence_of(const Responses& responses, const ResponseColumn& response) {
     Influence influence;
     const auto& design = responses.campaign.design;
-    for (const auto& factor : responses.factors) influence.factors.push_back({factor.name, {}, {}, {}, {}});
+    for (const auto& factor : responses.factors) influence.factors.push_back({factor.name, 0, {}, {}, {}, {}});
     if (design == "morris") {
         influence.method = Influence::Method::morris;
         add_morris(influence, responses, response);

@@ -15,13 +15,15 @@ namespace {
 
 using Cell = store::Table::Cell;
 using Json = nlohmann::ordered_json;
+constexpr std::size_t most_shown_checks = 20;
 
 bool is_gate(const History& history, stats::Statistic statistic) {
     return std::ranges::find(history.settings.gates, statistic) != history.settings.gates.end();
 }
 
 std::string percent(double share) {
-    return std::isfinite(share) ? fmt::format("{:.2g} %", 100 * share) : "-";
+    if (!std::isfinite(share)) return "-";
+    return share < 1 ? fmt::format("{:.2g} %", 100 * share) : fmt::format("{:.0f} %", 100 * share);
 }
 
 /// The check the verdict speaks of: complete, else of all points.
@@ -87,9 +89,8 @@ store::Table checks_table(const History& history) {
         row.emplace_back(remark);
         table.rows.push_back(std::move(row));
     };
-    for (const auto& check : history.checks) add(check, check.converged ? "converged" : "");
-    if (history.all.points > 0 && (history.checks.empty() || history.checks.back().points != history.all.points))
-        add(history.all, "not a check");
+    for (const auto* check : checks_to_show(history, most_shown_checks))
+        add(*check, check == &history.all ? "not a check" : check->converged ? "converged" : "");
     return table;
 }
 
@@ -124,6 +125,22 @@ store::Table lattice_table(std::span<const LatticeStep> steps) {
         for (std::size_t s = 0; s < stats::statistics.size(); ++s) {
             row.push_back(to_cell(step.summary.of(stats::statistics[s])));
             row.push_back(to_cell(step.changes[s]));
+        }
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+store::Table lattice_lines(std::span<const LatticeStep> steps) {
+    store::Table table{{"lattice", "points", "values"}, {}};
+    for (const auto statistic : stats::statistics)
+        table.columns.push_back(fmt::format("{} (moved)", to_string(statistic)));
+    for (const auto& step : steps) {
+        std::vector<Cell> row = {step.campaign, step.points, step.summary.count};
+        for (std::size_t s = 0; s < stats::statistics.size(); ++s) {
+            const auto value = with_error(step.summary.of(stats::statistics[s]), std::nan(""));
+            row.emplace_back(std::isfinite(step.changes[s]) ? fmt::format("{} ({})", value, percent(step.changes[s]))
+                                                            : value);
         }
         table.rows.push_back(std::move(row));
     }
@@ -186,9 +203,8 @@ store::Table influence_table(const Influence& influence) {
             row.push_back(to_cell(factor->effects->sigma));
             row.emplace_back(factor->effects->count);
         } else if (!morris) {
-            row.emplace_back(with_error(factor->first.value, factor->first.half_width));
-            if (influence.method == Influence::Method::saltelli)
-                row.emplace_back(with_error(factor->total.value, factor->total.half_width));
+            row.emplace_back(index_text(factor->first));
+            if (influence.method == Influence::Method::saltelli) row.emplace_back(index_text(factor->total));
         }
         row.resize(table.columns.size());
         table.rows.push_back(std::move(row));
@@ -224,14 +240,16 @@ Json to_json(const Responses& responses, const ResponseColumn& response, const I
                   {"method", method_name(influence.method)},
                   {"used", influence.used},
                   {"excluded", influence.excluded}};
-    value["bins"] = influence.bins > 0 ? Json(influence.bins) : Json(nullptr);
     value["factors"] = Json::array();
     for (const auto& factor : influence.factors) {
         Json one = {{"name", factor.factor}};
         const auto put = [&](const char* name, const stats::SensitivityIndex& index) {
             one[name] = {{"value", number(index.value)}, {"error", number(index.half_width)}};
         };
-        if (influence.method != Influence::Method::morris) put("first", factor.first);
+        if (influence.method != Influence::Method::morris) {
+            one["bins"] = factor.bins;
+            put("first", factor.first);
+        }
         if (influence.method == Influence::Method::saltelli) {
             put("first_saltelli", factor.first_saltelli);
             put("total", factor.total);

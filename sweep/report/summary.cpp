@@ -43,7 +43,7 @@ void add_extreme(store::Table& table, const Responses& responses, const Response
 std::string with_error(double value, double error) {
     if (!std::isfinite(value)) return "-";
     if (!std::isfinite(error)) return fmt::format("{:.5g}", value);
-    if (!(error > 0)) return fmt::format("{:.5g} ± 0", value);
+    if (!(error > 1e-12 * std::abs(value))) return fmt::format("{:.5g} ± 0", value);
     const double magnitude = std::max(std::abs(value), error);
     const int place = 1 - static_cast<int>(std::floor(std::log10(error)));  // decimals for two digits of the error
     if (magnitude >= 1e6 || magnitude < 1e-3) {
@@ -54,6 +54,11 @@ std::string with_error(double value, double error) {
     }
     const int decimals = std::clamp(place, 0, 15);
     return fmt::format("{:.{}f} ± {:.{}f}", value, decimals, error, decimals);
+}
+
+std::string index_text(const stats::SensitivityIndex& index) {
+    const bool nothing = std::abs(index.value) < 1e-9 && !(index.half_width >= 1e-9);
+    return nothing ? "0" : with_error(index.value, index.half_width);
 }
 
 std::string outcome_line(const Responses& responses) {

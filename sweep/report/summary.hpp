@@ -1,6 +1,7 @@
 // What a run ends with: counts by outcome, moments with errors, extremes, where everything is.
 #pragma once
 
+#include "stats/sensitivity.hpp"
 #include "sweep/report/responses.hpp"
 
 #include <cstddef>
@@ -10,8 +11,11 @@
 namespace grainsweep::report {
 
 /// "0.2702 ± 0.0011": the error to two digits, the value to the same place. No error: the value to 5 digits.
-/// NaN: "-".
+/// An error of rounding only (below 1e-12 of the value) is 0. NaN: "-".
 [[nodiscard]] std::string with_error(double value, double error);
+
+/// An index and its error; below 1e-9 rounding is all there is, and it is shown as 0.
+[[nodiscard]] std::string index_text(const stats::SensitivityIndex& index);
 
 /// "640 completed, 12 unstable": outcomes that occur.
 [[nodiscard]] std::string outcome_line(const Responses& responses);

@@ -32,7 +32,8 @@ std::string points_left(const stats::Checkpoint& check, std::int64_t candidates)
 }  // namespace
 
 std::size_t independent_sequences(std::string_view design, std::size_t sequences) {
-    return design == "saltelli" || design == "morris" ? 1 : sequences;
+    const auto* info = designs::find_design(design);
+    return info != nullptr && info->independent_sequences ? sequences : 1;
 }
 
 stats::ConvergenceSettings settings_of(const campaign::Convergence& wanted, std::size_t sequences) {

@@ -98,6 +98,15 @@ void Plan::returned(const campaign::Attempt& attempt) {
     queue_.push_front(found->second);
 }
 
+void Plan::never_begun(const campaign::Attempt& attempt) {
+    const auto found = index_.find(attempt.case_id);
+    if (found == index_.end()) return;
+    Entry& entry = entries_[found->second];
+    if (!entry.running || entry.attempts != attempt.number) return;
+    returned(attempt);
+    --entry.attempts;
+}
+
 std::size_t Plan::settled_prefix() {
     while (prefix_ < places_.size() && entries_[places_[prefix_]].decided) ++prefix_;
     return prefix_;

@@ -52,8 +52,10 @@ public:
     enum class Verdict { settled, again, gave_up, stale };
     /// A running attempt ended so.
     Verdict ended(const campaign::Attempt& attempt, campaign::Outcome outcome);
-    /// It was never begun, or given back: the question returns to the head of the queue.
+    /// It was given back unfinished: the question returns to the head of the queue.
     void returned(const campaign::Attempt& attempt);
+    /// It was handed out but no worker began it: the same, and its number is free again.
+    void never_begun(const campaign::Attempt& attempt);
     /// Start nothing more.
     void close() { closed_ = true; }
 

@@ -62,13 +62,13 @@ void Scheduler::handle(workers::PoolEvent event) {
                           [&](const workers::Heartbeat&) {},
                           [&](const workers::Lost& lost) {
                               if (lost.running) handle_failure(*lost.running, Outcome::crashed, lost.reason);
-                              give_back(lost.queued);
+                              take_back(lost.queued);
                           },
                           [&](const workers::TimedOut& late) {
                               handle_failure(late.running, Outcome::timed_out, late.reason);
-                              give_back(late.queued);
+                              take_back(late.queued);
                           },
-                          [&](const workers::GivenBack& back) { give_back({back.attempt}); },
+                          [&](const workers::GivenBack& back) { park(back.attempt); },
                           [&](const workers::Interrupted& stop) {
                               plan_.close();
                               early_ = Ending::interrupted;
@@ -104,23 +104,31 @@ void Scheduler::handle_failure(const campaign::Attempt& attempt, Outcome outcome
     watchers_.note(fmt::format("{} {} in attempt {}{}: {}", attempt.case_id.substr(0, 12), to_string(outcome),
                                attempt.number, verdict == Plan::Verdict::again ? ", trying again" : ", giving up",
                                reason));
-    if (verdict == Plan::Verdict::gave_up) judge_prefix();
-}
-
-void Scheduler::give_back(const std::vector<campaign::Attempt>& attempts) {
-    for (const auto& attempt : attempts) {
-        --in_flight_;
-        plan_.returned(attempt);
-        campaign::CaseResult result;
-        result.attempt = attempt;
-        result.outcome = Outcome::abandoned;
-        result.message = "given back before it was finished";
-        recorder_.write(std::move(result));
+    if (verdict == Plan::Verdict::gave_up) {
+        if (judge_ != nullptr) judge_->learn(attempt.case_id, {});  // an older answer counts no more
+        judge_prefix();
     }
 }
 
+void Scheduler::take_back(const std::vector<campaign::Attempt>& attempts) {
+    for (const auto& attempt : attempts) {
+        --in_flight_;
+        plan_.never_begun(attempt);
+    }
+}
+
+void Scheduler::park(const campaign::Attempt& attempt) {
+    --in_flight_;
+    plan_.returned(attempt);
+    campaign::CaseResult result;
+    result.attempt = attempt;
+    result.outcome = Outcome::abandoned;
+    result.message = "given back before it was finished";
+    recorder_.write(std::move(result));
+}
+
 void Scheduler::judge_prefix() {
-    if (judge_ == nullptr || judge_->converged_at()) return;
+    if (judge_ == nullptr || (judge_->converged_at() && judge_->stops())) return;
     for (auto& row : judge_->judge(plan_.settled_prefix())) recorder_.write(store::Recorder::Checked{campaign_, row});
     progress_.judgement = judge_->verdict();
     if (judge_->converged_at() && judge_->stops() && !early_) {

@@ -51,7 +51,8 @@ private:
     void handle(workers::PoolEvent event);
     void handle_finished(workers::Finished& finished);
     void handle_failure(const campaign::Attempt& attempt, campaign::Outcome outcome, const std::string& reason);
-    void give_back(const std::vector<campaign::Attempt>& attempts);
+    void take_back(const std::vector<campaign::Attempt>& attempts);
+    void park(const campaign::Attempt& attempt);
     void judge_prefix();
     void show();
 

@@ -220,17 +220,24 @@ Connection::Connection(const std::filesystem::path& file, Access access) {
     }
     handle_.reset(open(file.c_str(), SQLITE_OPEN_READONLY));
     configure();
-    // A write-ahead database needs its shared-memory file beside it. Where that cannot be made and no log is
-    // waiting, nobody writes either.
+    const auto beside = [&](const char* ending) {
+        auto name = file;
+        return std::filesystem::exists(name += ending);
+    };
     try {
-        auto rows = ask("SELECT count(*) FROM sqlite_schema");
-        (void)rows.next();
+        probe();
     } catch (const BrokenWorld&) {
-        const int code = sqlite3_errcode(handle_.get()) & 0xff;
-        auto log = file;
-        log += "-wal";
-        if ((code != SQLITE_CANTOPEN && code != SQLITE_READONLY) || std::filesystem::exists(log)) throw;
-        kept_.clear();
+        const int code = sqlite3_extended_errcode(handle_.get());
+        if (code == SQLITE_READONLY_ROLLBACK) {
+            // A writer died in mid-commit: its journal has to be rolled back before anyone can read.
+            Connection(file, Access::write).probe();
+            probe();
+            return;
+        }
+        // A write-ahead database needs its shared-memory file beside it. Where that cannot be made and no journal
+        // is waiting, nobody writes either.
+        const bool closed_folder = (code & 0xff) == SQLITE_CANTOPEN || (code & 0xff) == SQLITE_READONLY;
+        if (!closed_folder || beside("-wal") || beside("-journal")) throw;
         handle_.reset(open(uri(file, "immutable=1").c_str(), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI));
         configure();
     }
@@ -238,6 +245,11 @@ Connection::Connection(const std::filesystem::path& file, Access access) {
 
 Connection Connection::in_memory() {
     return Connection(open(":memory:", SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE));
+}
+
+void Connection::probe() const {
+    auto statement = prepare("SELECT count(*) FROM sqlite_schema");
+    (void)statement.step();
 }
 
 void Connection::configure() {

@@ -176,6 +176,7 @@ private:
     explicit Connection(sqlite3* handle);
     [[nodiscard]] Statement& kept(std::string_view sql) const;
     void configure();
+    void probe() const;  ///< reads the first page, and recovers what a dead writer left in the log
 
     struct TextHash : std::hash<std::string_view> {
         using is_transparent = void;

@@ -79,13 +79,14 @@ void migrate(Connection& db, const std::filesystem::path& file) {
     transaction.commit();
 }
 
-std::unique_ptr<Store::Impl> open_to_write(const std::filesystem::path& file) {
+std::unique_ptr<Store::Impl> open_to_write(const std::filesystem::path& file, Store::Disk disk) {
     std::error_code ignored;
     if (std::filesystem::exists(file, ignored)) check_readable(file);
     std::optional<WriterLock> lock(std::in_place, file);
     Connection db(file, Connection::Access::write);
     (void)schema_version(db, file);  // before anything is changed in a stranger's file
-    db.use(on_network(file) ? Connection::Journal::rollback : Connection::Journal::write_ahead);
+    const bool network = disk == Store::Disk::network || (disk == Store::Disk::found_out && on_network(file));
+    db.use(network ? Connection::Journal::rollback : Connection::Journal::write_ahead);
     migrate(db, file);
     return std::make_unique<Store::Impl>(file, std::move(lock), std::move(db));
 }
@@ -116,8 +117,8 @@ std::optional<std::string> phases_text(const Cost& cost) {
 
 }  // namespace
 
-Store::Store(const std::filesystem::path& file, Mode mode)
-    : impl_(mode == Mode::create ? open_to_write(file) : open_to_read(file)) {
+Store::Store(const std::filesystem::path& file, Mode mode, Disk disk)
+    : impl_(mode == Mode::create ? open_to_write(file, disk) : open_to_read(file)) {
     add_statistics(impl_->db);
 }
 Store::~Store() = default;
@@ -175,16 +176,23 @@ void Store::begin(const campaign::Attempt& attempt) {
     impl_->require_group();
     auto& db = impl_->db;
     if (!impl_->provenance) throw std::logic_error("an attempt begins before its campaign is enrolled");
-    const auto changed = db.run("UPDATE sim_case SET attempts = ?1 WHERE case_id = ?2 AND attempts < ?1",
+    const auto changed = db.run("UPDATE sim_case SET attempts = ?1 WHERE case_id = ?2 AND attempts <= ?1",
                                 attempt.number, attempt.case_id);
     if (changed != 1) {
         throw std::logic_error(fmt::format("attempt {} of case {} begins, which is unknown or has begun a later one",
                                            attempt.number, attempt.case_id));
     }
-    db.run(
+    // An attempt that was handed out to a worker that died before it began may begin again.
+    const auto begun = db.run(
         "INSERT INTO attempt (case_key, number, provenance_id, started) "
-        "SELECT case_key, ?1, ?2, ?3 FROM sim_case WHERE case_id = ?4",
+        "SELECT case_key, ?1, ?2, ?3 FROM sim_case WHERE case_id = ?4 "
+        "ON CONFLICT (case_key, number) DO UPDATE SET provenance_id = excluded.provenance_id, started = excluded.started "
+        "WHERE outcome IS NULL",
         attempt.number, impl_->provenance, utc_now(), attempt.case_id);
+    if (begun != 1) {
+        throw std::logic_error(
+            fmt::format("attempt {} of case {} begins after it ended", attempt.number, attempt.case_id));
+    }
 }
 
 bool Store::finish(const campaign::CaseResult& result) {

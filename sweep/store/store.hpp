@@ -1,7 +1,9 @@
 // The archive: every result of every campaign in one SQLite file. The only file that speaks SQL.
 //
-// One writer. WAL, synchronous FULL. A result is on disk before it is shown: callers write inside
-// group() and show what the group held only after it returned.
+// One writer: an advisory lock on FILE.lock, which dies with its holder (the empty file stays). Readers go on beside
+// it. WAL, synchronous FULL; on network file systems a rollback journal, synchronous FULL. A result is on disk before
+// it is shown: callers write inside group() and show what the group held only after it returned. A Store belongs to
+// one thread.
 #pragma once
 
 #include "sweep/campaign/campaign.hpp"
@@ -72,48 +74,62 @@ struct CampaignRecord {
     int revision = 1;
     std::int64_t sequences = 1, replicates = 1;
     std::optional<campaign::Convergence> convergence;
-    std::optional<std::int64_t> stopped_at;  ///< points in the prefix at which it converged and stopped
+    std::optional<std::int64_t> stopped_at;  ///< it converged and stopped: points numbered below this count
 };
 
 class Store {
 public:
     enum class Mode { create, read };
+    /// A network disk gets a rollback journal instead of a write-ahead log; which it is, statfs(2) knows.
+    enum class Disk { found_out, local, network };
     /// create: makes the file and its schema where absent, takes the writer's lock (a second writer is
     /// refused with a sentence naming the first); read: never writes. Throws BrokenWorld, or WrongQuestion
     /// when the file is no grainsweep database.
-    Store(const std::filesystem::path& file, Mode mode);
+    Store(const std::filesystem::path& file, Mode mode, Disk disk = Disk::found_out);
     ~Store();
     Store(Store&&) noexcept;
     Store& operator=(Store&&) noexcept;
 
     /// Records campaign and cases (idempotent; extends), makes its view, closes attempts of a dead boss as
-    /// abandoned. Another scene, revision, factor set, range or fixed value under the same name throws WrongQuestion.
-    /// Returns the state of each case, in the order given.
+    /// abandoned. Returns the state of each case, in the order given. Not inside group().
+    ///
+    /// Another scene, revision, default, factor set, range, fixed value, condition, seed, kind of design, scramble or
+    /// first index under the same name throws WrongQuestion naming both. More points, levels or replicates extend; a
+    /// part of what is there is accepted and removes nothing. Where an extension renumbers points (a lattice with more
+    /// levels) the new places replace the old ones, every answer is kept, and convergence is judged anew, as it is
+    /// after another rule or more replicates. A list only grows at its end.
     std::vector<CaseState> enrol(const campaign::Campaign& campaign, std::span<const campaign::PlacedCase> cases,
                                  const Provenance& provenance);
 
     /// Runs `writes` in one durable transaction: on disk when this returns, absent when it throws.
     void group(const std::function<void()>& writes);
     // Inside group():
+    /// Numbers only grow: throws std::logic_error for a case that is unknown or has begun a later attempt.
     void begin(const campaign::Attempt& attempt);
-    /// A result whose attempt is not the case's latest is stale: dropped, returns false.
+    /// Replaces what an earlier attempt measured. A result whose attempt is not the case's latest, or is closed
+    /// already, is stale: dropped, returns false. NaN is stored as NULL, a scalar that is NaN not at all.
     bool finish(const campaign::CaseResult& result);
     void record(std::string_view campaign, const ConvergenceRow& row);
     void stop(std::string_view campaign, std::int64_t points);
 
     // Questions
     [[nodiscard]] std::vector<CampaignRecord> campaigns() const;
+    /// Throws WrongQuestion where several cases begin so.
     [[nodiscard]] std::optional<campaign::Case> find_case(std::string_view id_or_prefix) const;
     [[nodiscard]] std::vector<LoggedAttempt> attempts(std::string_view case_id) const;
+    /// Of the last finished attempt.
     [[nodiscard]] std::optional<campaign::CaseResult> result(std::string_view case_id) const;
     /// One scalar over the campaign's design, ordered by (point, replicate).
     [[nodiscard]] std::vector<PlacedValue> values(std::string_view campaign, std::string_view observable) const;
     [[nodiscard]] std::vector<ConvergenceRow> convergence(std::string_view campaign, std::string_view observable) const;
-    /// Counts by outcome per campaign, rate and time left: the status table.
+    /// One row per campaign: campaign, scene, cases, one count per outcome, waiting (no outcome yet), stopped_at,
+    /// rate (answers per second of the last run), time_left (s, at that rate; NULL where none is known).
     [[nodiscard]] Table status() const;
-    /// Read-only SQL: anything else throws WrongQuestion with SQLite's sentence.
+    /// One statement of read-only SQL: anything else throws WrongQuestion with SQLite's sentence. Beside SQLite's own
+    /// functions: sd, median, pearson_skewness, g1, kurtosis (aggregates.hpp).
     [[nodiscard]] Table query(std::string_view sql) const;
-    /// Canonical text of all results: no times, attempts, hosts; equal for equal science.
+    /// Canonical text of all results, line by line without line breaks: no times, attempts, hosts; equal for equal
+    /// science. The form is described in dump.cpp.
     void dump(const std::function<void(std::string_view line)>& sink) const;
 
     struct Impl;  ///< known to the files of this room only

@@ -23,17 +23,17 @@ double processor_seconds() {
 
 // Slices of about this length: short enough to answer a stop at once, long enough to cost nothing.
 constexpr double slice_seconds = 0.1;
+// In the scene's time, whose scale is unknown: shorter than any step, then it adapts to the clock.
+constexpr double first_slice = 1e-9;
 
 /// Advances until the scene is over, fails or is given up; true when it is over.
 bool drive(Scene& scene, const Watch& watch) {
-    double slice = 0;  // in the scene's time; the first is a single step, then it adapts to the clock
+    double slice = first_slice;
     while (!scene.finished() && scene.health().stable()) {
         const auto start = Clock::now();
-        const double before = scene.time();
-        scene.advance(before + slice);
+        scene.advance(scene.time() + slice);
         const double took = std::max(seconds_since(start), 1e-6);
-        const double advanced = scene.time() - before;
-        slice = advanced * std::clamp(slice_seconds / took, 0.25, 4.0);
+        slice *= std::clamp(slice_seconds / took, 0.25, 4.0);
         if (!watch(scene)) return false;
     }
     return true;

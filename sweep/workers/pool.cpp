@@ -32,6 +32,8 @@ constexpr std::size_t queue_of_short_cases = 4;
 constexpr std::size_t kept_log_bytes = 4096;
 constexpr auto lease_every = 10s;
 constexpr auto grace_before_kill = 2s;
+// So many workers in a row that end before they are ready: the launcher is wrong, not the case.
+constexpr int unready_limit = 3;
 
 /// Our ends of a pipe must not live on in other workers, or nobody would ever see an end of file.
 void close_on_exec(bp::async_pipe& pipe) {
@@ -118,7 +120,8 @@ struct Pool::Impl {
             } else if (auto* alive = std::get_if<Alive>(&message)) {
                 events.emplace_back(Heartbeat{alive->attempt, alive->progress});
             } else if (const auto& ready = std::get<Ready>(message); ready.version == options.version) {
-                worker->ready = ever_ready = true;
+                worker->ready = true;
+                unready_in_a_row = 0;
             } else {
                 complain(*worker, fmt::format("the worker is build {}, the boss is build {}", ready.version,
                                               options.version));
@@ -150,7 +153,7 @@ struct Pool::Impl {
         if (worker->retiring && worker->cases.empty()) return;
         std::vector<campaign::Attempt> queued(worker->cases.begin(), worker->cases.end());
         std::optional<campaign::Attempt> running;
-        if (!queued.empty()) {
+        if (!queued.empty() && worker->ready) {  // a worker that was never ready has begun no case
             running = queued.front();
             queued.erase(queued.begin());
         }
@@ -158,7 +161,9 @@ struct Pool::Impl {
         std::string reason =
             worker->complaint.empty() ? describe_end(worker->process.native_exit_code()) : worker->complaint;
         if (!worker->log.empty()) reason += "; it wrote: " + worker->log;
-        if (!worker->ready && !ever_ready) broken = "cannot start workers with '" + joined(options.command) + "': " + reason;
+        if (!worker->ready && ++unready_in_a_row >= unready_limit) {
+            broken = "cannot start workers with '" + joined(options.command) + "': " + reason;
+        }
         if (worker->timed_out && running) {
             events.emplace_back(TimedOut{*running, std::move(queued), options.wall_seconds,
                                          fmt::format("no answer within {} s", options.wall_seconds)});
@@ -250,7 +255,7 @@ struct Pool::Impl {
     Clock::time_point leased = Clock::now();
     int interruptions = 0;
     bool retired = false;
-    bool ever_ready = false;
+    int unready_in_a_row = 0;  // workers lost before they said they were ready
     std::string broken;  // why no worker can be had at all
 };
 

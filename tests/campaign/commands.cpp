@@ -18,7 +18,7 @@ const char* config = R"({"campaign": "c", "scene": "rehearsal",
   "fixed": {"x3": 0.25}, "design": {"kind": "halton", "points": 20}, "replicates": 2})";
 
 Ended in_folder(const Folder& folder, const std::vector<std::string>& arguments) {
-    return grainsweep::test::grainsweep(arguments, folder.path());
+    return grainsweep::test::run_program(arguments, folder.path());
 }
 
 json solved(const Folder& folder, std::vector<std::string> arguments, int code = 0) {

@@ -18,7 +18,7 @@ std::string config(const std::string& fixed, const std::string& limits = R"({"at
 }
 
 nlohmann::json query(const Folder& folder, const std::string& sql) {
-    const auto ended = grainsweep({"query", "trouble.db", sql, "--format", "json"}, folder.path());
+    const auto ended = run_program({"query", "trouble.db", sql, "--format", "json"}, folder.path());
     EXPECT_EQ(ended.code, 0) << ended.err;
     return nlohmann::json::parse(ended.out);
 }
@@ -26,7 +26,7 @@ nlohmann::json query(const Folder& folder, const std::string& sql) {
 TEST(Outcomes, ACrashingCaseIsTriedThreeTimesAndTheRestIsComputed) {
     const Folder folder;
     folder.write("c.json", config("\"crash\""));
-    const auto run = grainsweep({"run", "c.json", "-j", "2", "--quiet"}, folder.path());
+    const auto run = run_program({"run", "c.json", "-j", "2", "--quiet"}, folder.path());
     EXPECT_EQ(run.code, 1) << run.err;
     const auto rows = query(folder, "SELECT outcome, count(*) AS n, max(attempts) AS tries FROM trouble GROUP BY outcome "
                                     "ORDER BY outcome");
@@ -37,18 +37,18 @@ TEST(Outcomes, ACrashingCaseIsTriedThreeTimesAndTheRestIsComputed) {
     EXPECT_EQ(rows[1]["n"], 4);
     EXPECT_EQ(rows[1]["tries"], 3);
     // Running again does not try them again; --again does.
-    EXPECT_EQ(grainsweep({"run", "c.json", "--quiet"}, folder.path()).code, 1);
+    EXPECT_EQ(run_program({"run", "c.json", "--quiet"}, folder.path()).code, 1);
     EXPECT_EQ(query(folder, "SELECT max(attempts) AS n FROM trouble")[0]["n"], 3);
-    EXPECT_EQ(grainsweep({"run", "c.json", "--quiet", "--again", "crashed"}, folder.path()).code, 1);
+    EXPECT_EQ(run_program({"run", "c.json", "--quiet", "--again", "crashed"}, folder.path()).code, 1);
     EXPECT_EQ(query(folder, "SELECT max(attempts) AS n FROM trouble")[0]["n"], 6);
 }
 
 TEST(Outcomes, ExplainTellsEveryAttempt) {
     const Folder folder;
     folder.write("c.json", config("\"crash\""));
-    grainsweep({"run", "c.json", "--quiet"}, folder.path());
+    run_program({"run", "c.json", "--quiet"}, folder.path());
     const std::string id = query(folder, "SELECT case_id FROM trouble WHERE outcome = 'crashed' LIMIT 1")[0]["case_id"];
-    const auto explained = grainsweep({"explain", "trouble.db", id}, folder.path());
+    const auto explained = run_program({"explain", "trouble.db", id}, folder.path());
     EXPECT_EQ(explained.code, 0) << explained.err;
     EXPECT_NE(explained.out.find("signal 9"), std::string::npos) << explained.out;
     EXPECT_NE(explained.out.find("crashed"), std::string::npos);
@@ -58,7 +58,7 @@ TEST(Outcomes, ACrashThatPassesIsForgiven) {
     const Folder folder;
     folder.write("c.json", R"({"campaign": "trouble", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
       "fixed": {"behaviour": "crash", "behave_attempts": 2}, "design": {"kind": "random", "points": 5}})");
-    EXPECT_EQ(grainsweep({"run", "c.json", "-j", "2", "--quiet"}, folder.path()).code, 0);
+    EXPECT_EQ(run_program({"run", "c.json", "-j", "2", "--quiet"}, folder.path()).code, 0);
     const auto rows = query(folder, "SELECT outcome, attempts, y FROM trouble");
     ASSERT_EQ(rows.size(), 5U);
     for (const auto& row : rows) {
@@ -71,7 +71,7 @@ TEST(Outcomes, ACrashThatPassesIsForgiven) {
 TEST(Outcomes, AHangingCaseIsStoppedAtItsWallTime) {
     const Folder folder;
     folder.write("c.json", config("\"hang\"", R"({"attempts": 1, "wall_seconds": 0.5})"));
-    const auto run = grainsweep({"run", "c.json", "-j", "4", "--quiet"}, folder.path());
+    const auto run = run_program({"run", "c.json", "-j", "4", "--quiet"}, folder.path());
     EXPECT_EQ(run.code, 1) << run.err;
     const auto rows = query(folder, "SELECT outcome, count(*) AS n FROM trouble GROUP BY outcome ORDER BY outcome");
     ASSERT_EQ(rows.size(), 2U);
@@ -82,7 +82,7 @@ TEST(Outcomes, AHangingCaseIsStoppedAtItsWallTime) {
 TEST(Outcomes, AnUnstableCaseIsSettledWithItsReasonAndWithoutNumbers) {
     const Folder folder;
     folder.write("c.json", config("\"unstable\""));
-    EXPECT_EQ(grainsweep({"run", "c.json", "--quiet"}, folder.path()).code, 1);
+    EXPECT_EQ(run_program({"run", "c.json", "--quiet"}, folder.path()).code, 1);
     const auto rows = query(folder, "SELECT attempts, y FROM trouble WHERE outcome = 'unstable'");
     ASSERT_EQ(rows.size(), 4U);
     for (const auto& row : rows) {
@@ -94,23 +94,23 @@ TEST(Outcomes, AnUnstableCaseIsSettledWithItsReasonAndWithoutNumbers) {
 TEST(Outcomes, AHugeAnswerArrivesWhole) {
     const Folder folder;
     folder.write("c.json", config("\"huge\""));
-    EXPECT_EQ(grainsweep({"run", "c.json", "--quiet"}, folder.path()).code, 0);
+    EXPECT_EQ(run_program({"run", "c.json", "--quiet"}, folder.path()).code, 0);
     EXPECT_EQ(query(folder, "SELECT count(*) AS n FROM series")[0]["n"], 4 * 20000);
 }
 
 TEST(Outcomes, FailuresCanEndTheRun) {
     const Folder folder;
     folder.write("c.json", config("\"unstable\""));
-    EXPECT_EQ(grainsweep({"run", "c.json", "-j", "1", "-k", "1", "--quiet"}, folder.path()).code, 1);
+    EXPECT_EQ(run_program({"run", "c.json", "-j", "1", "-k", "1", "--quiet"}, folder.path()).code, 1);
     EXPECT_LT(query(folder, "SELECT count(outcome) AS n FROM trouble")[0]["n"].get<int>(), 8);
 }
 
 TEST(Outcomes, MaxCasesSettlesThatManyAndNoMore) {
     const Folder folder;
     folder.write("c.json", config("\"huge\""));
-    EXPECT_EQ(grainsweep({"run", "c.json", "-j", "2", "--max-cases", "3", "--quiet"}, folder.path()).code, 1);
+    EXPECT_EQ(run_program({"run", "c.json", "-j", "2", "--max-cases", "3", "--quiet"}, folder.path()).code, 1);
     EXPECT_EQ(query(folder, "SELECT count(outcome) AS n FROM trouble")[0]["n"], 3);
-    EXPECT_EQ(grainsweep({"run", "c.json", "-j", "2", "--quiet"}, folder.path()).code, 0);
+    EXPECT_EQ(run_program({"run", "c.json", "-j", "2", "--quiet"}, folder.path()).code, 0);
     EXPECT_EQ(query(folder, "SELECT max(attempts) AS n FROM trouble")[0]["n"], 1);
 }
 
@@ -118,7 +118,7 @@ TEST(Outcomes, ALauncherThatCannotStartIsABrokenWorldNotAFailedCase) {
     const Folder folder;
     folder.write("c.json", R"({"campaign": "trouble", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
       "design": {"kind": "random", "points": 5}, "execution": {"launcher": ["/bin/false"]}})");
-    const auto run = grainsweep({"run", "c.json", "--quiet"}, folder.path());
+    const auto run = run_program({"run", "c.json", "--quiet"}, folder.path());
     EXPECT_EQ(run.code, 3) << run.err;
     EXPECT_NE(run.err.find("/bin/false"), std::string::npos) << run.err;
 }
@@ -127,15 +127,15 @@ TEST(Outcomes, ALauncherPrefixCarriesTheWorker) {
     const Folder folder;
     folder.write("c.json", R"({"campaign": "trouble", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
       "design": {"kind": "random", "points": 20}, "execution": {"launcher": ["/usr/bin/env", "-u", "HOME"]}})");
-    EXPECT_EQ(grainsweep({"run", "c.json", "--quiet"}, folder.path()).code, 0);
+    EXPECT_EQ(run_program({"run", "c.json", "--quiet"}, folder.path()).code, 0);
 }
 
 TEST(Outcomes, ReplayAgreesWithTheArchive) {
     const Folder folder;
     folder.write("c.json", config("\"huge\""));
-    grainsweep({"run", "c.json", "--quiet"}, folder.path());
+    run_program({"run", "c.json", "--quiet"}, folder.path());
     const std::string id = query(folder, "SELECT case_id FROM trouble LIMIT 1")[0]["case_id"];
-    const auto replay = grainsweep({"replay", "trouble.db", id.substr(0, 10)}, folder.path());
+    const auto replay = run_program({"replay", "trouble.db", id.substr(0, 10)}, folder.path());
     EXPECT_EQ(replay.code, 0) << replay.err << replay.out;
 }
 

@@ -56,7 +56,7 @@ TEST_P(WrongCampaign, ExitsWithTwoAndOneSentenceAndWritesNothing) {
     const Folder folder;
     folder.write("c.json", wrong.text);
     for (const char* command : {"run", "plan"}) {
-        const auto ended = grainsweep({command, "c.json"}, folder.path());
+        const auto ended = run_program({command, "c.json"}, folder.path());
         EXPECT_EQ(ended.code, 2) << ended.err;
         EXPECT_TRUE(ended.out.empty()) << ended.out;
         EXPECT_EQ(std::ranges::count(ended.err, '\n'), 1) << ended.err;
@@ -76,11 +76,11 @@ INSTANTIATE_TEST_SUITE_P(EveryKind, WrongCampaign, testing::ValuesIn(wrongs()),
 
 TEST(WrongArguments, ExitWithTwo) {
     const Folder folder;
-    EXPECT_EQ(grainsweep({"rum"}, folder.path()).code, 2);
-    EXPECT_EQ(grainsweep({"run"}, folder.path()).code, 2);
-    EXPECT_EQ(grainsweep({"run", "nowhere.json"}, folder.path()).code, 2);
-    EXPECT_EQ(grainsweep({"status", "nowhere.db"}, folder.path()).code, 2);
-    EXPECT_EQ(grainsweep({"--version"}, folder.path()).code, 0);
+    EXPECT_EQ(run_program({"rum"}, folder.path()).code, 2);
+    EXPECT_EQ(run_program({"run"}, folder.path()).code, 2);
+    EXPECT_EQ(run_program({"run", "nowhere.json"}, folder.path()).code, 2);
+    EXPECT_EQ(run_program({"status", "nowhere.db"}, folder.path()).code, 2);
+    EXPECT_EQ(run_program({"--version"}, folder.path()).code, 0);
 }
 
 }  // namespace

@@ -45,17 +45,25 @@ double off(Statistic statistic, const Checkpoint& check, const Summary& true_val
     return error / (statistic == Statistic::g1 ? std::max(1.0, expected) : expected);
 }
 
-Stops stops(const ConvergenceSettings& settings, double onset, const Summary& true_values,
-            const std::vector<Statistic>& judged, std::int64_t most = 8000) {
+/// The response over a scrambled Halton design, once for each randomisation.
+std::vector<std::vector<double>> responses(double onset, std::int64_t sequences, std::int64_t points) {
+    std::vector<std::vector<double>> all(randomisations);
+    for (std::size_t r = 0; r < all.size(); ++r) {
+        const auto set = ask_design("halton", 4, {{"points", points}, {"sequences", sequences}}, 5000 + r);
+        for (std::size_t p = 0; p < set.size(); ++p) all[r].push_back(spreading_response(set.point(p), onset));
+    }
+    return all;
+}
+
+Stops stops(const ConvergenceSettings& settings, const std::vector<std::vector<double>>& all,
+            const Summary& true_values, const std::vector<Statistic>& judged) {
     std::vector<double> stopped;
     int wrong = 0;
-    for (int randomisation = 0; randomisation < randomisations; ++randomisation) {
-        const auto set = ask_design("halton", 4, {{"points", most}, {"sequences", settings.sequences}},
-                                    static_cast<std::uint64_t>(5000 + randomisation));
+    for (const auto& values : all) {
         Convergence convergence(settings);
-        for (std::size_t p = 0; p < set.size() && convergence.converged() == nullptr; ++p)
-            convergence.add(static_cast<std::int64_t>(p), spreading_response(set.point(p), onset));
-        convergence.settle(most);
+        for (std::size_t p = 0; p < values.size() && convergence.converged() == nullptr; ++p)
+            convergence.add(static_cast<std::int64_t>(p), values[p]);
+        convergence.settle(static_cast<std::int64_t>(values.size()));
         const Checkpoint* stop = convergence.converged();
         if (stop == nullptr) continue;
         stopped.push_back(static_cast<double>(stop->points));
@@ -103,6 +111,7 @@ TEST(ConvergenceReference, ReplicatesStopWhereTheStudyStopped) {
     for (const std::string model : {"A", "B"}) {
         const double onset = model == "A" ? 1.0 : 1.25;
         const Summary true_values = truth(onset);
+        const auto all = responses(onset, 8, 8000);
         for (const auto& [gate, gates] : {std::pair{"mean+sd+kurt", three}, std::pair{"mean+sd+kurt+g1", four}})
             for (const std::string tolerance : {"0.02", "0.01"}) {
                 const Expected expected = from_study(gate, model, tolerance);
@@ -111,7 +120,7 @@ TEST(ConvergenceReference, ReplicatesStopWhereTheStudyStopped) {
                                          .tolerance = std::stod(tolerance),
                                          .block = 400,
                                          .sequences = 8},
-                                        onset, true_values, gates);
+                                        all, true_values, gates);
                 const std::string what = std::string(gate) + " model " + model + " tolerance " + tolerance;
                 std::cout << what << ": median " << got.median << " (" << expected.median << "), 95 % " << got.late
                           << " (" << expected.late << "), false " << got.false_share << " (" << expected.false_share
@@ -131,7 +140,7 @@ TEST(ConvergenceReference, PearsonsSkewnessTakesLonger) {
     const Expected expected = from_study("mean+sd+kurt+pearson2/3", "A", "0.02");
     const Stops got =
         stops({.rule = ConvergenceRule::replicates, .gates = gates, .tolerance = 0.02, .block = 400, .sequences = 8},
-              1.0, truth(1.0), gates);
+              responses(1.0, 8, 8000), truth(1.0), gates);
     // The stops scatter widely (95 % at 6000): their median is known to two blocks or so.
     EXPECT_NEAR(got.median, expected.median, 800);
     EXPECT_NEAR(got.late, expected.late, 1200);
@@ -169,7 +178,7 @@ TEST(ConvergenceReference, TheThesisRuleStopsAtOnceAndOftenTooEarly) {
     const std::vector<Statistic> thesis = {Statistic::mean, Statistic::sd, Statistic::skewness, Statistic::kurtosis};
     const Stops got =
         stops({.rule = ConvergenceRule::any_change, .gates = thesis, .tolerance = 0.01, .block = 400, .sequences = 1},
-              1.0, truth(1.0), thesis, 2400);
+              responses(1.0, 1, 2400), truth(1.0), thesis);
     std::cout << "any_change: median " << got.median << ", false " << got.false_share << "\n";
     EXPECT_EQ(got.median, 800);
     EXPECT_NEAR(got.false_share, 0.555, 0.14);

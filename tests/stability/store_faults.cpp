@@ -10,11 +10,11 @@
 namespace grainsweep::tests {
 namespace {
 
-class StoreFaults : public testing::TestWithParam<std::tuple<FailingDisk::Fault, bool>> {};
+class StoreFaults : public testing::TestWithParam<std::tuple<store::Store::Disk, FailingDisk::Fault, bool>> {};
 
 TEST_P(StoreFaults, EveryFaultIsReportedAndSurvived) {
-    const auto [fault, from_then_on] = GetParam();
-    const WholeCampaign whole(7);
+    const auto [on, fault, from_then_on] = GetParam();
+    const WholeCampaign whole(5, on);
     const std::string expected = whole.undisturbed();
     std::int64_t n = 1;
     int reported = 0;
@@ -44,14 +44,21 @@ TEST_P(StoreFaults, EveryFaultIsReportedAndSurvived) {
     EXPECT_GT(reported, 20) << "of " << n << " faults; those while closing have nobody to hear them";
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, StoreFaults,
-                         testing::Combine(testing::Values(FailingDisk::Fault::input_output, FailingDisk::Fault::full),
-                                          testing::Bool()),
-                         [](const auto& kind) {
-                             return std::string(std::get<0>(kind.param) == FailingDisk::Fault::full ? "Full"
-                                                                                                    : "InputOutput") +
-                                    (std::get<1>(kind.param) ? "FromThenOn" : "Once");
-                         });
+std::string kind_name(const testing::TestParamInfo<StoreFaults::ParamType>& kind) {
+    const auto [on, fault, from_then_on] = kind.param;
+    return std::string(on == store::Store::Disk::local ? "Local" : "Network") +
+           (fault == FailingDisk::Fault::full ? "Full" : "InputOutput") + (from_then_on ? "FromThenOn" : "Once");
+}
+
+using Fault = FailingDisk::Fault;
+using Disk = store::Store::Disk;
+INSTANTIATE_TEST_SUITE_P(Disks, StoreFaults,
+                         testing::Values(std::tuple(Disk::local, Fault::input_output, false),
+                                         std::tuple(Disk::local, Fault::input_output, true),
+                                         std::tuple(Disk::local, Fault::full, true),
+                                         std::tuple(Disk::network, Fault::input_output, false),
+                                         std::tuple(Disk::network, Fault::full, true)),
+                         kind_name);
 
 }  // namespace
 }  // namespace grainsweep::tests

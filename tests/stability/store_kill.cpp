@@ -69,8 +69,10 @@ private:
     int told_ = -1, leave_ = -1;
 };
 
-TEST(StoreKill, AfterEveryNumberShown) {
-    const WholeCampaign whole(24);
+class StoreKillAnywhere : public testing::TestWithParam<store::Store::Disk> {};
+
+TEST_P(StoreKillAnywhere, AfterEveryNumberShown) {
+    const WholeCampaign whole(24, GetParam());
     const std::string expected = whole.undisturbed();
     for (int k = 1; k <= 9; ++k) {
         const Folder folder;
@@ -90,6 +92,11 @@ TEST(StoreKill, AfterEveryNumberShown) {
         ASSERT_EQ(dump_of(store::Store(file, store::Store::Mode::read)), expected) << k;
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(Disks, StoreKillAnywhere,
+                         testing::Values(store::Store::Disk::local, store::Store::Disk::network), [](const auto& disk) {
+                             return disk.param == store::Store::Disk::local ? "Local" : "Network";
+                         });
 
 TEST(StoreKill, AgainAndAgainUntilItIsDone) {
     WholeCampaign whole(60);

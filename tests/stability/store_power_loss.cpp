@@ -5,20 +5,22 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 namespace grainsweep::tests {
 namespace {
 
 using Kind = FailingDisk::Event::Kind;
 
 struct Recorded {
-    WholeCampaign whole{12};
+    WholeCampaign whole;
     std::vector<FailingDisk::Event> events;
 
     /// Two runs over one file, the second over the log's checkpoint, each shown count acknowledged.
-    Recorded() {
+    explicit Recorded(store::Store::Disk on) : whole(12, on) {
         const Folder folder;
         FailingDisk disk;
-        WholeCampaign first(6);
+        const WholeCampaign first(6, on);
         first.run(folder / "a.db", [&](std::size_t settled) { disk.acknowledge(static_cast<std::int64_t>(settled)); });
         whole.run(folder / "a.db", [&](std::size_t settled) { disk.acknowledge(static_cast<std::int64_t>(settled)); });
         events = disk.events();
@@ -28,20 +30,21 @@ struct Recorded {
     }
 };
 
-class StorePowerLoss : public testing::TestWithParam<Unsynced> {};
+class StorePowerLoss : public testing::TestWithParam<std::tuple<store::Store::Disk, Unsynced>> {};
 
 TEST_P(StorePowerLoss, WhatWasShownIsThere) {
-    const Recorded recorded;
-    ASSERT_GT(recorded.events.size(), 200u);
+    const auto [on, unsynced] = GetParam();
+    const Recorded recorded(on);
+    ASSERT_GT(recorded.events.size(), 100u);
     const std::string expected = recorded.whole.undisturbed();
     std::int64_t shown = -1;
-    int whole_losses = 0;
+    int resumed = 0;
     for (std::size_t count = 0; count <= recorded.events.size(); ++count) {
         if (count > 0 && recorded.events[count - 1].kind == Kind::acknowledge)
             shown = recorded.events[count - 1].offset;
         const Folder folder;
         const auto file = folder / "a.db";
-        const auto disk = after_power_loss(recorded.events, count, GetParam(), 7);
+        const auto disk = after_power_loss(recorded.events, count, unsynced, 7);
         write_disk(disk, folder.path());
         if (!disk.contains("a.db")) {
             EXPECT_EQ(shown, -1);
@@ -49,19 +52,26 @@ TEST_P(StorePowerLoss, WhatWasShownIsThere) {
         }
         ASSERT_EQ(complaints(file), "ok") << "after event " << count;
         ASSERT_GE(completed_in(file), shown) << "after event " << count;
-        if (count % 16 != 0) continue;  // going on is dearer than looking
+        if (count % 8 != 0) continue;  // going on is dearer than looking
         recorded.whole.run(file, [](std::size_t) {});
         ASSERT_EQ(dump_of(store::Store(file, store::Store::Mode::read)), expected) << "after event " << count;
-        ++whole_losses;
+        ++resumed;
     }
     EXPECT_EQ(shown, 12);
-    EXPECT_GT(whole_losses, 10);
+    EXPECT_GT(resumed, 10);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Unsynced, StorePowerLoss, testing::Values(Unsynced::lost, Unsynced::kept, Unsynced::torn), [](const auto& kind) {
-        return std::string(kind.param == Unsynced::lost ? "Lost" : kind.param == Unsynced::kept ? "Kept" : "Torn");
-    });
+std::string kind_name(const testing::TestParamInfo<StorePowerLoss::ParamType>& kind) {
+    const auto [on, unsynced] = kind.param;
+    return std::string(on == store::Store::Disk::local ? "Local" : "Network") + (unsynced == Unsynced::lost   ? "Lost"
+                                                                                 : unsynced == Unsynced::kept ? "Kept"
+                                                                                                              : "Torn");
+}
+
+INSTANTIATE_TEST_SUITE_P(Disks, StorePowerLoss,
+                         testing::Combine(testing::Values(store::Store::Disk::local, store::Store::Disk::network),
+                                          testing::Values(Unsynced::lost, Unsynced::kept, Unsynced::torn)),
+                         kind_name);
 
 }  // namespace
 }  // namespace grainsweep::tests

@@ -88,14 +88,14 @@ std::vector<pid_t> Process::children() const {
     return found;
 }
 
-std::vector<std::string> grainsweep_command(const std::vector<std::string>& arguments) {
+std::vector<std::string> program_command(const std::vector<std::string>& arguments) {
     std::vector<std::string> argv = {GRAINSWEEP_EXECUTABLE};
     argv.insert(argv.end(), arguments.begin(), arguments.end());
     return argv;
 }
 
-Ended grainsweep(const std::vector<std::string>& arguments, const fs::path& folder) {
-    return Process(grainsweep_command(arguments), folder).wait();
+Ended run_program(const std::vector<std::string>& arguments, const fs::path& folder) {
+    return Process(program_command(arguments), folder).wait();
 }
 
 std::vector<pid_t> processes_with(const std::string& text) {

@@ -37,8 +37,8 @@ private:
 };
 
 /// Runs grainsweep with the arguments, to its end, in `folder`.
-Ended grainsweep(const std::vector<std::string>& arguments, const std::filesystem::path& folder);
-[[nodiscard]] std::vector<std::string> grainsweep_command(const std::vector<std::string>& arguments);
+Ended run_program(const std::vector<std::string>& arguments, const std::filesystem::path& folder);
+[[nodiscard]] std::vector<std::string> program_command(const std::vector<std::string>& arguments);
 
 /// Processes whose command line contains `text`.
 [[nodiscard]] std::vector<pid_t> processes_with(const std::string& text);

@@ -8,7 +8,7 @@
 namespace grainsweep::tests {
 
 void WholeCampaign::run(const std::filesystem::path& file, const std::function<void(std::size_t)>& shown) const {
-    store::Store store(file, store::Store::Mode::create);
+    store::Store store(file, store::Store::Mode::create, disk);
     const auto states = store.enrol(campaign, cases, here());
     std::size_t settled = 0;
     std::vector<std::pair<const campaign::Case*, std::int64_t>> open;

@@ -14,8 +14,10 @@ struct WholeCampaign {
     campaign::Campaign campaign = small_campaign("misfortune");
     std::vector<campaign::PlacedCase> cases;
     std::size_t group_size = 3;
+    store::Store::Disk disk = store::Store::Disk::found_out;
 
-    explicit WholeCampaign(std::int64_t points) : cases(small_design(campaign, points)) {}
+    explicit WholeCampaign(std::int64_t points, store::Store::Disk on = store::Store::Disk::found_out)
+        : cases(small_design(campaign, points)), disk(on) {}
 
     /// Opens the archive, enrols, and settles what is not settled, a few cases to a group.
     /// `shown` gets the number of cases settled so far, after each group and once after enrolling.

@@ -156,7 +156,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{R"([{"op": "replace", "path": "/design/points", "value": 80.5}])",
               "$.design.points: got 80.5; must be a whole number from 1 to 100000000."},
         Wrong{R"([{"op": "replace", "path": "/design/points", "value": 50000000}])",
-              "$.design.points: got 50000000; a campaign has at most 10000000 cases."},
+              "$.design.points: got 50000000; a campaign has at most 1000000 cases."},
         Wrong{R"([{"op": "remove", "path": "/design/points"}])",
               "$.design: key 'points' is missing: number of points, all sequences together."},
         Wrong{

@@ -15,6 +15,8 @@
 #include <limits>
 
 namespace grainsweep::tests {
+using namespace report;
+
 namespace {
 
 using report::Responses;
@@ -42,7 +44,7 @@ struct Study : testing::Test {
     Store store{folder / "a.db", Store::Mode::create};
 
     Responses ask(const std::string& name) {
-        return read_responses(store, report::find_campaigns(store, name).front());
+        return report::read_responses(store, report::find_campaigns(store, name).front());
     }
 };
 
@@ -98,8 +100,12 @@ TEST_F(Study, AStoppedCampaignIsJudgedOnWhereItStopped) {
 }
 
 TEST_F(Study, MomentsOfAKnownResponseLieWithinTheirErrors) {
-    answer_by(store, halton("c", 1000, R"(, "convergence": {"observable": "y", "block": 400, "tolerance": 0.02})"),
-              [](const Inputs& inputs) { return linear(inputs); });
+    answer_by(
+        store,
+        halton(
+            "c", 1000,
+            R"(, "convergence": {"observable": "y", "block": 400, "tolerance": 0.05, "gates": ["mean", "sd", "kurtosis"]})"),
+        [](const Inputs& inputs) { return linear(inputs); });
     const auto responses = ask("c");
     const auto history = history_of(responses, responses.observable("y"));
     ASSERT_EQ(history.checks.size(), 2u);
@@ -122,6 +128,24 @@ TEST_F(Study, MomentsOfAKnownResponseLieWithinTheirErrors) {
     EXPECT_EQ(text_of(rows.rows[2][2]), "1000");
     EXPECT_EQ(text_of(rows.rows[2].back()), "0");  // no multiple of the block: shown, not judged
     EXPECT_EQ(text_of(rows.rows[1].back()), "1");
+}
+
+TEST_F(Study, ManyChecksAreThinnedForTheEyeAndKeptForPrograms) {
+    answer_by(
+        store,
+        halton("c", 4004, R"(, "convergence": {"observable": "y", "block": 32, "tolerance": 0.1, "gates": ["mean"]})"),
+        linear);
+    const auto responses = ask("c");
+    const auto history = history_of(responses, responses.observable("y"));
+    ASSERT_EQ(history.checks.size(), 125u);
+    const auto converged = std::ranges::find(history.checks, true, &stats::Checkpoint::converged);
+    ASSERT_NE(converged, history.checks.end());
+    const auto shown = checks_to_show(history, 20);
+    EXPECT_LE(shown.size(), 22u);
+    EXPECT_THAT(shown, Contains(&*converged));
+    EXPECT_EQ(shown.back(), &history.all);
+    EXPECT_EQ(shown[shown.size() - 2]->points, 4000);
+    EXPECT_EQ(checks_rows(responses, responses.observable("y"), history).rows.size(), 126u);
 }
 
 TEST_F(Study, FailedCasesAreLeftOutCountedAndSaid) {
@@ -191,7 +215,7 @@ TEST_F(Study, SharesOfTheVarianceFromAnyDesign) {
     const auto responses = ask("c");
     const auto influence = influence_of(responses, responses.observable("y"));
     EXPECT_EQ(influence.method, report::Influence::Method::given_data);
-    EXPECT_EQ(influence.bins, 16u);
+    EXPECT_EQ(influence.factors[0].bins, 16u);
     EXPECT_EQ(influence.used, 1600);
     EXPECT_NEAR(influence.factors[0].first.value, 0.8, 0.01);
     EXPECT_NEAR(influence.factors[1].first.value, 0.2, 0.01);
@@ -199,6 +223,19 @@ TEST_F(Study, SharesOfTheVarianceFromAnyDesign) {
     EXPECT_LT(influence.factors[0].first.half_width, 0.05);
     const auto table = influence_table(influence);
     EXPECT_EQ(text_of(table.rows[0][0]), "x1");
+}
+
+TEST_F(Study, ALatticeTellsItsIndicesLineByLine) {
+    answer_by(store, R"({"campaign": "c", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]},
+        {"name": "x2", "between": [0, 1]}], "design": {"kind": "lattice", "levels": 7}})",
+              [](const Inputs& inputs) { return std::abs(input(inputs, "x1") - 0.5) + 0.01 * input(inputs, "x2"); });
+    const auto responses = ask("c");
+    const auto influence = influence_of(responses, responses.observable("y"));
+    EXPECT_EQ(influence.factors[0].bins, 7u);
+    // An additive response: the indices are shares of the lattice's own variance and add up to 1.
+    EXPECT_NEAR(influence.factors[0].first.value + influence.factors[1].first.value, 1, 1e-12);
+    EXPECT_GT(influence.factors[0].first.value, 0.99);
+    EXPECT_TRUE(std::isnan(influence.factors[0].first.half_width));
 }
 
 TEST_F(Study, TotalIndicesFromSaltelliAndElementaryEffectsFromMorris) {
@@ -250,7 +287,7 @@ TEST_F(Study, UnknownNamesGetTheNearestRightWord) {
 
 TEST_F(Study, TheRunEndsWithCountsMomentsExtremesAndThePlace) {
     answer_by(store, halton("c", 64), [](const Inputs& inputs) { return linear(inputs); });
-    const auto text = closing_summary(store, "c", folder / "a.db");
+    const auto text = report::closing_summary(store, "c", folder / "a.db");
     EXPECT_THAT(text, HasSubstr("c: 64 cases of rehearsal: 64 completed"));
     EXPECT_THAT(text, HasSubstr("largest"));
     EXPECT_THAT(text, HasSubstr("smallest"));

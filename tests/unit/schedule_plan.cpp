@@ -74,6 +74,14 @@ TEST(Plan, GivenBackCasesCostNoTry) {
     EXPECT_EQ(plan.ended(start->attempt, Outcome::completed), Plan::Verdict::settled);
 }
 
+TEST(Plan, ACaseNobodyBeganKeepsItsNumber) {
+    Plan plan = make_plan(2);
+    const auto first = plan.next()->attempt;
+    plan.never_begun(first);
+    plan.never_begun(first);  // said twice is said once
+    EXPECT_EQ(plan.next()->attempt, first);
+}
+
 TEST(Plan, LateAnswersOfDeadAttemptsAreStale) {
     Plan plan = make_plan(1);
     const auto first = plan.next()->attempt;

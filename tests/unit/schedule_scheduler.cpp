@@ -30,9 +30,10 @@ public:
     }
     [[nodiscard]] std::optional<workers::PoolEvent> wait(std::chrono::milliseconds) override {
         if (waiting_.empty()) return std::nullopt;
-        const auto attempt = waiting_.front();
-        waiting_.pop_front();
-        return script_(attempt);
+        auto event = script_(waiting_.front());
+        // An interrupt answers no case.
+        if (!std::holds_alternative<workers::Interrupted>(event)) waiting_.pop_front();
+        return event;
     }
     [[nodiscard]] std::size_t outstanding() const override { return waiting_.size(); }
     void retire() override { retired = true; }

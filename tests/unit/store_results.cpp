@@ -98,8 +98,11 @@ TEST_F(StoreResults, AnAnswerOfAnEarlierAttemptIsStale) {
 
 TEST_F(StoreResults, AttemptNumbersOnlyGrow) {
     store.group([&] { store.begin({one.id, 2}); });
-    EXPECT_THROW(store.group([&] { store.begin({one.id, 2}); }), std::logic_error);
+    store.group([&] { store.begin({one.id, 2}); });  // its worker died before it began
     EXPECT_THROW(store.group([&] { store.begin({one.id, 1}); }), std::logic_error);
+    store.group([&] { store.finish(answer(one, 2)); });
+    EXPECT_THROW(store.group([&] { store.begin({one.id, 2}); }), std::logic_error);
+    EXPECT_EQ(store.attempts(one.id).size(), 1u);
     EXPECT_THROW(store.group([&] { store.begin({"no such case", 1}); }), std::logic_error);
 }
 

@@ -103,11 +103,13 @@ private:
     void rebuild(std::span<const std::int32_t> removed = {});
     void list_walls(std::span<const std::uint32_t> fresh_index);
     [[nodiscard]] bool list_is_stale() const;
+
+    // soundness.hpp
     [[nodiscard]] bool sound();
     void check_energy();
     void learn_speed_limit();
     void report(const std::string& what, std::size_t i);
-    void report_overlap();
+    void report_contacts();
 
     // checkpoint.hpp
     template <class Self, class Visit>
@@ -120,6 +122,7 @@ private:
     double time_step_;
     double radius_ = 0, mass_ = 0, inverse_mass_ = 0;  // of all particles, unless needs.sizes
     double density_;
+    double swing_factor_;  // dt^2 2 E*: times sqrt(R* d)/m* it is the square of a contact's phase per step
     double skin_;
     std::size_t spheres_at_start_;
     std::vector<Vec3> spin_at_start_;  // by id, where no law turns particles and some spin
@@ -142,6 +145,7 @@ private:
     bool displaced_ = false;  // a particle has moved half the skin, or is not a number
     double largest_overlap_ = 0;
     double largest_wall_overlap_ = 0;  // over the diameter
+    double stiffest_ = 0;              // largest sqrt(R* d)/m* of a contact, m/kg
     double speed_limit_ = 0;
     double work_of_walls_ = 0;     // J, since the walls were set
     double work_of_wrapping_ = 0;  // J, potential energy lost by stepping back through periodic faces

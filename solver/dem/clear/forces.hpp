@@ -64,12 +64,15 @@ void ClearEngine<Laws, case_needs>::evaluate() {
     std::ranges::fill(p_.force, Vec3{});
     if constexpr (needs.spin) std::ranges::fill(p_.torque, Vec3{});
     largest_wall_overlap_ = 0;
+    stiffest_ = 0;
     pair_contacts<advance>();
     for (auto& wall : walls_) wall_contacts<advance>(wall);
     work_.pair_visits += static_cast<double>(list_.size());
     // Negated, so that a value that is not a number is reported too.
-    if (!(largest_overlap_ <= largest_sound_overlap) || !(largest_wall_overlap_ <= largest_sound_overlap))
-        report_overlap();
+    const double swing2 = swing_factor_ * stiffest_;
+    if (!(largest_overlap_ <= largest_sound_overlap) || !(largest_wall_overlap_ <= largest_sound_overlap) ||
+        !(swing2 <= largest_sound_swing * largest_sound_swing))
+        report_contacts();
 }
 
 /// List entries of some particles that touch, in list order; contacts that ended are forgotten on the way.
@@ -106,6 +109,7 @@ std::size_t ClearEngine<Laws, case_needs>::find_touching(std::size_t first, std:
 template <class Laws, Needs case_needs>
 template <bool advance>
 void ClearEngine<Laws, case_needs>::pair_contacts() {
+    constexpr bool equal_contacts = !needs.sizes && !needs.frozen;  // the deepest is then also the stiffest
     constexpr std::size_t tile = 64;  // particles whose contacts stay in the first cache between the two passes
     double largest = 0;
     for (std::size_t first = 0; first < p_.size(); first += tile) {
@@ -114,10 +118,12 @@ void ClearEngine<Laws, case_needs>::pair_contacts() {
             const auto& [branch, r2, i, k] = touching_[c];
             const std::size_t j = list_[k].j();
             const auto t = touch(i, j, branch, r2);
-            if constexpr (needs.sizes)
-                largest = std::max(largest, t.overlap / (2 * std::min(t.radius_i, t.radius_j)));
-            else
+            if constexpr (equal_contacts) {
                 largest = std::max(largest, t.overlap);
+            } else {
+                largest = std::max(largest, t.overlap / (2 * std::min(t.radius_i, t.radius_j)));
+                stiffest_ = std::max(stiffest_, t.root / t.reduced_mass);
+            }
             Response r;
             if constexpr (needs.tangential_history) {
                 r = laws_.template respond<advance>(t, pairs_.value[k]);
@@ -135,7 +141,11 @@ void ClearEngine<Laws, case_needs>::pair_contacts() {
             }
         }
     }
-    largest_overlap_ = needs.sizes || p_.size() == 0 ? largest : largest / (2 * radius_);
+    if constexpr (equal_contacts) {
+        stiffest_ = std::sqrt(radius_ / 2 * largest) * 2 * inverse_mass_;
+        largest = p_.size() > 0 ? largest / (2 * radius_) : 0;
+    }
+    largest_overlap_ = largest;
 }
 
 template <class Laws, Needs case_needs>
@@ -154,6 +164,7 @@ void ClearEngine<Laws, case_needs>::wall_contacts(WallContacts<needs>& contacts)
             }
             const auto t = touch(i, closest, wall_velocity);
             largest = std::max(largest, t.overlap / (2 * t.radius_i));
+            stiffest_ = std::max(stiffest_, t.root * inverse_mass(i));
             Response r;
             if constexpr (needs.tangential_history) {
                 r = laws_.template respond<advance>(t, contacts.memory[k]);

@@ -1,0 +1,138 @@
+// Watch over the clear engine: states nobody should trust are reported with what, where and when (limits.hpp).
+#pragma once
+
+#include "solver/dem/clear/forces.hpp"
+#include "solver/dem/limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace grainsweep::dem::clear {
+
+/// Steps between two looks at the energy: often enough to name the time, rare enough to cost nothing.
+inline constexpr std::int64_t energy_interval = 128;
+
+/// Every position a number, nobody faster than anything here could have made him. Reports and repairs otherwise.
+template <class Laws, Needs case_needs>
+bool ClearEngine<Laws, case_needs>::sound() {
+    for (std::size_t i = 0; i < p_.size(); ++i) {
+        if (!mobile(i)) continue;
+        const double speed = norm(p_.velocity[i]);
+        bool spin_is_finite = true;
+        if constexpr (needs.spin) spin_is_finite = finite(p_.angular_velocity[i]);
+        char text[200];
+        if (!finite(p_.position[i]) || !std::isfinite(speed) || !spin_is_finite) {
+            p_.position[i] = position_at_build_[i];
+            p_.velocity[i] = Vec3{};
+            if constexpr (needs.spin) p_.angular_velocity[i] = Vec3{};
+            report("the motion of a particle is no longer a number", i);
+        } else if (speed * time_step_ > largest_sound_displacement * radius(i)) {
+            std::snprintf(text, sizeof text, "a particle moves %.3g of its radius in one time step (limit %.3g)",
+                          speed * time_step_ / radius(i), largest_sound_displacement);
+            report(text, i);
+        } else if (speed > speed_limit_) {
+            std::snprintf(text, sizeof text,
+                          "a particle moves at %.4g m/s, faster than anything here allows (%.4g m/s)", speed,
+                          speed_limit_);
+            report(text, i);
+        }
+    }
+    return fault_.empty();
+}
+
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::learn_speed_limit() {
+    double start = 0;
+    double lightest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < p_.size(); ++i) {
+        if (!mobile(i)) continue;
+        start = std::max(start, norm(p_.velocity[i]));
+        if constexpr (needs.spin) start = std::max(start, radius(i) * norm(p_.angular_velocity[i]));
+        lightest = std::min(lightest, 1 / inverse_mass(i));
+    }
+    double wall = 0;
+    for (const auto& contacts : walls_) wall = std::max(wall, fastest(contacts.wall));
+    double fall = 0;  // through the domain; without limit along a periodic axis
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (gravity_[k] == 0) continue;
+        fall = domain_.periodic[k] ? std::numeric_limits<double>::infinity()
+                                   : std::hypot(fall, std::sqrt(2 * std::abs(gravity_[k]) * domain_.length(k)));
+    }
+    double active = 0;
+    const double still = start;
+    (void)mechanical_energy(active);
+    const double released =
+        p_.size() > 0 && lightest < std::numeric_limits<double>::infinity() ? std::sqrt(2 * active / lightest) : 0.0;
+    speed_limit_ = largest_sound_speed_factor * (still + wall + fall + released);
+    lowest_energy_ = std::numeric_limits<double>::infinity();
+}
+
+/// Energy minus the work of moving walls must not grow: contacts store or dissipate.
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::check_energy() {
+    double active = 0;
+    const double balance = mechanical_energy(active) - work_of_walls_ + work_of_wrapping_;
+    const double allowed = largest_sound_energy_gain * (active + std::abs(work_of_walls_));
+    if (!(balance - lowest_energy_ <= allowed) && lowest_energy_ < std::numeric_limits<double>::infinity()) {
+        std::size_t fastest_particle = 0;
+        for (std::size_t i = 1; i < p_.size(); ++i)
+            if (norm(p_.velocity[i]) > norm(p_.velocity[fastest_particle])) fastest_particle = i;
+        char text[200];
+        std::snprintf(text, sizeof text,
+                      "contacts created %.3g J of energy, %.3g times what moves; the fastest particle",
+                      balance - lowest_energy_, (balance - lowest_energy_) / active);
+        report(text, fastest_particle);
+    }
+    lowest_energy_ = std::min(lowest_energy_, balance);
+}
+
+/// The first fault stays: what follows from it explains nothing.
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::report(const std::string& what, std::size_t i) {
+    if (!fault_.empty()) return;
+    char where[200];
+    const Vec3& x = p_.position[i];
+    std::snprintf(where, sizeof where, ": particle %d at (%.6g, %.6g, %.6g) m, after %lld steps, %.6g s", p_.id[i],
+                  x[0], x[1], x[2], static_cast<long long>(work_.steps), time_step_ * static_cast<double>(work_.steps));
+    fault_ = what + where;
+}
+
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::report_contacts() {
+    const auto judge = [&](std::size_t i, double overlap, double share, double stiffness, const std::string& partner) {
+        char text[200];
+        const double swing = std::sqrt(swing_factor_ * stiffness);
+        if (!(share <= largest_sound_overlap)) {
+            std::snprintf(text, sizeof text, "overlap of %.3g diameters (limit %.3g) with ", share,
+                          largest_sound_overlap);
+            report(text + partner, i);
+        } else if (overlap > 0 && !(swing <= largest_sound_swing)) {
+            std::snprintf(text, sizeof text,
+                          "the time step is too large: a contact swings by %.3g rad per step (limit %.3g) with ", swing,
+                          largest_sound_swing);
+            report(text + partner, i);
+        }
+    };
+    for (std::size_t i = 0; i < p_.size(); ++i)
+        for (std::uint32_t k = list_.begin(i); k < list_.end(i); ++k) {
+            const std::size_t j = list_[k].j();
+            const double r = norm(p_.position[i] - (p_.position[j] + image_shifts_[list_[k].image()]));
+            const double overlap = radius(i) + radius(j) - r;
+            judge(i, overlap, overlap / (2 * std::min(radius(i), radius(j))),
+                  std::sqrt(effective_radius(i, j) * overlap) / reduced_mass(i, j),
+                  "particle " + std::to_string(p_.id[j]));
+        }
+    for (std::size_t w = 0; w < walls_.size(); ++w)
+        for (const auto i : walls_[w].near) {
+            const double distance = std::visit(
+                [&](const auto& wall) { return shape_at(wall, wall_time()).closest(p_.position[i]).distance; },
+                walls_[w].wall);
+            const double overlap = radius(i) - distance;
+            judge(i, overlap, overlap / (2 * radius(i)), std::sqrt(radius(i) * overlap) * inverse_mass(i),
+                  "wall " + std::to_string(w));
+        }
+}
+
+}  // namespace grainsweep::dem::clear

@@ -1,0 +1,90 @@
+#include "solver/dem/fast/columns.hpp"
+
+#include <cstdlib>
+#include <new>
+
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
+namespace grainsweep::dem::fast {
+
+void* allocate(std::size_t bytes) {
+    constexpr std::size_t large_page = std::size_t{1} << 21U;
+    const std::size_t alignment = bytes >= large_page ? large_page : 64;
+    const std::size_t rounded = (bytes + alignment - 1) / alignment * alignment;
+    void* memory = std::aligned_alloc(alignment, rounded);
+    if (memory == nullptr) throw std::bad_alloc();
+#ifdef __linux__
+    if (bytes >= large_page) (void)madvise(memory, rounded, MADV_HUGEPAGE);  // a wish: refusal changes nothing
+#endif
+    return memory;
+}
+
+void give_back(void* memory) noexcept { std::free(memory); }
+
+void Columns::bind(Field& f) const {
+    f.records = records.data();
+    f.residuals = residuals.data();
+    f.forces = forces.data();
+    f.inner_first = inner_first.data();
+    f.inner_second = inner_second.data();
+    f.inner_source = inner_source.data();
+    f.inner_reach = inner_reach.data();
+    f.touching = touching.data();
+    f.touching_next = touching_next.data();
+    f.outer_first = outer_first.data();
+    f.outer_second = outer_second.data();
+    f.outer_reach = outer_reach.data();
+    f.outer_touching = outer_touching.data();
+    f.row = row.data();
+    for (int a = 0; a < 3; ++a) {
+        f.history[a] = history[a].data();
+        f.history_next[a] = history_next[a].data();
+        f.column[a] = column[a].data();
+        f.wall_history[a] = wall_history[a].data();
+    }
+    f.column_radius = column_radius.data();
+    f.column_mobile = column_mobile.data();
+    f.cell_start = cell_start.data();
+    f.walls = walls.data();
+    f.segments = segments.data();
+    f.wall_particle = wall_particle.data();
+}
+
+void Columns::hold_particles(std::size_t particles, std::size_t wall_count) {
+    const std::size_t n = particles + 3 + wall_count + spare;
+    records.hold(n), records_next.hold(n);
+    residuals.hold(n), residuals_next.hold(n);
+    forces.hold(n);
+    id.hold(n), id_next.hold(n);
+    row.hold(n);
+    for (auto& c : column) c.hold(n);
+    column_radius.hold(n), column_mobile.hold(n);
+    cell_of.hold(n), place.hold(n);
+    walls.hold(wall_count), segments.hold(wall_count);
+}
+
+void Columns::hold_pairs(std::size_t pairs) {
+    const std::size_t n = pairs + spare;
+    outer_first.hold(n), outer_second.hold(n), outer_reach.hold(n), outer_touching.hold(n);
+    inner_first.hold(n), inner_second.hold(n), inner_source.hold(n), inner_reach.hold(n);
+    touching.hold(n), touching_next.hold(n);
+    owner.hold(n);
+    for (auto& h : history) h.hold(n);
+    for (auto& h : history_next) h.hold(n);
+}
+
+void Columns::hold_wall_contacts(std::size_t contacts) {
+    wall_particle.hold(contacts + spare);
+    for (auto& h : wall_history) h.hold(contacts + spare);
+    for (auto& h : wall_history_next) h.hold(contacts + spare);
+}
+
+void Columns::swap_histories(Field& f) {
+    touching.swap(touching_next);
+    for (int a = 0; a < 3; ++a) history[a].swap(history_next[a]);
+    bind(f);
+}
+
+}  // namespace grainsweep::dem::fast

@@ -1,0 +1,94 @@
+// The memory behind a Field: aligned columns, grown at list rebuilds only, all named once for checkpoints.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+#include <utility>
+
+#include "solver/dem/fast/layout.hpp"
+
+namespace grainsweep::dem::fast {
+
+/// Memory on a page boundary, of large pages where it is large and the system grants them: a sweep touches so many
+/// columns that small pages would miss the translation buffers.
+[[nodiscard]] void* allocate(std::size_t bytes);
+void give_back(void* memory) noexcept;
+
+/// Array of trivial values on a cache-line boundary, new entries zero. Growing keeps what is there.
+template <class T>
+requires std::is_trivially_copyable_v<T>
+class Column {
+public:
+    Column() = default;
+    Column(const Column&) = delete;
+    Column& operator=(const Column&) = delete;
+    ~Column() { release(); }
+
+    void hold(std::size_t count) {
+        if (count <= capacity_) return;
+        const std::size_t wanted = count + count / 4;
+        auto* fresh = static_cast<T*>(allocate(wanted * sizeof(T)));
+        if (data_ != nullptr) std::memcpy(static_cast<void*>(fresh), data_, capacity_ * sizeof(T));
+        std::memset(static_cast<void*>(fresh + capacity_), 0, (wanted - capacity_) * sizeof(T));
+        release();
+        data_ = fresh;
+        capacity_ = wanted;
+    }
+    void clear(std::size_t count) { std::memset(static_cast<void*>(data_), 0, count * sizeof(T)); }
+    void swap(Column& other) noexcept {
+        std::swap(data_, other.data_);
+        std::swap(capacity_, other.capacity_);
+    }
+    [[nodiscard]] T* data() const { return data_; }
+    [[nodiscard]] std::size_t capacity() const { return capacity_; }
+    T& operator[](std::size_t i) { return data_[i]; }
+    const T& operator[](std::size_t i) const { return data_[i]; }
+
+private:
+    void release() { give_back(data_); }
+    T* data_ = nullptr;
+    std::size_t capacity_ = 0;
+};
+
+/// Everything a Field points to, and what only rebuilding needs.
+struct Columns {
+    Column<Record> records, records_next;
+    Column<Residual> residuals, residuals_next;
+    Column<Force> forces;
+    Column<std::int32_t> id, id_next;
+
+    Column<Place> inner_first, inner_second;
+    Column<std::int32_t> inner_source;
+    Column<float> inner_reach;
+    Column<std::uint16_t> touching, touching_next;
+    Column<float> history[3], history_next[3];
+
+    Column<Place> outer_first, outer_second;
+    Column<std::int32_t> row;
+    Column<float> outer_reach;
+    Column<std::uint16_t> outer_touching;
+
+    Column<std::int32_t> column[3];
+    Column<float> column_radius, column_mobile;
+    Column<std::int32_t> cell_start, cell_of, place;  ///< place: where a particle went, -1: removed
+    Column<std::int32_t> owner;  ///< old contact of an outer pair, plus one; negative: first and second changed places
+
+    Column<WallShape> walls;
+    Column<WallSegment> segments;
+    Column<Place> wall_particle;
+    Column<float> wall_history[3], wall_history_next[3];
+
+    /// Points the field at the columns.
+    void bind(Field& f) const;
+    /// Makes room for `particles` and `walls`.
+    void hold_particles(std::size_t particles, std::size_t walls);
+    /// Makes room for `pairs` in both lists.
+    void hold_pairs(std::size_t pairs);
+    void hold_wall_contacts(std::size_t contacts);
+    /// What a sweep wrote becomes what the next one reads.
+    void swap_histories(Field& f);
+};
+
+}  // namespace grainsweep::dem::fast

@@ -1,0 +1,185 @@
+// What the mixed-precision engine keeps in memory, and the constants of a case in its own units.
+//
+// Units inside: length is the largest particle diameter, time the time step, mass the mass of the largest
+// particle. A velocity is then the displacement per step, a force divided by a mass the change of velocity per
+// step, and every number a contact meets lies far from the ends of single precision.
+//
+// Positions are 32-bit integers per axis, counted from the middle of the domain. On a periodic axis 2^32 units
+// are exactly one period, so that the difference of two positions is the nearest image without a branch; on an
+// open axis the domain fills less than half the range. Differences are exact; only the law's arithmetic rounds.
+//
+// This header holds data only: it is included by files compiled for different instruction sets, and an inline
+// function compiled for one of them must never be what the linker keeps for all.
+#pragma once
+
+#include <cstdint>
+
+namespace grainsweep::dem::fast {
+
+/// Touching pairs worked on at a time: their records and forces stay in the first cache. Lists are read ahead by as
+/// much, so that every column has this many spare entries, and twice the widest vector.
+constexpr std::int32_t tile = 128;
+constexpr std::int32_t spare = 2 * tile + 64;
+
+/// A particle in a list: its index times eight, so that its record and its force are one scaled address away.
+using Place = std::uint32_t;
+constexpr std::int32_t places_per_index = 8;
+
+/// One particle as the pair loop reads it: one cache line.
+struct alignas(64) Record {
+    std::int32_t position[3];
+    float inverse_radius;
+    float velocity[3];   ///< at the half step
+    float inverse_mass;  ///< 0: frozen, or a wall
+    float spin[3];       ///< angular velocity at the half step
+    float radius;        ///< 0: a wall
+    float surface[3];    ///< radius times spin; kept only where radii differ
+    float radius_again;
+};
+
+/// What the last additions to position and velocity could not represent; carried to the next step.
+struct alignas(32) Residual {
+    float position[4];
+    float velocity[4];
+};
+
+/// Sum of forces, and of torques, on one particle.
+struct alignas(32) Force {
+    float force[4];
+    float torque[4];
+};
+
+/// Constants of the contact law, in the engine's units.
+struct Constants {
+    double unit[3];         ///< length of one position unit
+    float unit_single[3];
+    float inverse_unit[4];  ///< fourth: 0
+    float gravity[8];       ///< change of velocity per step; spin part 0
+    float radius;           ///< of all particles where they are equal
+    double reach_squared;   ///< (2 radius)^2, exact
+    float candidate_squared;  ///< the same, enlarged by the rounding of single precision
+    float normal;             ///< 4/3 E*
+    float tangential;         ///< 8 G*
+    float damping;            ///< -2 sqrt(5/6) beta sqrt(2 E*)
+    float damping_ratio;      ///< tangential over normal damping, sqrt(8 G*/(2 E*))
+    float friction;
+    float root_radius;         ///< sqrt(R*) of an equal pair
+    float damping_pair;        ///< damping sqrt(m*) of two mobile equal particles
+    float damping_frozen;      ///< ... of a mobile and a frozen one, or a wall
+    float root_radius_wall;    ///< sqrt(R)
+    float inverse_mass;        ///< of a mobile particle where they are equal
+    float rotation;            ///< 2.5/R^2 where radii are equal
+    float neck_lens;           ///< cohesive force per pi/4 (Rs^2-r^2)(r^2-Rd^2)/r^2
+    float neck_linear;         ///< ... per R* d
+    float neck_square;         ///< ... per d^2
+    float wall_linear;         ///< cohesive force on a wall per R d
+    float wall_square;         ///< ... per d^2
+    float net_limit;           ///< 1: Coulomb's limit sees the cohesive force, 0: it does not
+};
+
+/// Shape of a wall at the present time, relative to the middle of the domain, in the engine's units.
+struct WallShape {
+    std::int32_t is_blade;
+    std::int32_t record;  ///< index of the record that carries its velocity
+    double normal[3];
+    double offset;  ///< plane: normal . point
+    double centre, half_width;  ///< blade: along x
+    double bottom, top, edge_radius;
+    double period, inverse_period;  ///< of the x axis, 0 where open
+};
+
+/// Contacts of one wall: a segment of the wall arrays, padded to the vector width.
+struct WallSegment {
+    std::int32_t begin, end;
+};
+
+/// Largest and smallest velocities met by a sweep, and its largest overlap; what the next step's safety rests on.
+struct alignas(32) Tally {
+    float velocity_high[8];
+    float velocity_low[8];
+    float overlap;       ///< of pairs, over the smaller diameter
+    float wall_overlap;  ///< over the diameter
+    std::int64_t contacts;
+};
+
+/// Raw view of everything a kernel touches. Owners live in files compiled for the baseline.
+struct Field {
+    Constants constants;
+    /// Particles present. Behind them in `records`: two far apart ones that fill vectors of pairs up, one that fills
+    /// vectors of wall contacts up, then the walls.
+    std::int32_t count;
+
+    std::int32_t read_ahead;  ///< 1: the particles do not fit the caches near the core, fetch them early
+
+    Record* records;
+    Residual* residuals;
+    Force* forces;
+
+    // Inner list: pairs that may touch before the next refresh, sorted by the first particle.
+    Place* inner_first;
+    Place* inner_second;
+    float* inner_reach;  ///< candidate distance squared, where radii differ
+    std::int32_t* inner_source;  ///< index in the outer list
+    std::int32_t inner_count;    ///< a multiple of the width
+    // Bit k of mask b: pair b*width+k touched at the last step; histories of those, in that order, without gaps.
+    std::uint16_t* touching;
+    std::uint16_t* touching_next;
+    float* history[3];
+    float* history_next[3];
+    float history_step;  ///< 1: the step displaces the tangential springs, 0: it only looks
+
+    // Outer list, sorted by the first particle.
+    Place* outer_first;
+    Place* outer_second;
+    float* outer_reach;  ///< sum of radii, where they differ
+    std::uint16_t* outer_touching;
+    std::int32_t outer_count;
+    std::int32_t* row;  ///< where each first particle begins in the outer list; count+1
+
+    // Search: columns of the sorted particles, and cells.
+    std::int32_t* column[3];
+    float* column_radius;
+    float* column_mobile;  ///< 1 mobile, 0 frozen
+    std::int32_t* cell_start;
+    std::int32_t cells[3];  ///< along fast, middle and slow axis
+    std::int32_t wraps[3];  ///< 1: periodic
+    std::int32_t outer_capacity;
+
+    // Walls.
+    WallShape* walls;
+    WallSegment* segments;
+    std::int32_t wall_count;
+    Place* wall_particle;
+    float* wall_history[3];
+};
+
+/// The operations compiled once per instruction path.
+struct Kernels {
+    std::int32_t width;
+    /// Forces of all listed pairs, added to what forces holds; with `advance` every particle is integrated as
+    /// soon as its force is complete. Writes touching_next and history_next.
+    void (*sweep)(const Field&, bool advance, Tally&);
+    /// Integrates all particles with the forces that are there, and clears these.
+    void (*advance)(const Field&, Tally&);
+    /// Forces of the walls on listed particles.
+    void (*walls)(const Field&, Tally&);
+    /// Outer list of pairs closer than `skin` beyond contact. Returns the count needed; more than
+    /// outer_capacity: nothing beyond was written.
+    std::int64_t (*search)(const Field&, float skin);
+    /// Inner list from the outer one: gap below `skin`, or touching. Returns the padded count.
+    std::int32_t (*refresh)(const Field&, float skin);
+};
+
+/// What a case needs of the law; decides which compiled sweep runs.
+struct Needs {
+    bool unequal;   ///< radii differ
+    bool frozen;    ///< particles of infinite mass are present
+    bool friction;
+    enum class Cohesion : std::int32_t { none, lens, general } cohesion;  ///< lens: sjkr, friction blind to it
+};
+
+[[nodiscard]] const Kernels& baseline_kernels(const Needs&);
+[[nodiscard]] const Kernels& avx2_kernels(const Needs&);
+[[nodiscard]] const Kernels& avx512_kernels(const Needs&);
+
+}  // namespace grainsweep::dem::fast

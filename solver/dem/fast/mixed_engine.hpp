@@ -1,0 +1,32 @@
+// The fast door: Hertz-Mindlin spheres with tangential history in mixed precision, vectorised.
+//
+// Same scheme and law as the double-precision engine (velocity Verlet, half-step velocities in the law); positions
+// are exact integers, R^2 - r^2 is formed in double precision, the rest in single precision with the rounding of
+// position and velocity carried along. A contact then agrees with double precision to about 1e-6 of its largest
+// force; the error of energy over a collision is of that order.
+//
+// A particle beyond an open face is removed when the lists are next rebuilt: before it is a skin (0.2 to 0.7
+// largest diameters) past the face.
+#pragma once
+
+#include <memory>
+
+#include "solver/dem/engine.hpp"
+
+namespace grainsweep::dem::fast {
+
+/// Overlap over the smaller diameter (for a wall: over the diameter) beyond which a state is not trusted.
+inline constexpr double overlap_limit = 0.3;
+/// Displacement per step, per axis, over the smallest diameter, beyond which a state is not trusted.
+inline constexpr double travel_limit = 0.25;
+
+/// Whether this processor can run a path; `best` always.
+[[nodiscard]] bool supports(Method::Path path);
+/// The widest path this processor has.
+[[nodiscard]] Method::Path best_path();
+
+/// Throws std::invalid_argument with one sentence on an impossible setup, a path this processor lacks, or rolling
+/// friction.
+[[nodiscard]] std::unique_ptr<Engine> make_mixed_engine(const Setup& setup, Method::Path path, double skin = 0);
+
+}  // namespace grainsweep::dem::fast

@@ -1,0 +1,11 @@
+// The kernels compiled for AVX2 and FMA.
+// Nothing with external linkage but the one function at the end may come into being here.
+#include "solver/dem/fast/lanes_avx2.hpp"
+
+#include "solver/dem/fast/compiled_laws.hpp"
+
+namespace grainsweep::dem::fast {
+
+const Kernels& avx2_kernels(const Needs& needs) { return choose(needs); }
+
+}  // namespace grainsweep::dem::fast

@@ -1,0 +1,339 @@
+#include "solver/dem/fast/rebuild.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+namespace grainsweep::dem::fast {
+
+namespace {
+
+Place place_of(std::int32_t index) { return static_cast<Place>(index * places_per_index); }
+std::int32_t index_of(Place place) { return static_cast<std::int32_t>(place / places_per_index); }
+
+/// Cells along one axis: of periodic ones a whole number fills the period, open ones start at the lowest particle.
+struct Axis {
+    std::int32_t cells = 1;
+    std::uint32_t origin = 0;
+    double per_unit = 0;  ///< cells per position unit
+
+    [[nodiscard]] std::int32_t of(std::int32_t position) const {
+        const auto from_origin = static_cast<std::uint32_t>(position) - origin;
+        const auto cell = static_cast<std::int32_t>(static_cast<double>(from_origin) * per_unit);
+        return cell < cells ? cell : cells - 1;
+    }
+};
+
+struct Grid {
+    Axis axis[3];
+    int order[3] = {0, 1, 2};  ///< fast, middle, slow axis
+
+    [[nodiscard]] std::int32_t cell(const Record& r) const {
+        const Axis &a = axis[order[0]], &b = axis[order[1]], &c = axis[order[2]];
+        return (c.of(r.position[order[2]]) * b.cells + b.of(r.position[order[1]])) * a.cells +
+               a.of(r.position[order[0]]);
+    }
+    [[nodiscard]] std::int64_t total() const {
+        return std::int64_t{axis[0].cells} * axis[1].cells * axis[2].cells;
+    }
+};
+
+/// Cells no smaller than a listed distance, few enough for the particles there are, the longest axis slowest so that
+/// neighbours lie close in memory.
+Grid make_grid(const Field& f, const Room& room) {
+    Grid g;
+    const double cut = (1.0 + room.skin) * (1 + 1e-5);
+    for (int a = 0; a < 3; ++a) {
+        const double unit = f.constants.unit[a];
+        Axis& axis = g.axis[a];
+        double span = unit * 4294967296.0;
+        if (room.domain.periodic[static_cast<std::size_t>(a)]) {
+            axis.origin = 0x80000000U;
+        } else {
+            std::int32_t low = INT32_MAX, high = INT32_MIN;
+            for (std::int32_t i = 0; i < f.count; ++i) {
+                low = std::min(low, f.records[i].position[a]);
+                high = std::max(high, f.records[i].position[a]);
+            }
+            if (f.count == 0) low = high = 0;
+            axis.origin = static_cast<std::uint32_t>(low);
+            span = unit * (static_cast<double>(high) - static_cast<double>(low) + 1);
+        }
+        axis.cells = std::max(1, static_cast<std::int32_t>(std::min(span / cut, 1e6)));
+        axis.per_unit = axis.cells / span * unit;
+    }
+    while (g.total() > 8 * std::int64_t{f.count} + 512) {
+        Axis& longest = *std::max_element(g.axis, g.axis + 3, [](const Axis& a, const Axis& b) { return a.cells < b.cells; });
+        longest.per_unit *= static_cast<double>(longest.cells / 2) / longest.cells;
+        longest.cells /= 2;
+    }
+    std::stable_sort(g.order, g.order + 3, [&](int a, int b) { return g.axis[a].cells < g.axis[b].cells; });
+    return g;
+}
+
+/// Position units between which a centre is inside.
+struct Faces {
+    std::int32_t low[3], high[3];
+
+    explicit Faces(const Room& room) {
+        for (std::size_t a = 0; a < 3; ++a) {
+            const bool open = !room.domain.periodic[a];
+            low[a] = open ? static_cast<std::int32_t>(room.scale.units(room.domain.low[a], a)) : INT32_MIN;
+            high[a] = open ? static_cast<std::int32_t>(room.scale.units(room.domain.high[a], a)) : INT32_MAX;
+        }
+    }
+    [[nodiscard]] bool contain(const Record& r) const {
+        bool inside = true;
+        for (int a = 0; a < 3; ++a) inside = inside && r.position[a] >= low[a] && r.position[a] <= high[a];
+        return inside;
+    }
+};
+
+/// Says in `place` where everyone goes, for now 0 (stays) or -1 (left through a face, or listed); returns how many stay.
+std::int32_t take_out(const Field& f, Columns& c, const Room& room, std::span<const std::int32_t> ids) {
+    std::vector<std::int32_t> gone(ids.begin(), ids.end());
+    std::sort(gone.begin(), gone.end());
+    const Faces faces(room);
+    std::int32_t kept = 0;
+    for (std::int32_t i = 0; i < f.count; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const bool leaves = !faces.contain(f.records[i]) ||
+                            (!gone.empty() && std::binary_search(gone.begin(), gone.end(), c.id[k]));
+        c.place[k] = leaves ? -1 : 0;
+        kept += leaves ? 0 : 1;
+    }
+    for (std::int32_t k = f.count; k < f.count + 3; ++k) c.place[static_cast<std::size_t>(k)] = -1;  // the fillers
+    return kept;
+}
+
+/// Sorts by cell and fills the columns the search reads. place maps old to new indices afterwards.
+void sort_particles(Field& f, Columns& c, const Room& room, std::int32_t kept) {
+    const auto before = static_cast<std::size_t>(f.count);
+    const Grid g = make_grid(f, room);
+    const auto total = static_cast<std::size_t>(g.total());
+    c.cell_start.hold(total + 2);
+    c.cell_start.clear(total + 2);
+    for (int a = 0; a < 3; ++a) {
+        f.cells[a] = g.axis[g.order[a]].cells;
+        f.wraps[a] = room.domain.periodic[static_cast<std::size_t>(g.order[a])] ? 1 : 0;
+    }
+    for (std::size_t i = 0; i < before; ++i) {
+        if (c.place[i] < 0) continue;
+        c.cell_of[i] = g.cell(f.records[i]);
+        ++c.cell_start[static_cast<std::size_t>(c.cell_of[i]) + 2];
+    }
+    for (std::size_t q = 0; q < total; ++q) c.cell_start[q + 2] += c.cell_start[q + 1];
+    // cell_start[q + 1] is now where cell q begins, and becomes where it ends
+    for (std::size_t i = 0; i < before; ++i) {
+        if (c.place[i] < 0) continue;
+        const std::int32_t to = c.cell_start[static_cast<std::size_t>(c.cell_of[i]) + 1]++;
+        c.place[i] = to;
+        const auto t = static_cast<std::size_t>(to);
+        const Record& r = c.records[i];
+        c.records_next[t] = r;
+        c.residuals_next[t] = c.residuals[i];
+        c.id_next[t] = c.id[i];
+        for (int a = 0; a < 3; ++a) c.column[a][t] = r.position[a];
+        c.column_radius[t] = r.radius;
+        c.column_mobile[t] = r.inverse_mass > 0 ? 1.0F : 0.0F;
+    }
+    c.records.swap(c.records_next), c.residuals.swap(c.residuals_next), c.id.swap(c.id_next);
+    f.count = kept;
+    c.bind(f);
+}
+
+void find_pairs(Field& f, Columns& c, const Kernels& kernels, const Room& room) {
+    for (;;) {
+        f.outer_capacity = static_cast<std::int32_t>(c.outer_first.capacity()) - spare;
+        const std::int64_t found = kernels.search(f, room.skin);
+        if (found + spare <= f.outer_capacity) {
+            f.outer_count = static_cast<std::int32_t>(found);
+            break;
+        }
+        c.hold_pairs(static_cast<std::size_t>(found) + 3 * spare);
+        c.bind(f);
+    }
+    for (std::size_t k = 0; k < static_cast<std::size_t>(spare); ++k) {
+        const std::size_t at = static_cast<std::size_t>(f.outer_count) + k;
+        c.outer_first[at] = place_of(f.count);
+        c.outer_second[at] = place_of(f.count + 1);
+        c.outer_reach[at] = 0;
+    }
+}
+
+/// Calls visit(first, second, stream index, inner index) for every contact of the last step, in order.
+template <class Visit>
+void for_each_contact(const Field& f, std::int32_t width, Visit visit) {
+    std::int32_t stream = 0;
+    for (std::int32_t b = 0; b < f.inner_count / width; ++b)
+        for (unsigned m = f.touching[b]; m != 0; m &= m - 1) {
+            const std::int32_t k = b * width + std::countr_zero(m);
+            visit(index_of(f.inner_first[k]), index_of(f.inner_second[k]), stream++, k);
+        }
+}
+
+/// Finds every old contact in the new outer list and moves its history; a spring that saw its particles change places
+/// changes its sign.
+void carry_histories(Field& f, Columns& c, const Kernels& kernels) {
+    const auto outer = static_cast<std::size_t>(f.outer_count);
+    c.owner.clear(outer);
+    c.outer_touching.clear(outer / static_cast<std::size_t>(kernels.width) + 2);
+    for_each_contact(f, kernels.width, [&](std::int32_t i, std::int32_t j, std::int32_t stream, std::int32_t) {
+        std::int32_t a = c.place[static_cast<std::size_t>(i)], b = c.place[static_cast<std::size_t>(j)];
+        if (a < 0 || b < 0) return;
+        const bool swapped = a > b;
+        if (swapped) std::swap(a, b);
+        for (std::int32_t o = f.row[a]; o < f.row[a + 1]; ++o)
+            if (f.outer_second[o] == place_of(b)) {
+                c.owner[static_cast<std::size_t>(o)] = swapped ? -(stream + 1) : stream + 1;
+                break;
+            }
+    });
+    std::size_t to = 0;
+    for (std::size_t o = 0; o < outer; ++o) {
+        const std::int32_t owner = c.owner[o];
+        if (owner == 0) continue;
+        const auto batch = o / static_cast<std::size_t>(kernels.width);
+        c.outer_touching[batch] = static_cast<std::uint16_t>(c.outer_touching[batch] |
+                                                             (1U << (o % static_cast<std::size_t>(kernels.width))));
+        const auto from = static_cast<std::size_t>(std::abs(owner) - 1);
+        const float sign = owner > 0 ? 1.0F : -1.0F;
+        for (int a = 0; a < 3; ++a) c.history_next[a][to] = sign * c.history[a][from];
+        ++to;
+    }
+    for (int a = 0; a < 3; ++a) c.history[a].swap(c.history_next[a]);
+    c.bind(f);
+}
+
+double distance_to(const WallShape& w, double x, double y, double z) {
+    if (w.is_blade == 0) return w.normal[0] * x + w.normal[1] * y + w.normal[2] * z - w.offset;
+    double dx = x - w.centre;
+    dx -= w.period * std::nearbyint(dx * w.inverse_period);
+    const double ox = std::max(0.0, std::abs(dx) - w.half_width);
+    const double oz = std::max({0.0, w.bottom - z, z - w.top});
+    return std::hypot(ox, oz);  // of the sharp bar: never more than that of the rounded one, which lies inside it
+}
+
+}  // namespace
+
+void place_fillers(Field& f) {
+    for (std::int32_t k = 0; k < 3; ++k) {
+        Record r{};
+        r.inverse_mass = 1;
+        r.inverse_radius = 1;
+        if (k < 2) r.radius = r.radius_again = 1e-3F;
+        if (k == 1)
+            for (auto& p : r.position) p = INT32_MIN;  // half a period away
+        if (k == 2) r.radius = r.radius_again = -1e6F;  // out of reach of every wall
+        f.records[f.count + k] = r;
+    }
+}
+
+void place_walls(Field& f, const std::vector<Wall>& walls, const Room& room, double time) {
+    const Scale& s = room.scale;
+    for (std::size_t w = 0; w < walls.size(); ++w) {
+        WallShape shape{};
+        shape.record = f.count + 3 + static_cast<std::int32_t>(w);
+        Record r{};
+        if (const auto* plane = std::get_if<Plane>(&walls[w])) {
+            const double norm = std::hypot(plane->normal[0], plane->normal[1], plane->normal[2]);
+            for (std::size_t a = 0; a < 3; ++a) {
+                shape.normal[a] = plane->normal[a] / norm;
+                shape.offset += shape.normal[a] * (plane->point[a] - s.centre[a]) / s.length;
+            }
+        } else {
+            const auto& blade = std::get<Blade>(walls[w]);
+            const double pulse = 2 * std::numbers::pi * blade.frequency;
+            const double lift = blade.amplitude * std::sin(pulse * time);
+            shape.is_blade = 1;
+            shape.half_width = 0.5 * blade.thickness / s.length;
+            shape.centre = (blade.front + blade.speed * time - s.centre[0]) / s.length - shape.half_width;
+            shape.bottom = (blade.bottom + lift - s.centre[2]) / s.length;
+            shape.top = (blade.top + lift - s.centre[2]) / s.length;
+            shape.edge_radius = std::min(blade.edge_radius, 0.5 * blade.thickness) / s.length;
+            if (room.domain.periodic[0]) {
+                shape.period = (room.domain.high[0] - room.domain.low[0]) / s.length;
+                shape.inverse_period = 1 / shape.period;
+            }
+            r.velocity[0] = static_cast<float>(blade.speed / s.speed());
+            r.velocity[2] = static_cast<float>(blade.amplitude * pulse * std::cos(pulse * time) / s.speed());
+        }
+        f.walls[w] = shape;
+        f.records[shape.record] = r;
+    }
+    f.wall_count = static_cast<std::int32_t>(walls.size());
+}
+
+double wall_gap(const Field& f, const WallShape& wall, std::int32_t particle) {
+    const Record& r = f.records[particle];
+    const double* unit = f.constants.unit;
+    return distance_to(wall, r.position[0] * unit[0], r.position[1] * unit[1], r.position[2] * unit[2]) -
+           static_cast<double>(r.radius);
+}
+
+void list_wall_contacts(Field& f, Columns& c, const Kernels& kernels, const Room& room, bool keep) {
+    constexpr std::int32_t none = -1;
+    std::int32_t n = 0;
+    std::vector<std::int32_t> old_slot;
+    const std::int32_t old_count = keep && f.wall_count > 0 ? f.segments[f.wall_count - 1].end : 0;
+    const std::vector<Place> old_particle(f.wall_particle, f.wall_particle + old_count);
+    for (std::int32_t w = 0; w < f.wall_count; ++w) {
+        const WallSegment old = f.segments[w];
+        old_slot.assign(static_cast<std::size_t>(f.count), none);
+        if (keep)
+            for (std::int32_t k = old.begin; k < old.end; ++k) {
+                const std::int32_t from = index_of(old_particle[static_cast<std::size_t>(k)]);
+                const std::int32_t to = c.place[static_cast<std::size_t>(from)];
+                if (to >= 0) old_slot[static_cast<std::size_t>(to)] = k;
+            }
+        const std::int32_t begin = n;
+        c.hold_wall_contacts(static_cast<std::size_t>(n) + static_cast<std::size_t>(f.count));
+        const auto add = [&](std::int32_t particle, std::int32_t from) {
+            const auto k = static_cast<std::size_t>(n++);
+            c.wall_particle[k] = place_of(particle);
+            for (int a = 0; a < 3; ++a)
+                c.wall_history_next[a][k] = from == none ? 0 : c.wall_history[a][static_cast<std::size_t>(from)];
+        };
+        const double near = static_cast<double>(room.skin) * (1 + 1e-5);
+        for (std::int32_t i = 0; i < f.count; ++i) {
+            const Record& r = f.records[i];
+            if (!(r.inverse_mass > 0)) continue;
+            if (wall_gap(f, f.walls[w], i) < near) add(i, old_slot[static_cast<std::size_t>(i)]);
+        }
+        while ((n - begin) % kernels.width != 0) add(f.count + 2, none);
+        f.segments[w] = {begin, n};
+    }
+    for (int a = 0; a < 3; ++a) c.wall_history[a].swap(c.wall_history_next[a]);
+    c.bind(f);
+}
+
+void refresh(Field& f, Columns& c, const Kernels& kernels, float skin, bool marked) {
+    if (!marked) {
+        const auto width = static_cast<std::size_t>(kernels.width);
+        c.outer_touching.clear(static_cast<std::size_t>(f.outer_count) / width + 2);
+        for_each_contact(f, kernels.width, [&](std::int32_t, std::int32_t, std::int32_t, std::int32_t k) {
+            const auto o = static_cast<std::size_t>(f.inner_source[k]);
+            c.outer_touching[o / width] = static_cast<std::uint16_t>(c.outer_touching[o / width] | (1U << (o % width)));
+        });
+    }
+    f.inner_count = kernels.refresh(f, skin);
+}
+
+void rebuild(Field& f, Columns& c, const Kernels& kernels, const Room& room,
+             std::span<const std::int32_t> ids) {
+    const std::int32_t kept = take_out(f, c, room, ids);
+    std::vector<Record> wall_records(f.records + f.count + 3, f.records + f.count + 3 + f.wall_count);
+    sort_particles(f, c, room, kept);
+    place_fillers(f);
+    for (std::int32_t w = 0; w < f.wall_count; ++w) {
+        f.walls[w].record = f.count + 3 + w;
+        f.records[f.walls[w].record] = wall_records[static_cast<std::size_t>(w)];
+    }
+    find_pairs(f, c, kernels, room);
+    carry_histories(f, c, kernels);
+    list_wall_contacts(f, c, kernels, room, true);
+}
+
+}  // namespace grainsweep::dem::fast

@@ -1,0 +1,41 @@
+// Sorting particles by cell and making the lists anew, histories following their contacts.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "solver/dem/engine.hpp"
+#include "solver/dem/fast/columns.hpp"
+#include "solver/dem/fast/scale.hpp"
+
+namespace grainsweep::dem::fast {
+
+/// Fixed facts a rebuild needs.
+struct Room {
+    Domain domain;
+    Scale scale;
+    float skin;  ///< of the outer list, in largest diameters
+};
+
+/// Removes particles beyond open faces and those listed in `ids`, sorts the rest by cell, makes the outer list and
+/// the wall lists and carries all histories over. Forces must be zero. The inner list is left to refresh.
+void rebuild(Field& field, Columns& columns, const Kernels& kernels, const Room& room,
+             std::span<const std::int32_t> ids);
+
+/// Makes the inner list from the outer one; histories stay as they are, in the same order.
+/// `marked`: outer_touching already says which outer pairs touch.
+void refresh(Field& field, Columns& columns, const Kernels& kernels, float skin, bool marked);
+
+/// Lists the particles near each wall. `keep`: histories follow their contacts; else they start at zero.
+void list_wall_contacts(Field& field, Columns& columns, const Kernels& kernels, const Room& room, bool keep);
+
+/// Gives the walls their shapes at time t (s) and their records the velocities (engine's units).
+void place_walls(Field& field, const std::vector<Wall>& walls, const Room& room, double time);
+
+/// Gap between a particle and a wall, largest diameters; never more than the true one.
+[[nodiscard]] double wall_gap(const Field& field, const WallShape& wall, std::int32_t particle);
+
+/// Writes the records behind the last particle that fill vectors up.
+void place_fillers(Field& field);
+
+}  // namespace grainsweep::dem::fast

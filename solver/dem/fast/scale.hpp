@@ -1,0 +1,27 @@
+// From SI to the engine's units and back, and the constants of the contact law in them.
+#pragma once
+
+#include "solver/dem/engine.hpp"
+#include "solver/dem/fast/layout.hpp"
+
+namespace grainsweep::dem::fast {
+
+/// Units of one case: length the largest diameter, time the time step, mass that of the largest particle.
+struct Scale {
+    double length = 1, time = 1, mass = 1;
+    Vec3 centre{};  ///< middle of the domain, m
+    std::array<double, 3> unit{};  ///< length of one position unit, m
+
+    [[nodiscard]] double speed() const { return length / time; }
+    /// Position unit count of a coordinate, before wrapping to 32 bits.
+    [[nodiscard]] double units(double coordinate, std::size_t axis) const {
+        return (coordinate - centre[axis]) / unit[axis];
+    }
+};
+
+/// Throws std::invalid_argument where the setup is impossible for this engine.
+[[nodiscard]] Scale make_scale(const Setup& setup);
+[[nodiscard]] Constants make_constants(const Setup& setup, const Scale& scale);
+[[nodiscard]] Needs make_needs(const Setup& setup);
+
+}  // namespace grainsweep::dem::fast

@@ -1,0 +1,310 @@
+// One pass over the particles: sift, meet, scatter, advance.
+//
+//   sift      listed pairs in list order: position differences, in single precision, decide which may touch; these
+//             and their histories are packed together. A pair that does not touch costs this and nothing more.
+//   meet      packed pairs in tiles: motion is loaded and transposed, the law evaluated.
+//   scatter   forces of a tile are added to both particles.
+//   advance   a particle whose pairs are all behind is integrated at once, while it is in the nearest cache:
+//             leapfrog v(t+dt/2) = v(t-dt/2) + dt f/m, x(t+dt) = x(t) + dt v(t+dt/2), the velocity Verlet whose
+//             contact law sees half-step velocities. What rounding drops is carried to the next step.
+//
+// R^2 - r^2 is formed in double precision from exact differences: overlap = (R^2 - r^2)/(R + r) keeps its digits
+// however stiff the particles are. Included by the files of the instruction paths; internal linkage on purpose.
+#pragma once
+
+#include "solver/dem/fast/contact.hpp"
+
+namespace grainsweep::dem::fast {
+namespace {
+
+/// Pairs that may touch, packed; the buffers of one tile and a remainder.
+struct alignas(64) Packed {
+    Place first[tile + 2 * width];
+    Place second[tile + 2 * width];
+    std::int32_t offset[3][tile + 2 * width];
+    float outcome[tile / width + 1][9][width];
+};
+
+/// How far a sweep has come.
+struct Progress {
+    std::int32_t batch;   ///< of the inner list, next to be sifted
+    std::int32_t packed;  ///< pairs in the buffers
+    std::int32_t done;    ///< particles integrated
+    std::int64_t read;    ///< histories taken from the last step's stream
+    std::int64_t written;  ///< histories put into this step's
+    std::int64_t met;      ///< of these, those already evaluated
+};
+
+// Each phase is a function of its own: the compiler sees loops it can schedule, a sampling profiler sees the phases.
+#define GRAINSWEEP_PHASE __attribute__((noinline))
+
+/// Sifts batches until a tile is full or the list at its end.
+template <class Law>
+GRAINSWEEP_PHASE void sift(const Field& f, std::int32_t batches, Packed& p, Progress& progress) {
+    const Constants& c = f.constants;
+    const F ux = broadcast(c.unit_single[0]), uy = broadcast(c.unit_single[1]), uz = broadcast(c.unit_single[2]);
+    Progress s = progress;
+    for (; s.batch < batches && s.packed < tile; ++s.batch) {
+        const std::int64_t k = static_cast<std::int64_t>(s.batch) * width;
+        const Place* first = f.inner_first + k;
+        const Place* second = f.inner_second + k;
+        if (f.read_ahead != 0) {
+            for (int q = 0; q < width; ++q) prefetch(record_at(f.records, second[q + 64]));
+            if constexpr (Law::friction)
+                for (int a = 0; a < 3; ++a) {
+                    prefetch(f.history[a] + s.read + 256);
+                    prefetch(f.history_next[a] + s.written + 256);
+                }
+        }
+        I ix, iy, iz;
+        load_offsets(f.records, first, second, ix, iy, iz);
+        const F x = single(ix) * ux, y = single(iy) * uy, z = single(iz) * uz;
+        F reach = broadcast(c.candidate_squared);
+        if constexpr (Law::unequal) reach = load(f.inner_reach + k);
+        const unsigned now = bits(fma(x, x, fma(y, y, z * z)) < reach);
+        store(p.first + s.packed, compress(load(first), now));
+        store(p.second + s.packed, compress(load(second), now));
+        store(p.offset[0] + s.packed, compress(ix, now));
+        store(p.offset[1] + s.packed, compress(iy, now));
+        store(p.offset[2] + s.packed, compress(iz, now));
+        const int count = __builtin_popcount(now);
+        if constexpr (Law::friction) {
+            const unsigned before = f.touching[s.batch];
+            if (before == now)  // most vectors keep their contacts
+                for (int a = 0; a < 3; ++a) store(f.history_next[a] + s.written, load(f.history[a] + s.read));
+            else
+                for (int a = 0; a < 3; ++a)
+                    store(f.history_next[a] + s.written, compress(expand(load(f.history[a] + s.read), before), now));
+            f.touching_next[s.batch] = static_cast<std::uint16_t>(now);
+            s.read += __builtin_popcount(before);
+            s.written += count;
+        }
+        s.packed += count;
+    }
+    progress = s;
+}
+
+/// R^2 - r^2 from exact differences, rounded once.
+GRAINSWEEP_LANES F closeness(const Constants& c, I x, I y, I z, D reach_squared) {
+    const D dx = exact(x) * broadcast(c.unit[0]), dy = exact(y) * broadcast(c.unit[1]),
+            dz = exact(z) * broadcast(c.unit[2]);
+    return single(fnma(dx, dx, fnma(dy, dy, fnma(dz, dz, reach_squared))));
+}
+
+/// Force and torques of the packed pairs, into the outcome rows; histories from stream index `at` on.
+template <class Law>
+GRAINSWEEP_PHASE void meet(const Field& f, Packed& p, int batches, std::int64_t at, Tally& t) {
+    const Constants& c = f.constants;
+    F largest_overlap = broadcast(t.overlap);
+    const F history_step = broadcast(f.history_step), half = broadcast(0.5f);
+    for (int b = 0; b < batches; ++b) {
+        const Place* first = p.first + b * width;
+        const Place* second = p.second + b * width;
+        if (f.read_ahead != 0)
+            for (int q = 0; q < width; ++q) prefetch(force_at(f.forces, second[q]));
+        F row[12];
+        load_motion(f.records, first, second, row);
+        if constexpr (Law::unequal) load_surface(f.records, first, second, row + 8);
+        const I ix = load(p.offset[0] + b * width), iy = load(p.offset[1] + b * width),
+                iz = load(p.offset[2] + b * width);
+        F reach, difference;
+        D reach_squared;
+        if constexpr (Law::unequal) {
+            reach = row[7];
+            difference = row[11];
+            const D r = exact(reach);
+            reach_squared = r * r;
+        } else {
+            reach = broadcast(2 * c.radius);
+            difference = broadcast(0.0f);
+            reach_squared = broadcast(c.reach_squared);
+        }
+        const F near = closeness(c, ix, iy, iz, reach_squared);
+        const F square = max(single(reach_squared) - near, broadcast(1e-12f));
+        Meeting m;
+        m.touching = broadcast(0.0f) < near;
+        const F inverse_distance = inverse_root(square);
+        m.overlap = near * inverse(fma(square, inverse_distance, reach));
+        m.normal = {single(ix) * (inverse_distance * broadcast(c.unit_single[0])),
+                    single(iy) * (inverse_distance * broadcast(c.unit_single[1])),
+                    single(iz) * (inverse_distance * broadcast(c.unit_single[2]))};
+        m.velocity = {row[0], row[1], row[2]};
+        const F shortening = half * m.overlap;
+        F arm_first, arm_second;
+        const V3 spin{row[4], row[5], row[6]};
+        if constexpr (Law::unequal) {
+            m.surface = {fnma(shortening, spin.x, row[8]), fnma(shortening, spin.y, row[9]),
+                         fnma(shortening, spin.z, row[10])};
+            arm_first = fms(half, reach + difference, shortening);
+            arm_second = fms(half, reach - difference, shortening);
+            const F product = (reach - difference) * (reach + difference);  // 4 R_i R_j
+            m.root_radius = half * product * inverse_root(product * reach);
+            m.damping = broadcast(c.damping) * inverse_root(row[3]);
+            largest_overlap = max(keep(m.touching, m.overlap * inverse(reach - abs(difference))), largest_overlap);
+        } else {
+            arm_first = broadcast(c.radius) - shortening;
+            arm_second = arm_first;
+            m.surface = spin * arm_first;
+            m.root_radius = broadcast(c.root_radius);
+            if constexpr (Law::frozen)
+                m.damping = select(broadcast(1.5f * c.inverse_mass) < row[3], broadcast(c.damping_pair),
+                                   broadcast(c.damping_frozen));
+            else
+                m.damping = broadcast(c.damping_pair);
+            largest_overlap = max(keep(m.touching, m.overlap), largest_overlap);  // the diameter is 1
+        }
+        if constexpr (Law::cohesive)
+            m.neck = pair_neck<Law>(c, near, inverse_distance, m.overlap, difference, m.root_radius);
+        V3 history{}, force, turn;
+        if constexpr (Law::friction)
+            history = {load(f.history_next[0] + at + b * width), load(f.history_next[1] + at + b * width),
+                       load(f.history_next[2] + at + b * width)};
+        respond<Law>(c, m, history_step, history, force, turn);
+        store(p.outcome[b][0], force.x);
+        store(p.outcome[b][1], force.y);
+        store(p.outcome[b][2], force.z);
+        if constexpr (Law::friction) {
+            store(f.history_next[0] + at + b * width, history.x);
+            store(f.history_next[1] + at + b * width, history.y);
+            store(f.history_next[2] + at + b * width, history.z);
+            store(p.outcome[b][3], turn.x * arm_first);
+            store(p.outcome[b][4], turn.y * arm_first);
+            store(p.outcome[b][5], turn.z * arm_first);
+            if constexpr (Law::unequal) {
+                store(p.outcome[b][6], turn.x * arm_second);
+                store(p.outcome[b][7], turn.y * arm_second);
+                store(p.outcome[b][8], turn.z * arm_second);
+            }
+        }
+    }
+    t.overlap = largest(largest_overlap);
+}
+
+template <class Law>
+GRAINSWEEP_PHASE void scatter(const Field& f, const Packed& p, int batches) {
+    for (int b = 0; b < batches; ++b) {
+        F o[9];
+        for (int r = 0; r < (Law::friction ? (Law::unequal ? 9 : 6) : 3); ++r) o[r] = load(p.outcome[b][r]);
+        const Place* first = p.first + b * width;
+        const Place* second = p.second + b * width;
+        if constexpr (!Law::friction) {
+            scatter_forces(f.forces, first, second, o);
+        } else if constexpr (Law::unequal) {
+            scatter_unequal(f.forces, first, second, o, o + 3, o + 6);
+        } else {
+            scatter_pairs(f.forces, first, second, o, o + 3);
+        }
+    }
+}
+
+/// What integrating needs at hand.
+struct Stepper {
+    F8 turning;  ///< factor of force and torque besides 1/m
+    F8 gravity;
+    F8 high, low;  ///< extremes of velocity and spin met
+    F4 inverse_unit;
+};
+
+GRAINSWEEP_LANES Stepper stepper(const Constants& c, const Tally& t) {
+    return {join(broadcast4(1.0f), broadcast4(c.rotation)), load8(c.gravity), load8(t.velocity_high),
+            load8(t.velocity_low), load4(c.inverse_unit)};
+}
+
+template <class Law>
+GRAINSWEEP_LANES void advance_one(const Field& f, std::int32_t i, Stepper& s) {
+    Record& r = f.records[i];
+    const F8 inverse_mass = broadcast8(r.inverse_mass);
+    F8 change = load8(f.forces[i].force) * s.turning;
+    store8(f.forces[i].force, broadcast8(0.0f));
+    if constexpr (Law::unequal) {
+        const F4 inverse_radius = broadcast4(r.inverse_radius);
+        change = change * join(broadcast4(1.0f), inverse_radius * inverse_radius);
+    }
+    F8 gravity = s.gravity;
+    if constexpr (Law::frozen) gravity = where_positive(inverse_mass, gravity);
+    const F8 residue = load8(f.residuals[i].position);
+    change = fma(change, inverse_mass, gravity) + join(high(residue), broadcast4(0.0f));
+    const F8 old = load8(r.velocity);
+    const F8 now = old + change;
+    const F8 lost = change - (now - old);
+    s.high = max(now, s.high);
+    s.low = min(now, s.low);
+    const F4 travel = fma(low(now), s.inverse_unit, low(residue));
+    const I4 units = rounded(travel);
+    const I4 position = load4(r.position) + units;
+    store8(f.residuals[i].position, join(travel - single(units), low(lost)));
+    store4(r.position, position);
+    store8(r.velocity, now);
+    if constexpr (Law::unequal) {
+        const float radius = r.radius_again;
+        store4(r.surface, high(now) * broadcast4(radius));
+        r.radius_again = radius;
+    }
+}
+
+/// Integrates the particles [from, to).
+template <class Law>
+GRAINSWEEP_PHASE void advance_range(const Field& f, std::int32_t from, std::int32_t to, Tally& t) {
+    Stepper s = stepper(f.constants, t);
+    for (std::int32_t i = from; i < to; ++i) {
+        if (f.read_ahead != 0) prefetch(f.residuals + i + 64);
+        advance_one<Law>(f, i, s);
+    }
+    store8(t.velocity_high, s.high);
+    store8(t.velocity_low, s.low);
+}
+
+template <class Law>
+void advance(const Field& f, Tally& t) {
+    const unsigned denormals = flush_denormals();
+    advance_range<Law>(f, 0, f.count, t);
+    restore_denormals(denormals);
+}
+
+/// Fills the last vector up with a pair that never touches.
+GRAINSWEEP_LANES void fill_up(const Field& f, Packed& p, int packed) {
+    for (int q = packed; q < packed + width; ++q) {
+        p.first[q] = static_cast<Place>(f.count * places_per_index);
+        p.second[q] = static_cast<Place>((f.count + 1) * places_per_index);
+        for (auto& offset : p.offset) offset[q] = INT32_MIN;
+    }
+}
+
+/// Moves what a tile left over to the front.
+GRAINSWEEP_LANES void keep_rest(Packed& p, int from) {
+    store(p.first, load(p.first + from));
+    store(p.second, load(p.second + from));
+    for (auto& offset : p.offset) store(offset, load(offset + from));
+}
+
+template <class Law>
+void sweep(const Field& f, bool advancing, Tally& t) {
+    const unsigned denormals = flush_denormals();
+    Packed p;
+    Progress at{};
+    const std::int32_t batches = f.inner_count / width;
+    for (bool last = false; !last;) {
+        sift<Law>(f, batches, p, at);
+        last = at.packed < tile;
+        if (last) fill_up(f, p, at.packed);
+        t.contacts += at.packed;
+        const int full = (last ? at.packed + width - 1 : at.packed) / width;
+        meet<Law>(f, p, full, at.met, t);
+        scatter<Law>(f, p, full);
+        at.met += full * width;
+        at.packed = last ? 0 : at.packed - full * width;
+        t.contacts -= at.packed;
+        keep_rest(p, full * width);
+        if (!advancing) continue;
+        // pairs still to come begin with the first one left over, or the next one listed
+        const Place next = at.packed > 0 ? p.first[0] : f.inner_first[static_cast<std::int64_t>(at.batch) * width];
+        const auto first = static_cast<std::int32_t>(next / places_per_index);
+        const std::int32_t until = last || first > f.count ? f.count : first;
+        advance_range<Law>(f, at.done, until, t);
+        at.done = until;
+    }
+    restore_denormals(denormals);
+}
+
+}  // namespace
+}  // namespace grainsweep::dem::fast

@@ -1,0 +1,290 @@
+#include "sweep/report/page.hpp"
+
+#include "solver/scenes/scene.hpp"
+#include "stats/random.hpp"
+#include "sweep/campaign/json_text.hpp"
+#include "sweep/report/effects.hpp"
+#include "sweep/report/history.hpp"
+#include "sweep/report/influence.hpp"
+#include "sweep/report/page_files.hpp"
+#include "sweep/report/summary.hpp"
+#include "sweep/report/table.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <ostream>
+#include <utility>
+
+namespace grainsweep::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t shown_extremes = 8;
+constexpr std::size_t most_drawn_checks = 150;
+
+/// Six digits are more than a picture shows, and half the bytes.
+Json drawn(double x) {
+    return std::isfinite(x) ? Json(std::stod(fmt::format("{:.6g}", x))) : Json(nullptr);
+}
+
+Json drawn(const std::vector<double>& values) {
+    Json list = Json::array();
+    for (const double x : values) list.push_back(drawn(x));
+    return list;
+}
+
+/// Rows to draw: all, or a random subset in the order of the design. (Every k-th point of a low-discrepancy
+/// sequence would show a pattern that the sequence has not.)
+std::vector<std::size_t> rows_to_draw(std::size_t rows) {
+    std::vector<std::size_t> chosen(rows);
+    std::iota(chosen.begin(), chosen.end(), std::size_t{0});
+    if (rows <= most_drawn_cases) return chosen;
+    const auto draw = [](std::size_t row) { return stats::bits_at(0, 0, row); };
+    std::ranges::nth_element(chosen, chosen.begin() + most_drawn_cases, {}, draw);
+    chosen.resize(most_drawn_cases);
+    std::ranges::sort(chosen);
+    return chosen;
+}
+
+Json json_of(const History& history) {
+    Json value = {{"verdict", history.verdict}, {"judged", history.has_rule}, {"notes", history.warnings}};
+    const auto converged = std::ranges::find(history.checks, true, &stats::Checkpoint::converged);
+    value["converged_at"] =
+        history.has_rule && converged != history.checks.end() ? Json(converged->points) : Json(nullptr);
+    const auto checks = checks_to_show(history, most_drawn_checks);
+    value["points"] = Json::array();
+    for (const auto* check : checks) value["points"].push_back(check->points);
+    for (const auto statistic : stats::statistics) {
+        Json& one = value["statistics"][std::string(stats::to_string(statistic))];
+        const auto& all = history.all.of(statistic);
+        one["text"] = with_error(all.value, all.error);
+        one["values"] = Json::array();
+        one["errors"] = Json::array();
+        for (const auto* check : checks) {
+            one["values"].push_back(drawn(check->of(statistic).value));
+            one["errors"].push_back(drawn(check->of(statistic).error));
+        }
+    }
+    value["count"] = history.all.count;
+    value["excluded"] = history.all.excluded;
+    value["zero_share"] = drawn(history.all.zero_share);
+    return value;
+}
+
+Json json_of(const Influence& influence) {
+    Json value = {{"method", influence.method == Influence::Method::morris     ? "morris"
+                             : influence.method == Influence::Method::saltelli ? "saltelli"
+                                                                               : "given_data"},
+                  {"notes", influence.notes}};
+    value["factors"] = Json::array();
+    for (const auto& factor : influence.factors) {
+        Json one = {{"name", factor.factor},
+                    {"first_text", index_text(factor.first)},
+                    {"total_text", index_text(factor.total)},
+                    {"first", drawn(factor.first.value)},
+                    {"first_error", drawn(factor.first.half_width)},
+                    {"total", drawn(factor.total.value)},
+                    {"total_error", drawn(factor.total.half_width)}};
+        if (factor.effects) {
+            one["mu_star_text"] = with_error(factor.effects->mu_star, factor.effects->mu_star_half_width);
+            one["mu_star"] = drawn(factor.effects->mu_star);
+            one["mu_star_error"] = drawn(factor.effects->mu_star_half_width);
+            one["sigma"] = drawn(factor.effects->sigma);
+        }
+        value["factors"].push_back(std::move(one));
+    }
+    return value;
+}
+
+Json json_of(const std::vector<EffectBin>& effect) {
+    Json bins = Json::array();
+    for (const auto& bin : effect) bins.push_back({drawn(bin.at), drawn(bin.mean), drawn(bin.error), bin.count});
+    return bins;
+}
+
+Json case_of(const Responses& responses, std::size_t row) {
+    Json value = {
+        {"point", responses.points[row]}, {"replicate", responses.replicates[row]}, {"case", responses.case_ids[row]}};
+    value["factors"] = Json::array();
+    for (const auto& factor : responses.factors) value["factors"].push_back(factor_text(factor, row));
+    return value;
+}
+
+Json extremes_of(const Responses& responses, const ResponseColumn& response, bool largest) {
+    Json list = Json::array();
+    for (const auto row : extreme_rows(responses.judged(response), shown_extremes, largest)) {
+        Json one = case_of(responses, row);
+        one["value"] = drawn(response.values[row]);
+        list.push_back(std::move(one));
+    }
+    return list;
+}
+
+Json json_of(const Responses& responses, const ResponseColumn& response, const std::vector<std::size_t>& drawn_rows) {
+    Json value = {{"name", response.name}, {"unit", response.unit}, {"meaning", response.meaning}};
+    const auto judged = responses.judged(response);
+    value["history"] = json_of(history_of(responses, response));
+    const auto histogram = histogram_of(judged);
+    value["histogram"] = {{"low", drawn(histogram.low)}, {"high", drawn(histogram.high)}, {"counts", histogram.counts}};
+    value["effects"] = Json::array();
+    for (const auto& factor : responses.factors) value["effects"].push_back(json_of(main_effect(factor, judged)));
+    value["influence"] = json_of(influence_of(responses, response));
+    std::vector<double> values;
+    for (const auto row : drawn_rows) values.push_back(response.values[row]);
+    value["drawn"] = drawn(values);
+    value["largest"] = extremes_of(responses, response, true);
+    value["smallest"] = extremes_of(responses, response, false);
+    return value;
+}
+
+Json factors_of(const Responses& responses, const std::vector<std::size_t>& drawn_rows) {
+    Json list = Json::array();
+    for (const auto& factor : responses.factors) {
+        std::vector<double> values;
+        for (const auto row : drawn_rows) values.push_back(factor.values[row]);
+        list.push_back({{"name", factor.name},
+                        {"unit", factor.unit},
+                        {"meaning", factor.meaning},
+                        {"levels", factor.levels},
+                        {"low", drawn(factor.low)},
+                        {"high", drawn(factor.high)},
+                        {"log", factor.log},
+                        {"drawn", drawn(values)}});
+    }
+    return list;
+}
+
+bool failed(const std::optional<campaign::Outcome>& outcome) {
+    return outcome && *outcome != campaign::Outcome::completed && *outcome != campaign::Outcome::skipped;
+}
+
+Json failures_of(const store::Store& store, const Responses& responses) {
+    Json value = {{"count", std::ranges::count_if(responses.outcomes, failed)}, {"listed", Json::array()}};
+    for (std::size_t row = 0; row < responses.rows(); ++row) {
+        if (!failed(responses.outcomes[row])) continue;
+        if (value["listed"].size() == most_listed_failures) break;
+        Json one = case_of(responses, row);
+        one["outcome"] = campaign::to_string(*responses.outcomes[row]);
+        const auto attempts = store.attempts(responses.case_ids[row]);
+        one["attempts"] = attempts.size();
+        one["reason"] = attempts.empty() ? "" : attempts.back().message;
+        value["listed"].push_back(std::move(one));
+    }
+    return value;
+}
+
+/// Top-level notes of a campaign file: a text or a list of texts.
+std::string notes_of(const campaign::Json& text) {
+    const auto found = text.find("notes");
+    if (found == text.end()) return "";
+    if (found->is_string()) return found->get<std::string>();
+    std::string all;
+    if (found->is_array())
+        for (const auto& line : *found)
+            if (line.is_string()) all += (all.empty() ? "" : "\n") + line.get<std::string>();
+    return all;
+}
+
+Json runs_of(const store::Store& store, const std::string& campaign) {
+    return to_json(store.query(
+        fmt::format("SELECT start, version, \"commit\", compiler, flags, instruction_path, processor, host, settled "
+                    "FROM provenance "
+                    "WHERE campaign_id = (SELECT campaign_id FROM campaign WHERE name = '{}') ORDER BY provenance_id",
+                    campaign)));
+}
+
+Json campaign_of(const store::Store& store, const store::CampaignRecord& record) {
+    const auto responses = read_responses(store, record);
+    const auto text = campaign::parse_json(record.text);
+    const SceneInfo* scene = find_scene(record.scene);
+    const auto drawn_rows = rows_to_draw(responses.settled);
+    Json value = {{"name", record.name},
+                  {"notes", notes_of(text)},
+                  {"scene", record.scene},
+                  {"revision", record.revision},
+                  {"summary", scene == nullptr ? "" : scene->summary},
+                  {"design", record.design},
+                  {"design_text", text.at("design").dump()},
+                  {"fixed_text", text.contains("fixed") ? text.at("fixed").dump() : ""},
+                  {"where", text.value("where", "")},
+                  {"sequences", repeats(responses) ? record.sequences : 1},
+                  {"replicates", record.replicates},
+                  {"rows", responses.rows()},
+                  {"settled", responses.settled},
+                  {"settled_points", responses.settled_points},
+                  {"drawn_rows", drawn_rows.size()},
+                  {"sample", responses.ordered_sample()},
+                  {"text", record.text}};
+    value["stopped_at"] = record.stopped_at ? Json(*record.stopped_at) : Json(nullptr);
+    value["outcomes"] = Json::array();
+    for (const auto& [outcome, count] : count_outcomes(responses)) value["outcomes"].push_back({outcome, count});
+    value["factors"] = factors_of(responses, drawn_rows);
+    value["observables"] = Json::array();
+    value["main"] = 0;
+    const auto* main = responses.main_observable();
+    for (const auto& response : responses.observables) {
+        const auto finite = [](double x) { return std::isfinite(x); };
+        if (&response != main && std::ranges::none_of(response.values, finite)) continue;
+        if (&response == main) value["main"] = value["observables"].size();
+        value["observables"].push_back(json_of(responses, response, drawn_rows));
+    }
+    value["failures"] = failures_of(store, responses);
+    value["runs"] = runs_of(store, record.name);
+    return value;
+}
+
+/// Writes the skeleton with what belongs between its double braces.
+void fill(std::ostream& out, std::string_view skeleton,
+          const std::vector<std::pair<std::string_view, std::string_view>>& parts) {
+    while (true) {
+        const auto open = skeleton.find("{{");
+        const auto close = skeleton.find("}}", open == std::string_view::npos ? 0 : open);
+        if (open == std::string_view::npos || close == std::string_view::npos) break;
+        out << skeleton.substr(0, open);
+        const auto name = skeleton.substr(open + 2, close - open - 2);
+        const auto part = std::ranges::find(parts, name, &std::pair<std::string_view, std::string_view>::first);
+        if (part != parts.end()) out << part->second;
+        skeleton.remove_prefix(close + 2);
+    }
+    out << skeleton;
+}
+
+}  // namespace
+
+Json page_data(const store::Store& store, std::string_view database) {
+    Json value = {{"database", database}, {"campaigns", Json::array()}};
+    for (const auto& record : find_campaigns(store, "")) value["campaigns"].push_back(campaign_of(store, record));
+    return value;
+}
+
+std::string safe_in_script(const Json& value) {
+    const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    std::string safe;
+    safe.reserve(text.size());
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        // '<' occurs in strings only, so its escape is the same JSON; U+2028 and U+2029 end lines of a script.
+        if (text[i] == '<') {
+            safe += "\\u003c";
+        } else if (text.compare(i, 3, "\xE2\x80\xA8") == 0 || text.compare(i, 3, "\xE2\x80\xA9") == 0) {
+            safe += text[i + 2] == '\xA8' ? "\\u2028" : "\\u2029";
+            i += 2;
+        } else {
+            safe += text[i];
+        }
+    }
+    return safe;
+}
+
+void write_page(std::ostream& out, const store::Store& store, std::string_view database) {
+    const auto files = page_files();
+    const auto data = safe_in_script(page_data(store, database));
+    fill(out, files.skeleton,
+         {{"style", files.style}, {"library", files.library}, {"data", data}, {"program", files.program}});
+}
+
+}  // namespace grainsweep::report

@@ -1,0 +1,206 @@
+#include "tests/support/plain_dem.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace grainsweep::test {
+
+using dem::Vec3;
+using std::numbers::pi;
+
+namespace {
+
+Vec3 operator+(const Vec3& a, const Vec3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+Vec3 operator-(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+Vec3 operator*(double s, const Vec3& a) { return {s * a[0], s * a[1], s * a[2]}; }
+double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+double norm(const Vec3& a) { return std::sqrt(dot(a, a)); }
+Vec3 cross(const Vec3& a, const Vec3& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+}  // namespace
+
+struct PlainDem::Contact {
+    Vec3 n, velocity, surface;  // v_i - v_j; (R_i - d/2) w_i + (R_j - d/2) w_j
+    double overlap, radius, mass, neck;
+};
+
+PlainDem::PlainDem(const dem::Setup& setup) : setup_(setup), gone_(setup.spheres.size(), 0) {
+    for (const dem::Sphere& s : setup.spheres) {
+        x_.push_back(s.position);
+        v_.push_back(s.mobile ? s.velocity : Vec3{});
+        w_.push_back(s.mobile ? s.angular_velocity : Vec3{});
+    }
+    forces(false);
+}
+
+double PlainDem::mass(std::size_t i) const {
+    const double r = setup_.spheres[i].radius;
+    return setup_.spheres[i].mobile ? 4.0 / 3 * pi * r * r * r * setup_.material.density : INFINITY;
+}
+
+double PlainDem::kinetic_energy() const {
+    double e = 0;
+    for (std::size_t i = 0; i < x_.size(); ++i)
+        if (setup_.spheres[i].mobile && gone_[i] == 0) e += 0.5 * mass(i) * dot(v_[i], v_[i]);
+    return e;
+}
+
+void PlainDem::respond(const Contact& c, bool update, Vec3& history, Vec3& force, Vec3& turn) const {
+    const dem::Material& m = setup_.material;
+    const double young = m.youngs_modulus / (2 * (1 - m.poisson_ratio * m.poisson_ratio));
+    const double shear = m.youngs_modulus / (4 * (2 - m.poisson_ratio) * (1 + m.poisson_ratio));
+    const double log_e = std::log(m.restitution), beta = log_e / std::sqrt(log_e * log_e + pi * pi);
+    const double root = std::sqrt(c.radius * c.overlap);
+    const double kn = 4.0 / 3 * young * root, kt = 8 * shear * root;
+    const double gn = -2 * std::sqrt(5.0 / 6) * beta * std::sqrt(2 * young * root * c.mass);
+    const double gt = -2 * std::sqrt(5.0 / 6) * beta * std::sqrt(8 * shear * root * c.mass);
+    const double vn = dot(c.velocity, c.n);
+    const double normal = kn * c.overlap - gn * vn;
+    const Vec3 vt = c.velocity - vn * c.n - cross(c.surface, c.n);
+    Vec3 s = history;
+    if (update) s = s + setup_.time_step * vt;
+    s = s - dot(s, c.n) * c.n;
+    const double limit = m.friction * std::abs(m.friction_limit == dem::FrictionLimit::net ? normal - c.neck : normal);
+    Vec3 tangential = (-kt) * s - gt * vt;
+    if (kt * norm(s) > limit) {
+        tangential = (-limit / norm(s)) * s;
+        s = (-1 / kt) * tangential;
+    }
+    if (m.friction == 0) tangential = s = {};
+    if (update) history = s;
+    force = (normal - c.neck) * c.n + tangential;
+    turn = cross(c.n, tangential);
+}
+
+void PlainDem::pair(std::size_t i, std::size_t j, bool update) {
+    const dem::Material& m = setup_.material;
+    Vec3 d = x_[i] - x_[j];
+    for (std::size_t a = 0; a < 3; ++a)
+        if (setup_.domain.periodic[a]) {
+            const double period = setup_.domain.high[a] - setup_.domain.low[a];
+            d[a] -= period * std::nearbyint(d[a] / period);
+        }
+    const double ri = setup_.spheres[i].radius, rj = setup_.spheres[j].radius;
+    if (dot(d, d) > 1.1 * (ri + rj) * (ri + rj)) return;  // far: it left contact, and was forgotten, on its way
+    const double r = norm(d), overlap = ri + rj - r;
+    if (overlap <= 0) {
+        pair_history_.erase({i, j});
+        return;
+    }
+    largest_overlap_ = std::max(largest_overlap_, overlap / (2 * std::min(ri, rj)));
+    Contact c{};
+    c.n = (1 / r) * d;
+    c.overlap = overlap;
+    c.velocity = v_[i] - v_[j];
+    c.surface = (ri - overlap / 2) * w_[i] + (rj - overlap / 2) * w_[j];
+    c.radius = ri * rj / (ri + rj);
+    c.mass = 1 / (1 / mass(i) + 1 / mass(j));
+    double area = 0;
+    if (m.cohesion_area == dem::CohesionArea::sjkr)
+        area = -pi / 4 * (r - ri - rj) * (r + ri - rj) * (r - ri + rj) * (r + ri + rj) / (r * r);
+    else if (m.cohesion_area == dem::CohesionArea::sjkr2)
+        area = 2 * pi * 2 * c.radius * overlap;
+    else
+        area = pi * (2 * c.radius * overlap - overlap * overlap) / 4;
+    c.neck = m.cohesion * area;
+    Vec3 force{}, turn{};
+    respond(c, update, pair_history_[{i, j}], force, turn);
+    f_[i] = f_[i] + force;
+    f_[j] = f_[j] - force;
+    t_[i] = t_[i] - (ri - overlap / 2) * turn;
+    t_[j] = t_[j] - (rj - overlap / 2) * turn;
+}
+
+void PlainDem::wall(std::size_t i, std::size_t w, bool update) {
+    const dem::Material& m = setup_.material;
+    const double ri = setup_.spheres[i].radius, t = static_cast<double>(wall_steps_) * setup_.time_step;
+    Contact c{};
+    double distance = 0;
+    if (const auto* plane = std::get_if<dem::Plane>(&setup_.walls[w])) {
+        c.n = (1 / norm(plane->normal)) * plane->normal;
+        distance = dot(x_[i] - plane->point, c.n);
+        c.velocity = v_[i];
+    } else {
+        const auto& b = std::get<dem::Blade>(setup_.walls[w]);
+        const double pulse = 2 * pi * b.frequency, lift = b.amplitude * std::sin(pulse * t);
+        const double front = b.front + b.speed * t, bottom = b.bottom + lift, top = b.top + lift;
+        const double shrink = x_[i][2] < bottom + b.edge_radius ? b.edge_radius : 0;
+        const Vec3 closest{std::clamp(x_[i][0], front - b.thickness + shrink, front - shrink), x_[i][1],
+                           std::clamp(x_[i][2], bottom + shrink, top)};
+        const Vec3 d = x_[i] - closest;
+        distance = norm(d) - shrink;
+        c.n = (1 / norm(d)) * d;
+        c.velocity = v_[i] - Vec3{b.speed, 0, b.amplitude * pulse * std::cos(pulse * t)};
+    }
+    c.overlap = ri - distance;
+    if (c.overlap <= 0) {
+        wall_history_.erase({i, w});
+        return;
+    }
+    c.surface = (ri - c.overlap / 2) * w_[i];
+    c.radius = ri;
+    c.mass = mass(i);
+    const double area = m.cohesion_area == dem::CohesionArea::sjkr    ? pi * (2 * ri * c.overlap - c.overlap * c.overlap)
+                        : m.cohesion_area == dem::CohesionArea::sjkr2 ? 2 * pi * ri * c.overlap
+                                                                      : pi * (2 * ri * c.overlap - c.overlap * c.overlap) / 4;
+    c.neck = m.cohesion * area;
+    Vec3 force{}, turn{};
+    respond(c, update, wall_history_[{i, w}], force, turn);
+    f_[i] = f_[i] + force;
+    t_[i] = t_[i] - (ri - c.overlap / 2) * turn;
+}
+
+void PlainDem::forces(bool update) {
+    const std::size_t n = x_.size();
+    f_.assign(n, Vec3{});
+    t_.assign(n, Vec3{});
+    largest_overlap_ = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        if (gone_[i] != 0) continue;
+        const bool mobile = setup_.spheres[i].mobile;
+        if (mobile) f_[i] = f_[i] + mass(i) * setup_.gravity;
+        for (std::size_t w = 0; w < setup_.walls.size() && mobile; ++w) wall(i, w, update);
+        for (std::size_t j = i + 1; j < n; ++j)
+            if (gone_[j] == 0 && (mobile || setup_.spheres[j].mobile)) pair(i, j, update);
+    }
+}
+
+void PlainDem::run(std::int64_t steps) {
+    const double half = 0.5 * setup_.time_step;
+    const auto kick = [&](std::size_t i) {
+        const double m = mass(i), r = setup_.spheres[i].radius;
+        v_[i] = v_[i] + (half / m) * f_[i];
+        w_[i] = w_[i] + (half / (0.4 * m * r * r)) * t_[i];
+    };
+    for (std::int64_t s = 0; s < steps; ++s) {
+        for (std::size_t i = 0; i < x_.size(); ++i)
+            if (setup_.spheres[i].mobile && gone_[i] == 0) {
+                kick(i);
+                x_[i] = x_[i] + setup_.time_step * v_[i];
+            }
+        ++wall_steps_;
+        forces(true);
+        for (std::size_t i = 0; i < x_.size(); ++i)
+            if (setup_.spheres[i].mobile && gone_[i] == 0) kick(i);
+    }
+}
+
+void PlainDem::set_walls(std::vector<dem::Wall> walls) {
+    setup_.walls = std::move(walls);
+    wall_history_.clear();
+    wall_steps_ = 0;
+    forces(false);
+}
+
+void PlainDem::remove(std::int32_t id) {
+    gone_[static_cast<std::size_t>(id)] = 1;
+    std::erase_if(pair_history_, [&](const auto& h) {
+        return h.first.first == static_cast<std::size_t>(id) || h.first.second == static_cast<std::size_t>(id);
+    });
+    forces(false);
+}
+
+}  // namespace grainsweep::test

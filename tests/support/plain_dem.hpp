@@ -1,0 +1,49 @@
+// The DEM step written down as plainly as possible: double precision, every pair looked at every step, histories in a
+// map. The opponent of every optimised engine; a few hundred particles at most.
+#pragma once
+
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "solver/dem/engine.hpp"
+
+namespace grainsweep::test {
+
+/// Velocity Verlet with the Hertz-Mindlin law of solver/dem/engine.hpp, forces of the start without histories.
+class PlainDem {
+public:
+    explicit PlainDem(const dem::Setup& setup);
+
+    void run(std::int64_t steps);
+    void set_walls(std::vector<dem::Wall> walls);
+    /// Marks a particle as gone.
+    void remove(std::int32_t id);
+
+    [[nodiscard]] const std::vector<dem::Vec3>& position() const { return x_; }
+    [[nodiscard]] const std::vector<dem::Vec3>& velocity() const { return v_; }
+    [[nodiscard]] const std::vector<dem::Vec3>& angular_velocity() const { return w_; }
+    [[nodiscard]] const std::vector<dem::Vec3>& force() const { return f_; }
+    [[nodiscard]] double largest_overlap() const { return largest_overlap_; }
+    [[nodiscard]] std::size_t contacts() const { return pair_history_.size(); }
+    [[nodiscard]] double kinetic_energy() const;
+
+private:
+    using Key = std::pair<std::size_t, std::size_t>;
+    struct Contact;
+    void forces(bool update);
+    void pair(std::size_t i, std::size_t j, bool update);
+    void wall(std::size_t i, std::size_t w, bool update);
+    /// Force on i and n x F_t of one contact.
+    void respond(const Contact& c, bool update, dem::Vec3& history, dem::Vec3& force, dem::Vec3& turn) const;
+    [[nodiscard]] double mass(std::size_t i) const;
+
+    dem::Setup setup_;
+    std::vector<dem::Vec3> x_, v_, w_, f_, t_;
+    std::vector<char> gone_;
+    std::map<Key, dem::Vec3> pair_history_, wall_history_;
+    std::int64_t wall_steps_ = 0;
+    double largest_overlap_ = 0;
+};
+
+}  // namespace grainsweep::test

@@ -1,0 +1,152 @@
+#include "solver/dem/laws/contact.hpp"
+#include "solver/dem/limits.hpp"
+#include "solver/dem/material.hpp"
+#include "solver/dem/moving_wall.hpp"
+#include "solver/dem/time_step.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+using namespace grainsweep::dem;
+using std::numbers::pi;
+
+namespace {
+
+/// Spheres of radii 2 and 1 mm, overlap 0.02 mm.
+Touch<Partner::particle> pair(double normal_velocity = 0) {
+    Touch<Partner::particle> t;
+    t.radius_i = 0.002;
+    t.radius_j = 0.001;
+    t.overlap = 2e-5;
+    t.distance = 0.003 - 2e-5;
+    t.effective_radius = 0.002 / 3;
+    t.reduced_mass = 1e-5;
+    t.root = std::sqrt(t.effective_radius * t.overlap);
+    t.damping_root = std::sqrt(t.root * t.reduced_mass);
+    t.normal = {0, 0, 1};
+    t.normal_velocity = normal_velocity;
+    return t;
+}
+
+Touch<Partner::wall> wall() {
+    Touch<Partner::wall> t;
+    t.radius_i = t.effective_radius = 0.002;
+    t.overlap = 2e-5;
+    return t;
+}
+
+}  // namespace
+
+TEST(Material, DerivesTheEffectiveModuli) {
+    const Material m;  // E 21 MPa, nu 0.3
+    EXPECT_NEAR(effective_modulus(m), 21e6 / 1.82, 1e-6);
+    EXPECT_NEAR(effective_shear_modulus(m), 21e6 / (4 * 1.7 * 1.3), 1e-6);
+    EXPECT_EQ(damping_ratio(1), 0);
+    EXPECT_NEAR(damping_ratio(0.5), -0.21545376, 1e-8);
+    EXPECT_NEAR(sphere_mass(0.001, 7980), 3.34265e-5, 1e-10);
+}
+
+TEST(Hertz, IsTheSpringAndTheDamperOfItsFormula) {
+    const Material m;
+    const Contact<Hertz> contact{{hertz(m)}};
+    NoMemory none;
+    const auto t = pair();
+    const double stiffness = 4.0 / 3.0 * effective_modulus(m) * std::sqrt(t.effective_radius * t.overlap);
+    EXPECT_NEAR(contact.respond<true>(t, none).normal, stiffness * t.overlap, 1e-15);
+    const double s_n = 2 * effective_modulus(m) * std::sqrt(t.effective_radius * t.overlap);
+    const double g_n = -2 * std::sqrt(5.0 / 6.0) * damping_ratio(0.5) * std::sqrt(s_n * t.reduced_mass);
+    EXPECT_NEAR(contact.respond<true>(pair(0.3), none).normal, stiffness * t.overlap - 0.3 * g_n, 1e-12);
+    // The stored energy is the work of the spring.
+    EXPECT_NEAR(contact.energy(t, none), 0.4 * stiffness * t.overlap * t.overlap, 1e-18);
+}
+
+TEST(Mindlin, SticksAsASpringAndSlidesAtCoulombsLimit) {
+    Material m;
+    m.friction = 0.3;
+    const Contact<Hertz, Mindlin> contact{{hertz(m), mindlin(m, 1e-6)}};
+    auto t = pair();
+    const double normal = 4.0 / 3.0 * effective_modulus(m) * t.root * t.overlap;
+    const double k_t = 8 * effective_shear_modulus(m) * t.root;
+    const double g_t = -2 * std::sqrt(5.0 / 6.0) * damping_ratio(0.5) * std::sqrt(k_t * t.reduced_mass);
+    Vec3 s{1e-7, 0, 5e-8};
+    t.slip = {0.01, 0, 0};
+    const auto sticking = contact.respond<true>(t, s);
+    EXPECT_NEAR(s[0], 1e-7 + 1e-8, 1e-20);
+    EXPECT_EQ(s[2], 0);  // only the tangential part stays
+    EXPECT_NEAR(sticking.tangential[0], -k_t * 1.1e-7 - g_t * 0.01, 1e-12);
+    Vec3 far{1e-3, 0, 0};
+    const auto sliding = contact.respond<true>(t, far);
+    EXPECT_NEAR(sliding.tangential[0], -0.3 * normal, 1e-14);
+    EXPECT_NEAR(far[0], 0.3 * normal / k_t, 1e-18);  // cut back to the elastic limit
+    Vec3 still{1e-3, 0, 0};
+    (void)contact.respond<false>(t, still);
+    EXPECT_EQ(still[0], 1e-3);  // looking does not touch the memory
+}
+
+TEST(Cohesion, HasThreeAreas) {
+    const auto t = pair();
+    const double r = t.distance;
+    // The disc where two spheres cut, from its elementary geometry.
+    const double offset = (r * r + 0.002 * 0.002 - 0.001 * 0.001) / (2 * r);
+    EXPECT_NEAR(SjkrArea::area(t), pi * (0.002 * 0.002 - offset * offset), 1e-17);
+    EXPECT_NEAR(Sjkr2Area::area(t), 4 * pi * t.effective_radius * t.overlap, 1e-20);
+    EXPECT_NEAR(PaperArea::area(t), pi / 4 * (2 * t.effective_radius - t.overlap) * t.overlap, 1e-20);
+    EXPECT_NEAR(SjkrArea::area(wall()), pi * (2 * 0.002 - 2e-5) * 2e-5, 1e-20);
+    EXPECT_NEAR(Sjkr2Area::area(wall()), 2 * pi * 0.002 * 2e-5, 1e-20);
+    EXPECT_NEAR(PaperArea::area(wall()), pi / 4 * (2 * 0.002 - 2e-5) * 2e-5, 1e-20);
+    for (const auto which : {CohesionArea::sjkr, CohesionArea::sjkr2, CohesionArea::paper}) {
+        const ChosenArea chosen{which};
+        const double expected = which == CohesionArea::sjkr    ? SjkrArea::area(t)
+                                : which == CohesionArea::sjkr2 ? Sjkr2Area::area(t)
+                                                               : PaperArea::area(t);
+        EXPECT_EQ(chosen.area(t), expected);
+    }
+}
+
+TEST(Contact, TheOrderOfLawsDecidesWhatFrictionSees) {
+    Material m;
+    m.friction = 0.3;
+    const Cohesion<SjkrArea> cohesion{1e4, {}};
+    const Contact<Hertz, Mindlin, Cohesion<SjkrArea>> blind{{hertz(m), mindlin(m, 1e-6), cohesion}};
+    const Contact<Hertz, Cohesion<SjkrArea>, Mindlin> seeing{{hertz(m), cohesion, mindlin(m, 1e-6)}};
+    const auto t = pair();
+    Vec3 a{1e-3, 0, 0};
+    Vec3 b = a;
+    const auto contact_force = blind.respond<true>(t, a);
+    const auto net = seeing.respond<true>(t, b);
+    const double attraction = 1e4 * SjkrArea::area(t);
+    EXPECT_NEAR(contact_force.normal, net.normal, 1e-15);
+    EXPECT_NEAR(contact_force.tangential[0], -0.3 * (contact_force.normal + attraction), 1e-14);
+    EXPECT_NEAR(net.tangential[0], -0.3 * net.normal, 1e-14);
+}
+
+TEST(Contact, NeedsWhatItsLawsNeed) {
+    static_assert(!Contact<Hertz>::needs.spin && !Contact<Hertz>::needs.tangential_history);
+    static_assert(Contact<Hertz, Mindlin>::needs.spin && Contact<Hertz, Mindlin>::needs.tangential_history);
+    static_assert(!Contact<Hertz, Cohesion<SjkrArea>>::needs.spin);
+    static_assert(std::is_same_v<Contact<Hertz>::Memory, NoMemory>);
+    static_assert(sizeof(Cohesion<SjkrArea>) == sizeof(double));
+}
+
+TEST(TimeStep, LimitsAreThoseOfThePapers) {
+    const Material m;
+    EXPECT_NEAR(rayleigh_time(m, 0.0005), 5.3e-5, 0.1e-5);  // dt = 1e-5 is 0.19 of it at 1 mm
+    EXPECT_NEAR(rayleigh_time(m, 0.001) / rayleigh_time(m, 0.0005), 2, 1e-12);
+    EXPECT_NEAR(hertz_contact_time(m, 0.001, 3.2) / hertz_contact_time(m, 0.001, 0.1), 0.5, 1e-12);
+}
+
+TEST(MovingWall, FollowsItsLaw) {
+    const Blade blade{0.015, 0.005, 0.002, 0.15, 1.4, 1e-4, 50, 0};
+    const double t = 0.003;
+    const auto bar = shape_at(blade, t);
+    EXPECT_NEAR(bar.front, 0.015 + 1.4 * t, 1e-15);
+    EXPECT_NEAR(bar.front - bar.rear, 0.005, 1e-15);
+    EXPECT_NEAR(bar.bottom, 0.002 + 1e-4 * std::sin(2 * pi * 50 * t), 1e-15);
+    const double h = 1e-6;
+    const auto v = velocity_at(blade, t);
+    EXPECT_NEAR(v[2], (shape_at(blade, t + h).bottom - shape_at(blade, t - h).bottom) / (2 * h), 1e-7);
+    EXPECT_EQ(velocity_at(Plane{}, t), Vec3{});
+    EXPECT_GE(fastest(blade), std::hypot(v[0], v[2]));
+}

@@ -1,0 +1,84 @@
+#include "solver/observables/layer.hpp"
+
+#include "stats/random.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+using namespace grainsweep;
+using namespace grainsweep::observables;
+
+namespace {
+
+dem::State spheres(std::vector<dem::Vec3> positions, double radius) {
+    dem::State s;
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        s.id.push_back(static_cast<std::int32_t>(i));
+        s.velocity.push_back({static_cast<double>(i + 1), 0, 0});
+        s.radius.push_back(radius);
+    }
+    s.position = std::move(positions);
+    return s;
+}
+
+}  // namespace
+
+TEST(Layer, CountsCentres) {
+    const auto s = spheres({{0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {1.5, 0, 4}}, 0.5);
+    EXPECT_EQ(count_behind(s, 1.0), 1);  // x < front: a centre in the plane is in front
+    EXPECT_EQ(count_behind(s, 1.01), 2);
+    EXPECT_EQ(count_under(s, 1, 2, 3), 1);
+    EXPECT_EQ(count_under(s, 1, 2.1, 4), 3);
+    EXPECT_NEAR(solid_volume(s, 0.5, 2), 2 * std::numbers::pi / 6, 1e-15);
+}
+
+TEST(Layer, ReliefSeesTheUppermostSurfaceAcrossThePeriod) {
+    // One sphere at the periodic edge of a patch of 4 x 4: a disc of area pi is covered, half of it beyond the edge.
+    const Relief one(spheres({{2, 0, 5}}, 1), 0, 4, 4, 0.01);
+    EXPECT_EQ(one.heights().size(), 160000U);
+    EXPECT_NEAR(one.empty_share(), 1 - std::numbers::pi / 16, 1e-3);
+    // Mean height and Sq of a hemisphere on a cylinder 5 high in an empty square, in closed form.
+    const double mean = (5 * std::numbers::pi + 2 * std::numbers::pi / 3) / 16;
+    const double square = (25 * std::numbers::pi + 10 * 2 * std::numbers::pi / 3 + std::numbers::pi / 2) / 16;
+    EXPECT_NEAR(one.roughness(), std::sqrt(square - mean * mean), 5e-3);
+    // A second one, lower and at the same place, changes nothing; higher it does.
+    EXPECT_EQ(Relief(spheres({{2, 0, 5}, {2, 0, 4}}, 1), 0, 4, 4, 0.1).roughness(),
+              Relief(spheres({{2, 0, 5}}, 1), 0, 4, 4, 0.1).roughness());
+    EXPECT_GT(Relief(spheres({{2, 0, 5}, {2, 0, 6}}, 1), 0, 4, 4, 0.1).roughness(),
+              Relief(spheres({{2, 0, 5}}, 1), 0, 4, 4, 0.1).roughness());
+    EXPECT_EQ(Relief(spheres({}, 1), 0, 4, 4, 0.1).empty_share(), 1);
+}
+
+TEST(Layer, ProfileAveragesByHeight) {
+    const auto s = spheres({{1, 0, 2.1}, {1, 0, 2.2}, {1, 0, 2.9}, {9, 0, 2.1}, {1, 0, 1.9}, {1, 0, 99}}, 0.5);
+    VelocityProfile profile(3);
+    profile.add(s, 0, 2, 2.0, 0.5);
+    EXPECT_EQ(profile.samples, (std::vector<std::int64_t>{2, 1, 0}));
+    EXPECT_EQ(profile.sum, (std::vector<double>{3, 3, 0}));
+}
+
+// Independent samples: the blocks' error is that of the mean, sigma/sqrt(n). An AR(1) series with coefficient a has
+// (1 + a)/(1 - a) times its variance. Over 400 series the mean of the estimate is known to about 2 %.
+TEST(Layer, BlockErrorIsThatOfTheMean) {
+    for (const double a : {0.0, 0.5}) {
+        double squares = 0;
+        constexpr std::size_t n = 1000;
+        for (std::uint64_t k = 0; k < 400; ++k) {
+            const stats::Stream random(k, 5);
+            std::vector<double> series;
+            double x = 0;
+            for (std::uint64_t i = 0; i < n + 50; ++i) {
+                x = a * x + (random.uniform(i) - 0.5) * std::sqrt(12.0);
+                if (i >= 50) series.push_back(x);
+            }
+            const double error = block_standard_error(series, 10);
+            squares += error * error / 400;
+        }
+        const double expected = 1 / ((1 - a) * (1 - a)) / static_cast<double>(n);
+        EXPECT_NEAR(squares / expected, 1, 0.1) << a;
+    }
+    EXPECT_TRUE(std::isnan(block_standard_error(std::vector<double>(19, 1.0), 10)));
+    EXPECT_NEAR(block_standard_error(std::vector<double>(20, 1.0), 10), 0, 1e-15);
+}
