@@ -26,6 +26,7 @@ Inputs SceneInfo::defaults() const {
 std::span<const SceneInfo> scene_catalogue() {
     static const std::vector<SceneInfo> scenes = {
         powder_spreading_scene(),
+        tpms_discharge_scene(),
         rehearsal_scene(),
         thermovibration_scene(),
     };

@@ -1,0 +1,83 @@
+// Triply periodic minimal surfaces as level sets, and the solid shell around them.
+//
+// A cell is the cube [0, L]^3. With bar coordinates X = pi (2 x / L - 1) in [-pi, pi] the surface is f(X) = 0:
+//   schwarz_p  cos X + cos Y + cos Z
+//   gyroid     sin X cos Y + sin Z cos X + sin Y cos Z
+//   diamond    cos X cos Y cos Z - sin X sin Y sin Z
+//   iwp        2 (cos X cos Y + cos Z cos X + cos Y cos Z) - (cos 2X + cos 2Y + cos 2Z)
+//   frd        4 cos X cos Y cos Z - (cos 2X cos 2Y + cos 2Y cos 2Z + cos 2Z cos 2X)
+//   i2y        -2 (sin 2X cos Y sin Z + sin 2Z cos X sin Y + sin 2Y cos Z sin X)
+//              + cos 2X cos 2Y + cos 2Y cos 2Z + cos 2Z cos 2X
+// (Gupta, Ness & Haeri, table 2). The shell is |f| <= C with C = G sin(pi t / L). For schwarz_p, gyroid and
+// diamond G is the least |grad f| on f = 0, so that t is the largest local thickness of the shell to first
+// order; for the first two that is the study's own C. For the other three, where the study states none, G is
+// the figure of the reference runs; their least gradients are 3.3755, 2.5460 and 3.4641 = 2 sqrt 3, so the
+// largest thickness is 0.983, 0.975 and 0.937 of t.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+
+namespace grainsweep::geometry {
+
+enum class TpmsCell { schwarz_p, gyroid, diamond, iwp, frd, i2y };
+
+/// What is fixed about a cell.
+struct TpmsTraits {
+    TpmsCell cell;
+    std::string_view name;
+    int kept_side;          ///< sign of f on the side that is filled with powder unless asked otherwise
+    double shell_gradient;  ///< G: C = G sin(pi t / L)
+};
+
+/// The six cells, in the order of the study's table 2.
+inline constexpr std::array<TpmsTraits, 6> tpms_cells = {{
+    {TpmsCell::schwarz_p, "schwarz_p", +1, 1.0},
+    {TpmsCell::gyroid, "gyroid", +1, 1.4142135623730951},
+    {TpmsCell::diamond, "diamond", +1, 1.0},
+    {TpmsCell::iwp, "iwp", -1, 3.3166},
+    {TpmsCell::frd, "frd", -1, 2.483},
+    {TpmsCell::i2y, "i2y", -1, 3.246},
+}};
+
+[[nodiscard]] const TpmsTraits& traits(TpmsCell cell);
+/// Empty when there is no cell of that name.
+[[nodiscard]] std::optional<TpmsCell> tpms_cell_named(std::string_view name);
+
+/// f and its gradient with respect to the bar coordinates.
+struct LevelSet {
+    double value = 0;
+    std::array<double, 3> gradient{};
+};
+
+/// f at the bar coordinates X, Y, Z (any real numbers; the period is 2 pi).
+[[nodiscard]] double tpms_value(TpmsCell cell, const std::array<double, 3>& bar);
+[[nodiscard]] LevelSet tpms_level_set(TpmsCell cell, const std::array<double, 3>& bar);
+
+/// Where a point lies: in the shell (|f| <= C), on the side that is kept, or on the other side.
+enum class TpmsRegion { wall, kept, deleted };
+
+/// The shell of one cell of edge L and thickness t (same unit).
+class TpmsShell {
+public:
+    /// side: +1 or -1, the sign of f on the kept side. Throws std::invalid_argument unless
+    /// 0 < thickness < edge/2 (beyond it C would shrink again).
+    TpmsShell(TpmsCell cell, int side, double edge, double thickness);
+
+    /// f at a point of the cell, in the unit of the edge.
+    [[nodiscard]] double value(const std::array<double, 3>& point) const;
+    [[nodiscard]] TpmsRegion classify(const std::array<double, 3>& point) const;
+    /// C: half the range of f inside the shell.
+    [[nodiscard]] double level() const { return level_; }
+    [[nodiscard]] int side() const { return side_; }
+    [[nodiscard]] double edge() const { return edge_; }
+
+private:
+    TpmsCell cell_;
+    int side_;
+    double edge_;
+    double level_;
+};
+
+}  // namespace grainsweep::geometry

@@ -1,0 +1,124 @@
+// How a packing travels: its key, its bytes, and the text a user brings.
+#include "solver/particles/near_pairs.hpp"
+#include "solver/particles/packing.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <stdexcept>
+
+namespace grainsweep::particles {
+namespace {
+
+constexpr std::uint64_t packing_mark = 0x31676E696B636170;  // "packing1", first byte first
+constexpr int algorithm_revision = 1;                       // grows whenever the same request packs differently
+
+struct PackingHeader {
+    std::uint64_t mark = packing_mark;
+    double edge = 0;
+    double largest_overlap = 0;
+    std::int64_t iterations = 0;
+    std::uint64_t count = 0;
+};
+
+std::string shortest(double x) {
+    std::array<char, 32> text{};
+    const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), x);
+    return {text.data(), end};
+}
+
+std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view blank = " \t\r";
+    const auto first = text.find_first_not_of(blank);
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(blank) - first + 1);
+}
+
+[[noreturn]] void refuse(std::size_t line, const std::string& what) {
+    throw std::invalid_argument("packing, line " + std::to_string(line) + ": " + what);
+}
+
+/// One line "x,y,z"; nothing where it is not three numbers.
+std::optional<std::array<double, 3>> three_numbers(std::string_view line) {
+    std::array<double, 3> x{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto comma = k < 2 ? line.find(',') : line.size();
+        if (comma == std::string_view::npos) return std::nullopt;
+        const std::string_view word = trimmed(line.substr(0, comma));
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x[k]);
+        if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
+        line.remove_prefix(std::min(comma + 1, line.size()));
+    }
+    return x;
+}
+
+}  // namespace
+
+std::string packing_key(const PackingRequest& request) {
+    return "packing\nalgorithm=" + std::to_string(algorithm_revision) + "\nedge=" + shortest(request.edge) +
+           "\nfraction=" + shortest(request.fraction) + "\nseed=" + std::to_string(request.seed) +
+           "\ntolerance=" + shortest(request.tolerance) + "\n";
+}
+
+std::vector<std::byte> encode(const Packing& packing) {
+    const PackingHeader header{packing_mark, packing.edge, packing.largest_overlap, packing.iterations,
+                               packing.positions.size()};
+    const std::size_t size = packing.positions.size() * sizeof packing.positions[0];
+    std::vector<std::byte> bytes(sizeof header + size);
+    std::memcpy(bytes.data(), &header, sizeof header);
+    if (size > 0) std::memcpy(bytes.data() + sizeof header, packing.positions.data(), size);
+    return bytes;
+}
+
+Packing decode_packing(std::span<const std::byte> bytes) {
+    PackingHeader header;
+    if (bytes.size() >= sizeof header) std::memcpy(&header, bytes.data(), sizeof header);
+    constexpr std::size_t record = sizeof(std::array<double, 3>);
+    if (bytes.size() < sizeof header || header.mark != packing_mark ||
+        header.count != (bytes.size() - sizeof header) / record || (bytes.size() - sizeof header) % record != 0)
+        throw std::invalid_argument("these bytes are no packing");
+    Packing packing{header.edge, {}, header.largest_overlap, static_cast<int>(header.iterations)};
+    packing.positions.resize(header.count);
+    if (header.count > 0) std::memcpy(packing.positions.data(), bytes.data() + sizeof header, header.count * record);
+    return packing;
+}
+
+Packing read_packing(std::string_view csv, double edge) {
+    Packing packing{edge, {}, 0, 0};
+    std::vector<std::size_t> line_of;
+    std::size_t number = 0;
+    if (csv.starts_with("\xEF\xBB\xBF")) csv.remove_prefix(3);  // byte-order mark
+    while (!csv.empty()) {
+        const auto end = std::min(csv.find('\n'), csv.size());
+        const std::string_view line = trimmed(csv.substr(0, end));
+        csv.remove_prefix(std::min(end + 1, csv.size()));
+        ++number;
+        if (number == 1) {
+            if (line != "x,y,z") refuse(1, "the header must be x,y,z, not '" + std::string(line.substr(0, 40)) + "'");
+            continue;
+        }
+        if (line.empty()) continue;
+        const auto x = three_numbers(line);
+        if (!x) refuse(number, "'" + std::string(line.substr(0, 60)) + "' is not three numbers with commas between");
+        for (const double c : *x)
+            if (!(c >= 0 && c < edge))
+                refuse(number, "a centre at " + shortest(c) + " is outside the cube of " + shortest(edge) +
+                                   " diameters (coordinates are in diameters)");
+        packing.positions.push_back(*x);
+        line_of.push_back(number);
+    }
+    if (packing.positions.empty()) refuse(std::max<std::size_t>(number, 1), "there is no sphere");
+
+    constexpr double most_overlap = 0.05;  // more is no packing of touching spheres, or another unit
+    for_each_near_pair(packing.positions, 1, [&](std::size_t i, std::size_t j, double r) {
+        if (1 - r > most_overlap)
+            refuse(line_of[j], "the sphere overlaps that of line " + std::to_string(line_of[i]) + " by " +
+                                   shortest(1 - r) + " diameters; at most 0.05 is allowed");
+        packing.largest_overlap = std::max(packing.largest_overlap, 1 - r);
+    });
+    return packing;
+}
+
+}  // namespace grainsweep::particles

@@ -1,0 +1,361 @@
+// Powder leaving a TPMS cell under gravity (Gupta, Ness & Haeri, gravity-driven evacuation of metal powder
+// through triply periodic minimal surfaces).
+//
+// A random close packing fills the cube [0, L]^3; spheres with |f| <= C are frozen as the cell's wall, those of
+// the kept side start at rest, the rest is deleted (geometry/tpms.hpp). At t = 0 gravity acts. All six faces are
+// open; a sphere whose centre is more than two diameters outside the cell is gone. The answer is the retention:
+// mobile centres in the cell over those at the start. Time is told in t* = sqrt(2 L/g), speed in sqrt(2 g L).
+//
+// Work that cannot matter is not done: frozen spheres that no mobile one can touch while overlaps stay below
+// a tenth of a diameter are dropped (particles/reach.hpp), a larger one at a sample is reported unstable; a case ends
+// when no mobile sphere is left, and, under the rule "quiet", when the powder has come to rest.
+#include "solver/dem/state_contacts.hpp"
+#include "solver/geometry/vector.hpp"
+#include "solver/observables/histogram.hpp"
+#include "solver/particles/bytes.hpp"
+#include "solver/particles/tpms_filling.hpp"
+#include "solver/scenes/catalogue.hpp"
+#include "solver/scenes/tpms_discharge_question.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+
+namespace grainsweep {
+namespace {
+
+using geometry::Vec3;
+
+constexpr double margin = 2;            // diameters around the cell before a sphere is gone
+constexpr double most_overlap = 0.1;    // diameters: what the dropped wall spheres presume
+constexpr double sample_time = 0.0165;  // t*, between two samples
+constexpr std::int64_t samples_per_force_sample = 10;
+constexpr double quiet_time = 1.5;    // t*
+constexpr double quiet_speed = 1e-3;  // sqrt(2 g L)
+constexpr double overlap_bin = 0.0005, force_bin = 10;
+constexpr std::size_t layers = 20;
+
+/// What is measured at one moment.
+struct Moment {
+    std::int64_t step = 0;
+    std::int64_t in_cell = 0;  ///< mobile centres in the cell
+    double fastest_down = 0;   ///< in the cell, along gravity, m/s
+    double fastest = 0;        ///< in the cell, m/s
+};
+
+/// One bin of a histogram taken at a step.
+struct Bin {
+    std::int64_t step = 0;
+    double centre = 0;
+    double share = 0;
+};
+
+particles::Packing packing_of(const TpmsQuestion& question, Artefacts& artefacts) {
+    if (const auto file = file_word(question.packing)) {
+        std::ifstream stream{std::string(file->path), std::ios::binary};
+        if (!stream) throw std::invalid_argument("packing: cannot read " + std::string(file->path));
+        const std::string contents{std::istreambuf_iterator<char>(stream), {}};
+        return particles::read_packing(contents, question.edge);
+    }
+    const particles::PackingRequest request{
+        .edge = question.edge, .fraction = question.packing_fraction, .seed = question.packing_seed};
+    const std::string key = particles::packing_key(request);
+    if (const auto kept = artefacts.get(key)) return particles::decode_packing(*kept);
+    particles::Packing packing = particles::random_close_packing(request);
+    artefacts.put(key, particles::encode(packing));
+    return packing;
+}
+
+class TpmsDischarge final : public Scene {
+public:
+    TpmsDischarge(const TpmsQuestion& question, const particles::TpmsFilling& filling);
+
+    void advance(double until) override;
+    void observe(Observations& into) const override;
+    [[nodiscard]] double time() const override { return static_cast<double>(step_) * question_.time_step; }
+    [[nodiscard]] bool finished() const override;
+    [[nodiscard]] double progress() const override {
+        return finished() ? 1 : static_cast<double>(step_) / static_cast<double>(last_step_);
+    }
+    [[nodiscard]] Health health() const override { return {fault_}; }
+    [[nodiscard]] double particle_steps() const override { return engine_->work().particle_steps; }
+    [[nodiscard]] std::map<std::string, double, std::less<>> phase_seconds() const override {
+        return engine_->work().seconds;
+    }
+    void save(Bytes& into) const override;
+    void restore(std::span<const std::byte> from) override;
+    [[nodiscard]] Snapshot snapshot() const override;
+
+private:
+    [[nodiscard]] bool in_cell(const Vec3& x) const;
+    [[nodiscard]] std::size_t layer(const Vec3& x) const;
+    [[nodiscard]] double in_t_star(double step) const {
+        return step * question_.time_step / question_.free_fall_time();
+    }
+    void sample();
+    void sample_forces();
+    /// When the retention first fell to a share, in t*; NaN if it never did.
+    [[nodiscard]] double time_to(double share) const;
+    void observe_profile(Observations& into) const;
+
+    TpmsQuestion question_;
+    std::size_t wall_spheres_ = 0;
+    std::int64_t start_count_ = 0;
+    std::array<std::int64_t, layers> start_layers_{};
+    std::int64_t sample_interval_ = 1, last_step_ = 1;
+    std::unique_ptr<dem::Engine> engine_;
+    dem::State state_;  // of the last sample
+
+    std::int64_t step_ = 0;
+    std::int64_t mobile_left_ = 0;
+    std::int64_t quiet_since_ = 0;  // step of the last sample that was not quiet
+    double max_overlap_ = 0;        // diameters
+    double max_force_ = 0;          // m 9.81
+    std::vector<Moment> moments_;
+    std::vector<Bin> overlaps_, forces_;
+    std::string fault_;
+};
+
+TpmsDischarge::TpmsDischarge(const TpmsQuestion& question, const particles::TpmsFilling& filling)
+    : question_(question), wall_spheres_(filling.wall_spheres) {
+    const double d = question.diameter;
+    dem::Setup setup;
+    for (std::size_t k = 0; k < 3; ++k) {
+        setup.domain.low[k] = -margin * d;
+        setup.domain.high[k] = question.length() + margin * d;
+        setup.gravity[k] = question.gravity * question.down[k];
+    }
+    setup.material = question.material;
+    setup.time_step = question.time_step;
+    const auto add = [&](const Vec3& x, bool mobile) {
+        setup.spheres.push_back({{x[0] * d, x[1] * d, x[2] * d}, {}, {}, d / 2, mobile});
+    };
+    for (const auto& x : filling.mobile) add(x, true);
+    for (const auto& x : filling.wall) add(x, false);
+    start_count_ = mobile_left_ = static_cast<std::int64_t>(filling.mobile.size());
+    for (const auto& sphere : setup.spheres)
+        if (sphere.mobile) ++start_layers_[layer(sphere.position)];
+
+    const double steps_per_t_star = question.free_fall_time() / question.time_step;
+    sample_interval_ = std::max<std::int64_t>(1, std::llround(std::floor(sample_time * steps_per_t_star)));
+    last_step_ = std::max<std::int64_t>(1, std::llround(std::ceil(question.end_time * steps_per_t_star)));
+    dem::Method method;
+    method.precision = question.precision;
+    engine_ = dem::make_engine(setup, method);
+    sample();
+}
+
+bool TpmsDischarge::in_cell(const Vec3& x) const {
+    return std::ranges::all_of(x, [edge = question_.length()](double c) { return c >= 0 && c <= edge; });
+}
+
+std::size_t TpmsDischarge::layer(const Vec3& x) const {
+    const double place = x[2] / question_.length() * static_cast<double>(layers);
+    return static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(layers - 1)));
+}
+
+void TpmsDischarge::advance(double until) {
+    while (time() < until && !finished() && fault_.empty()) {
+        const std::int64_t next_sample = (step_ / sample_interval_ + 1) * sample_interval_;
+        const auto asked = static_cast<std::int64_t>(std::min(std::ceil(until / question_.time_step), 9e18));
+        const std::int64_t target = std::min({next_sample, last_step_, std::max(asked, step_ + 1)});
+        const std::int64_t before = engine_->work().steps;
+        engine_->run(target - step_);
+        step_ += engine_->work().steps - before;
+        fault_ = engine_->fault();
+        if (step_ == next_sample || step_ == last_step_) sample();
+    }
+}
+
+void TpmsDischarge::sample() {
+    engine_->state(state_);
+    Moment now{.step = step_, .in_cell = 0, .fastest_down = 0, .fastest = 0};
+    mobile_left_ = 0;
+    for (std::size_t i = 0; i < state_.id.size(); ++i) {
+        if (state_.mobile[i] == 0) continue;
+        ++mobile_left_;
+        if (!in_cell(state_.position[i])) continue;
+        ++now.in_cell;
+        now.fastest_down = std::max(now.fastest_down, geometry::dot(state_.velocity[i], question_.down));
+        now.fastest = std::max(now.fastest, geometry::norm(state_.velocity[i]));
+    }
+    const bool quiet = !moments_.empty() && now.in_cell == moments_.back().in_cell &&
+                       now.fastest < quiet_speed * question_.free_fall_speed();
+    if (!quiet) quiet_since_ = step_;
+    moments_.push_back(now);
+    if ((step_ / sample_interval_) % samples_per_force_sample == 0 || step_ == last_step_) sample_forces();
+
+    max_overlap_ = std::max(max_overlap_, engine_->largest_overlap());
+    if (fault_.empty() && max_overlap_ > most_overlap) {
+        char sentence[160];
+        std::snprintf(sentence, sizeof sentence,
+                      "two particles overlap by %.3g of a diameter at %.4g s: more than the %.3g up to which the "
+                      "wall is known to be tight",
+                      max_overlap_, time(), most_overlap);
+        fault_ = sentence;
+    }
+}
+
+void TpmsDischarge::sample_forces() {
+    std::vector<double> overlaps, forces;
+    for (const auto& contact : dem::contacts_of(state_, question_.material)) {
+        overlaps.push_back(contact.overlap / question_.diameter);
+        forces.push_back(std::abs(contact.normal_force) / question_.standard_weight());
+        max_force_ = std::max(max_force_, forces.back());
+    }
+    for (const auto& [centre, share] : observables::histogram(overlaps, overlap_bin))
+        overlaps_.push_back({step_, centre, share});
+    for (const auto& [centre, share] : observables::histogram(forces, force_bin))
+        forces_.push_back({step_, centre, share});
+}
+
+bool TpmsDischarge::finished() const {
+    if (step_ >= last_step_ || mobile_left_ == 0) return true;
+    return question_.stop_when_quiet && in_t_star(static_cast<double>(step_ - quiet_since_)) >= quiet_time;
+}
+
+double TpmsDischarge::time_to(double share) const {
+    const double target = share * static_cast<double>(start_count_);
+    for (std::size_t k = 1; k < moments_.size(); ++k) {
+        const auto before = static_cast<double>(moments_[k - 1].in_cell);
+        const auto after = static_cast<double>(moments_[k].in_cell);
+        if (after > target) continue;
+        const double part = before > after ? (before - target) / (before - after) : 0;
+        const auto from = static_cast<double>(moments_[k - 1].step);
+        return in_t_star(from + part * (static_cast<double>(moments_[k].step) - from));
+    }
+    return std::numeric_limits<double>::quiet_NaN();
+}
+
+void TpmsDischarge::observe_profile(Observations& into) const {
+    dem::State state;
+    engine_->state(state);
+    std::array<std::int64_t, layers> now{};
+    for (std::size_t i = 0; i < state.id.size(); ++i)
+        if (state.mobile[i] != 0 && in_cell(state.position[i])) ++now[layer(state.position[i])];
+    auto& profile = into.series["retained_profile"];
+    for (std::size_t k = 0; k < layers; ++k) {
+        if (start_layers_[k] == 0) continue;
+        const double centre = (static_cast<double>(k) + 0.5) / static_cast<double>(layers);
+        const double share = static_cast<double>(now[k]) / static_cast<double>(start_layers_[k]);
+        profile.push_back({.bin = centre, .value = share});
+    }
+}
+
+void TpmsDischarge::observe(Observations& into) const {
+    const auto start = static_cast<double>(start_count_);
+    double peak = 0;
+    auto& retention = into.series["retention_series"];
+    auto& velocity = into.series["velocity_series"];
+    for (const Moment& moment : moments_) {
+        const double t = in_t_star(static_cast<double>(moment.step));
+        const double speed = moment.fastest_down / question_.free_fall_speed();
+        retention.push_back({.time = t, .value = static_cast<double>(moment.in_cell) / start});
+        velocity.push_back({.time = t, .value = speed});
+        peak = std::max(peak, speed);
+    }
+    const auto add_bins = [&](const char* name, const std::vector<Bin>& bins) {
+        auto& series = into.series[name];
+        for (const Bin& bin : bins)
+            series.push_back({.time = in_t_star(static_cast<double>(bin.step)), .bin = bin.centre, .value = bin.share});
+    };
+    add_bins("overlap_histogram", overlaps_);
+    add_bins("force_histogram", forces_);
+    observe_profile(into);
+    into.scalars["retention"] = static_cast<double>(moments_.back().in_cell) / start;
+    into.scalars["time_to_half"] = time_to(0.5);
+    into.scalars["time_to_tenth"] = time_to(0.1);
+    into.scalars["peak_velocity"] = peak;
+    into.scalars["max_overlap"] = max_overlap_;
+    into.scalars["max_force"] = max_force_;
+    into.scalars["particles"] = start;
+    into.scalars["wall_particles"] = static_cast<double>(wall_spheres_);
+}
+
+void TpmsDischarge::save(Bytes& into) const {
+    particles::ByteWriter out(into);
+    out.put(step_);
+    out.put(mobile_left_);
+    out.put(quiet_since_);
+    out.put(max_overlap_);
+    out.put(max_force_);
+    out.put(moments_);
+    out.put(overlaps_);
+    out.put(forces_);
+    out.put(fault_);
+    std::vector<std::byte> engine;
+    engine_->save(engine);
+    out.put(engine);
+}
+
+void TpmsDischarge::restore(std::span<const std::byte> from) {
+    particles::ByteReader in(from);
+    in.get(step_);
+    in.get(mobile_left_);
+    in.get(quiet_since_);
+    in.get(max_overlap_);
+    in.get(max_force_);
+    in.get(moments_);
+    in.get(overlaps_);
+    in.get(forces_);
+    in.get(fault_);
+    std::vector<std::byte> engine;
+    in.get(engine);
+    in.finish();
+    engine_->restore(engine);
+    engine_->state(state_);
+}
+
+Snapshot TpmsDischarge::snapshot() const {
+    dem::State state;
+    engine_->state(state);
+    Snapshot picture;
+    picture.positions = state.position;
+    picture.scalars["radius"] = state.radius;
+    picture.scalars["mobile"].assign(state.mobile.begin(), state.mobile.end());
+    picture.vectors["velocity"] = state.velocity;
+    return picture;
+}
+
+/// Processor seconds: particle steps of the mobile spheres on average in the box, and the packing.
+double estimate_cost(const Inputs& inputs) {
+    const TpmsQuestion question(inputs, 1);
+    const double spheres = 1.18 * std::pow(question.edge, 3);
+    const double steps = question.end_time * question.free_fall_time() / question.time_step;
+    const double cohesive = std::min(1.0, question.material.cohesion / 35e3);
+    const double mobile = 0.42 * spheres * (0.25 + 0.5 * cohesive);
+    const bool mixed = question.precision == dem::Method::Precision::mixed;
+    return steps * mobile * (mixed ? 25e-9 : 150e-9) + 4e-5 * spheres;
+}
+
+}  // namespace
+
+SceneInfo tpms_discharge_scene() {
+    SceneInfo info;
+    info.name = "tpms_discharge";
+    info.summary = "powder leaving a cell walled by a triply periodic minimal surface under gravity";
+    info.revision = 1;
+    info.parameters = tpms_discharge_parameters();
+    info.observables = tpms_discharge_observables();
+    info.accuracy["fast"] = {{"precision", std::string("mixed")}};
+    info.accuracy["balanced"] = {{"precision", std::string("mixed")}};
+    info.accuracy["reference"] = {{"precision", std::string("double")}};
+    info.make = [](const Inputs& inputs, std::uint64_t seed, Artefacts& artefacts) -> std::unique_ptr<Scene> {
+        const TpmsQuestion question(inputs, seed);
+        const geometry::TpmsShell shell(question.cell, question.side, question.edge, question.shell);
+        const auto filling = particles::fill_tpms(packing_of(question, artefacts), shell, 1 - most_overlap);
+        if (filling.mobile.empty())
+            throw std::invalid_argument(
+                "the shell leaves no room for a mobile particle: make it thinner or the edge longer");
+        return std::make_unique<TpmsDischarge>(question, filling);
+    };
+    info.estimate_cost = estimate_cost;
+    info.proven_answer = [](const Inputs&) -> std::optional<ProvenAnswer> { return std::nullopt; };
+    return info;
+}
+
+}  // namespace grainsweep
