@@ -3,6 +3,7 @@
 // Scene, observables and default values after Wu (2020), "Parametric analysis of particle spreading with discrete
 // element method", MSc thesis, Embry-Riddle Aeronautical University; the layer is flat and gated instead of a free
 // pile, which runs out before the blade arrives. spreading/study.hpp has the geometry, solver/dem the mechanics.
+#include "solver/dem/fast/mixed_engine.hpp"
 #include "solver/scenes/catalogue.hpp"
 #include "solver/scenes/spreading/experiment.hpp"
 
@@ -95,11 +96,29 @@ std::vector<ObservableSpec> observables_of_spreading() {
     };
 }
 
-/// Measured on one core: seconds per particle and step while settling and sweeping (lists are rebuilt more often).
+/// Seconds per particle and step on one core, settling and sweeping (lists are rebuilt more often), measured with
+/// the 16 cases of tests/bench/spreading_reference.
+struct Pace {
+    double settling, sweeping;
+};
+
+Pace pace_of(const dem::Method& method) {
+    if (method.precision == dem::Method::Precision::double_precision) return {90e-9, 100e-9};
+    switch (dem::fast::best_path()) {
+        case dem::Method::Path::avx512:
+            return {17e-9, 22e-9};
+        case dem::Method::Path::avx2:
+            return {26e-9, 34e-9};
+        default:
+            return {48e-9, 60e-9};
+    }
+}
+
 double estimate_cost(const Inputs& inputs) {
     const auto s = spreading::study_of(inputs);
+    const auto [settling, sweeping] = pace_of(method_of(inputs));
     return static_cast<double>(s.particles) *
-           (80e-9 * static_cast<double>(s.settle_steps) + 95e-9 * static_cast<double>(s.sweep_steps));
+           (settling * static_cast<double>(s.settle_steps) + sweeping * static_cast<double>(s.sweep_steps));
 }
 
 }  // namespace

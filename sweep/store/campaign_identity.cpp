@@ -20,7 +20,7 @@ namespace {
 
 std::string joined(const std::vector<Value>& values) {
     std::string text;
-    for (const auto& value : values) text += (text.empty() ? "" : " | ") + campaign::to_text(value);
+    for (const auto& value : values) text += (text.empty() ? "" : " | ") + campaign::identity_text(value);
     return text;
 }
 
@@ -97,7 +97,7 @@ CampaignTexts texts_of(const Campaign& campaign) {
     CampaignTexts texts;
     for (const auto& factor : campaign.space.factors) texts.factors += line_of(factor) + '\n';
     for (const auto& [name, value] : campaign.space.fixed)
-        texts.fixed += fmt::format("{} = {}\n", name, campaign::to_text(value));
+        texts.fixed += fmt::format("{} = {}\n", name, campaign::identity_text(value));
     for (const auto& [name, value] : campaign.request.options) {
         if (std::holds_alternative<designs::Rows>(value)) continue;  // compared row by row, by what they ask
         (says_which(name, value) ? texts.options : texts.extent) += fmt::format("{} = {}\n", name, text_of(value));

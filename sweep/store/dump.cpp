@@ -51,7 +51,7 @@ void dump_inputs(const Connection& db, std::int64_t key, const Sink& sink) {
         "WHERE i.case_key = ? ORDER BY q.name",
         key);
     while (rows.next())
-        sink(fmt::format("  {} = {}", rows.get<std::string_view>(0), escaped(campaign::to_text(rows.value(1)))));
+        sink(fmt::format("  {} = {}", rows.get<std::string_view>(0), escaped(campaign::identity_text(rows.value(1)))));
 }
 
 void dump_observations(const Connection& db, std::int64_t key, const Sink& sink) {

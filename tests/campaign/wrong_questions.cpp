@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,10 @@ struct Wrong {
     std::string what, text;
     std::vector<std::string> says;  ///< words the sentence must contain
 };
+
+void PrintTo(const Wrong& wrong, std::ostream* out) {
+    *out << wrong.what;
+}
 
 std::string good_with(const std::string& from, const std::string& to) {
     std::string text = R"({"campaign": "c", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
