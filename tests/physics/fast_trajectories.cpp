@@ -42,7 +42,9 @@ Rows read_rows(const std::string& name) {
     return rows;
 }
 
-dem::Vec3 vec(const json& a) { return {a[0], a[1], a[2]}; }
+dem::Vec3 vec(const json& a) {
+    return {a[0], a[1], a[2]};
+}
 
 dem::Setup setup_of(const json& c) {
     dem::Setup s;
@@ -141,6 +143,7 @@ TEST(FastTrajectories, CohesivePairsRestAtTheirEquilibrium) {
         engine->run(40000);
         ASSERT_EQ(engine->fault(), "");
         // positions are multiples of the room over 2^31; two of them
-        EXPECT_NEAR(engine->largest_overlap() * 2 * radius, low, 1e-6 * low + 2 * (2.05 * 80 + 32) * radius / 4294967296.0);
+        EXPECT_NEAR(engine->largest_overlap() * 2 * radius, low,
+                    1e-6 * low + 2 * (2.05 * 80 + 32) * radius / 4294967296.0);
     }
 }

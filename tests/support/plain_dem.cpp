@@ -11,11 +11,21 @@ using std::numbers::pi;
 
 namespace {
 
-Vec3 operator+(const Vec3& a, const Vec3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-Vec3 operator-(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Vec3 operator*(double s, const Vec3& a) { return {s * a[0], s * a[1], s * a[2]}; }
-double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-double norm(const Vec3& a) { return std::sqrt(dot(a, a)); }
+Vec3 operator+(const Vec3& a, const Vec3& b) {
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+Vec3 operator-(const Vec3& a, const Vec3& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+Vec3 operator*(double s, const Vec3& a) {
+    return {s * a[0], s * a[1], s * a[2]};
+}
+double dot(const Vec3& a, const Vec3& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+double norm(const Vec3& a) {
+    return std::sqrt(dot(a, a));
+}
 Vec3 cross(const Vec3& a, const Vec3& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
@@ -143,9 +153,10 @@ void PlainDem::wall(std::size_t i, std::size_t w, bool update) {
     c.surface = (ri - c.overlap / 2) * w_[i];
     c.radius = ri;
     c.mass = mass(i);
-    const double area = m.cohesion_area == dem::CohesionArea::sjkr    ? pi * (2 * ri * c.overlap - c.overlap * c.overlap)
-                        : m.cohesion_area == dem::CohesionArea::sjkr2 ? 2 * pi * ri * c.overlap
-                                                                      : pi * (2 * ri * c.overlap - c.overlap * c.overlap) / 4;
+    const double area = m.cohesion_area == dem::CohesionArea::sjkr ? pi * (2 * ri * c.overlap - c.overlap * c.overlap)
+                        : m.cohesion_area == dem::CohesionArea::sjkr2
+                            ? 2 * pi * ri * c.overlap
+                            : pi * (2 * ri * c.overlap - c.overlap * c.overlap) / 4;
     c.neck = m.cohesion * area;
     Vec3 force{}, turn{};
     respond(c, update, wall_history_[{i, w}], force, turn);

@@ -244,7 +244,8 @@ TEST(FastEngine, MomentumOfAFreeClusterStays) {
         const auto momentum = [&](std::size_t axis) {
             engine->state(s);
             double sum = 0;
-            for (std::size_t i = 0; i < s.id.size(); ++i) sum += std::pow(s.radius[i] / 0.5e-3, 3) * s.velocity[i][axis];
+            for (std::size_t i = 0; i < s.id.size(); ++i)
+                sum += std::pow(s.radius[i] / 0.5e-3, 3) * s.velocity[i][axis];
             return sum;
         };
         double start[3];

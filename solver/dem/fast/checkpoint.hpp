@@ -22,7 +22,9 @@ public:
     requires std::is_trivially_copyable_v<T>
     void value(const T& v) { bytes(&v, sizeof v); }
     template <class T>
-    void column(const Column<T>& c, std::size_t count) { bytes(c.data(), count * sizeof(T)); }
+    void column(const Column<T>& c, std::size_t count) {
+        bytes(c.data(), count * sizeof(T));
+    }
     template <class T>
     void list(const std::vector<T>& v) {
         value(v.size());

@@ -21,7 +21,9 @@ void* allocate(std::size_t bytes) {
     return memory;
 }
 
-void give_back(void* memory) noexcept { std::free(memory); }
+void give_back(void* memory) noexcept {
+    std::free(memory);
+}
 
 void Columns::bind(Field& f) const {
     f.records = records.data();

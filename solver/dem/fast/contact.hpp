@@ -40,39 +40,43 @@ GRAINSWEEP_LANES F inverse(F a) {
 struct V3 {
     F x, y, z;
 };
-GRAINSWEEP_LANES F dot(V3 a, V3 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
+GRAINSWEEP_LANES F dot(V3 a, V3 b) {
+    return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z));
+}
 /// c + a x b
 GRAINSWEEP_LANES V3 add_cross(V3 c, V3 a, V3 b) {
-    return {fnma(a.z, b.y, fma(a.y, b.z, c.x)), fnma(a.x, b.z, fma(a.z, b.x, c.y)),
-            fnma(a.y, b.x, fma(a.x, b.y, c.z))};
+    return {fnma(a.z, b.y, fma(a.y, b.z, c.x)), fnma(a.x, b.z, fma(a.z, b.x, c.y)), fnma(a.y, b.x, fma(a.x, b.y, c.z))};
 }
 GRAINSWEEP_LANES V3 cross(V3 a, V3 b) {
     return {fms(a.y, b.z, a.z * b.y), fms(a.z, b.x, a.x * b.z), fms(a.x, b.y, a.y * b.x)};
 }
-GRAINSWEEP_LANES V3 keep(M m, V3 a) { return {keep(m, a.x), keep(m, a.y), keep(m, a.z)}; }
-GRAINSWEEP_LANES V3 operator*(V3 a, F b) { return {a.x * b, a.y * b, a.z * b}; }
+GRAINSWEEP_LANES V3 keep(M m, V3 a) {
+    return {keep(m, a.x), keep(m, a.y), keep(m, a.z)};
+}
+GRAINSWEEP_LANES V3 operator*(V3 a, F b) {
+    return {a.x * b, a.y * b, a.z * b};
+}
 
 /// What geometry and motion say about one contact per lane.
 struct Meeting {
     M touching;
     V3 normal;
     F overlap;
-    V3 velocity;      ///< v_i - v_j
-    V3 surface;       ///< (R_i - d/2) w_i + (R_j - d/2) w_j
-    F root_radius;    ///< sqrt(R*)
-    F damping;        ///< -2 sqrt(5/6) beta sqrt(2 E* m*)
-    F neck;           ///< cohesive force
+    V3 velocity;    ///< v_i - v_j
+    V3 surface;     ///< (R_i - d/2) w_i + (R_j - d/2) w_j
+    F root_radius;  ///< sqrt(R*)
+    F damping;      ///< -2 sqrt(5/6) beta sqrt(2 E* m*)
+    F neck;         ///< cohesive force
 };
 
 /// Force on i and direction of the torques, n x (-F_t); zero in lanes that do not touch. Updates the history.
 template <class Law>
-GRAINSWEEP_LANES void respond(const Constants& c, const Meeting& m, F history_step, V3& history, V3& force,
-                              V3& turn) {
+GRAINSWEEP_LANES void respond(const Constants& c, const Meeting& m, F history_step, V3& history, V3& force, V3& turn) {
     const V3 n = m.normal;
     const F vn = dot(m.velocity, n);
-    // sqrt(d) and from it sqrt(sqrt(R* d)), both by inverse roots; lanes with d <= 0 give rubbish, dropped below
+    // sqrt(R* d) and its root: one by the divider, one by multiplications, so that both units work
     const F d = max(m.overlap, broadcast(1e-30f));
-    const F root = m.root_radius * (d * inverse_root(d));
+    const F root = m.root_radius * sqrt(d);
     const F damping = (root * inverse_root(root)) * m.damping;
     F normal = fnma(damping, vn, root * broadcast(c.normal) * d);
     F limit = normal;
@@ -109,7 +113,8 @@ GRAINSWEEP_LANES void respond(const Constants& c, const Meeting& m, F history_st
 
 /// Cohesive force of a pair; `closeness` is (R_i+R_j)^2 - r^2.
 template <class Law>
-GRAINSWEEP_LANES F pair_neck(const Constants& c, F closeness, F inverse_distance, F overlap, F difference, F root_radius) {
+GRAINSWEEP_LANES F pair_neck(const Constants& c, F closeness, F inverse_distance, F overlap, F difference,
+                             F root_radius) {
     F lens = closeness * broadcast(c.neck_lens);
     if constexpr (Law::unequal)
         lens = lens * fnma(difference * difference, inverse_distance * inverse_distance, broadcast(1.0f));

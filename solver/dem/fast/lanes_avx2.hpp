@@ -21,53 +21,120 @@ struct M {
     __m256 v;
 };
 
-GRAINSWEEP_LANES F broadcast(float a) { return {_mm256_set1_ps(a)}; }
-GRAINSWEEP_LANES I broadcast(std::int32_t a) { return {_mm256_set1_epi32(a)}; }
-GRAINSWEEP_LANES D broadcast(double a) { return {_mm256_set1_pd(a), _mm256_set1_pd(a)}; }
-GRAINSWEEP_LANES F load(const float* p) { return {_mm256_loadu_ps(p)}; }
-GRAINSWEEP_LANES I load(const std::int32_t* p) { return {_mm256_loadu_si256(reinterpret_cast<const __m256i*>(p))}; }
-GRAINSWEEP_LANES I load(const std::uint32_t* p) { return load(reinterpret_cast<const std::int32_t*>(p)); }
-GRAINSWEEP_LANES void store(float* p, F a) { _mm256_storeu_ps(p, a.v); }
-GRAINSWEEP_LANES void store(std::int32_t* p, I a) { _mm256_storeu_si256(reinterpret_cast<__m256i*>(p), a.v); }
-GRAINSWEEP_LANES void store(std::uint32_t* p, I a) { store(reinterpret_cast<std::int32_t*>(p), a); }
+GRAINSWEEP_LANES F broadcast(float a) {
+    return {_mm256_set1_ps(a)};
+}
+GRAINSWEEP_LANES I broadcast(std::int32_t a) {
+    return {_mm256_set1_epi32(a)};
+}
+GRAINSWEEP_LANES D broadcast(double a) {
+    return {_mm256_set1_pd(a), _mm256_set1_pd(a)};
+}
+GRAINSWEEP_LANES F load(const float* p) {
+    return {_mm256_loadu_ps(p)};
+}
+GRAINSWEEP_LANES I load(const std::int32_t* p) {
+    return {_mm256_loadu_si256(reinterpret_cast<const __m256i*>(p))};
+}
+GRAINSWEEP_LANES I load(const std::uint32_t* p) {
+    return load(reinterpret_cast<const std::int32_t*>(p));
+}
+GRAINSWEEP_LANES void store(float* p, F a) {
+    _mm256_storeu_ps(p, a.v);
+}
+GRAINSWEEP_LANES void store(std::int32_t* p, I a) {
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(p), a.v);
+}
+GRAINSWEEP_LANES void store(std::uint32_t* p, I a) {
+    store(reinterpret_cast<std::int32_t*>(p), a);
+}
 
-GRAINSWEEP_LANES F operator+(F a, F b) { return {_mm256_add_ps(a.v, b.v)}; }
-GRAINSWEEP_LANES F operator-(F a, F b) { return {_mm256_sub_ps(a.v, b.v)}; }
-GRAINSWEEP_LANES F operator*(F a, F b) { return {_mm256_mul_ps(a.v, b.v)}; }
-GRAINSWEEP_LANES F fma(F a, F b, F c) { return {_mm256_fmadd_ps(a.v, b.v, c.v)}; }
-GRAINSWEEP_LANES F fms(F a, F b, F c) { return {_mm256_fmsub_ps(a.v, b.v, c.v)}; }
-GRAINSWEEP_LANES F fnma(F a, F b, F c) { return {_mm256_fnmadd_ps(a.v, b.v, c.v)}; }
-GRAINSWEEP_LANES F min(F a, F b) { return {_mm256_min_ps(a.v, b.v)}; }
-GRAINSWEEP_LANES F max(F a, F b) { return {_mm256_max_ps(a.v, b.v)}; }
-GRAINSWEEP_LANES F abs(F a) { return {_mm256_andnot_ps(_mm256_set1_ps(-0.0F), a.v)}; }
-GRAINSWEEP_LANES I operator-(I a, I b) { return {_mm256_sub_epi32(a.v, b.v)}; }
-GRAINSWEEP_LANES I operator+(I a, I b) { return {_mm256_add_epi32(a.v, b.v)}; }
-GRAINSWEEP_LANES I operator&(I a, I b) { return {_mm256_and_si256(a.v, b.v)}; }
+GRAINSWEEP_LANES F operator+(F a, F b) {
+    return {_mm256_add_ps(a.v, b.v)};
+}
+GRAINSWEEP_LANES F operator-(F a, F b) {
+    return {_mm256_sub_ps(a.v, b.v)};
+}
+GRAINSWEEP_LANES F operator*(F a, F b) {
+    return {_mm256_mul_ps(a.v, b.v)};
+}
+GRAINSWEEP_LANES F fma(F a, F b, F c) {
+    return {_mm256_fmadd_ps(a.v, b.v, c.v)};
+}
+GRAINSWEEP_LANES F fms(F a, F b, F c) {
+    return {_mm256_fmsub_ps(a.v, b.v, c.v)};
+}
+GRAINSWEEP_LANES F fnma(F a, F b, F c) {
+    return {_mm256_fnmadd_ps(a.v, b.v, c.v)};
+}
+GRAINSWEEP_LANES F min(F a, F b) {
+    return {_mm256_min_ps(a.v, b.v)};
+}
+GRAINSWEEP_LANES F max(F a, F b) {
+    return {_mm256_max_ps(a.v, b.v)};
+}
+GRAINSWEEP_LANES F abs(F a) {
+    return {_mm256_andnot_ps(_mm256_set1_ps(-0.0F), a.v)};
+}
+GRAINSWEEP_LANES I operator-(I a, I b) {
+    return {_mm256_sub_epi32(a.v, b.v)};
+}
+GRAINSWEEP_LANES I operator+(I a, I b) {
+    return {_mm256_add_epi32(a.v, b.v)};
+}
+GRAINSWEEP_LANES I operator&(I a, I b) {
+    return {_mm256_and_si256(a.v, b.v)};
+}
 
-GRAINSWEEP_LANES F approximate_rsqrt(F a) { return {_mm256_rsqrt_ps(a.v)}; }
-GRAINSWEEP_LANES F approximate_rcp(F a) { return {_mm256_rcp_ps(a.v)}; }
+GRAINSWEEP_LANES F sqrt(F a) {
+    return {_mm256_sqrt_ps(a.v)};
+}
+GRAINSWEEP_LANES F approximate_rsqrt(F a) {
+    return {_mm256_rsqrt_ps(a.v)};
+}
+GRAINSWEEP_LANES F approximate_rcp(F a) {
+    return {_mm256_rcp_ps(a.v)};
+}
 
-GRAINSWEEP_LANES F single(I a) { return {_mm256_cvtepi32_ps(a.v)}; }
+GRAINSWEEP_LANES F single(I a) {
+    return {_mm256_cvtepi32_ps(a.v)};
+}
 GRAINSWEEP_LANES D exact(I a) {
     return {_mm256_cvtepi32_pd(_mm256_castsi256_si128(a.v)), _mm256_cvtepi32_pd(_mm256_extracti128_si256(a.v, 1))};
 }
 GRAINSWEEP_LANES D exact(F a) {
     return {_mm256_cvtps_pd(_mm256_castps256_ps128(a.v)), _mm256_cvtps_pd(_mm256_extractf128_ps(a.v, 1))};
 }
-GRAINSWEEP_LANES F single(D a) { return {_mm256_set_m128(_mm256_cvtpd_ps(a.hi), _mm256_cvtpd_ps(a.lo))}; }
-GRAINSWEEP_LANES D operator+(D a, D b) { return {_mm256_add_pd(a.lo, b.lo), _mm256_add_pd(a.hi, b.hi)}; }
-GRAINSWEEP_LANES D operator-(D a, D b) { return {_mm256_sub_pd(a.lo, b.lo), _mm256_sub_pd(a.hi, b.hi)}; }
-GRAINSWEEP_LANES D operator*(D a, D b) { return {_mm256_mul_pd(a.lo, b.lo), _mm256_mul_pd(a.hi, b.hi)}; }
-GRAINSWEEP_LANES D operator/(D a, D b) { return {_mm256_div_pd(a.lo, b.lo), _mm256_div_pd(a.hi, b.hi)}; }
+GRAINSWEEP_LANES F single(D a) {
+    return {_mm256_set_m128(_mm256_cvtpd_ps(a.hi), _mm256_cvtpd_ps(a.lo))};
+}
+GRAINSWEEP_LANES D operator+(D a, D b) {
+    return {_mm256_add_pd(a.lo, b.lo), _mm256_add_pd(a.hi, b.hi)};
+}
+GRAINSWEEP_LANES D operator-(D a, D b) {
+    return {_mm256_sub_pd(a.lo, b.lo), _mm256_sub_pd(a.hi, b.hi)};
+}
+GRAINSWEEP_LANES D operator*(D a, D b) {
+    return {_mm256_mul_pd(a.lo, b.lo), _mm256_mul_pd(a.hi, b.hi)};
+}
+GRAINSWEEP_LANES D operator/(D a, D b) {
+    return {_mm256_div_pd(a.lo, b.lo), _mm256_div_pd(a.hi, b.hi)};
+}
 GRAINSWEEP_LANES D fma(D a, D b, D c) {
     return {_mm256_fmadd_pd(a.lo, b.lo, c.lo), _mm256_fmadd_pd(a.hi, b.hi, c.hi)};
 }
 GRAINSWEEP_LANES D fnma(D a, D b, D c) {
     return {_mm256_fnmadd_pd(a.lo, b.lo, c.lo), _mm256_fnmadd_pd(a.hi, b.hi, c.hi)};
 }
-GRAINSWEEP_LANES D min(D a, D b) { return {_mm256_min_pd(a.lo, b.lo), _mm256_min_pd(a.hi, b.hi)}; }
-GRAINSWEEP_LANES D max(D a, D b) { return {_mm256_max_pd(a.lo, b.lo), _mm256_max_pd(a.hi, b.hi)}; }
-GRAINSWEEP_LANES D sqrt(D a) { return {_mm256_sqrt_pd(a.lo), _mm256_sqrt_pd(a.hi)}; }
+GRAINSWEEP_LANES D min(D a, D b) {
+    return {_mm256_min_pd(a.lo, b.lo), _mm256_min_pd(a.hi, b.hi)};
+}
+GRAINSWEEP_LANES D max(D a, D b) {
+    return {_mm256_max_pd(a.lo, b.lo), _mm256_max_pd(a.hi, b.hi)};
+}
+GRAINSWEEP_LANES D sqrt(D a) {
+    return {_mm256_sqrt_pd(a.lo), _mm256_sqrt_pd(a.hi)};
+}
 GRAINSWEEP_LANES D nearest_integer(D a) {
     return {_mm256_round_pd(a.lo, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC),
             _mm256_round_pd(a.hi, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)};
@@ -78,12 +145,24 @@ GRAINSWEEP_LANES D where_less(D a, D b, D c, D d) {
             _mm256_blendv_pd(d.hi, c.hi, _mm256_cmp_pd(a.hi, b.hi, _CMP_LT_OQ))};
 }
 
-GRAINSWEEP_LANES M operator<(F a, F b) { return {_mm256_cmp_ps(a.v, b.v, _CMP_LT_OQ)}; }
-GRAINSWEEP_LANES M operator&(M a, M b) { return {_mm256_and_ps(a.v, b.v)}; }
-GRAINSWEEP_LANES F keep(M m, F a) { return {_mm256_and_ps(m.v, a.v)}; }
-GRAINSWEEP_LANES F drop(M m, F a) { return {_mm256_andnot_ps(m.v, a.v)}; }
-GRAINSWEEP_LANES F select(M m, F a, F b) { return {_mm256_blendv_ps(b.v, a.v, m.v)}; }
-GRAINSWEEP_LANES unsigned bits(M m) { return static_cast<unsigned>(_mm256_movemask_ps(m.v)); }
+GRAINSWEEP_LANES M operator<(F a, F b) {
+    return {_mm256_cmp_ps(a.v, b.v, _CMP_LT_OQ)};
+}
+GRAINSWEEP_LANES M operator&(M a, M b) {
+    return {_mm256_and_ps(a.v, b.v)};
+}
+GRAINSWEEP_LANES F keep(M m, F a) {
+    return {_mm256_and_ps(m.v, a.v)};
+}
+GRAINSWEEP_LANES F drop(M m, F a) {
+    return {_mm256_andnot_ps(m.v, a.v)};
+}
+GRAINSWEEP_LANES F select(M m, F a, F b) {
+    return {_mm256_blendv_ps(b.v, a.v, m.v)};
+}
+GRAINSWEEP_LANES unsigned bits(M m) {
+    return static_cast<unsigned>(_mm256_movemask_ps(m.v));
+}
 GRAINSWEEP_LANES unsigned sign_bits(I a) {
     return static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(a.v)));
 }
@@ -137,7 +216,9 @@ GRAINSWEEP_LANES F expand(F a, unsigned m) {
 GRAINSWEEP_LANES I with_sign_bits(I a, unsigned m) {
     return {_mm256_or_si256(a.v, _mm256_slli_epi32(lanes_in(m), 31))};
 }
-GRAINSWEEP_LANES I lane_numbers() { return {_mm256_set_epi32(7, 6, 5, 4, 3, 2, 1, 0)}; }
+GRAINSWEEP_LANES I lane_numbers() {
+    return {_mm256_set_epi32(7, 6, 5, 4, 3, 2, 1, 0)};
+}
 
 GRAINSWEEP_LANES const Record* record_at(const Record* r, Place p) {
     return reinterpret_cast<const Record*>(reinterpret_cast<const char*>(r) + std::uint64_t{p} * (sizeof(Record) / 8));
@@ -146,7 +227,9 @@ GRAINSWEEP_LANES Force* force_at(Force* f, Place p) {
     return reinterpret_cast<Force*>(reinterpret_cast<char*>(f) + std::uint64_t{p} * (sizeof(Force) / 8));
 }
 
-GRAINSWEEP_LANES void prefetch(const void* p) { _mm_prefetch(static_cast<const char*>(p), _MM_HINT_T0); }
+GRAINSWEEP_LANES void prefetch(const void* p) {
+    _mm_prefetch(static_cast<const char*>(p), _MM_HINT_T0);
+}
 
 /// The same 16-byte block of records k[0] and k[4].
 template <int Block>
@@ -156,8 +239,7 @@ GRAINSWEEP_LANES __m256 two_blocks(const Record* r, const Place* k) {
 }
 
 /// Position of first minus position of second, for eight pairs.
-GRAINSWEEP_LANES void load_offsets(const Record* r, const Place* first, const Place* second, I& x, I& y,
-                                   I& z) {
+GRAINSWEEP_LANES void load_offsets(const Record* r, const Place* first, const Place* second, I& x, I& y, I& z) {
     __m256i a[4];
     for (int e = 0; e < 4; ++e)
         a[e] = _mm256_sub_epi32(_mm256_castps_si256(two_blocks<0>(r, first + e)),
@@ -189,7 +271,8 @@ GRAINSWEEP_LANES void load_motion(const Record* r, const Place* first, const Pla
     const __m256 sign = _mm256_set_ps(1, 1, 1, 1, 1, -1, -1, -1);
     __m256 z[8], half[2][4];
     for (int q = 0; q < 8; ++q)
-        z[q] = _mm256_fmadd_ps(_mm256_loadu_ps(record_at(r, second[q])->velocity), sign, _mm256_loadu_ps(record_at(r, first[q])->velocity));
+        z[q] = _mm256_fmadd_ps(_mm256_loadu_ps(record_at(r, second[q])->velocity), sign,
+                               _mm256_loadu_ps(record_at(r, first[q])->velocity));
     transpose_blocks(z, half[0]);
     transpose_blocks(z + 4, half[1]);
     for (int c = 0; c < 4; ++c) {
@@ -202,8 +285,7 @@ GRAINSWEEP_LANES void load_motion(const Record* r, const Place* first, const Pla
 GRAINSWEEP_LANES void load_surface(const Record* r, const Place* first, const Place* second, F* rows) {
     const __m256 sign = _mm256_set_ps(-1, 1, 1, 1, -1, 1, 1, 1);
     __m256 a[4], out[4];
-    for (int e = 0; e < 4; ++e)
-        a[e] = _mm256_fmadd_ps(two_blocks<3>(r, second + e), sign, two_blocks<3>(r, first + e));
+    for (int e = 0; e < 4; ++e) a[e] = _mm256_fmadd_ps(two_blocks<3>(r, second + e), sign, two_blocks<3>(r, first + e));
     transpose_blocks(a, out);
     for (int c = 0; c < 4; ++c) rows[c].v = out[c];
 }
@@ -236,8 +318,8 @@ GRAINSWEEP_LANES void add_to(Force* f, __m256 a) {
 }
 
 /// Adds force and torque to the first, minus force and torque to the second particle of each pair, in order.
-GRAINSWEEP_LANES void scatter_pairs(Force* forces, const Place* first, const Place* second,
-                                    const F* force, const F* torque) {
+GRAINSWEEP_LANES void scatter_pairs(Force* forces, const Place* first, const Place* second, const F* force,
+                                    const F* torque) {
     __m256 w[8];
     to_forces(force, torque, w);
     const __m256 sign = _mm256_set_ps(0, 1, 1, 1, 0, -1, -1, -1);
@@ -248,8 +330,8 @@ GRAINSWEEP_LANES void scatter_pairs(Force* forces, const Place* first, const Pla
     }
 }
 /// The same where the torques on the two differ.
-GRAINSWEEP_LANES void scatter_unequal(Force* forces, const Place* first, const Place* second,
-                                      const F* force, const F* torque_first, const F* torque_second) {
+GRAINSWEEP_LANES void scatter_unequal(Force* forces, const Place* first, const Place* second, const F* force,
+                                      const F* torque_first, const F* torque_second) {
     __m256 w[8], u[8];
     to_forces(force, torque_first, w);
     to_forces(force, torque_second, u);
@@ -261,8 +343,7 @@ GRAINSWEEP_LANES void scatter_unequal(Force* forces, const Place* first, const P
     }
 }
 /// Adds the force to the first, minus the force to the second particle of each pair; no torques.
-GRAINSWEEP_LANES void scatter_forces(Force* forces, const Place* first, const Place* second,
-                                     const F* force) {
+GRAINSWEEP_LANES void scatter_forces(Force* forces, const Place* first, const Place* second, const F* force) {
     __m256 f[4];
     to_blocks(force[0], force[1], force[2], f);
     for (int q = 0; q < 8; ++q) {

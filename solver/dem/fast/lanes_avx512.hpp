@@ -23,33 +23,84 @@ struct M {
     __mmask16 v;
 };
 
-GRAINSWEEP_LANES F broadcast(float a) { return {_mm512_set1_ps(a)}; }
-GRAINSWEEP_LANES I broadcast(std::int32_t a) { return {_mm512_set1_epi32(a)}; }
-GRAINSWEEP_LANES D broadcast(double a) { return {_mm512_set1_pd(a), _mm512_set1_pd(a)}; }
-GRAINSWEEP_LANES F load(const float* p) { return {_mm512_loadu_ps(p)}; }
-GRAINSWEEP_LANES I load(const std::int32_t* p) { return {_mm512_loadu_si512(p)}; }
-GRAINSWEEP_LANES I load(const std::uint32_t* p) { return load(reinterpret_cast<const std::int32_t*>(p)); }
-GRAINSWEEP_LANES void store(float* p, F a) { _mm512_storeu_ps(p, a.v); }
-GRAINSWEEP_LANES void store(std::int32_t* p, I a) { _mm512_storeu_si512(p, a.v); }
-GRAINSWEEP_LANES void store(std::uint32_t* p, I a) { store(reinterpret_cast<std::int32_t*>(p), a); }
+GRAINSWEEP_LANES F broadcast(float a) {
+    return {_mm512_set1_ps(a)};
+}
+GRAINSWEEP_LANES I broadcast(std::int32_t a) {
+    return {_mm512_set1_epi32(a)};
+}
+GRAINSWEEP_LANES D broadcast(double a) {
+    return {_mm512_set1_pd(a), _mm512_set1_pd(a)};
+}
+GRAINSWEEP_LANES F load(const float* p) {
+    return {_mm512_loadu_ps(p)};
+}
+GRAINSWEEP_LANES I load(const std::int32_t* p) {
+    return {_mm512_loadu_si512(p)};
+}
+GRAINSWEEP_LANES I load(const std::uint32_t* p) {
+    return load(reinterpret_cast<const std::int32_t*>(p));
+}
+GRAINSWEEP_LANES void store(float* p, F a) {
+    _mm512_storeu_ps(p, a.v);
+}
+GRAINSWEEP_LANES void store(std::int32_t* p, I a) {
+    _mm512_storeu_si512(p, a.v);
+}
+GRAINSWEEP_LANES void store(std::uint32_t* p, I a) {
+    store(reinterpret_cast<std::int32_t*>(p), a);
+}
 
-GRAINSWEEP_LANES F operator+(F a, F b) { return {_mm512_add_ps(a.v, b.v)}; }
-GRAINSWEEP_LANES F operator-(F a, F b) { return {_mm512_sub_ps(a.v, b.v)}; }
-GRAINSWEEP_LANES F operator*(F a, F b) { return {_mm512_mul_ps(a.v, b.v)}; }
-GRAINSWEEP_LANES F fma(F a, F b, F c) { return {_mm512_fmadd_ps(a.v, b.v, c.v)}; }
-GRAINSWEEP_LANES F fms(F a, F b, F c) { return {_mm512_fmsub_ps(a.v, b.v, c.v)}; }
-GRAINSWEEP_LANES F fnma(F a, F b, F c) { return {_mm512_fnmadd_ps(a.v, b.v, c.v)}; }
-GRAINSWEEP_LANES F min(F a, F b) { return {_mm512_min_ps(a.v, b.v)}; }
-GRAINSWEEP_LANES F max(F a, F b) { return {_mm512_max_ps(a.v, b.v)}; }
-GRAINSWEEP_LANES F abs(F a) { return {_mm512_abs_ps(a.v)}; }
-GRAINSWEEP_LANES I operator-(I a, I b) { return {_mm512_sub_epi32(a.v, b.v)}; }
-GRAINSWEEP_LANES I operator+(I a, I b) { return {_mm512_add_epi32(a.v, b.v)}; }
-GRAINSWEEP_LANES I operator&(I a, I b) { return {_mm512_and_si512(a.v, b.v)}; }
+GRAINSWEEP_LANES F operator+(F a, F b) {
+    return {_mm512_add_ps(a.v, b.v)};
+}
+GRAINSWEEP_LANES F operator-(F a, F b) {
+    return {_mm512_sub_ps(a.v, b.v)};
+}
+GRAINSWEEP_LANES F operator*(F a, F b) {
+    return {_mm512_mul_ps(a.v, b.v)};
+}
+GRAINSWEEP_LANES F fma(F a, F b, F c) {
+    return {_mm512_fmadd_ps(a.v, b.v, c.v)};
+}
+GRAINSWEEP_LANES F fms(F a, F b, F c) {
+    return {_mm512_fmsub_ps(a.v, b.v, c.v)};
+}
+GRAINSWEEP_LANES F fnma(F a, F b, F c) {
+    return {_mm512_fnmadd_ps(a.v, b.v, c.v)};
+}
+GRAINSWEEP_LANES F min(F a, F b) {
+    return {_mm512_min_ps(a.v, b.v)};
+}
+GRAINSWEEP_LANES F max(F a, F b) {
+    return {_mm512_max_ps(a.v, b.v)};
+}
+GRAINSWEEP_LANES F abs(F a) {
+    return {_mm512_abs_ps(a.v)};
+}
+GRAINSWEEP_LANES I operator-(I a, I b) {
+    return {_mm512_sub_epi32(a.v, b.v)};
+}
+GRAINSWEEP_LANES I operator+(I a, I b) {
+    return {_mm512_add_epi32(a.v, b.v)};
+}
+GRAINSWEEP_LANES I operator&(I a, I b) {
+    return {_mm512_and_si512(a.v, b.v)};
+}
 
-GRAINSWEEP_LANES F approximate_rsqrt(F a) { return {_mm512_rsqrt14_ps(a.v)}; }
-GRAINSWEEP_LANES F approximate_rcp(F a) { return {_mm512_rcp14_ps(a.v)}; }
+GRAINSWEEP_LANES F sqrt(F a) {
+    return {_mm512_sqrt_ps(a.v)};
+}
+GRAINSWEEP_LANES F approximate_rsqrt(F a) {
+    return {_mm512_rsqrt14_ps(a.v)};
+}
+GRAINSWEEP_LANES F approximate_rcp(F a) {
+    return {_mm512_rcp14_ps(a.v)};
+}
 
-GRAINSWEEP_LANES F single(I a) { return {_mm512_cvtepi32_ps(a.v)}; }
+GRAINSWEEP_LANES F single(I a) {
+    return {_mm512_cvtepi32_ps(a.v)};
+}
 GRAINSWEEP_LANES D exact(I a) {
     return {_mm512_cvtepi32_pd(_mm512_castsi512_si256(a.v)), _mm512_cvtepi32_pd(_mm512_extracti64x4_epi64(a.v, 1))};
 }
@@ -59,19 +110,33 @@ GRAINSWEEP_LANES D exact(F a) {
 GRAINSWEEP_LANES F single(D a) {
     return {_mm512_insertf32x8(_mm512_castps256_ps512(_mm512_cvtpd_ps(a.lo)), _mm512_cvtpd_ps(a.hi), 1)};
 }
-GRAINSWEEP_LANES D operator+(D a, D b) { return {_mm512_add_pd(a.lo, b.lo), _mm512_add_pd(a.hi, b.hi)}; }
-GRAINSWEEP_LANES D operator-(D a, D b) { return {_mm512_sub_pd(a.lo, b.lo), _mm512_sub_pd(a.hi, b.hi)}; }
-GRAINSWEEP_LANES D operator*(D a, D b) { return {_mm512_mul_pd(a.lo, b.lo), _mm512_mul_pd(a.hi, b.hi)}; }
-GRAINSWEEP_LANES D operator/(D a, D b) { return {_mm512_div_pd(a.lo, b.lo), _mm512_div_pd(a.hi, b.hi)}; }
+GRAINSWEEP_LANES D operator+(D a, D b) {
+    return {_mm512_add_pd(a.lo, b.lo), _mm512_add_pd(a.hi, b.hi)};
+}
+GRAINSWEEP_LANES D operator-(D a, D b) {
+    return {_mm512_sub_pd(a.lo, b.lo), _mm512_sub_pd(a.hi, b.hi)};
+}
+GRAINSWEEP_LANES D operator*(D a, D b) {
+    return {_mm512_mul_pd(a.lo, b.lo), _mm512_mul_pd(a.hi, b.hi)};
+}
+GRAINSWEEP_LANES D operator/(D a, D b) {
+    return {_mm512_div_pd(a.lo, b.lo), _mm512_div_pd(a.hi, b.hi)};
+}
 GRAINSWEEP_LANES D fma(D a, D b, D c) {
     return {_mm512_fmadd_pd(a.lo, b.lo, c.lo), _mm512_fmadd_pd(a.hi, b.hi, c.hi)};
 }
 GRAINSWEEP_LANES D fnma(D a, D b, D c) {
     return {_mm512_fnmadd_pd(a.lo, b.lo, c.lo), _mm512_fnmadd_pd(a.hi, b.hi, c.hi)};
 }
-GRAINSWEEP_LANES D min(D a, D b) { return {_mm512_min_pd(a.lo, b.lo), _mm512_min_pd(a.hi, b.hi)}; }
-GRAINSWEEP_LANES D max(D a, D b) { return {_mm512_max_pd(a.lo, b.lo), _mm512_max_pd(a.hi, b.hi)}; }
-GRAINSWEEP_LANES D sqrt(D a) { return {_mm512_sqrt_pd(a.lo), _mm512_sqrt_pd(a.hi)}; }
+GRAINSWEEP_LANES D min(D a, D b) {
+    return {_mm512_min_pd(a.lo, b.lo), _mm512_min_pd(a.hi, b.hi)};
+}
+GRAINSWEEP_LANES D max(D a, D b) {
+    return {_mm512_max_pd(a.lo, b.lo), _mm512_max_pd(a.hi, b.hi)};
+}
+GRAINSWEEP_LANES D sqrt(D a) {
+    return {_mm512_sqrt_pd(a.lo), _mm512_sqrt_pd(a.hi)};
+}
 GRAINSWEEP_LANES D nearest_integer(D a) {
     return {_mm512_roundscale_pd(a.lo, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC),
             _mm512_roundscale_pd(a.hi, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)};
@@ -82,25 +147,49 @@ GRAINSWEEP_LANES D where_less(D a, D b, D c, D d) {
             _mm512_mask_blend_pd(_mm512_cmp_pd_mask(a.hi, b.hi, _CMP_LT_OQ), d.hi, c.hi)};
 }
 
-GRAINSWEEP_LANES M operator<(F a, F b) { return {_mm512_cmp_ps_mask(a.v, b.v, _CMP_LT_OQ)}; }
-GRAINSWEEP_LANES M operator&(M a, M b) { return {static_cast<__mmask16>(a.v & b.v)}; }
-GRAINSWEEP_LANES F keep(M m, F a) { return {_mm512_maskz_mov_ps(m.v, a.v)}; }
-GRAINSWEEP_LANES F drop(M m, F a) { return {_mm512_maskz_mov_ps(static_cast<__mmask16>(~m.v), a.v)}; }
-GRAINSWEEP_LANES F select(M m, F a, F b) { return {_mm512_mask_blend_ps(m.v, b.v, a.v)}; }
-GRAINSWEEP_LANES unsigned bits(M m) { return m.v; }
-GRAINSWEEP_LANES unsigned sign_bits(I a) { return _mm512_movepi32_mask(a.v); }
-GRAINSWEEP_LANES float largest(F a) { return _mm512_reduce_max_ps(a.v); }
+GRAINSWEEP_LANES M operator<(F a, F b) {
+    return {_mm512_cmp_ps_mask(a.v, b.v, _CMP_LT_OQ)};
+}
+GRAINSWEEP_LANES M operator&(M a, M b) {
+    return {static_cast<__mmask16>(a.v & b.v)};
+}
+GRAINSWEEP_LANES F keep(M m, F a) {
+    return {_mm512_maskz_mov_ps(m.v, a.v)};
+}
+GRAINSWEEP_LANES F drop(M m, F a) {
+    return {_mm512_maskz_mov_ps(static_cast<__mmask16>(~m.v), a.v)};
+}
+GRAINSWEEP_LANES F select(M m, F a, F b) {
+    return {_mm512_mask_blend_ps(m.v, b.v, a.v)};
+}
+GRAINSWEEP_LANES unsigned bits(M m) {
+    return m.v;
+}
+GRAINSWEEP_LANES unsigned sign_bits(I a) {
+    return _mm512_movepi32_mask(a.v);
+}
+GRAINSWEEP_LANES float largest(F a) {
+    return _mm512_reduce_max_ps(a.v);
+}
 
 /// Lanes whose bit is set, moved together to the front.
-GRAINSWEEP_LANES F compress(F a, unsigned m) { return {_mm512_maskz_compress_ps(static_cast<__mmask16>(m), a.v)}; }
-GRAINSWEEP_LANES I compress(I a, unsigned m) { return {_mm512_maskz_compress_epi32(static_cast<__mmask16>(m), a.v)}; }
+GRAINSWEEP_LANES F compress(F a, unsigned m) {
+    return {_mm512_maskz_compress_ps(static_cast<__mmask16>(m), a.v)};
+}
+GRAINSWEEP_LANES I compress(I a, unsigned m) {
+    return {_mm512_maskz_compress_epi32(static_cast<__mmask16>(m), a.v)};
+}
 /// The inverse: leading lanes moved to the lanes whose bit is set, zero elsewhere.
-GRAINSWEEP_LANES F expand(F a, unsigned m) { return {_mm512_maskz_expand_ps(static_cast<__mmask16>(m), a.v)}; }
+GRAINSWEEP_LANES F expand(F a, unsigned m) {
+    return {_mm512_maskz_expand_ps(static_cast<__mmask16>(m), a.v)};
+}
 /// Sets the sign of lanes whose bit is set.
 GRAINSWEEP_LANES I with_sign_bits(I a, unsigned m) {
     return {_mm512_mask_or_epi32(a.v, static_cast<__mmask16>(m), a.v, _mm512_set1_epi32(INT32_MIN))};
 }
-GRAINSWEEP_LANES I lane_numbers() { return {_mm512_set_epi32(15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0)}; }
+GRAINSWEEP_LANES I lane_numbers() {
+    return {_mm512_set_epi32(15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0)};
+}
 
 GRAINSWEEP_LANES const Record* record_at(const Record* r, Place p) {
     return reinterpret_cast<const Record*>(reinterpret_cast<const char*>(r) + std::uint64_t{p} * (sizeof(Record) / 8));
@@ -109,14 +198,14 @@ GRAINSWEEP_LANES Force* force_at(Force* f, Place p) {
     return reinterpret_cast<Force*>(reinterpret_cast<char*>(f) + std::uint64_t{p} * (sizeof(Force) / 8));
 }
 
-GRAINSWEEP_LANES void prefetch(const void* p) { _mm_prefetch(static_cast<const char*>(p), _MM_HINT_T0); }
+GRAINSWEEP_LANES void prefetch(const void* p) {
+    _mm_prefetch(static_cast<const char*>(p), _MM_HINT_T0);
+}
 
 /// The same 16-byte block of records k[0], k[4], k[8], k[12].
 template <int Block>
 GRAINSWEEP_LANES __m512 four_blocks(const Record* r, const Place* k) {
-    const auto at = [&](int n) {
-        return _mm_load_ps(reinterpret_cast<const float*>(record_at(r, k[n])) + 4 * Block);
-    };
+    const auto at = [&](int n) { return _mm_load_ps(reinterpret_cast<const float*>(record_at(r, k[n])) + 4 * Block); };
     __m512 a = _mm512_broadcast_f32x4(at(0));
     a = _mm512_mask_broadcast_f32x4(a, 0x00f0, at(4));
     a = _mm512_mask_broadcast_f32x4(a, 0x0f00, at(8));
@@ -124,8 +213,7 @@ GRAINSWEEP_LANES __m512 four_blocks(const Record* r, const Place* k) {
 }
 
 /// Position of first minus position of second, for sixteen pairs.
-GRAINSWEEP_LANES void load_offsets(const Record* r, const Place* first, const Place* second, I& x, I& y,
-                                   I& z) {
+GRAINSWEEP_LANES void load_offsets(const Record* r, const Place* first, const Place* second, I& x, I& y, I& z) {
     const auto offset = [&](int q) {
         return _mm_sub_epi32(_mm_load_si128(reinterpret_cast<const __m128i*>(record_at(r, first[q])->position)),
                              _mm_load_si128(reinterpret_cast<const __m128i*>(record_at(r, second[q])->position)));
@@ -154,7 +242,8 @@ GRAINSWEEP_LANES __m512 high_pairs(__m512 a, __m512 b) {
 GRAINSWEEP_LANES void load_motion(const Record* r, const Place* first, const Place* second, F* rows) {
     const __m256 sign = _mm256_set_ps(1, 1, 1, 1, 1, -1, -1, -1);
     const auto pair = [&](int q) {
-        const __m256 a = _mm256_loadu_ps(record_at(r, first[q])->velocity), b = _mm256_loadu_ps(record_at(r, second[q])->velocity);
+        const __m256 a = _mm256_loadu_ps(record_at(r, first[q])->velocity),
+                     b = _mm256_loadu_ps(record_at(r, second[q])->velocity);
         return _mm256_fmadd_ps(b, sign, a);
     };
     __m512 half[2][8];
@@ -223,8 +312,8 @@ GRAINSWEEP_LANES void add_to(Force* f, __m256 a) {
 }
 
 /// Adds force and torque to the first, minus force and torque to the second particle of each pair, in order.
-GRAINSWEEP_LANES void scatter_pairs(Force* forces, const Place* first, const Place* second,
-                                    const F* force, const F* torque) {
+GRAINSWEEP_LANES void scatter_pairs(Force* forces, const Place* first, const Place* second, const F* force,
+                                    const F* torque) {
     __m256 w[16];
     to_forces(force, torque, w);
     const __m256 sign = _mm256_set_ps(0, 1, 1, 1, 0, -1, -1, -1);
@@ -235,8 +324,8 @@ GRAINSWEEP_LANES void scatter_pairs(Force* forces, const Place* first, const Pla
     }
 }
 /// The same where the torques on the two differ.
-GRAINSWEEP_LANES void scatter_unequal(Force* forces, const Place* first, const Place* second,
-                                      const F* force, const F* torque_first, const F* torque_second) {
+GRAINSWEEP_LANES void scatter_unequal(Force* forces, const Place* first, const Place* second, const F* force,
+                                      const F* torque_first, const F* torque_second) {
     __m256 w[16], u[16];
     to_forces(force, torque_first, w);
     to_forces(force, torque_second, u);
@@ -248,8 +337,7 @@ GRAINSWEEP_LANES void scatter_unequal(Force* forces, const Place* first, const P
     }
 }
 /// Adds the force to the first, minus the force to the second particle of each pair; no torques.
-GRAINSWEEP_LANES void scatter_forces(Force* forces, const Place* first, const Place* second,
-                                     const F* force) {
+GRAINSWEEP_LANES void scatter_forces(Force* forces, const Place* first, const Place* second, const F* force) {
     __m512 f[4];
     to_blocks(force[0], force[1], force[2], f);
     __m128 w[16];

@@ -51,30 +51,30 @@ struct alignas(32) Force {
 
 /// Constants of the contact law, in the engine's units.
 struct Constants {
-    double unit[3];         ///< length of one position unit
+    double unit[3];  ///< length of one position unit
     float unit_single[3];
-    float inverse_unit[4];  ///< fourth: 0
-    float gravity[8];       ///< change of velocity per step; spin part 0
-    float radius;           ///< of all particles where they are equal
-    double reach_squared;   ///< (2 radius)^2, exact
+    float inverse_unit[4];    ///< fourth: 0
+    float gravity[8];         ///< change of velocity per step; spin part 0
+    float radius;             ///< of all particles where they are equal
+    double reach_squared;     ///< (2 radius)^2, exact
     float candidate_squared;  ///< the same, enlarged by the rounding of single precision
     float normal;             ///< 4/3 E*
     float tangential;         ///< 8 G*
     float damping;            ///< -2 sqrt(5/6) beta sqrt(2 E*)
     float damping_ratio;      ///< tangential over normal damping, sqrt(8 G*/(2 E*))
     float friction;
-    float root_radius;         ///< sqrt(R*) of an equal pair
-    float damping_pair;        ///< damping sqrt(m*) of two mobile equal particles
-    float damping_frozen;      ///< ... of a mobile and a frozen one, or a wall
-    float root_radius_wall;    ///< sqrt(R)
-    float inverse_mass;        ///< of a mobile particle where they are equal
-    float rotation;            ///< 2.5/R^2 where radii are equal
-    float neck_lens;           ///< cohesive force per pi/4 (Rs^2-r^2)(r^2-Rd^2)/r^2
-    float neck_linear;         ///< ... per R* d
-    float neck_square;         ///< ... per d^2
-    float wall_linear;         ///< cohesive force on a wall per R d
-    float wall_square;         ///< ... per d^2
-    float net_limit;           ///< 1: Coulomb's limit sees the cohesive force, 0: it does not
+    float root_radius;       ///< sqrt(R*) of an equal pair
+    float damping_pair;      ///< damping sqrt(m*) of two mobile equal particles
+    float damping_frozen;    ///< ... of a mobile and a frozen one, or a wall
+    float root_radius_wall;  ///< sqrt(R)
+    float inverse_mass;      ///< of a mobile particle where they are equal
+    float rotation;          ///< 2.5/R^2 where radii are equal
+    float neck_lens;         ///< cohesive force per pi/4 (Rs^2-r^2)(r^2-Rd^2)/r^2
+    float neck_linear;       ///< ... per R* d
+    float neck_square;       ///< ... per d^2
+    float wall_linear;       ///< cohesive force on a wall per R d
+    float wall_square;       ///< ... per d^2
+    float net_limit;         ///< 1: Coulomb's limit sees the cohesive force, 0: it does not
 };
 
 /// Shape of a wall at the present time, relative to the middle of the domain, in the engine's units.
@@ -82,7 +82,7 @@ struct WallShape {
     std::int32_t is_blade;
     std::int32_t record;  ///< index of the record that carries its velocity
     double normal[3];
-    double offset;  ///< plane: normal . point
+    double offset;              ///< plane: normal . point
     double centre, half_width;  ///< blade: along x
     double bottom, top, edge_radius;
     double period, inverse_period;  ///< of the x axis, 0 where open
@@ -118,7 +118,7 @@ struct Field {
     // Inner list: pairs that may touch before the next refresh, sorted by the first particle.
     Place* inner_first;
     Place* inner_second;
-    float* inner_reach;  ///< candidate distance squared, where radii differ
+    float* inner_reach;          ///< candidate distance squared, where radii differ
     std::int32_t* inner_source;  ///< index in the outer list
     std::int32_t inner_count;    ///< a multiple of the width
     // Bit k of mask b: pair b*width+k touched at the last step; histories of those, in that order, without gaps.
@@ -172,8 +172,8 @@ struct Kernels {
 
 /// What a case needs of the law; decides which compiled sweep runs.
 struct Needs {
-    bool unequal;   ///< radii differ
-    bool frozen;    ///< particles of infinite mass are present
+    bool unequal;  ///< radii differ
+    bool frozen;   ///< particles of infinite mass are present
     bool friction;
     enum class Cohesion : std::int32_t { none, lens, general } cohesion;  ///< lens: sjkr, friction blind to it
 };

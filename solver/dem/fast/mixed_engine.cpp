@@ -27,9 +27,9 @@ struct Drift {
 };
 
 // The skins that make lists cheapest. A pair listed in vain costs about 1.5 ns a step and there are about ten per
-// diameter of inner skin and particle; a refresh costs about 10 ns per particle, plus 1.5 ns per pair of the outer list;
-// a rebuild about 100 ns. With drift d per step the sums of cost per step, 15 s + 10 d/s and (refreshing every five
-// steps or so) 3 s + 100 d/s, are least at s = sqrt(0.67 d) and s = sqrt(33 d).
+// diameter of inner skin and particle; a refresh costs about 10 ns per particle, plus 1.5 ns per pair of the outer
+// list; a rebuild about 100 ns. With drift d per step the sums of cost per step, 15 s + 10 d/s and (refreshing every
+// five steps or so) 3 s + 100 d/s, are least at s = sqrt(0.67 d) and s = sqrt(33 d).
 constexpr double inner_balance = 0.45;
 constexpr double outer_balance = 40;
 constexpr double inner_skin_least = 0.004;
@@ -41,9 +41,12 @@ constexpr std::size_t many_particles = 40000;
 
 const Kernels& kernels_of(Method::Path path, const Needs& needs) {
     switch (path) {
-        case Method::Path::avx512: return avx512_kernels(needs);
-        case Method::Path::avx2: return avx2_kernels(needs);
-        default: return baseline_kernels(needs);
+        case Method::Path::avx512:
+            return avx512_kernels(needs);
+        case Method::Path::avx2:
+            return avx2_kernels(needs);
+        default:
+            return baseline_kernels(needs);
     }
 }
 
@@ -202,7 +205,8 @@ void MixedEngine::check_walls(const std::vector<Wall>& walls) const {
         } else {
             const auto& blade = std::get<Blade>(wall);
             if (!(blade.thickness > 0) || !(blade.top > blade.bottom) || room_.domain.periodic[2])
-                throw std::invalid_argument("a blade needs a positive thickness, its top above its bottom and an open z axis");
+                throw std::invalid_argument(
+                    "a blade needs a positive thickness, its top above its bottom and an open z axis");
         }
     }
 }
@@ -227,7 +231,8 @@ void MixedEngine::full_step_velocities() {
         Record& r = field_.records[i];
         Residual& residual = field_.residuals[i];
         for (int a = 0; a < 3; ++a) {
-            const double v = static_cast<double>(r.velocity[a]) + static_cast<double>(residual.velocity[a]) + half_change(i, a);
+            const double v =
+                static_cast<double>(r.velocity[a]) + static_cast<double>(residual.velocity[a]) + half_change(i, a);
             r.velocity[a] = static_cast<float>(v);
             residual.velocity[a] = static_cast<float>(v - static_cast<double>(r.velocity[a]));
             r.spin[a] = static_cast<float>(static_cast<double>(r.spin[a]) + half_spin_change(i, a));
@@ -252,7 +257,8 @@ void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
         Record& r = field_.records[i];
         Residual& residual = field_.residuals[i];
         for (int a = 0; a < 3; ++a) {
-            const double v = static_cast<double>(r.velocity[a]) + static_cast<double>(residual.velocity[a]) - half_change(i, a);
+            const double v =
+                static_cast<double>(r.velocity[a]) + static_cast<double>(residual.velocity[a]) - half_change(i, a);
             r.velocity[a] = static_cast<float>(v);
             residual.velocity[a] = static_cast<float>(v - static_cast<double>(r.velocity[a]));
             r.spin[a] = static_cast<float>(static_cast<double>(r.spin[a]) - half_spin_change(i, a));
@@ -295,7 +301,8 @@ void MixedEngine::account_travel() {
     ++drift_.steps;
     drift_.outer += drift_.last_step;
     drift_.inner += drift_.last_step;
-    if (field_.count > 0 && (!finite || !(fastest < static_cast<float>(travel_limit) * smallest_diameter_))) report_fast_particle();
+    if (field_.count > 0 && (!finite || !(fastest < static_cast<float>(travel_limit) * smallest_diameter_)))
+        report_fast_particle();
 }
 
 /// Rebuilds or refreshes the lists where displacements since demand it. A pair outside the outer list had a gap
@@ -306,8 +313,9 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
     if (rebuilt) {
         const double per_step = drift_.steps > 0 ? drift_.outer / static_cast<double>(drift_.steps) : 0.003;
         if (adapts_skin_)
-            room_.skin = std::min(static_cast<float>(std::clamp(std::sqrt(outer_balance * per_step), outer_skin_least,
-                                                                outer_skin_most)), largest_skin_);
+            room_.skin = std::min(
+                static_cast<float>(std::clamp(std::sqrt(outer_balance * per_step), outer_skin_least, outer_skin_most)),
+                largest_skin_);
         rebuild(field_, columns_, *kernels_, room_, removed);
         drift_.outer = 0;
         drift_.steps = 0;
@@ -315,8 +323,8 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
         for (std::int32_t i = 0; i < field_.count; ++i) mobile_ += field_.records[i].inverse_mass > 0 ? 1 : 0;
         ++work_.rebuilds;
     }
-    inner_skin_ = static_cast<float>(std::clamp(std::sqrt(inner_balance * drift_.last_step), inner_skin_least,
-                                                static_cast<double>(room_.skin)));
+    inner_skin_ = static_cast<float>(
+        std::clamp(std::sqrt(inner_balance * drift_.last_step), inner_skin_least, static_cast<double>(room_.skin)));
     refresh(field_, columns_, *kernels_, inner_skin_, rebuilt);
     drift_.inner = 0;
 }
@@ -386,7 +394,9 @@ void MixedEngine::state(State& into) const {
                 if (x >= room_.domain.high[axis]) x -= period;
             }
             into.position[k][axis] = x;
-            into.velocity[k][axis] = (static_cast<double>(r.velocity[a]) + static_cast<double>(residual.velocity[a]) + half_change(i, a)) * s.speed();
+            into.velocity[k][axis] =
+                (static_cast<double>(r.velocity[a]) + static_cast<double>(residual.velocity[a]) + half_change(i, a)) *
+                s.speed();
             into.angular_velocity[k][axis] = (static_cast<double>(r.spin[a]) + half_spin_change(i, a)) / s.time;
         }
     }
@@ -410,7 +420,8 @@ void MixedEngine::report_fast_particle() {
     double most = -1;
     for (std::int32_t i = 0; i < field_.count; ++i)
         for (const float v : field_.records[i].velocity) {
-            const double travel = std::isfinite(v) ? std::abs(static_cast<double>(v)) : std::numeric_limits<double>::infinity();
+            const double travel =
+                std::isfinite(v) ? std::abs(static_cast<double>(v)) : std::numeric_limits<double>::infinity();
             if (travel > most) most = travel, worst = i;
         }
     char text[240];
@@ -513,7 +524,8 @@ Seal make_seal(const Field& f, const Kernels& k, const Needs& n) {
     std::memset(static_cast<void*>(&s), 0, sizeof s);  // padding too: seals are compared by their bytes
     s.format = Seal{}.format;
     s.width = k.width;
-    s.needs.unequal = n.unequal, s.needs.frozen = n.frozen, s.needs.friction = n.friction, s.needs.cohesion = n.cohesion;
+    s.needs.unequal = n.unequal, s.needs.frozen = n.frozen, s.needs.friction = n.friction,
+    s.needs.cohesion = n.cohesion;
     std::memcpy(static_cast<void*>(&s.constants), &f.constants, sizeof f.constants);
     return s;
 }
@@ -550,7 +562,8 @@ bool supports(Method::Path path) {
                    supports(Method::Path::avx2);
         case Method::Path::avx2:
             return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
-        default: return true;
+        default:
+            return true;
     }
 }
 

@@ -6,6 +6,8 @@
 
 namespace grainsweep::dem::fast {
 
-const Kernels& avx2_kernels(const Needs& needs) { return choose(needs); }
+const Kernels& avx2_kernels(const Needs& needs) {
+    return choose(needs);
+}
 
 }  // namespace grainsweep::dem::fast

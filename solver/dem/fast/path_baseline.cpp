@@ -6,6 +6,8 @@
 
 namespace grainsweep::dem::fast {
 
-const Kernels& baseline_kernels(const Needs& needs) { return choose(needs); }
+const Kernels& baseline_kernels(const Needs& needs) {
+    return choose(needs);
+}
 
 }  // namespace grainsweep::dem::fast

@@ -10,8 +10,12 @@ namespace grainsweep::dem::fast {
 
 namespace {
 
-Place place_of(std::int32_t index) { return static_cast<Place>(index * places_per_index); }
-std::int32_t index_of(Place place) { return static_cast<std::int32_t>(place / places_per_index); }
+Place place_of(std::int32_t index) {
+    return static_cast<Place>(index * places_per_index);
+}
+std::int32_t index_of(Place place) {
+    return static_cast<std::int32_t>(place / places_per_index);
+}
 
 /// Cells along one axis: of periodic ones a whole number fills the period, open ones start at the lowest particle.
 struct Axis {
@@ -35,9 +39,7 @@ struct Grid {
         return (c.of(r.position[order[2]]) * b.cells + b.of(r.position[order[1]])) * a.cells +
                a.of(r.position[order[0]]);
     }
-    [[nodiscard]] std::int64_t total() const {
-        return std::int64_t{axis[0].cells} * axis[1].cells * axis[2].cells;
-    }
+    [[nodiscard]] std::int64_t total() const { return std::int64_t{axis[0].cells} * axis[1].cells * axis[2].cells; }
 };
 
 /// Cells no smaller than a listed distance, few enough for the particles there are, the longest axis slowest so that
@@ -65,7 +67,8 @@ Grid make_grid(const Field& f, const Room& room) {
         axis.per_unit = axis.cells / span * unit;
     }
     while (g.total() > 8 * std::int64_t{f.count} + 512) {
-        Axis& longest = *std::max_element(g.axis, g.axis + 3, [](const Axis& a, const Axis& b) { return a.cells < b.cells; });
+        Axis& longest =
+            *std::max_element(g.axis, g.axis + 3, [](const Axis& a, const Axis& b) { return a.cells < b.cells; });
         longest.per_unit *= static_cast<double>(longest.cells / 2) / longest.cells;
         longest.cells /= 2;
     }
@@ -91,7 +94,8 @@ struct Faces {
     }
 };
 
-/// Says in `place` where everyone goes, for now 0 (stays) or -1 (left through a face, or listed); returns how many stay.
+/// Says in `place` where everyone goes, for now 0 (stays) or -1 (left through a face, or listed); returns how many
+/// stay.
 std::int32_t take_out(const Field& f, Columns& c, const Room& room, std::span<const std::int32_t> ids) {
     std::vector<std::int32_t> gone(ids.begin(), ids.end());
     std::sort(gone.begin(), gone.end());
@@ -99,8 +103,8 @@ std::int32_t take_out(const Field& f, Columns& c, const Room& room, std::span<co
     std::int32_t kept = 0;
     for (std::int32_t i = 0; i < f.count; ++i) {
         const auto k = static_cast<std::size_t>(i);
-        const bool leaves = !faces.contain(f.records[i]) ||
-                            (!gone.empty() && std::binary_search(gone.begin(), gone.end(), c.id[k]));
+        const bool leaves =
+            !faces.contain(f.records[i]) || (!gone.empty() && std::binary_search(gone.begin(), gone.end(), c.id[k]));
         c.place[k] = leaves ? -1 : 0;
         kept += leaves ? 0 : 1;
     }
@@ -196,8 +200,8 @@ void carry_histories(Field& f, Columns& c, const Kernels& kernels) {
         const std::int32_t owner = c.owner[o];
         if (owner == 0) continue;
         const auto batch = o / static_cast<std::size_t>(kernels.width);
-        c.outer_touching[batch] = static_cast<std::uint16_t>(c.outer_touching[batch] |
-                                                             (1U << (o % static_cast<std::size_t>(kernels.width))));
+        c.outer_touching[batch] =
+            static_cast<std::uint16_t>(c.outer_touching[batch] | (1U << (o % static_cast<std::size_t>(kernels.width))));
         const auto from = static_cast<std::size_t>(std::abs(owner) - 1);
         const float sign = owner > 0 ? 1.0F : -1.0F;
         for (int a = 0; a < 3; ++a) c.history_next[a][to] = sign * c.history[a][from];
@@ -225,7 +229,7 @@ void place_fillers(Field& f) {
         r.inverse_radius = 1;
         if (k < 2) r.radius = r.radius_again = 1e-3F;
         if (k == 1)
-            for (auto& p : r.position) p = INT32_MIN;  // half a period away
+            for (auto& p : r.position) p = INT32_MIN;   // half a period away
         if (k == 2) r.radius = r.radius_again = -1e6F;  // out of reach of every wall
         f.records[f.count + k] = r;
     }
@@ -321,8 +325,7 @@ void refresh(Field& f, Columns& c, const Kernels& kernels, float skin, bool mark
     f.inner_count = kernels.refresh(f, skin);
 }
 
-void rebuild(Field& f, Columns& c, const Kernels& kernels, const Room& room,
-             std::span<const std::int32_t> ids) {
+void rebuild(Field& f, Columns& c, const Kernels& kernels, const Room& room, std::span<const std::int32_t> ids) {
     const std::int32_t kept = take_out(f, c, room, ids);
     std::vector<Record> wall_records(f.records + f.count + 3, f.records + f.count + 3 + f.wall_count);
     sort_particles(f, c, room, kept);

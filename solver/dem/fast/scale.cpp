@@ -12,10 +12,13 @@ namespace {
 
 using std::numbers::pi;
 
-[[noreturn]] void refuse(const std::string& sentence) { throw std::invalid_argument(sentence); }
+[[noreturn]] void refuse(const std::string& sentence) {
+    throw std::invalid_argument(sentence);
+}
 
 void require_positive(double value, const char* what) {
-    if (!(value > 0) || !std::isfinite(value)) refuse(std::string(what) + " must be positive, not " + std::to_string(value));
+    if (!(value > 0) || !std::isfinite(value))
+        refuse(std::string(what) + " must be positive, not " + std::to_string(value));
 }
 
 double largest_radius(const Setup& setup) {
@@ -32,21 +35,24 @@ void check(const Setup& setup) {
     if (!(m.poisson_ratio > -1 && m.poisson_ratio <= 0.5)) refuse("poisson_ratio must lie in (-1, 0.5]");
     if (!(m.restitution > 0 && m.restitution <= 1)) refuse("restitution must lie in (0, 1]");
     if (!(m.friction >= 0) || !(m.cohesion >= 0)) refuse("friction and cohesion must not be negative");
-    if (m.rolling_friction != 0) refuse("rolling_friction is not computed in mixed precision: ask for double precision");
+    if (m.rolling_friction != 0)
+        refuse("rolling_friction is not computed in mixed precision: ask for double precision");
     for (std::size_t i = 0; i < setup.spheres.size(); ++i) {
         const Sphere& s = setup.spheres[i];
         bool finite = std::isfinite(s.radius) && s.radius > 0;
         for (std::size_t a = 0; a < 3; ++a)
             finite = finite && std::isfinite(s.position[a]) && std::isfinite(s.velocity[a]) &&
                      std::isfinite(s.angular_velocity[a]);
-        if (!finite) refuse("sphere " + std::to_string(i) + " has a radius that is not positive or a state that is not finite");
+        if (!finite)
+            refuse("sphere " + std::to_string(i) + " has a radius that is not positive or a state that is not finite");
     }
     const double diameter = 2 * largest_radius(setup);
     for (std::size_t a = 0; a < 3; ++a) {
         const double span = setup.domain.high[a] - setup.domain.low[a];
         if (!(span > 0) || !std::isfinite(span)) refuse("the domain's high must exceed its low on every axis");
         if (setup.domain.periodic[a] && span < 2.02 * diameter)
-            refuse("a periodic domain must be at least 2.02 largest diameters long, axis " + std::to_string(a) + " is not");
+            refuse("a periodic domain must be at least 2.02 largest diameters long, axis " + std::to_string(a) +
+                   " is not");
     }
 }
 
@@ -135,7 +141,8 @@ Needs make_needs(const Setup& setup) {
                      ? Needs::Cohesion::lens
                      : Needs::Cohesion::general;
     // the general kernel computes with each particle's own radius
-    if (n.cohesion == Needs::Cohesion::general || (!n.friction && n.cohesion != Needs::Cohesion::none)) n.unequal = true;
+    if (n.cohesion == Needs::Cohesion::general || (!n.friction && n.cohesion != Needs::Cohesion::none))
+        n.unequal = true;
     return n;
 }
 

@@ -9,7 +9,7 @@ namespace grainsweep::dem::fast {
 /// Units of one case: length the largest diameter, time the time step, mass that of the largest particle.
 struct Scale {
     double length = 1, time = 1, mass = 1;
-    Vec3 centre{};  ///< middle of the domain, m
+    Vec3 centre{};                 ///< middle of the domain, m
     std::array<double, 3> unit{};  ///< length of one position unit, m
 
     [[nodiscard]] double speed() const { return length / time; }

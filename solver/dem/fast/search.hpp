@@ -88,14 +88,15 @@ std::int64_t search(const Field& f, float skin) {
                                     dz = single(zi - load(f.column[2] + j)) * broadcast(c.unit_single[2]);
                             const F sum = radius + load(f.column_radius + j);
                             const F cut = sum + broadcast(skin);
-                            const M close = fma(dx, dx, fma(dy, dy, dz * dz)) <
-                                            cut * cut * broadcast(rounding_allowance);
+                            const M close =
+                                fma(dx, dx, fma(dy, dy, dz * dz)) < cut * cut * broadcast(rounding_allowance);
                             const M moves = broadcast(0.0f) < mobile + load(f.column_mobile + j);
                             unsigned found = bits(close & moves);
                             if (to - j < width) found &= (1u << (to - j)) - 1;
                             const int k = __builtin_popcount(found);
                             if (n + 2 * width <= f.outer_capacity) {
-                                store(f.outer_second + n, compress(lane_places + broadcast(j * places_per_index), found));
+                                store(f.outer_second + n,
+                                      compress(lane_places + broadcast(j * places_per_index), found));
                                 store(f.outer_first + n, own);
                                 if constexpr (Law::unequal) store(f.outer_reach + n, compress(sum, found));
                             }

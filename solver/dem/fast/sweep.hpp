@@ -27,10 +27,10 @@ struct alignas(64) Packed {
 
 /// How far a sweep has come.
 struct Progress {
-    std::int32_t batch;   ///< of the inner list, next to be sifted
-    std::int32_t packed;  ///< pairs in the buffers
-    std::int32_t done;    ///< particles integrated
-    std::int64_t read;    ///< histories taken from the last step's stream
+    std::int32_t batch;    ///< of the inner list, next to be sifted
+    std::int32_t packed;   ///< pairs in the buffers
+    std::int32_t done;     ///< particles integrated
+    std::int64_t read;     ///< histories taken from the last step's stream
     std::int64_t written;  ///< histories put into this step's
     std::int64_t met;      ///< of these, those already evaluated
 };

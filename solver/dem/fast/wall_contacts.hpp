@@ -10,8 +10,8 @@ namespace grainsweep::dem::fast {
 namespace {
 
 struct Surface {
-    D distance;    ///< from the wall's surface to the centre
-    D x, y, z;     ///< unit normal, towards the particle
+    D distance;  ///< from the wall's surface to the centre
+    D x, y, z;   ///< unit normal, towards the particle
 };
 
 GRAINSWEEP_LANES Surface plane_surface(const WallShape& w, D x, D y, D z) {

@@ -1,0 +1,141 @@
+// Cost of a DEM step: one JSON line per scene and instruction path.
+//
+//   bench_dem [--scene NAME] [--path baseline|avx2|avx512] [--steps N] [--bed FILE --angle DEGREES]
+//
+// ns_min is the cheapest window of a hundred steps, ns_mean all of them, lists included, in processor time of this
+// thread. Each phase of a sweep (sift, meet, scatter, advance_range) is a function of its own: `perf record` splits
+// the time without slowing the loop.
+#include <ctime>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "solver/dem/fast/mixed_engine.hpp"
+#include "tests/support/granular_beds.hpp"
+
+using namespace grainsweep;
+using dem::Method;
+
+namespace {
+
+double processor_seconds() {
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+const std::map<std::string, Method::Path> path_names = {
+    {"baseline", Method::Path::baseline}, {"avx2", Method::Path::avx2}, {"avx512", Method::Path::avx512}};
+
+/// Runs `steps` steps in windows of a hundred and prints their cost.
+void measure(const std::string& scene, const std::string& path, dem::Engine& engine, std::int64_t steps) {
+    constexpr std::int64_t window = 100;
+    const dem::Work before = engine.work();
+    const auto particles = static_cast<double>(engine.size());
+    double least = 1e300, total = 0;
+    for (std::int64_t s = 0; s < steps; s += window) {
+        const double start = processor_seconds();
+        engine.run(window);
+        const double spent = processor_seconds() - start;
+        least = std::min(least, spent);
+        total += spent;
+    }
+    const dem::Work after = engine.work();
+    const auto done = static_cast<double>(after.steps - before.steps);
+    std::printf(
+        "{\"bench\": \"dem_speed\", \"scene\": \"%s\", \"precision\": \"mixed\", \"path\": \"%s\", "
+        "\"particles\": %.0f, \"steps\": %.0f, \"ns_min\": %.2f, \"ns_mean\": %.2f, "
+        "\"million_particle_steps_per_s\": %.1f, \"pairs_per_particle\": %.2f, \"rebuilds_per_1000\": %.1f, "
+        "\"fault\": \"%s\"}\n",
+        scene.c_str(), path.c_str(), particles, done, 1e9 * least / window / particles, 1e9 * total / done / particles,
+        1e-6 * done * particles / total, (after.pair_visits - before.pair_visits) / done / particles,
+        1000 * static_cast<double>(after.rebuilds - before.rebuilds) / done, engine.fault().c_str());
+    std::fflush(stdout);
+}
+
+struct Options {
+    std::string scene, path, bed;
+    double angle = 0;
+    std::int64_t steps = 1000;
+};
+
+Options read_options(int argc, char** argv) {
+    Options o;
+    for (int i = 1; i + 1 < argc; i += 2) {
+        const std::string name = argv[i], value = argv[i + 1];
+        if (name == "--scene")
+            o.scene = value;
+        else if (name == "--path")
+            o.path = value;
+        else if (name == "--bed")
+            o.bed = value;
+        else if (name == "--angle")
+            o.angle = std::strtod(value.c_str(), nullptr);
+        else if (name == "--steps")
+            o.steps = std::strtol(value.c_str(), nullptr, 10);
+    }
+    return o;
+}
+
+void run_everywhere(const Options& o, const std::string& scene, const dem::Setup& setup, std::int64_t steps) {
+    for (const auto& [name, path] : path_names) {
+        if (!dem::fast::supports(path) || (!o.path.empty() && o.path != name)) continue;
+        const auto engine = dem::fast::make_mixed_engine(setup, path);
+        engine->run(300);
+        measure(scene, name, *engine, steps);
+    }
+}
+
+void spread(const Options& o, const std::string& scene, double diameter, double gap) {
+    for (const auto& [name, path] : path_names) {
+        if (!dem::fast::supports(path) || (!o.path.empty() && o.path != name)) continue;
+        const auto engine = dem::fast::make_mixed_engine(test::spreading_start(diameter, 0.2, 1), path);
+        measure(scene + "_settling", name, *engine, 15000);
+        engine->set_walls(test::spreading_blade(gap, 1.4));
+        measure(scene + "_sweeping", name, *engine, 5000);
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const Options o = read_options(argc, argv);
+    if (!o.bed.empty()) {
+        run_everywhere(o, o.bed, test::tilted(test::read_bed(o.bed), o.angle), o.steps);
+        return 0;
+    }
+    std::map<double, dem::Setup> beds;  // each settled once
+    const auto bed = [&](double spread_of_radii) -> const dem::Setup& {
+        if (!beds.contains(spread_of_radii)) {
+            test::BedOptions b;
+            b.spread = spread_of_radii;
+            if (spread_of_radii > 0) b.per_side = 20, b.layers = 50;
+            beds[spread_of_radii] = test::settled_bed(b);
+        }
+        return beds.at(spread_of_radii);
+    };
+    const std::map<std::string, std::function<void(const std::string&)>> scenes = {
+        {"settled_20k", [&](const auto& s) { run_everywhere(o, s, bed(0), o.steps); }},
+        {"chute_20k", [&](const auto& s) { run_everywhere(o, s, test::tilted(bed(0), 26), o.steps); }},
+        {"chute_unequal_20k", [&](const auto& s) { run_everywhere(o, s, test::tilted(bed(0.25), 26), o.steps); }},
+        {"cohesive_20k",
+         [&](const auto& s) {
+             dem::Setup setup = bed(0);
+             setup.material.cohesion = 35e3;
+             run_everywhere(o, s, setup, o.steps);
+         }},
+        {"chute_180k",
+         [&](const auto& s) { run_everywhere(o, s, test::tilted(test::replicated(bed(0), 3, 3), 26), o.steps / 4); }},
+        {"loose_gas_20k", [&](const auto& s) { run_everywhere(o, s, test::loose_gas(27), o.steps); }},
+        {"spreading_1mm", [&](const auto& s) { spread(o, s, 1e-3, 2e-3); }},
+        {"spreading_3mm", [&](const auto& s) { spread(o, s, 3e-3, 4e-3); }},
+    };
+    for (const auto& [name, run] : scenes)
+        if (o.scene.empty() || o.scene == name) run(name);
+    return 0;
+}

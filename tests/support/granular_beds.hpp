@@ -1,0 +1,37 @@
+// Beds, chutes and the spreading scene, made in the program: the states whose cost per step is compared.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "solver/dem/engine.hpp"
+
+namespace grainsweep::test {
+
+/// Powder of the comparison: d = 45 um, density 4430, E 1e7, nu 0.3, e 0.6, mu 0.5, 5e-7 s (19 % of the Rayleigh time).
+struct BedOptions {
+    int per_side = 22;           ///< columns of the lattice along x and y
+    int layers = 41;             ///< along z
+    double spread = 0;           ///< radii within +-spread
+    double settle_time = 10e-3;  ///< s, under gravity raised fivefold
+};
+
+/// A bed settled on a plane from a jittered lattice; its lowest layer then frozen and the plane gone. Periodic in x, y.
+[[nodiscard]] dem::Setup settled_bed(const BedOptions& options);
+/// The same bed nx times ny side by side.
+[[nodiscard]] dem::Setup replicated(const dem::Setup& bed, int nx, int ny);
+/// Gravity turned to a chute of this inclination, degrees, along x.
+[[nodiscard]] dem::Setup tilted(dem::Setup bed, double degrees);
+/// Mobile particles far apart and in motion, three-dimensional periodic.
+[[nodiscard]] dem::Setup loose_gas(int per_side);
+
+/// State of the comparison's other programs: int64 count, three doubles of box, then per particle x y z radius, v, w,
+/// frozen as eleven doubles. Throws std::runtime_error where it cannot be read.
+[[nodiscard]] dem::Setup read_bed(const std::filesystem::path& file);
+
+/// The spreading scene at the start of settling: lattice between two gate planes, base plane, depth 10 D periodic.
+[[nodiscard]] dem::Setup spreading_start(double diameter, double friction, std::uint64_t seed);
+/// Base and blade of the sweep.
+[[nodiscard]] std::vector<dem::Wall> spreading_blade(double gap, double speed);
+
+}  // namespace grainsweep::test
