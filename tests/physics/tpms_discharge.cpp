@@ -12,7 +12,8 @@ using namespace grainsweep;
 
 namespace {
 
-std::unique_ptr<dem::Engine> engine_of(const particles::TpmsFilling& filling, double edge) {
+std::unique_ptr<dem::Engine> engine_of(const particles::TpmsFilling& filling, double edge,
+                                       dem::Method::Precision precision) {
     constexpr double d = 45e-6;
     dem::Setup setup;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -26,12 +27,18 @@ std::unique_ptr<dem::Engine> engine_of(const particles::TpmsFilling& filling, do
     setup.time_step = 1e-6;
     for (const auto& x : filling.mobile) setup.spheres.push_back({{x[0] * d, x[1] * d, x[2] * d}, {}, {}, d / 2, true});
     for (const auto& x : filling.wall) setup.spheres.push_back({{x[0] * d, x[1] * d, x[2] * d}, {}, {}, d / 2, false});
-    return dem::make_engine(setup, {});
+    dem::Method method;
+    method.precision = precision;
+    return dem::make_engine(setup, method);
 }
 
 }  // namespace
 
-TEST(TpmsWall, SpheresOutOfReachChangeNoBit) {
+class TpmsWall : public testing::TestWithParam<dem::Method::Precision> {};
+INSTANTIATE_TEST_SUITE_P(Both, TpmsWall,
+                         testing::Values(dem::Method::Precision::mixed, dem::Method::Precision::double_precision));
+
+TEST_P(TpmsWall, SpheresOutOfReachChangeNoBit) {
     const double edge = 20;
     const auto packing = particles::random_close_packing({.edge = edge, .fraction = 0.62, .seed = 1});
     const geometry::TpmsShell shell(geometry::TpmsCell::schwarz_p, +1, edge, 4);
@@ -42,7 +49,7 @@ TEST(TpmsWall, SpheresOutOfReachChangeNoBit) {
     EXPECT_EQ(lean.wall_spheres, whole.wall_spheres);
     EXPECT_LT(lean.wall.size(), whole.wall.size() * 9 / 10);  // the shell is thick: its inside is dropped
 
-    const auto with_all = engine_of(whole, edge), with_few = engine_of(lean, edge);
+    const auto with_all = engine_of(whole, edge, GetParam()), with_few = engine_of(lean, edge, GetParam());
     with_all->run(1500);
     with_few->run(1500);
     ASSERT_EQ(with_all->fault(), "");

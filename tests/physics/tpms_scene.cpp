@@ -182,8 +182,13 @@ TEST(TpmsScene, TurnedPackingAndTurnedGravityAreTheSameCase) {
     for (std::size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(a[k].value, b[k].value, 1e-7) << a[k].time;
 }
 
-TEST(TpmsScene, SlicesAndCheckpointsDoNotChangeTheAnswer) {
+class TpmsPrecision : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Both, TpmsPrecision, testing::Values("mixed", "double"),
+                         [](const auto& precision) { return std::string(precision.param); });
+
+TEST_P(TpmsPrecision, SlicesAndCheckpointsDoNotChangeTheAnswer) {
     Inputs inputs = small_cell(8);
+    inputs["precision"] = std::string(GetParam());
     inputs["cohesion"] = 20e3;
     inputs["end_time"] = 1.0;
     inputs["cell"] = std::string("gyroid");
