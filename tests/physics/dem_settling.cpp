@@ -1,9 +1,11 @@
 // 637 spheres settling between gates, particle by particle against LIGGGHTS 3.8.
 //
-// LIGGGHTS 3.8 keeps the tangential displacement of a pair that has separated until its list is rebuilt, so a pair
-// that touches again before that starts with an old one (found here: with that memory the two programs agree to
-// rounding, without it three pairs differ by 5e-5 diameters at step 500). Ours forgets at separation. The comparison
-// therefore runs the engine with LIGGGHTS's memory and its skin, which decides when the list is rebuilt.
+// LIGGGHTS 3.8 forgets a separated pair's tangential displacement only when its neighbour list is rebuilt, and then
+// only if the pair does not overlap in the positions of that moment: one that met again in between goes on with the old
+// displacement. (Its contact models clear a separated pair only within `contact_distance_factor` times the sum of the
+// radii, by default 1.) Walls forget at separation. What a pair remembers there thus depends on the skin; ours forgets
+// at separation, as LIGGGHTS does when told to rebuild at every step: then the engine as it is agrees to 4e-11
+// diameters at step 2000. To follow the default deck the comparison runs the engine with LIGGGHTS's memory and skin.
 #include "solver/dem/clear/combinations.hpp"
 #include "solver/dem/engine.hpp"
 #include "tests/support/reference.hpp"
@@ -11,9 +13,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 using namespace grainsweep;
 
@@ -81,22 +85,17 @@ TEST(DemSettling, FollowsLiggghtsParticleByParticle) {
     method.skin = reference_skin;
     LastingEngine engine(setup, method, {{dem::hertz(setup.material), mindlin}});
     dem::State state;
-    for (const std::int64_t step : {500, 1000}) {
+    // A disturbance of 1e-16 m grows to 8e-13, 4e-12 and 2e-10 diameters in the reference itself; the bounds leave room
+    // for another rounding order.
+    constexpr std::array<std::pair<std::int64_t, double>, 3> bounds = {{{500, 1e-11}, {1000, 1e-10}, {2000, 1e-8}}};
+    for (const auto& [step, bound] : bounds) {
         engine.run(step - engine.work().steps);
         ASSERT_EQ(engine.fault(), "");
         engine.state(state);
         const auto d = distances(state, table, step);
         ASSERT_EQ(d.size(), 637U);
-        // A disturbance of 1e-16 m grows to 8e-13 and 4e-12 diameters in the reference itself.
-        EXPECT_LT(*std::ranges::max_element(d), 1e-12) << "step " << step;
+        EXPECT_LT(*std::ranges::max_element(d), bound) << "step " << step;
     }
-    // Between steps 1000 and 2000 three clusters part from ours by up to 5e-5 diameters, for a cause not found (the
-    // reference sorts its atoms for the first time after step 1000); all others agree to what rounding has grown to.
-    engine.run(1000);
-    engine.state(state);
-    const auto d = distances(state, table, 2000);
-    EXPECT_LT(std::ranges::count_if(d, [](double x) { return x > 1e-8; }), 40);
-    EXPECT_LT(*std::ranges::max_element(d), 1e-4);
 }
 
 // Ours, which forgets at separation, differs only where somebody touched twice.

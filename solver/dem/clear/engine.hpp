@@ -101,6 +101,7 @@ private:
     void kick_and_drift();
     void kick();
     void rebuild(std::span<const std::int32_t> removed = {});
+    void forget_separated();
     void list_walls(std::span<const std::uint32_t> fresh_index);
     [[nodiscard]] bool list_is_stale() const;
 

@@ -96,11 +96,14 @@ std::size_t ClearEngine<Laws, case_needs>::find_touching(std::size_t first, std:
             const bool inside = r2 < reach * reach;
             touching_[found] = {branch, r2, static_cast<std::uint32_t>(i), k};
             found += inside ? 1 : 0;
-            if constexpr (needs.tangential_history)
+            if constexpr (Laws::remembers_separation) {
+                pairs_.live[k] |= inside ? 1 : 0;
+            } else if constexpr (needs.tangential_history) {
                 if (pairs_.live[k] != static_cast<std::uint8_t>(inside)) [[unlikely]] {
                     pairs_.live[k] = inside ? 1 : 0;
-                    if constexpr (!Laws::remembers_separation) pairs_.value[k] = Vec3{};
+                    pairs_.value[k] = Vec3{};
                 }
+            }
         }
     }
     return found;

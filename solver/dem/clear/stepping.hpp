@@ -155,6 +155,7 @@ void ClearEngine<Laws, case_needs>::rebuild(std::span<const std::int32_t> remove
         fresh.build(cells_, p_.position, radii(), skin_, domain_, matters);
         pairs_.carry(list_, fresh, fresh_index);
         list_ = std::move(fresh);
+        if constexpr (Laws::remembers_separation) forget_separated();
     } else {
         list_.build(cells_, p_.position, radii(), skin_, domain_, matters);
     }
@@ -168,6 +169,20 @@ void ClearEngine<Laws, case_needs>::rebuild(std::span<const std::int32_t> remove
         if (mobile(i) && inner.outside(p_.position[i])) near_open_face_.push_back(i);
     if (some_left) lowest_energy_ = std::numeric_limits<double>::infinity();
     ++work_.rebuilds;
+}
+
+/// Where memories outlive a separation, those of pairs that do not touch at the rebuild end here.
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::forget_separated() {
+    for (std::size_t i = 0; i < p_.size(); ++i)
+        for (std::uint32_t k = list_.begin(i); k < list_.end(i); ++k) {
+            const std::size_t j = list_[k].j();
+            const Vec3 branch = p_.position[i] - (p_.position[j] + image_shifts_[list_[k].image()]);
+            const double reach = radius(i) + radius(j);
+            if (dot(branch, branch) < reach * reach) continue;
+            pairs_.value[k] = Vec3{};
+            pairs_.live[k] = 0;
+        }
 }
 
 template <class Laws, Needs case_needs>

@@ -9,7 +9,8 @@
 
 namespace grainsweep::dem {
 
-/// A law may say that its memory outlives a separation until the neighbour list is rebuilt; ours do not.
+/// A law may say that the memory of a pair outlives a separation: until the neighbour list is rebuilt, and beyond if
+/// the pair touches again at that moment. Ours do not.
 template <class Law>
 inline constexpr bool remembers_separation = requires {
     requires Law::remembers_separation;
