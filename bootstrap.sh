@@ -103,7 +103,7 @@ test)
 bench)
     install_missing "${program_packages[@]}" "${test_packages[@]}"
     (cd "$here" && configure release -DGRAINSWEEP_TESTS=ON)
-    quiet "building" cmake --build "$here/build" -j "$jobs"
+    quiet "building" cmake --build "$here/build" -j "$jobs" --target grainsweep benchmarks
     for program in "$here"/build/tests/bench_*; do
         [ -x "$program" ] && "$program"
     done
