@@ -50,8 +50,12 @@ TEST(PowderSpreadingCorners, DefaultsLieWithinTheBoundsAndAreRelevantOnce) {
         for (const auto& r : p.relevant_if) EXPECT_NE(spreading().find_parameter(r.other), nullptr) << p.name;
         EXPECT_FALSE(p.meaning.empty());
     }
-    EXPECT_GT(spreading().estimate_cost(spreading().defaults()), 1);
-    EXPECT_LT(spreading().estimate_cost(spreading().defaults()), 30);
+    Inputs inputs = spreading().defaults();
+    const double mixed = spreading().estimate_cost(inputs);
+    inputs["precision"] = std::string("double");
+    EXPECT_GT(spreading().estimate_cost(inputs), 1);
+    EXPECT_LT(spreading().estimate_cost(inputs), 30);
+    EXPECT_LT(mixed, spreading().estimate_cost(inputs));
 }
 
 // Every corner of (least, greatest) of each parameter, others at their defaults: made or refused, with a cost.
