@@ -1,0 +1,75 @@
+// A killed campaign goes on inside the case: the worker's checkpoint is continued bit for bit.
+#include "tests/support/process.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <string>
+#include <thread>
+
+using namespace grainsweep::test;
+
+namespace {
+
+// A second or two of real physics; the launcher shortens the interval between checkpoints.
+const char* config = R"({
+  "campaign": "long", "scene": "powder_spreading",
+  "factors": [{"name": "gap", "levels": [0.005]}],
+  "fixed": {"diameter": 0.003, "precision": "double"},
+  "design": {"kind": "lattice"},
+  "execution": {"launcher": ["/bin/sh", "-c", "exec \"$@\" --checkpoint-seconds 0.1", "sh"]}
+})";
+
+/// Whole files; what a killed process left half written beside them is swept later.
+std::size_t files_in(const std::filesystem::path& folder) {
+    std::size_t count = 0;
+    std::error_code absent;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, absent)) {
+        count += entry.path().extension() == ".artefact";
+    }
+    return count;
+}
+
+void await_checkpoint(Process& run, const std::filesystem::path& folder) {
+    while (run.running() && files_in(folder) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+std::string dump(const Folder& folder, const std::string& db) {
+    return run_program({"dump", db}, folder.path()).out;
+}
+
+TEST(Checkpoints, AKilledWorkersCaseIsContinued) {
+    const Folder folder;
+    folder.write("c.json", config);
+    EXPECT_EQ(run_program({"run", "c.json", "--db", "calm.db", "--quiet"}, folder.path()).code, 0);
+    EXPECT_EQ(files_in(folder / "calm.artefacts"), 0U) << "a checkpoint outlived its case";
+
+    Process run(program_command({"run", "c.json", "--db", "hit.db", "--quiet"}), folder.path());
+    await_checkpoint(run, folder / "hit.artefacts");
+    ASSERT_TRUE(run.running()) << "the case was over before its first checkpoint";
+    for (const pid_t worker : run.children()) ::kill(worker, SIGKILL);
+    const auto ended = run.wait();
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_TRUE(dump(folder, "hit.db") == dump(folder, "calm.db"));
+    EXPECT_EQ(files_in(folder / "hit.artefacts"), 0U);
+}
+
+TEST(Checkpoints, AKilledBosssCaseIsContinued) {
+    const Folder folder;
+    folder.write("c.json", config);
+    run_program({"run", "c.json", "--db", "calm.db", "--quiet"}, folder.path());
+    {
+        Process run(program_command({"run", "c.json", "--db", "hit.db", "--quiet"}), folder.path());
+        await_checkpoint(run, folder / "hit.artefacts");
+        run.signal(SIGKILL);
+        run.wait();
+    }
+    EXPECT_EQ(files_in(folder / "hit.artefacts"), 1U);
+    EXPECT_EQ(run_program({"run", "c.json", "--db", "hit.db", "--quiet"}, folder.path()).code, 0);
+    EXPECT_TRUE(dump(folder, "hit.db") == dump(folder, "calm.db"));
+    EXPECT_EQ(files_in(folder / "hit.artefacts"), 0U);
+}
+
+}  // namespace
