@@ -63,6 +63,12 @@ private:
         if constexpr (needs.frozen) return p_.mobile[i] != 0;
         return true;
     }
+    [[nodiscard]] std::size_t mobile_count() const {
+        if constexpr (needs.frozen) {
+            return static_cast<std::size_t>(std::count_if(p_.mobile.begin(), p_.mobile.end(), [](char m) { return m != 0; }));
+        }
+        return p_.size();
+    }
     /// 1/m of a mobile particle.
     [[nodiscard]] double inverse_mass(std::size_t i) const {
         if constexpr (needs.sizes) return p_.inverse_mass[i];

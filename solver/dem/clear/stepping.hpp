@@ -83,7 +83,7 @@ void ClearEngine<Laws, case_needs>::step() {
     evaluate<true>();
     if (!fault_.empty()) return;  // before a force beyond its law moves anything
     kick();
-    work_.particle_steps += static_cast<double>(p_.size());
+    work_.particle_steps += static_cast<double>(mobile_count());
     if (work_.steps % energy_interval == 0) check_energy();
 }
 
