@@ -18,6 +18,8 @@
 #include "solver/particles/pair_memory.hpp"
 #include "solver/particles/particles.hpp"
 
+#include <algorithm>
+
 namespace grainsweep::dem::clear {
 
 using particles::Needs;
