@@ -25,7 +25,9 @@ namespace grainsweep::stats {
 }
 
 /// Uniform in [0, 1): the upper 53 bits over 2^53.
-[[nodiscard]] constexpr double to_unit(std::uint64_t bits) { return static_cast<double>(bits >> 11U) * 0x1.0p-53; }
+[[nodiscard]] constexpr double to_unit(std::uint64_t bits) {
+    return static_cast<double>(bits >> 11U) * 0x1.0p-53;
+}
 
 /// All draws of one purpose: uniform(counter) in [0, 1).
 class Stream {

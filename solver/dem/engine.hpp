@@ -125,9 +125,9 @@ public:
     /// Removes particles by id; absent ids are ignored.
     virtual void remove(std::span<const std::int32_t> ids) = 0;
 
-    [[nodiscard]] virtual std::size_t size() const = 0;         ///< particles present
-    [[nodiscard]] virtual double wall_time() const = 0;         ///< s since the walls were set
-    virtual void state(State& into) const = 0;                  ///< reuses the vectors' memory
+    [[nodiscard]] virtual std::size_t size() const = 0;  ///< particles present
+    [[nodiscard]] virtual double wall_time() const = 0;  ///< s since the walls were set
+    virtual void state(State& into) const = 0;           ///< reuses the vectors' memory
     /// Largest particle-particle overlap over the smaller diameter among the contacts of the last step.
     [[nodiscard]] virtual double largest_overlap() const = 0;
     /// What, where, when the state became untrustworthy; empty: it is sound.

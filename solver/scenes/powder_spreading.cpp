@@ -52,10 +52,13 @@ std::vector<ParameterSpec> parameters() {
                0.0, {0, 1e-3}),
         number("time_step_fraction", "1", "time step over the shorter of the two limits", 0.2, above(0, 1),
                {{"time_step", Condition::zero, {}}}),
-        {"precision", "",
+        {"precision",
+         "",
          "arithmetic: 'mixed' vectorised, exact position differences, single precision forces; 'double' the clear "
          "reference",
-         std::string("mixed"), Words{{"mixed", "double"}}, {}},
+         std::string("mixed"),
+         Words{{"mixed", "double"}},
+         {}},
     };
 }
 

@@ -147,14 +147,24 @@ SceneInfo rehearsal_scene() {
     info.summary = "exactly solvable responses and chosen misbehaviour: proves a campaign without simulating";
     info.revision = 1;
     for (std::size_t j = 1; j <= dimensions; ++j) info.parameters.push_back(coordinate(j));
-    info.parameters.push_back({"response", "", "which known function answers", std::string("sum"),
-                               Words{{"sum", "ishigami", "g_function", "spreading_a", "spreading_b"}}, {}});
+    info.parameters.push_back({"response",
+                               "",
+                               "which known function answers",
+                               std::string("sum"),
+                               Words{{"sum", "ishigami", "g_function", "spreading_a", "spreading_b"}},
+                               {}});
     info.parameters.push_back({"noise", "1", "relative amplitude of a seeded disturbance", 0.0, Interval{0, 1}, {}});
     info.parameters.push_back({"wait_seconds", "s", "time the case takes", 0.0, Interval{0, 86400}, {}});
-    info.parameters.push_back({"behaviour", "", "what the case does instead of answering", std::string("normal"),
-                               Words{{"normal", "crash", "hang", "unstable", "huge"}}, {}});
-    info.parameters.push_back({"behave_attempts", "1",
-                               "only the first so many attempts misbehave (0: all of them)", std::int64_t{0},
+    info.parameters.push_back({"behaviour",
+                               "",
+                               "what the case does instead of answering",
+                               std::string("normal"),
+                               Words{{"normal", "crash", "hang", "unstable", "huge"}},
+                               {}});
+    info.parameters.push_back({"behave_attempts",
+                               "1",
+                               "only the first so many attempts misbehave (0: all of them)",
+                               std::int64_t{0},
                                Interval{0, 1000},
                                {{"behaviour", Relevance::Condition::is_word, {"crash", "hang", "unstable", "huge"}}}});
     info.observables = {{"y", "1", "the response", Shape::scalar},

@@ -51,9 +51,10 @@ std::string why(const std::vector<store::LoggedAttempt>& attempts) {
     const auto failures = std::ranges::count_if(attempts, [](const auto& attempt) {
         return attempt.outcome == Outcome::crashed || attempt.outcome == Outcome::timed_out;
     });
-    return fmt::format("{} of its attempts failed: the next run tries it again while that is below limits.attempts; "
-                       "`run --again {}` tries it in any case",
-                       failures, to_string(*last.outcome));
+    return fmt::format(
+        "{} of its attempts failed: the next run tries it again while that is below limits.attempts; "
+        "`run --again {}` tries it in any case",
+        failures, to_string(*last.outcome));
 }
 
 Table attempts_table(const std::vector<store::LoggedAttempt>& attempts) {
@@ -88,8 +89,8 @@ int explain(const std::string& database, const std::string& id, Format format) {
                                                         {"why", why(attempts)}});
         return 0;
     }
-    std::cout << fmt::format("case {}\nscene {} revision {}, seed {}\n", question.id, question.scene,
-                             question.revision, question.seed);
+    std::cout << fmt::format("case {}\nscene {} revision {}, seed {}\n", question.id, question.scene, question.revision,
+                             question.seed);
     const SceneInfo* scene = find_scene(question.scene);
     for (const auto& [name, value] : question.inputs) {
         const auto* parameter = scene == nullptr ? nullptr : scene->find_parameter(name);
@@ -139,12 +140,12 @@ int replay(const std::string& database, const std::string& id, Format format) {
     const auto attempts = archive.attempts(question.id);
     const auto then = std::ranges::find(attempts, stored->attempt.number, &store::LoggedAttempt::number);
     const auto here = provenance();
-    const bool same_path = then != attempts.end() && then->version == build_version() &&
-                           then->instruction_path == here.instruction_path;
+    const bool same_path =
+        then != attempts.end() && then->version == build_version() && then->instruction_path == here.instruction_path;
 
     NoArtefacts artefacts;
-    const auto now = workers::compute(question, stored->attempt.number, artefacts, std::nullopt,
-                                      [](const Scene&) { return true; });
+    const auto now =
+        workers::compute(question, stored->attempt.number, artefacts, std::nullopt, [](const Scene&) { return true; });
     Table table{{"observable", "archive", "replay", "relative_difference"}, {}};
     double worst = 0;
     const auto compare = [&](const std::string& name, double a, double b) {
@@ -164,15 +165,15 @@ int replay(const std::string& database, const std::string& id, Format format) {
         same_series = same_series && same_samples(stored->observations.series, now->observations.series, name);
     }
     const bool same_outcome = stored->outcome == now->outcome;
-    const bool agrees =
-        same_outcome && (same_path ? worst == 0 && same_series : worst <= tolerance_across_paths);
+    const bool agrees = same_outcome && (same_path ? worst == 0 && same_series : worst <= tolerance_across_paths);
     const std::string verdict =
         !same_outcome ? fmt::format("the archive says {}, the replay {}: {}", to_string(stored->outcome),
                                     to_string(now->outcome), now->message)
-        : same_path   ? (agrees ? "equal to the last bit" : "DIFFERENT although build and instruction path are the same")
-                      : fmt::format("largest relative difference {:.3g} (another build or instruction path: up to {} is "
-                                    "taken as agreement)",
-                                    worst, tolerance_across_paths);
+        : same_path ? (agrees ? "equal to the last bit" : "DIFFERENT although build and instruction path are the same")
+                    : fmt::format(
+                          "largest relative difference {:.3g} (another build or instruction path: up to {} is "
+                          "taken as agreement)",
+                          worst, tolerance_across_paths);
     if (format == Format::json) {
         report::write(std::cout, nlohmann::ordered_json{{"case_id", question.id},
                                                         {"same_path", same_path},
@@ -228,7 +229,8 @@ std::vector<Command> archive_commands() {
         {"query", "read-only SQL",
          [](CLI::App& parser, const Format& format) -> Action {
              const auto arguments = with_database(parser);
-             parser.add_option("SQL", arguments->text, "one statement; each campaign is a view of its name")->required();
+             parser.add_option("SQL", arguments->text, "one statement; each campaign is a view of its name")
+                 ->required();
              return [arguments, &format] {
                  const Store archive(arguments->database, Store::Mode::read);
                  report::write(std::cout, archive.query(arguments->text), format);

@@ -75,7 +75,8 @@ Command worker_command() {
     return {"worker", "computes cases for a run; started by it",
             [](CLI::App& parser, const Format&) -> Action {
                 const auto options = std::make_shared<workers::WorkerOptions>();
-                parser.add_option("--artefacts", options->artefacts, "folder of shared starting states and checkpoints");
+                parser.add_option("--artefacts", options->artefacts,
+                                  "folder of shared starting states and checkpoints");
                 parser.add_option("--checkpoint-seconds", options->checkpoint_seconds, "a case is saved this often");
                 parser.add_option("--lease-seconds", options->lease_seconds, "silence after which it ends itself");
                 return [options] {
@@ -88,6 +89,8 @@ Command worker_command() {
 
 }  // namespace
 
-std::vector<Command> run_commands() { return {run_command(), worker_command()}; }
+std::vector<Command> run_commands() {
+    return {run_command(), worker_command()};
+}
 
 }  // namespace grainsweep::cli

@@ -40,7 +40,8 @@ ProgressLine::ProgressLine(bool quiet, std::size_t workers)
 
 ProgressLine::~ProgressLine() {
     if (line_open_) std::fputc('\n', stderr);
-    if (notes_ > shown_notes) fmt::print(stderr, "... and {} more failures; the database has them all\n", notes_ - shown_notes);
+    if (notes_ > shown_notes)
+        fmt::print(stderr, "... and {} more failures; the database has them all\n", notes_ - shown_notes);
 }
 
 void ProgressLine::update(const schedule::Progress& progress) {

@@ -34,13 +34,13 @@ struct OptionSpec {
     std::optional<OptionValue> default_value;  ///< none: required
     std::int64_t minimum = 1;                  ///< of a count
     std::int64_t maximum = 1'000'000'000'000;
-    std::vector<std::string> words;            ///< of a word
+    std::vector<std::string> words;  ///< of a word
 };
 
 struct DesignRequest {
     std::vector<std::size_t> levels;  ///< per factor: number of its levels, 0 where it is continuous
     std::map<std::string, OptionValue, std::less<>> options;  ///< complete: defaults filled in
-    std::uint64_t seed = 1;           ///< the campaign's
+    std::uint64_t seed = 1;                                   ///< the campaign's
 
     [[nodiscard]] std::size_t dimensions() const { return levels.size(); }
     [[nodiscard]] std::int64_t count(std::string_view option) const;

@@ -12,7 +12,9 @@ using campaign::Outcome;
 // enough that a stopped run has a gapless beginning.
 constexpr std::size_t window = 64;
 
-bool good(Outcome outcome) { return outcome == Outcome::completed || outcome == Outcome::skipped; }
+bool good(Outcome outcome) {
+    return outcome == Outcome::completed || outcome == Outcome::skipped;
+}
 
 }  // namespace
 

@@ -27,9 +27,9 @@ struct History {
 };
 
 struct Rules {
-    std::int64_t attempts = 3;              ///< tries of a case that crashes or times out
-    std::int64_t stop_after_failures = 0;   ///< start nothing more after so many failed cases; 0: never
-    std::int64_t max_cases = 0;             ///< settle at most so many in this run; 0: all
+    std::int64_t attempts = 3;                    ///< tries of a case that crashes or times out
+    std::int64_t stop_after_failures = 0;         ///< start nothing more after so many failed cases; 0: never
+    std::int64_t max_cases = 0;                   ///< settle at most so many in this run; 0: all
     std::optional<campaign::Outcome> again = {};  ///< ask again what ended like this
 };
 
@@ -72,11 +72,11 @@ public:
 
     struct Tally {
         std::size_t questions = 0;
-        std::size_t decided = 0;           ///< settled or given up, before or in this run
-        std::size_t settled_now = 0;       ///< completed or skipped in this run
-        std::size_t failed_now = 0;        ///< given up, unstable or rejected in this run
-        std::size_t failed = 0;            ///< given up or settled as unstable or rejected, all told
-        double predicted_left = 0;         ///< seconds
+        std::size_t decided = 0;      ///< settled or given up, before or in this run
+        std::size_t settled_now = 0;  ///< completed or skipped in this run
+        std::size_t failed_now = 0;   ///< given up, unstable or rejected in this run
+        std::size_t failed = 0;       ///< given up or settled as unstable or rejected, all told
+        double predicted_left = 0;    ///< seconds
     };
     [[nodiscard]] const Tally& tally() const { return tally_; }
 

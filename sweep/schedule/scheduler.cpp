@@ -58,24 +58,24 @@ void Scheduler::hand_out() {
 }
 
 void Scheduler::handle(workers::PoolEvent event) {
-    std::visit(Overloaded{[&](workers::Finished& finished) { handle_finished(finished); },
-                          [&](const workers::Heartbeat&) {},
-                          [&](const workers::Lost& lost) {
-                              if (lost.running) handle_failure(*lost.running, Outcome::crashed, lost.reason);
-                              take_back(lost.queued);
-                          },
-                          [&](const workers::TimedOut& late) {
-                              handle_failure(late.running, Outcome::timed_out, late.reason);
-                              take_back(late.queued);
-                          },
-                          [&](const workers::GivenBack& back) { park(back.attempt); },
-                          [&](const workers::Interrupted& stop) {
-                              plan_.close();
-                              early_ = Ending::interrupted;
-                              crew_.retire();
-                              at_once_ = stop.at_once;
-                          }},
-               event);
+    std::visit(
+        Overloaded{[&](workers::Finished& finished) { handle_finished(finished); }, [&](const workers::Heartbeat&) {},
+                   [&](const workers::Lost& lost) {
+                       if (lost.running) handle_failure(*lost.running, Outcome::crashed, lost.reason);
+                       take_back(lost.queued);
+                   },
+                   [&](const workers::TimedOut& late) {
+                       handle_failure(late.running, Outcome::timed_out, late.reason);
+                       take_back(late.queued);
+                   },
+                   [&](const workers::GivenBack& back) { park(back.attempt); },
+                   [&](const workers::Interrupted& stop) {
+                       plan_.close();
+                       early_ = Ending::interrupted;
+                       crew_.retire();
+                       at_once_ = stop.at_once;
+                   }},
+        event);
 }
 
 void Scheduler::handle_finished(workers::Finished& finished) {
@@ -83,8 +83,8 @@ void Scheduler::handle_finished(workers::Finished& finished) {
     const auto& result = finished.result;
     if (plan_.ended(result.attempt, result.outcome) == Plan::Verdict::stale) return;
     if (result.outcome == Outcome::unstable || result.outcome == Outcome::rejected) {
-        watchers_.note(fmt::format("{} {}: {}", result.attempt.case_id.substr(0, 12), to_string(result.outcome),
-                                   result.message));
+        watchers_.note(
+            fmt::format("{} {}: {}", result.attempt.case_id.substr(0, 12), to_string(result.outcome), result.message));
     }
     if (judge_ != nullptr) judge_->learn(result.attempt.case_id, result.observations);
     if (finished.checkpointed) checkpointed_.push_back(result.attempt.case_id);

@@ -15,9 +15,9 @@
 namespace grainsweep::schedule {
 
 enum class Ending {
-    finished,     ///< every question has its last word
-    converged,    ///< the statistics were good enough
-    limited,      ///< as many cases as asked for in this run
+    finished,   ///< every question has its last word
+    converged,  ///< the statistics were good enough
+    limited,    ///< as many cases as asked for in this run
     too_many_failures,
     interrupted,
 };

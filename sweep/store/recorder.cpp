@@ -57,7 +57,8 @@ void Recorder::run() {
     while (true) {
         changed_.wait(lock, [this] { return closing_ || !waiting_.empty(); });
         if (waiting_.empty()) return;
-        if (!closing_) changed_.wait_for(lock, group_wait, [this] { return closing_ || waiting_.size() >= group_rows; });
+        if (!closing_)
+            changed_.wait_for(lock, group_wait, [this] { return closing_ || waiting_.size() >= group_rows; });
         std::vector<Entry> group = std::exchange(waiting_, {});
         busy_ = true;
         lock.unlock();

@@ -186,7 +186,8 @@ void Store::begin(const campaign::Attempt& attempt) {
     const auto begun = db.run(
         "INSERT INTO attempt (case_key, number, provenance_id, started) "
         "SELECT case_key, ?1, ?2, ?3 FROM sim_case WHERE case_id = ?4 "
-        "ON CONFLICT (case_key, number) DO UPDATE SET provenance_id = excluded.provenance_id, started = excluded.started "
+        "ON CONFLICT (case_key, number) DO UPDATE SET provenance_id = excluded.provenance_id, started = "
+        "excluded.started "
         "WHERE outcome IS NULL",
         attempt.number, impl_->provenance, utc_now(), attempt.case_id);
     if (begun != 1) {

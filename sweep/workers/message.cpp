@@ -102,7 +102,9 @@ Done to_done(const Json& object) {
 }
 
 // Invalid UTF-8 in a message (from a library's error text, say) must not lose the result.
-std::string line(const Json& object) { return object.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string line(const Json& object) {
+    return object.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
 
 Json parse(std::string_view text) {
     try {
@@ -124,26 +126,32 @@ std::string encode(const ToWorker& message) {
                                                     {"seed", run.question.seed},
                                                     {"inputs", from_inputs(run.question.inputs)}}}};
                                       },
-                                      [](const Lease&) -> Json { return {{"lease", true}}; },
-                                      [](const Stop&) -> Json { return {{"stop", true}}; }},
+                                      [](const Lease&) -> Json {
+                                          return {{"lease", true}};
+                                      },
+                                      [](const Stop&) -> Json {
+                                          return {{"stop", true}};
+                                      }},
                            message));
 }
 
 std::string encode(const ToBoss& message) {
-    return line(std::visit(Overloaded{[](const Ready& ready) -> Json {
-                                          return {{"ready",
-                                                   {{"version", ready.version}, {"path", ready.instruction_path}}}};
-                                      },
-                                      [](const Alive& alive) -> Json {
-                                          Json object = from_attempt(alive.attempt);
-                                          object["progress"] = alive.progress;
-                                          return {{"alive", std::move(object)}};
-                                      },
-                                      [](const Done& done) -> Json { return {{"done", from_done(done)}}; },
-                                      [](const Parked& parked) -> Json {
-                                          return {{"parked", from_attempt(parked.attempt)}};
-                                      }},
-                           message));
+    return line(
+        std::visit(Overloaded{[](const Ready& ready) -> Json {
+                                  return {{"ready", {{"version", ready.version}, {"path", ready.instruction_path}}}};
+                              },
+                              [](const Alive& alive) -> Json {
+                                  Json object = from_attempt(alive.attempt);
+                                  object["progress"] = alive.progress;
+                                  return {{"alive", std::move(object)}};
+                              },
+                              [](const Done& done) -> Json {
+                                  return {{"done", from_done(done)}};
+                              },
+                              [](const Parked& parked) -> Json {
+                                  return {{"parked", from_attempt(parked.attempt)}};
+                              }},
+                   message));
 }
 
 ToWorker decode_to_worker(std::string_view text) {

@@ -4,12 +4,12 @@
 
 #include <utility>  // Boost 1.74's Asio needs it first under C++20
 
-#include <boost/asio.hpp>
-#include <boost/process.hpp>
-#include <boost/process/extend.hpp>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/wait.h>
+#include <boost/asio.hpp>
+#include <boost/process.hpp>
+#include <boost/process/extend.hpp>
 
 #include <algorithm>
 #include <csignal>
@@ -123,8 +123,8 @@ struct Pool::Impl {
                 worker->ready = true;
                 unready_in_a_row = 0;
             } else {
-                complain(*worker, fmt::format("the worker is build {}, the boss is build {}", ready.version,
-                                              options.version));
+                complain(*worker,
+                         fmt::format("the worker is build {}, the boss is build {}", ready.version, options.version));
             }
         } catch (const std::invalid_argument& error) {
             complain(*worker, fmt::format("the worker wrote something that is no message: {}", error.what()));
@@ -181,7 +181,8 @@ struct Pool::Impl {
         const auto& command = options.command;
         auto executable = command.front().find('/') == std::string::npos ? bp::search_path(command.front())
                                                                          : boost::filesystem::path(command.front());
-        if (executable.empty()) throw std::runtime_error(fmt::format("cannot find '{}' to start a worker", command.front()));
+        if (executable.empty())
+            throw std::runtime_error(fmt::format("cannot find '{}' to start a worker", command.front()));
         worker->process = bp::child(
             executable, bp::args(std::vector<std::string>(command.begin() + 1, command.end())),
             bp::std_in<worker->in, bp::std_out> worker->out, bp::std_err > worker->err, error,
@@ -256,14 +257,16 @@ struct Pool::Impl {
     int interruptions = 0;
     bool retired = false;
     int unready_in_a_row = 0;  // workers lost before they said they were ready
-    std::string broken;  // why no worker can be had at all
+    std::string broken;        // why no worker can be had at all
 };
 
 Pool::Pool(PoolOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {
     std::signal(SIGPIPE, SIG_IGN);  // a write to a dead worker is an error code, not our end
 }
 
-Pool::~Pool() { dismiss(); }
+Pool::~Pool() {
+    dismiss();
+}
 
 bool Pool::has_room(double predicted_seconds) const {
     return !impl_->retired &&

@@ -14,8 +14,8 @@ namespace grainsweep::workers {
 struct PoolOptions {
     std::vector<std::string> command;  ///< launcher prefix, executable, "worker", its arguments
     std::size_t workers = 1;
-    double wall_seconds = 0;           ///< limit of one case; 0: none
-    std::string version;               ///< what a worker's Ready must say
+    double wall_seconds = 0;  ///< limit of one case; 0: none
+    std::string version;      ///< what a worker's Ready must say
 };
 
 class Pool final : public Crew {

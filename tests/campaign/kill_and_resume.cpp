@@ -58,7 +58,7 @@ std::string dump(const std::filesystem::path& db, const Folder& folder) {
 std::string undisturbed(const Folder& folder, const std::string& workers) {
     const auto db = folder / ("calm" + workers + ".db");
     const auto ended = run_program({"run", (folder / "c.json").string(), "--db", db.string(), "-j", workers, "--quiet"},
-                                  folder.path());
+                                   folder.path());
     EXPECT_EQ(ended.code, 0) << ended.err;
     return dump(db, folder);
 }

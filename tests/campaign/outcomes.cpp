@@ -28,8 +28,9 @@ TEST(Outcomes, ACrashingCaseIsTriedThreeTimesAndTheRestIsComputed) {
     folder.write("c.json", config("\"crash\""));
     const auto run = run_program({"run", "c.json", "-j", "2", "--quiet"}, folder.path());
     EXPECT_EQ(run.code, 1) << run.err;
-    const auto rows = query(folder, "SELECT outcome, count(*) AS n, max(attempts) AS tries FROM trouble GROUP BY outcome "
-                                    "ORDER BY outcome");
+    const auto rows = query(folder,
+                            "SELECT outcome, count(*) AS n, max(attempts) AS tries FROM trouble GROUP BY outcome "
+                            "ORDER BY outcome");
     ASSERT_EQ(rows.size(), 2U);
     EXPECT_EQ(rows[0]["outcome"], "completed");
     EXPECT_EQ(rows[0]["n"], 4);
@@ -56,7 +57,8 @@ TEST(Outcomes, ExplainTellsEveryAttempt) {
 
 TEST(Outcomes, ACrashThatPassesIsForgiven) {
     const Folder folder;
-    folder.write("c.json", R"({"campaign": "trouble", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
+    folder.write("c.json",
+                 R"({"campaign": "trouble", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
       "fixed": {"behaviour": "crash", "behave_attempts": 2}, "design": {"kind": "random", "points": 5}})");
     EXPECT_EQ(run_program({"run", "c.json", "-j", "2", "--quiet"}, folder.path()).code, 0);
     const auto rows = query(folder, "SELECT outcome, attempts, y FROM trouble");
@@ -116,7 +118,8 @@ TEST(Outcomes, MaxCasesSettlesThatManyAndNoMore) {
 
 TEST(Outcomes, ALauncherThatCannotStartIsABrokenWorldNotAFailedCase) {
     const Folder folder;
-    folder.write("c.json", R"({"campaign": "trouble", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
+    folder.write("c.json",
+                 R"({"campaign": "trouble", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
       "design": {"kind": "random", "points": 5}, "execution": {"launcher": ["/bin/false"]}})");
     const auto run = run_program({"run", "c.json", "--quiet"}, folder.path());
     EXPECT_EQ(run.code, 3) << run.err;
@@ -125,7 +128,8 @@ TEST(Outcomes, ALauncherThatCannotStartIsABrokenWorldNotAFailedCase) {
 
 TEST(Outcomes, ALauncherPrefixCarriesTheWorker) {
     const Folder folder;
-    folder.write("c.json", R"({"campaign": "trouble", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
+    folder.write("c.json",
+                 R"({"campaign": "trouble", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
       "design": {"kind": "random", "points": 20}, "execution": {"launcher": ["/usr/bin/env", "-u", "HOME"]}})");
     EXPECT_EQ(run_program({"run", "c.json", "--quiet"}, folder.path()).code, 0);
 }

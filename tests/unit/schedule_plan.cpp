@@ -97,9 +97,9 @@ TEST(Plan, ResumesWhereTheArchiveEnds) {
     Plan plan = make_plan(5, {.attempts = 2},
                           {{1, 0, Outcome::completed},
                            {1, 0, Outcome::unstable},
-                           {2, 2, Outcome::crashed},     // exhausted
-                           {1, 1, Outcome::crashed},     // one try left
-                           {7, 0, Outcome::abandoned}}); // the boss died: always again
+                           {2, 2, Outcome::crashed},      // exhausted
+                           {1, 1, Outcome::crashed},      // one try left
+                           {7, 0, Outcome::abandoned}});  // the boss died: always again
     EXPECT_EQ(plan.tally().decided, 3U);
     EXPECT_EQ(plan.settled_prefix(), 3U);
     const auto a = plan.next();

@@ -14,7 +14,9 @@ namespace {
 TEST(Message, AQuestionSurvivesTheTrip) {
     workers::Run run;
     run.attempt = 3;
-    run.question = {"0123", "rehearsal", 2,
+    run.question = {"0123",
+                    "rehearsal",
+                    2,
                     {{"x1", 0.1}, {"whole", 2.0}, {"count", std::int64_t{2}}, {"word", std::string("a \"b\"\n")}},
                     (1ULL << 63U) - 1};
     const std::string line = encode(run);

@@ -67,7 +67,8 @@ private:
     }
     [[nodiscard]] std::size_t mobile_count() const {
         if constexpr (needs.frozen) {
-            return static_cast<std::size_t>(std::count_if(p_.mobile.begin(), p_.mobile.end(), [](char m) { return m != 0; }));
+            return static_cast<std::size_t>(
+                std::count_if(p_.mobile.begin(), p_.mobile.end(), [](char m) { return m != 0; }));
         }
         return p_.size();
     }

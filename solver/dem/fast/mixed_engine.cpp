@@ -466,7 +466,8 @@ void MixedEngine::report_overlap() {
             if (g < gap) gap = g, deepest = i, wall = w;
         }
     std::snprintf(text, sizeof text, "overlap of %.3g diameters (limit %.3g%s) with wall %d",
-                  static_cast<double>(tally_.wall_overlap), static_cast<double>(sound_.wall), reason_of(sound_.wall), wall);
+                  static_cast<double>(tally_.wall_overlap), static_cast<double>(sound_.wall), reason_of(sound_.wall),
+                  wall);
     fault_ = text + where_and_when(deepest);
 }
 
