@@ -79,6 +79,22 @@ TEST(KillAndResume, OneAndFourWorkersGiveTheSameDump) {
     EXPECT_TRUE(one == undisturbed(folder, "4"));
 }
 
+// Workers overshoot the stopping point by what is under way; that must not show.
+TEST(KillAndResume, AConvergedCampaignStopsAtTheSamePointWithOneAndFourWorkers) {
+    const Folder folder;
+    folder.write("c.json", R"({
+      "campaign": "stopping", "scene": "rehearsal",
+      "factors": [{"name": "x1", "between": [0, 1]}, {"name": "x2", "between": [0, 1]}],
+      "fixed": {"response": "spreading_a", "noise": 0.05},
+      "design": {"kind": "halton", "sequences": 8, "points": 20000},
+      "convergence": {"observable": "y", "tolerance": 0.02, "block": 200}})");
+    const std::string one = undisturbed(folder, "1");
+    EXPECT_TRUE(one == undisturbed(folder, "4"));
+    const auto status = run_program({"status", (folder / "calm4.db").string(), "--format", "json"}, folder.path());
+    EXPECT_NE(status.out.find("\"stopped_at\""), std::string::npos);
+    EXPECT_EQ(status.out.find("\"stopped_at\":null"), std::string::npos) << status.out;
+}
+
 TEST(KillAndResume, BossKilledAtTwentySeededMoments) {
     const Folder folder;
     folder.write("c.json", config);
