@@ -63,18 +63,17 @@ struct Constants {
     float damping;            ///< -2 sqrt(5/6) beta sqrt(2 E*)
     float damping_ratio;      ///< tangential over normal damping, sqrt(8 G*/(2 E*))
     float friction;
-    float root_radius;       ///< sqrt(R*) of an equal pair
-    float damping_pair;      ///< damping sqrt(m*) of two mobile equal particles
-    float damping_frozen;    ///< ... of a mobile and a frozen one, or a wall
-    float root_radius_wall;  ///< sqrt(R)
-    float inverse_mass;      ///< of a mobile particle where they are equal
-    float rotation;          ///< 2.5/R^2 where radii are equal
-    float neck_lens;         ///< cohesive force per pi/4 (Rs^2-r^2)(r^2-Rd^2)/r^2
-    float neck_linear;       ///< ... per R* d
-    float neck_square;       ///< ... per d^2
-    float wall_linear;       ///< cohesive force on a wall per R d
-    float wall_square;       ///< ... per d^2
-    float net_limit;         ///< 1: Coulomb's limit sees the cohesive force, 0: it does not
+    float root_radius;     ///< sqrt(R*) of an equal pair
+    float damping_pair;    ///< damping sqrt(m*) of two mobile equal particles
+    float damping_frozen;  ///< ... of a mobile and a frozen one, or a wall
+    float inverse_mass;    ///< of a mobile particle where they are equal
+    float rotation;        ///< 2.5/R^2 where radii are equal
+    float neck_lens;       ///< cohesive force per pi/4 (Rs^2-r^2)(r^2-Rd^2)/r^2
+    float neck_linear;     ///< ... per R* d
+    float neck_square;     ///< ... per d^2
+    float wall_linear;     ///< cohesive force on a wall per R d
+    float wall_square;     ///< ... per d^2
+    float net_limit;       ///< 1: Coulomb's limit sees the cohesive force, 0: it does not
 };
 
 /// Shape of a wall at the present time, relative to the middle of the domain, in the engine's units.

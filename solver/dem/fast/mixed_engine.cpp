@@ -2,17 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 
 #include "solver/dem/fast/checkpoint.hpp"
 #include "solver/dem/fast/columns.hpp"
+#include "solver/dem/fast/faults.hpp"
 #include "solver/dem/fast/rebuild.hpp"
 #include "solver/dem/fast/scale.hpp"
-#include "solver/dem/limits.hpp"
 
 namespace grainsweep::dem::fast {
 
@@ -50,34 +48,6 @@ const Kernels& kernels_of(Method::Path path, const Needs& needs) {
     }
 }
 
-/// Overlaps, over the diameter, up to which a contact is both meant by the law and resolved by the time step.
-struct SoundOverlaps {
-    float pair = static_cast<float>(overlap_limit);
-    float wall = static_cast<float>(overlap_limit);
-};
-
-/// A contact of effective radius R* and reduced mass m* swings dt sqrt(S_n/m*), S_n = 2 E* sqrt(R* d), in a step; at
-/// largest_sound_swing d = (swing^2 m*/(2 E* dt^2))^2/R*. Of all contacts those of the smallest sphere come first.
-SoundOverlaps sound_overlaps(const Setup& setup) {
-    double radius = std::numeric_limits<double>::infinity();
-    for (const Sphere& sphere : setup.spheres) radius = std::min(radius, sphere.radius);
-    const Material& m = setup.material;
-    const double modulus = m.youngs_modulus / (2 * (1 - m.poisson_ratio * m.poisson_ratio));
-    const double mass = 4.0 / 3 * std::numbers::pi * radius * radius * radius * m.density;
-    const auto limit = [&](double share) {  // R* = share r, m* = share m
-        const double root = largest_sound_swing * largest_sound_swing * share * mass /
-                            (2 * modulus * setup.time_step * setup.time_step);
-        return static_cast<float>(std::min(overlap_limit, root * root / (share * radius) / (2 * radius)));
-    };
-    if (!std::isfinite(radius)) return {};
-    return {limit(0.5), limit(1)};
-}
-
-/// Words for a limit that the time step sets.
-const char* reason_of(float limit) {
-    return limit < static_cast<float>(overlap_limit) ? ": beyond, the time step is too long for the contact" : "";
-}
-
 class MixedEngine final : public Engine {
 public:
     MixedEngine(const Setup& setup, Method::Path path, double skin);
@@ -102,12 +72,12 @@ private:
     void make_lists(std::span<const std::int32_t> removed = {});
     void full_step_velocities();
     void restart_forces(std::span<const std::int32_t> removed = {});
-    void report_fast_particle();
-    [[nodiscard]] bool too_deep() const { return tally_.overlap > sound_.pair || tally_.wall_overlap > sound_.wall; }
-    void report_overlap();
     [[nodiscard]] double half_change(std::int32_t particle, int axis) const;
     [[nodiscard]] double half_spin_change(std::int32_t particle, int axis) const;
-    [[nodiscard]] std::string where_and_when(std::int32_t particle) const;
+    [[nodiscard]] Sight sight() const {
+        return {field_, columns_.id.data(), room_.scale, smallest_diameter_, sound_, work_.steps};
+    }
+    [[nodiscard]] bool too_deep() const { return tally_.overlap > sound_.pair || tally_.wall_overlap > sound_.wall; }
     template <class Self, class Archive>
     static void pass(Self& self, Archive& archive);
 
@@ -265,7 +235,7 @@ void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
             r.surface[a] = r.spin[a] * r.radius;
         }
     }
-    if (too_deep()) report_overlap();
+    if (too_deep()) fault_ = describe_overlap(sight(), tally_);
 }
 
 /// The velocities whose spread bounds relative displacements: particles', walls', and rest where something rests.
@@ -302,7 +272,7 @@ void MixedEngine::account_travel() {
     drift_.outer += drift_.last_step;
     drift_.inner += drift_.last_step;
     if (field_.count > 0 && (!finite || !(fastest < static_cast<float>(travel_limit) * smallest_diameter_)))
-        report_fast_particle();
+        fault_ = describe_fast_particle(sight());
 }
 
 /// Rebuilds or refreshes the lists where displacements since demand it. A pair outside the outer list had a gap
@@ -347,7 +317,7 @@ void MixedEngine::run(std::int64_t steps) {
         kernels_->sweep(field_, s + 1 < steps, tally_);
         columns_.swap_histories(field_);
         work_.pair_visits += field_.inner_count;
-        if (too_deep()) report_overlap();
+        if (too_deep()) fault_ = describe_overlap(sight(), tally_);
     }
 }
 
@@ -402,75 +372,6 @@ void MixedEngine::state(State& into) const {
     }
 }
 
-std::string MixedEngine::where_and_when(std::int32_t i) const {
-    char text[200];
-    double x[3];
-    for (int a = 0; a < 3; ++a) {
-        const auto axis = static_cast<std::size_t>(a);
-        x[a] = room_.scale.centre[axis] + field_.records[i].position[a] * room_.scale.unit[axis];
-    }
-    std::snprintf(text, sizeof text, ": particle %d at (%.6g, %.6g, %.6g) m, after %lld steps, %.6g s",
-                  columns_.id[static_cast<std::size_t>(i)], x[0], x[1], x[2], static_cast<long long>(work_.steps),
-                  room_.scale.time * static_cast<double>(work_.steps));
-    return text;
-}
-
-void MixedEngine::report_fast_particle() {
-    std::int32_t worst = 0;
-    double most = -1;
-    for (std::int32_t i = 0; i < field_.count; ++i)
-        for (const float v : field_.records[i].velocity) {
-            const double travel =
-                std::isfinite(v) ? std::abs(static_cast<double>(v)) : std::numeric_limits<double>::infinity();
-            if (travel > most) most = travel, worst = i;
-        }
-    char text[240];
-    std::snprintf(text, sizeof text, "a particle moves %.3g smallest diameters in one step (limit %.3g)",
-                  most / static_cast<double>(smallest_diameter_), travel_limit);
-    fault_ = text + where_and_when(worst);
-}
-
-/// Looks for the pair again, by the positions the forces were computed at or one step later.
-void MixedEngine::report_overlap() {
-    double most = 0;
-    std::int32_t first = 0, second = -1;
-    for (std::int32_t k = 0; k < field_.inner_count; ++k) {
-        const auto i = static_cast<std::int32_t>(field_.inner_first[k] / places_per_index);
-        const auto j = static_cast<std::int32_t>(field_.inner_second[k] / places_per_index);
-        const Record &a = field_.records[i], &b = field_.records[j];
-        double square = 0;
-        for (int q = 0; q < 3; ++q) {
-            const auto offset = static_cast<std::int32_t>(static_cast<std::uint32_t>(a.position[q]) -
-                                                          static_cast<std::uint32_t>(b.position[q]));
-            square += std::pow(offset * field_.constants.unit[q], 2);
-        }
-        const double radii = static_cast<double>(a.radius) + static_cast<double>(b.radius);
-        const double share = (radii - std::sqrt(square)) / (2 * static_cast<double>(std::min(a.radius, b.radius)));
-        if (share > most) most = share, first = i, second = j;
-    }
-    char text[240];
-    if (tally_.overlap > sound_.pair && second >= 0) {
-        std::snprintf(text, sizeof text, "overlap of %.3g diameters (limit %.3g%s) with particle %d",
-                      static_cast<double>(tally_.overlap), static_cast<double>(sound_.pair), reason_of(sound_.pair),
-                      columns_.id[static_cast<std::size_t>(second)]);
-        fault_ = text + where_and_when(first);
-        return;
-    }
-    std::int32_t deepest = 0, wall = 0;
-    double gap = std::numeric_limits<double>::infinity();
-    for (std::int32_t w = 0; w < field_.wall_count; ++w)
-        for (std::int32_t k = field_.segments[w].begin; k < field_.segments[w].end; ++k) {
-            const auto i = static_cast<std::int32_t>(field_.wall_particle[k] / places_per_index);
-            if (i >= field_.count) continue;
-            const double g = wall_gap(field_, field_.walls[w], i) / (2 * static_cast<double>(field_.records[i].radius));
-            if (g < gap) gap = g, deepest = i, wall = w;
-        }
-    std::snprintf(text, sizeof text, "overlap of %.3g diameters (limit %.3g%s) with wall %d",
-                  static_cast<double>(tally_.wall_overlap), static_cast<double>(sound_.wall), reason_of(sound_.wall),
-                  wall);
-    fault_ = text + where_and_when(deepest);
-}
-
 /// Everything that changes, in one order for writing and reading.
 template <class Self, class Archive>
 void MixedEngine::pass(Self& self, Archive& archive) {
@@ -510,25 +411,6 @@ void MixedEngine::pass(Self& self, Archive& archive) {
     const auto near_walls = self.walls_.empty() ? 0 : static_cast<std::size_t>(c.segments[self.walls_.size() - 1].end);
     archive.column(c.wall_particle, near_walls);
     for (auto& h : c.wall_history) archive.column(h, near_walls);
-}
-
-/// What must agree between the engine that wrote and the one that reads.
-struct Seal {
-    std::uint64_t format = 0x67737765657031;  // changes with the layout of what follows
-    std::int32_t width = 0;
-    Needs needs{};
-    Constants constants{};
-};
-
-Seal make_seal(const Field& f, const Kernels& k, const Needs& n) {
-    Seal s;
-    std::memset(static_cast<void*>(&s), 0, sizeof s);  // padding too: seals are compared by their bytes
-    s.format = Seal{}.format;
-    s.width = k.width;
-    s.needs.unequal = n.unequal, s.needs.frozen = n.frozen, s.needs.friction = n.friction,
-    s.needs.cohesion = n.cohesion;
-    std::memcpy(static_cast<void*>(&s.constants), &f.constants, sizeof f.constants);
-    return s;
 }
 
 void MixedEngine::save(std::vector<std::byte>& into) const {

@@ -103,7 +103,6 @@ Constants make_constants(const Setup& setup, const Scale& scale) {
     c.damping_ratio = f(std::sqrt(8 * shear / (2 * young)));
     c.friction = f(m.friction);
     c.root_radius = 0.5F;
-    c.root_radius_wall = f(std::sqrt(0.5));
     c.inverse_mass = 1;
     c.damping_pair = f(damping * std::sqrt(0.5));
     c.damping_frozen = f(damping);

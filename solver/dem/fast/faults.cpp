@@ -1,0 +1,107 @@
+#include "solver/dem/fast/faults.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+
+#include "solver/dem/fast/mixed_engine.hpp"
+#include "solver/dem/fast/rebuild.hpp"
+#include "solver/dem/limits.hpp"
+
+namespace grainsweep::dem::fast {
+
+namespace {
+
+std::string where_and_when(const Sight& s, std::int32_t i) {
+    char text[200];
+    double x[3];
+    for (int a = 0; a < 3; ++a) {
+        const auto axis = static_cast<std::size_t>(a);
+        x[a] = s.scale.centre[axis] + s.field.records[i].position[a] * s.scale.unit[axis];
+    }
+    std::snprintf(text, sizeof text, ": particle %d at (%.6g, %.6g, %.6g) m, after %lld steps, %.6g s", s.id[i], x[0],
+                  x[1], x[2], static_cast<long long>(s.steps), s.scale.time * static_cast<double>(s.steps));
+    return text;
+}
+
+/// Words for a limit that the time step sets.
+const char* reason_of(float limit) {
+    return limit < static_cast<float>(overlap_limit) ? ": beyond, the time step is too long for the contact" : "";
+}
+
+}  // namespace
+
+SoundOverlaps sound_overlaps(const Setup& setup) {
+    double radius = std::numeric_limits<double>::infinity();
+    for (const Sphere& sphere : setup.spheres) radius = std::min(radius, sphere.radius);
+    if (!std::isfinite(radius)) return {static_cast<float>(overlap_limit), static_cast<float>(overlap_limit)};
+    const Material& m = setup.material;
+    const double modulus = m.youngs_modulus / (2 * (1 - m.poisson_ratio * m.poisson_ratio));
+    const double mass = 4.0 / 3 * std::numbers::pi * radius * radius * radius * m.density;
+    const auto limit = [&](double share) {  // R* = share R, m* = share m
+        const double root = largest_sound_swing * largest_sound_swing * share * mass /
+                            (2 * modulus * setup.time_step * setup.time_step);
+        return static_cast<float>(std::min(overlap_limit, root * root / (share * radius) / (2 * radius)));
+    };
+    return {limit(0.5), limit(1)};
+}
+
+std::string describe_fast_particle(const Sight& s) {
+    std::int32_t worst = 0;
+    double most = -1;
+    for (std::int32_t i = 0; i < s.field.count; ++i)
+        for (const float v : s.field.records[i].velocity) {
+            const double travel =
+                std::isfinite(v) ? std::abs(static_cast<double>(v)) : std::numeric_limits<double>::infinity();
+            if (travel > most) most = travel, worst = i;
+        }
+    char text[160];
+    std::snprintf(text, sizeof text, "a particle moves %.3g smallest diameters in one step (limit %.3g)",
+                  most / static_cast<double>(s.smallest_diameter), travel_limit);
+    return text + where_and_when(s, worst);
+}
+
+/// Looks for the pair again, by the positions the forces were computed at or one step later.
+std::string describe_overlap(const Sight& s, const Tally& tally) {
+    double most = 0;
+    std::int32_t first = 0, second = -1;
+    for (std::int32_t k = 0; k < s.field.inner_count; ++k) {
+        const auto i = static_cast<std::int32_t>(s.field.inner_first[k] / places_per_index);
+        const auto j = static_cast<std::int32_t>(s.field.inner_second[k] / places_per_index);
+        const Record &a = s.field.records[i], &b = s.field.records[j];
+        double square = 0;
+        for (int q = 0; q < 3; ++q) {
+            const auto offset = static_cast<std::int32_t>(static_cast<std::uint32_t>(a.position[q]) -
+                                                          static_cast<std::uint32_t>(b.position[q]));
+            square += std::pow(offset * s.field.constants.unit[q], 2);
+        }
+        const double radii = static_cast<double>(a.radius) + static_cast<double>(b.radius);
+        const double share = (radii - std::sqrt(square)) / (2 * static_cast<double>(std::min(a.radius, b.radius)));
+        if (share > most) most = share, first = i, second = j;
+    }
+    char text[240];
+    if (tally.overlap > s.sound.pair && second >= 0) {
+        std::snprintf(text, sizeof text, "overlap of %.3g diameters (limit %.3g%s) with particle %d",
+                      static_cast<double>(tally.overlap), static_cast<double>(s.sound.pair), reason_of(s.sound.pair),
+                      s.id[second]);
+        return text + where_and_when(s, first);
+    }
+    std::int32_t deepest = 0, wall = 0;
+    double gap = std::numeric_limits<double>::infinity();
+    for (std::int32_t w = 0; w < s.field.wall_count; ++w)
+        for (std::int32_t k = s.field.segments[w].begin; k < s.field.segments[w].end; ++k) {
+            const auto i = static_cast<std::int32_t>(s.field.wall_particle[k] / places_per_index);
+            if (i >= s.field.count) continue;
+            const double g =
+                wall_gap(s.field, s.field.walls[w], i) / (2 * static_cast<double>(s.field.records[i].radius));
+            if (g < gap) gap = g, deepest = i, wall = w;
+        }
+    std::snprintf(text, sizeof text, "overlap of %.3g diameters (limit %.3g%s) with wall %d",
+                  static_cast<double>(tally.wall_overlap), static_cast<double>(s.sound.wall), reason_of(s.sound.wall),
+                  wall);
+    return text + where_and_when(s, deepest);
+}
+
+}  // namespace grainsweep::dem::fast
