@@ -1,7 +1,7 @@
 // The 16 points of LIGGGHTS's spreading table run through the scene: mean mfr per point against the table with the
 // scatter between seeds, chi-square over the points with gap > diameter, and the speed.
 //
-//     bench_spreading_reference [SEEDS [FIRST_POINT LAST_POINT [FIRST_SEED]]]
+//     bench_spreading_reference [SEEDS [FIRST_POINT LAST_POINT [FIRST_SEED [mixed|double]]]]
 #include "solver/scenes/scene.hpp"
 #include "tests/support/reference.hpp"
 
@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <limits>
+#include <string>
 
 using namespace grainsweep;
 
@@ -31,6 +32,7 @@ int main(int argc, char** argv) {
     const auto argument = [&](int k, int otherwise) { return argc > k ? std::atoi(argv[k]) : otherwise; };
     const int seeds = argument(1, 3);
     const int first_seed = argument(4, 1);
+    const std::string precision = argc > 5 ? argv[5] : "mixed";
     const auto table = tests::read_table(tests::reference("spreading/mfr_table.csv"));
     const SceneInfo& scene = *find_scene("powder_spreading");
     double chi_square = 0;
@@ -49,6 +51,7 @@ int main(int argc, char** argv) {
         inputs["gap"] = table.at("gap_mm", row) * 1e-3;
         inputs["speed"] = table.at("v", row);
         inputs["time_step"] = 1e-5;
+        inputs["precision"] = precision;
         double mfr = 0;
         double window = 0;
         double overlap = 0;
