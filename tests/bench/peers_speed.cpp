@@ -6,14 +6,20 @@
 // and the first lists do not count; LIGGGHTS and LAMMPS with the fastest of several list skins (in diameters), ours
 // with its own choice, measured before and after and the slower one taken. The figures of the flow at the end of the
 // run (kinetic energy, mean velocity, coordination number) stand beside the times. Spreading: the 16 cases of the
-// reference table end to end, `grainsweep solve` against LIGGGHTS without any output. One JSON line per comparison.
+// reference table end to end, `grainsweep solve` against LIGGGHTS without any output. Campaign: the first 24 cases of
+// configs/wu2020_lds.json, wall time of `grainsweep run` on all cores against LIGGGHTS (the thesis's step of 1e-5 s, no
+// output) under GNU Parallel on as many, and what that makes for the whole campaign. One JSON line per comparison.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <functional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "solver/dem/fast/mixed_engine.hpp"
@@ -160,6 +166,48 @@ void spreading() {
         ours_total, theirs_total, theirs_total / ours_total);
 }
 
+double wall_seconds(const std::vector<std::string>& argv, const std::filesystem::path& folder) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto ran = test::run_timed(argv, folder);
+    if (ran.code != 0) std::fprintf(stderr, "%s: %d\n%s\n", argv[0].c_str(), ran.code, ran.out.c_str());
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void campaign() {
+    constexpr std::size_t sample = 24;
+    const std::string config = std::string(GRAINSWEEP_SOURCE) + "/configs/wu2020_lds.json";
+    const test::Folder folder;
+    const auto planned = test::run_program({"plan", config, "--format", "json"}, folder.path());
+    const auto plan = nlohmann::json::parse(planned.out);
+    const auto cases = plan.at("cases").get<double>();
+    const double ours_wall = wall_seconds(
+        test::program_command({"run", config, "--db", "sample.db", "--max-cases", "24", "--quiet"}), folder.path());
+    double theirs_wall = 0;
+    if (test::installed("liggghts") && test::installed("parallel")) {
+        std::string jobs;
+        for (std::size_t k = 0; k < sample; ++k) {
+            const auto& row = plan.at("rows").at(k);
+            test::SpreadingPeer q;
+            q.friction = row.at("friction"), q.diameter = row.at("diameter");
+            q.gap = row.at("gap"), q.speed = row.at("speed");
+            const auto job = folder.path() / fmt::format("case_{:02}", k);
+            std::filesystem::create_directory(job);
+            test::write_spreading(q, test::spreading_start(q.diameter, q.friction, k + 1), job);
+            jobs += job.string() + "\n";
+        }
+        folder.write("jobs.txt", jobs);
+        theirs_wall = wall_seconds({"parallel", "-j", std::to_string(std::thread::hardware_concurrency()), "-a",
+                                    "jobs.txt", "cd {} && liggghts -in in.spread -log none > out.txt"},
+                                   folder.path());
+    }
+    fmt::print(
+        "{{\"bench\": \"peers\", \"scene\": \"campaign\", \"sample\": {}, \"grainsweep_wall_seconds\": {:.2f}, "
+        "\"liggghts_parallel_wall_seconds\": {:.1f}, \"times\": {:.1f}, \"whole_campaign_hours\": "
+        "{{\"grainsweep\": {:.3f}, \"liggghts_parallel\": {:.2f}}}}}\n",
+        sample, ours_wall, theirs_wall, theirs_wall / ours_wall, ours_wall / sample * cases / 3600,
+        theirs_wall / sample * cases / 3600);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -196,6 +244,7 @@ int main(int argc, char** argv) {
         {"settled_180k", [&](const auto& s) { compare(o, s, test::replicated(bed(0), 3, 3), 200); }},
         {"chute_180k", [&](const auto& s) { compare(o, s, test::replicated(chute(), 3, 3), 200); }},
         {"spreading", [&](const auto&) { spreading(); }},
+        {"campaign", [&](const auto&) { campaign(); }},
     };
     for (const auto& [name, run] : scenes)
         if (o.scene.empty() || o.scene == name) run(name);
