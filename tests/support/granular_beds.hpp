@@ -16,7 +16,8 @@ struct BedOptions {
     double settle_time = 10e-3;  ///< s, under gravity raised fivefold, and as long again under its own
 };
 
-/// A bed settled on a plane from a jittered lattice; its lowest layer then frozen and the plane gone. Periodic in x, y.
+/// A bed settled on a plane from a jittered lattice; what lies within 1.4 diameters of it then frozen and the plane
+/// gone. Periodic in x, y.
 [[nodiscard]] dem::Setup settled_bed(const BedOptions& options);
 /// The same bed nx times ny side by side.
 [[nodiscard]] dem::Setup replicated(const dem::Setup& bed, int nx, int ny);
