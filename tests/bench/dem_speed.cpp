@@ -121,8 +121,9 @@ int main(int argc, char** argv) {
     };
     const std::map<std::string, std::function<void(const std::string&)>> scenes = {
         {"settled_20k", [&](const auto& s) { run_everywhere(o, s, bed(0), o.steps); }},
-        {"chute_20k", [&](const auto& s) { run_everywhere(o, s, test::tilted(bed(0), 26), o.steps); }},
-        {"chute_unequal_20k", [&](const auto& s) { run_everywhere(o, s, test::tilted(bed(0.25), 26), o.steps); }},
+        {"chute_20k", [&](const auto& s) { run_everywhere(o, s, test::flowing(bed(0), 26, 0.02), o.steps); }},
+        {"chute_unequal_20k",
+         [&](const auto& s) { run_everywhere(o, s, test::flowing(bed(0.25), 26, 0.02), o.steps); }},
         {"cohesive_20k",
          [&](const auto& s) {
              dem::Setup setup = bed(0);
@@ -130,7 +131,9 @@ int main(int argc, char** argv) {
              run_everywhere(o, s, setup, o.steps);
          }},
         {"chute_180k",
-         [&](const auto& s) { run_everywhere(o, s, test::tilted(test::replicated(bed(0), 3, 3), 26), o.steps / 4); }},
+         [&](const auto& s) {
+             run_everywhere(o, s, test::replicated(test::flowing(bed(0), 26, 0.02), 3, 3), o.steps / 4);
+         }},
         {"loose_gas_20k", [&](const auto& s) { run_everywhere(o, s, test::loose_gas(27), o.steps); }},
         {"spreading_1mm", [&](const auto& s) { spread(o, s, 1e-3, 2e-3); }},
         {"spreading_3mm", [&](const auto& s) { spread(o, s, 3e-3, 4e-3); }},

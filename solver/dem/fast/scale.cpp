@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -21,10 +22,14 @@ void require_positive(double value, const char* what) {
         refuse(std::string(what) + " must be positive, not " + std::to_string(value));
 }
 
+/// Of a setup without spheres: small beside its domain, so that nothing is refused that would have no effect.
 double largest_radius(const Setup& setup) {
     double radius = 0;
     for (const Sphere& s : setup.spheres) radius = std::max(radius, s.radius);
-    return radius > 0 ? radius : 1;
+    if (radius > 0) return radius;
+    double span = std::numeric_limits<double>::infinity();
+    for (std::size_t a = 0; a < 3; ++a) span = std::min(span, setup.domain.high[a] - setup.domain.low[a]);
+    return span > 0 && std::isfinite(span) ? 0.01 * span : 1;
 }
 
 void check(const Setup& setup) {
