@@ -101,6 +101,18 @@ struct State {
     std::vector<char> mobile;
 };
 
+/// A contact of the present state: what the laws answer at the velocities of the full step, with the tangential
+/// displacement that the contact has by now. The force normal_force normal + tangential_force acts on `first`, its
+/// reaction on `second`. (A step uses the velocities of the half step before: a damping force differs by O(dt).)
+struct ContactForce {
+    std::int32_t first = 0;   ///< id
+    std::int32_t second = 0;  ///< id, or -1 - w for wall w
+    double overlap = 0;       ///< m
+    Vec3 normal{};            ///< unit, from second to first
+    double normal_force = 0;  ///< N, with damping and cohesion; positive repels
+    Vec3 tangential_force{};  ///< N
+};
+
 /// Work done, for cost and benchmarks.
 struct Work {
     std::int64_t steps = 0;
@@ -130,6 +142,11 @@ public:
     virtual void state(State& into) const = 0;           ///< reuses the vectors' memory
     /// Largest particle-particle overlap over the smaller diameter among the contacts of the last step.
     [[nodiscard]] virtual double largest_overlap() const = 0;
+    /// The largest value of largest_overlap() after any step since the start, or since forget_peak_overlap().
+    [[nodiscard]] virtual double peak_overlap() const = 0;
+    virtual void forget_peak_overlap() = 0;
+    /// Every touching pair with a mobile partner, and every wall touched; the order depends on the state only.
+    virtual void contacts(std::vector<ContactForce>& into) const = 0;
     /// What, where, when the state became untrustworthy; empty: it is sound.
     [[nodiscard]] virtual const std::string& fault() const = 0;
     [[nodiscard]] virtual Work work() const = 0;

@@ -48,6 +48,9 @@ public:
     [[nodiscard]] double wall_time() const override { return time_step_ * static_cast<double>(wall_steps_); }
     void state(State& into) const override;
     [[nodiscard]] double largest_overlap() const override { return largest_overlap_; }
+    [[nodiscard]] double peak_overlap() const override { return peak_overlap_; }
+    void forget_peak_overlap() override { peak_overlap_ = 0; }
+    void contacts(std::vector<ContactForce>& into) const override;
     [[nodiscard]] const std::string& fault() const override { return fault_; }
     [[nodiscard]] Work work() const override { return work_; }
     void save(std::vector<std::byte>& into) const override;
@@ -103,6 +106,10 @@ private:
     [[nodiscard]] Touch<Partner::particle> touch(std::size_t i, std::size_t j, const Vec3& branch, double r2) const;
     [[nodiscard]] Touch<Partner::wall> touch(std::size_t i, const geometry::Closest& closest, const Vec3& v) const;
     [[nodiscard]] Memory memory_of(std::size_t entry) const;
+    template <class Visit>
+    void for_each_touching_pair(Visit&& visit) const;
+    template <class Visit>
+    void for_each_touched_wall(Visit&& visit) const;
     [[nodiscard]] double mechanical_energy(double& active) const;
 
     // stepping.hpp
@@ -154,6 +161,7 @@ private:
     std::int64_t wall_steps_ = 0;
     bool displaced_ = false;  // a particle has moved half the skin, or is not a number
     double largest_overlap_ = 0;
+    double peak_overlap_ = 0;          // largest of it so far
     double largest_wall_overlap_ = 0;  // over the diameter
     double stiffest_ = 0;              // largest sqrt(R* d)/m* of a contact, m/kg
     double speed_limit_ = 0;

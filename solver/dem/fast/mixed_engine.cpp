@@ -8,6 +8,7 @@
 
 #include "solver/dem/fast/checkpoint.hpp"
 #include "solver/dem/fast/columns.hpp"
+#include "solver/dem/fast/contact_reader.hpp"
 #include "solver/dem/fast/faults.hpp"
 #include "solver/dem/fast/rebuild.hpp"
 #include "solver/dem/fast/scale.hpp"
@@ -59,6 +60,9 @@ public:
     [[nodiscard]] double wall_time() const override { return static_cast<double>(wall_steps_) * room_.scale.time; }
     void state(State& into) const override;
     [[nodiscard]] double largest_overlap() const override { return static_cast<double>(tally_.overlap); }
+    [[nodiscard]] double peak_overlap() const override { return static_cast<double>(peak_overlap_); }
+    void forget_peak_overlap() override { peak_overlap_ = 0; }
+    void contacts(std::vector<ContactForce>& into) const override;
     [[nodiscard]] const std::string& fault() const override { return fault_; }
     [[nodiscard]] Work work() const override { return work_; }
     void save(std::vector<std::byte>& into) const override;
@@ -82,6 +86,7 @@ private:
     static void pass(Self& self, Archive& archive);
 
     Room room_;
+    Material material_;
     Needs needs_;
     const Kernels* kernels_;
     std::vector<Wall> walls_;
@@ -92,6 +97,7 @@ private:
     Columns columns_;
     Field field_{};
     Tally tally_{};
+    float peak_overlap_ = 0;  ///< largest of tally_.overlap so far
     Drift drift_;
     float inner_skin_ = 0;
     float largest_skin_ = std::numeric_limits<float>::infinity();
@@ -104,6 +110,7 @@ private:
 
 MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin)
     : room_{setup.domain, make_scale(setup), 0.3F},
+      material_(setup.material),
       needs_(make_needs(setup)),
       kernels_(&kernels_of(path, needs_)),
       walls_(setup.walls),
@@ -223,6 +230,7 @@ void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
     kernels_->walls(field_, tally_);
     kernels_->sweep(field_, false, tally_);
     field_.history_step = 1;
+    peak_overlap_ = std::max(peak_overlap_, tally_.overlap);
     for (std::int32_t i = 0; i < field_.count; ++i) {
         Record& r = field_.records[i];
         Residual& residual = field_.residuals[i];
@@ -316,6 +324,7 @@ void MixedEngine::run(std::int64_t steps) {
         kernels_->walls(field_, tally_);
         kernels_->sweep(field_, s + 1 < steps, tally_);
         columns_.swap_histories(field_);
+        peak_overlap_ = std::max(peak_overlap_, tally_.overlap);
         work_.pair_visits += field_.inner_count;
         if (too_deep()) fault_ = describe_overlap(sight(), tally_);
     }
@@ -372,6 +381,26 @@ void MixedEngine::state(State& into) const {
     }
 }
 
+void MixedEngine::contacts(std::vector<ContactForce>& into) const {
+    std::vector<Motion> motions(size());
+    for (std::int32_t i = 0; i < field_.count; ++i) {
+        const Record& r = field_.records[i];
+        const Residual& residual = field_.residuals[i];
+        Motion& m = motions[static_cast<std::size_t>(i)];
+        for (int a = 0; a < 3; ++a) {
+            const auto axis = static_cast<std::size_t>(a);
+            m.velocity[axis] =
+                (static_cast<double>(r.velocity[a]) + static_cast<double>(residual.velocity[a]) + half_change(i, a)) *
+                room_.scale.speed();
+            m.spin[axis] = (static_cast<double>(r.spin[a]) + half_spin_change(i, a)) / room_.scale.time;
+        }
+    }
+    const ContactReader reader(material_, room_, field_, columns_.id.data(), motions, kernels_->width);
+    into.clear();
+    reader.pairs(into);
+    for (std::size_t w = 0; w < walls_.size(); ++w) reader.wall(walls_[w], w, wall_time(), into);
+}
+
 /// Everything that changes, in one order for writing and reading.
 template <class Self, class Archive>
 void MixedEngine::pass(Self& self, Archive& archive) {
@@ -382,6 +411,7 @@ void MixedEngine::pass(Self& self, Archive& archive) {
     archive.value(self.inner_skin_);
     archive.value(self.room_.skin);
     archive.value(self.tally_);
+    archive.value(self.peak_overlap_);
     archive.value(self.wall_steps_);
     archive.value(self.mobile_);
     archive.value(self.work_.steps);
