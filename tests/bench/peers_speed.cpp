@@ -121,6 +121,23 @@ void compare(const Options& o, const std::string& scene, const dem::Setup& setup
     }
 }
 
+/// Long flows from the same starts: where single particles have long parted, the figures must agree.
+void statistics() {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        const dem::Setup setup = test::small_chute(seed);
+        const auto steps = std::llround(test::small_chute_time / setup.time_step);
+        const auto us = ours(setup, Method::Path::best, steps + 105);
+        Options once;
+        once.skins = {0.3};
+        const auto liggghts = theirs(once, test::Peer::Program::liggghts, setup, steps);
+        fmt::print(
+            "{{\"bench\": \"peers\", \"scene\": \"chute_statistics\", \"seed\": {}, \"grainsweep\": {}, "
+            "\"liggghts\": {}}}\n",
+            seed, as_json(us), as_json(liggghts));
+        std::fflush(stdout);
+    }
+}
+
 /// The 16 spreading cases, end to end.
 void spreading() {
     const auto table = tests::read_table(tests::reference("spreading/mfr_table.csv"));
@@ -243,6 +260,7 @@ int main(int argc, char** argv) {
         {"cohesive_chute_20k", [&](const auto& s) { compare(o, s, cohesive(chute()), 1000); }},
         {"settled_180k", [&](const auto& s) { compare(o, s, test::replicated(bed(0), 3, 3), 200); }},
         {"chute_180k", [&](const auto& s) { compare(o, s, test::replicated(chute(), 3, 3), 200); }},
+        {"chute_statistics", [&](const auto&) { statistics(); }},
         {"spreading", [&](const auto&) { spreading(); }},
         {"campaign", [&](const auto&) { campaign(); }},
     };
