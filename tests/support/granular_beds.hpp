@@ -26,7 +26,7 @@ struct BedOptions {
 [[nodiscard]] dem::Setup flowing(dem::Setup bed, double degrees, double time);
 /// A chute of 2,000 spheres at 26 degrees, at rest; after small_chute_time it flows.
 [[nodiscard]] dem::Setup small_chute(std::uint64_t seed);
-inline constexpr double small_chute_time = 0.02;  // s
+inline constexpr double small_chute_time = 0.012;  // s
 /// Gravity turned to a chute of this inclination, degrees, along x.
 [[nodiscard]] dem::Setup tilted(dem::Setup bed, double degrees);
 /// Mobile particles far apart and in motion, three-dimensional periodic.
