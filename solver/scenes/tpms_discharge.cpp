@@ -12,6 +12,7 @@
 // when no mobile sphere is left, and, under the rule "quiet", when the powder has come to rest.
 #include "solver/geometry/vector.hpp"
 #include "solver/observables/histogram.hpp"
+#include "solver/observables/particle_loads.hpp"
 #include "solver/particles/bytes.hpp"
 #include "solver/particles/tpms_filling.hpp"
 #include "solver/scenes/catalogue.hpp"
@@ -322,12 +323,20 @@ void TpmsDischarge::restore(std::span<const std::byte> from) {
 
 Snapshot TpmsDischarge::snapshot() const {
     dem::State state;
+    std::vector<dem::ContactForce> contacts;
     engine_->state(state);
+    engine_->contacts(contacts);
+    auto loads = observables::particle_loads(state, contacts);
     Snapshot picture;
-    picture.positions = state.position;
-    picture.scalars["radius"] = state.radius;
+    picture.positions = std::move(state.position);
+    picture.scalars["id"].assign(state.id.begin(), state.id.end());
     picture.scalars["mobile"].assign(state.mobile.begin(), state.mobile.end());
-    picture.vectors["velocity"] = state.velocity;
+    for (const double radius : state.radius) picture.scalars["diameter"].push_back(2 * radius);
+    picture.scalars["overlap"] = std::move(loads.overlap);
+    picture.scalars["largest_force"] = std::move(loads.largest);
+    picture.scalars["coordination"] = std::move(loads.coordination);
+    picture.vectors["velocity"] = std::move(state.velocity);
+    picture.vectors["force"] = std::move(loads.force);
     return picture;
 }
 
