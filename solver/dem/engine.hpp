@@ -75,11 +75,20 @@ struct Blade {
 
 using Wall = std::variant<Plane, Blade>;
 
+/// Everything frozen, the walls and the domain together are a vessel that is shaken: its displacement is
+/// amplitude sin(2 pi frequency t), t since the start. Positions and velocities at the door, those of the start too,
+/// are told in the vessel's frame, where frozen spheres rest and shaking is a body force (solver/dem/shaking.hpp).
+struct Shaking {
+    Vec3 amplitude{};      ///< m
+    double frequency = 0;  ///< Hz; a period lasts at least twenty time steps
+};
+
 struct Setup {
     Domain domain;
     Material material;
     Vec3 gravity{0, 0, -9.81};  ///< m/s2
-    double time_step = 1e-5;    ///< s
+    Shaking shaking;
+    double time_step = 1e-5;  ///< s
     std::vector<Sphere> spheres;
     std::vector<Wall> walls;
 };

@@ -5,12 +5,14 @@
 // the kept side start at rest, the rest is deleted (geometry/tpms.hpp). At t = 0 gravity acts. All six faces are
 // open; a sphere whose centre is more than two diameters outside the cell is gone. The answer is the retention:
 // mobile centres in the cell over those at the start. Time is told in t* = sqrt(2 L/g), speed in sqrt(2 g L).
+// A vibrating cell is seen from inside: places and speeds are those in the cell, in which the powder starts at rest.
 //
 // Work that cannot matter is not done: frozen spheres that no mobile one can touch while overlaps stay below
 // a tenth of a diameter are dropped (particles/reach.hpp), a larger one at any step is reported unstable; a case ends
 // when no mobile sphere is left, and, under the rule "quiet", when the powder has come to rest.
 #include "solver/geometry/vector.hpp"
 #include "solver/observables/histogram.hpp"
+#include "solver/observables/particle_loads.hpp"
 #include "solver/particles/bytes.hpp"
 #include "solver/particles/tpms_filling.hpp"
 #include "solver/scenes/catalogue.hpp"
@@ -34,6 +36,7 @@ constexpr double most_overlap = 0.1;    // diameters: what the dropped wall sphe
 constexpr double sample_time = 0.0165;  // t*, between two samples
 constexpr std::int64_t samples_per_force_sample = 10;
 constexpr double quiet_time = 1.5;    // t*
+constexpr double quiet_periods = 2;   // of vibration
 constexpr double quiet_speed = 1e-3;  // sqrt(2 g L)
 constexpr double overlap_bin = 0.0005, force_bin = 10;
 constexpr std::size_t layers = 20;
@@ -130,6 +133,7 @@ TpmsDischarge::TpmsDischarge(const TpmsQuestion& question, const particles::Tpms
         setup.domain.high[k] = question.length() + margin * d;
         setup.gravity[k] = question.gravity * question.down[k];
     }
+    setup.shaking = question.shaking;
     setup.material = question.material;
     setup.time_step = question.time_step;
     const auto add = [&](const Vec3& x, bool mobile) {
@@ -220,7 +224,9 @@ void TpmsDischarge::sample_forces(bool histograms) {
 
 bool TpmsDischarge::finished() const {
     if (step_ >= last_step_ || mobile_left_ == 0) return true;
-    return question_.stop_when_quiet && in_t_star(static_cast<double>(step_ - quiet_since_)) >= quiet_time;
+    const double quiet = static_cast<double>(step_ - quiet_since_) * question_.time_step;
+    return question_.stop_when_quiet && quiet >= quiet_time * question_.free_fall_time() &&
+           quiet * question_.shaking.frequency >= quiet_periods;
 }
 
 double TpmsDischarge::time_to(double share) const {
@@ -317,12 +323,20 @@ void TpmsDischarge::restore(std::span<const std::byte> from) {
 
 Snapshot TpmsDischarge::snapshot() const {
     dem::State state;
+    std::vector<dem::ContactForce> contacts;
     engine_->state(state);
+    engine_->contacts(contacts);
+    auto loads = observables::particle_loads(state, contacts);
     Snapshot picture;
-    picture.positions = state.position;
-    picture.scalars["radius"] = state.radius;
+    picture.positions = std::move(state.position);
+    picture.scalars["id"].assign(state.id.begin(), state.id.end());
     picture.scalars["mobile"].assign(state.mobile.begin(), state.mobile.end());
-    picture.vectors["velocity"] = state.velocity;
+    for (const double radius : state.radius) picture.scalars["diameter"].push_back(2 * radius);
+    picture.scalars["overlap"] = std::move(loads.overlap);
+    picture.scalars["largest_force"] = std::move(loads.largest);
+    picture.scalars["coordination"] = std::move(loads.coordination);
+    picture.vectors["velocity"] = std::move(state.velocity);
+    picture.vectors["force"] = std::move(loads.force);
     return picture;
 }
 

@@ -116,6 +116,8 @@ private:
     void step();
     void kick_and_drift();
     void kick();
+    void shake();
+    [[nodiscard]] Vec3 momentum() const;
     void rebuild(std::span<const std::int32_t> removed = {});
     void forget_separated();
     void list_walls(std::span<const std::uint32_t> fresh_index);
@@ -136,6 +138,9 @@ private:
     geometry::Domain domain_;
     std::array<Vec3, 27> image_shifts_;
     Vec3 gravity_;
+    Shaking shaking_;
+    bool shaken_;
+    Vec3 body_;  // acceleration of a free particle at the present step: gravity and shaking
     double time_step_;
     double radius_ = 0, mass_ = 0, inverse_mass_ = 0;  // of all particles, unless needs.sizes
     double density_;
@@ -166,6 +171,7 @@ private:
     double stiffest_ = 0;              // largest sqrt(R* d)/m* of a contact, m/kg
     double speed_limit_ = 0;
     double work_of_walls_ = 0;     // J, since the walls were set
+    double work_of_shaking_ = 0;   // J, since the start
     double work_of_wrapping_ = 0;  // J, potential energy lost by stepping back through periodic faces
     double lowest_energy_ = 0;     // J, least of energy minus work so far
     std::string fault_;

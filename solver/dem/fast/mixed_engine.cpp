@@ -12,6 +12,7 @@
 #include "solver/dem/fast/faults.hpp"
 #include "solver/dem/fast/rebuild.hpp"
 #include "solver/dem/fast/scale.hpp"
+#include "solver/dem/shaking.hpp"
 
 namespace grainsweep::dem::fast {
 
@@ -76,6 +77,8 @@ private:
     void make_lists(std::span<const std::int32_t> removed = {});
     void full_step_velocities();
     void restart_forces(std::span<const std::int32_t> removed = {});
+    void shake();
+    [[nodiscard]] Seal seal() const;
     [[nodiscard]] double half_change(std::int32_t particle, int axis) const;
     [[nodiscard]] double half_spin_change(std::int32_t particle, int axis) const;
     [[nodiscard]] Sight sight() const {
@@ -87,6 +90,9 @@ private:
 
     Room room_;
     Material material_;
+    Vec3 gravity_;
+    Shaking shaking_;
+    bool shaken_;
     Needs needs_;
     const Kernels* kernels_;
     std::vector<Wall> walls_;
@@ -111,6 +117,9 @@ private:
 MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin)
     : room_{setup.domain, make_scale(setup), 0.3F},
       material_(setup.material),
+      gravity_(setup.gravity),
+      shaking_(setup.shaking),
+      shaken_(!is_still(setup.shaking)),
       needs_(make_needs(setup)),
       kernels_(&kernels_of(path, needs_)),
       walls_(setup.walls),
@@ -186,6 +195,12 @@ void MixedEngine::check_walls(const std::vector<Wall>& walls) const {
                     "a blade needs a positive thickness, its top above its bottom and an open z axis");
         }
     }
+}
+
+/// Gives the constants the acceleration of the present step: gravity and the body force of shaking.
+void MixedEngine::shake() {
+    const Vec3 b = shaking_acceleration(shaking_, room_.scale.time, work_.steps);
+    for (std::size_t a = 0; a < 3; ++a) field_.constants.gravity[a] = gravity_in_steps(gravity_[a] + b[a], room_.scale);
 }
 
 /// Change of velocity over half a step by the forces at hand, engine's units.
@@ -315,6 +330,7 @@ void MixedEngine::run(std::int64_t steps) {
         }
         ++work_.steps;
         ++wall_steps_;
+        if (shaken_) shake();
         work_.particle_steps += static_cast<double>(mobile_);
         account_travel();
         if (!fault_.empty()) return;
@@ -443,18 +459,25 @@ void MixedEngine::pass(Self& self, Archive& archive) {
     for (auto& h : c.wall_history) archive.column(h, near_walls);
 }
 
+/// Of the case, the same at every step.
+Seal MixedEngine::seal() const {
+    Constants constants = field_.constants;
+    for (std::size_t a = 0; a < 3; ++a) constants.gravity[a] = gravity_in_steps(gravity_[a], room_.scale);
+    return make_seal(constants, *kernels_, needs_, shaking_);
+}
+
 void MixedEngine::save(std::vector<std::byte>& into) const {
     Writer writer(into);
-    writer.value(make_seal(field_, *kernels_, needs_));
+    writer.value(seal());
     pass(*this, writer);
 }
 
 void MixedEngine::restore(std::span<const std::byte> from) {
     Reader reader(from);
-    Seal seal;
-    reader.value(seal);
-    const Seal own = make_seal(field_, *kernels_, needs_);
-    if (std::memcmp(&seal, &own, sizeof seal) != 0)
+    Seal theirs;
+    reader.value(theirs);
+    const Seal own = seal();
+    if (std::memcmp(&theirs, &own, sizeof own) != 0)
         throw std::invalid_argument("the checkpoint belongs to another setup, instruction path or version");
     pass(*this, reader);
     if (!reader.finished()) throw std::invalid_argument("the checkpoint is longer than its state");
@@ -463,6 +486,7 @@ void MixedEngine::restore(std::span<const std::byte> from) {
     columns_.hold_wall_contacts(size());
     columns_.bind(field_);
     place_walls(field_, walls_, room_, wall_time());
+    if (shaken_) shake();
 }
 
 }  // namespace

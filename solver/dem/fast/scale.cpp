@@ -80,6 +80,10 @@ Scale make_scale(const Setup& setup) {
     return s;
 }
 
+float gravity_in_steps(double acceleration, const Scale& scale) {
+    return static_cast<float>(acceleration * scale.time * scale.time / scale.length);
+}
+
 Constants make_constants(const Setup& setup, const Scale& scale) {
     const Material& m = setup.material;
     const double nu = m.poisson_ratio;
@@ -96,7 +100,7 @@ Constants make_constants(const Setup& setup, const Scale& scale) {
         c.unit[a] = scale.unit[axis] / scale.length;
         c.unit_single[a] = f(c.unit[a]);
         c.inverse_unit[a] = f(1 / c.unit[a]);
-        c.gravity[a] = f(setup.gravity[axis] * scale.time * scale.time / scale.length);
+        c.gravity[a] = gravity_in_steps(setup.gravity[axis], scale);
     }
     c.radius = 0.5F;
     c.reach_squared = 1;
