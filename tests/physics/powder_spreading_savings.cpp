@@ -121,16 +121,16 @@ TEST(WantedStandardError, CheckpointsContinueBitForBit) {
     }
 }
 
-// Stopped and whole over the same 20 cases of the default layer. The flux of this layer is not quite steady: from the
+// Stopped and whole over the same 12 cases of the default layer. The flux of this layer is not quite steady: from the
 // first to the second half of the measured travel it falls by 5 to 8 %, so a stopped sweep answers up to 4 % higher.
 // With this the two differ by no more than the error stated, and never by more than four of it.
 TEST(WantedStandardError, AnswersWithinItsError) {
-    constexpr int cases = 20;
+    constexpr int cases = 12;
     double sum = 0, mean = 0, squares = 0, stated = 0, saved = 0;
     for (std::uint64_t seed = 1; seed <= cases; ++seed) {
         Inputs inputs = find_scene("powder_spreading")->defaults();
         inputs["diameter"] = 0.003;
-        inputs["gap"] = 0.004 + 1e-4 * static_cast<double>(seed);
+        inputs["gap"] = 0.004 + 2e-4 * static_cast<double>(seed);
         const auto whole = ask(inputs, seed);
         inputs["standard_error"] = 0.015;
         const auto stopped = ask(inputs, seed);

@@ -21,6 +21,11 @@ const SceneInfo& spreading() {
     return *find_scene("powder_spreading");
 }
 
+double as_number(const Value& value) {
+    if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
+    return std::get<double>(value);
+}
+
 /// Runs a case that is cheap enough and expects an answer or a fault. Returns the fault.
 std::string verdict(const Inputs& inputs, std::uint64_t seed) {
     NoArtefacts none;
@@ -51,7 +56,7 @@ Inputs small_case() {
 TEST(PowderSpreadingCorners, DefaultsLieWithinTheBoundsAndAreRelevantOnce) {
     for (const auto& p : spreading().parameters) {
         if (const auto* interval = std::get_if<Interval>(&p.bounds)) {
-            EXPECT_TRUE(interval->contains(std::get<double>(p.default_value))) << p.name;
+            EXPECT_TRUE(interval->contains(as_number(p.default_value))) << p.name;
         }
         for (const auto& r : p.relevant_if) EXPECT_NE(spreading().find_parameter(r.other), nullptr) << p.name;
         EXPECT_FALSE(p.meaning.empty());
@@ -71,7 +76,10 @@ TEST(PowderSpreadingCorners, EveryBoundIsMadeOrRefused) {
         if (interval == nullptr) continue;
         for (const double end : {interval->low + (interval->low_open ? 1e-6 : 0.0), interval->high}) {
             Inputs inputs = spreading().defaults();
-            inputs[p.name] = end;
+            if (std::holds_alternative<double>(p.default_value))
+                inputs[p.name] = end;
+            else
+                inputs[p.name] = static_cast<std::int64_t>(end);
             try {
                 EXPECT_GT(spreading().estimate_cost(inputs), 0) << p.name << " " << end;
             } catch (const std::invalid_argument& sentence) {
