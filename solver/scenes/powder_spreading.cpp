@@ -22,6 +22,10 @@ std::vector<ParameterSpec> parameters() {
     const auto if_set = [](const char* other) { return std::vector<Relevance>{{other, Condition::nonzero, {}}}; };
     return {
         number("friction", "1", "Coulomb friction of particles, base and blade", 0.2, {0, 2}),
+        number("rolling_friction", "1",
+               "rolling friction of particles, base and blade: tangent of the steepest slope a particle "
+               "stands on",
+               0.0, {0, 1}, if_set("friction")),
         number("restitution", "1", "restitution of particles and walls", 0.5, above(0, 1)),
         number("diameter", "m", "diameter D of all particles", 0.002, {1e-4, 1e-2}),
         number("gap", "m", "height of the blade's lower edge over the base", 0.004, {1e-5, 0.1}),

@@ -7,7 +7,7 @@
 
 namespace grainsweep::dem::clear {
 
-inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'0001ULL;  // "grnscl", version 1
+inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'0002ULL;  // "grnscl", version 2
 
 template <class Laws, Needs case_needs>
 void ClearEngine<Laws, case_needs>::state(State& into) const {
