@@ -3,7 +3,7 @@
 #   ./bootstrap.sh run CONFIG [OPTIONS]   install what is missing, build, run the campaign
 #   ./bootstrap.sh test                   ... build everything, run the tests
 #   ./bootstrap.sh build                  ... build build/grainsweep (Release) and stop
-#   ./bootstrap.sh bench                  ... run the benchmarks (JSON lines)
+#   ./bootstrap.sh bench [NAME]...        ... run the benchmarks, all or those named (JSON lines)
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 jobs=$(nproc)
@@ -104,10 +104,21 @@ bench)
     install_missing "${program_packages[@]}" "${test_packages[@]}"
     (cd "$here" && configure release -DGRAINSWEEP_TESTS=ON)
     quiet "building" cmake --build "$here/build" -j "$jobs" --target grainsweep benchmarks
-    for program in "$here"/build/tests/bench_*; do
-        [ -x "$program" ] && "$program"
+    shift
+    if [ $# -eq 0 ]; then
+        for program in "$here"/build/tests/bench_*; do set -- "$@" "${program##*/bench_}"; done
+        set -- "$@" overhead
+    fi
+    for name in "$@"; do
+        if [ "$name" = overhead ]; then
+            "$here/tests/bench/overhead.sh"
+        elif [ -x "$here/build/tests/bench_$name" ]; then
+            "$here/build/tests/bench_$name"
+        else
+            echo "no benchmark '$name': there are $(cd "$here/build/tests" && echo bench_* | sed 's/bench_//g') overhead" >&2
+            exit 2
+        fi
     done
-    "$here/tests/bench/overhead.sh"
     ;;
 *)
     usage

@@ -79,11 +79,20 @@ struct Blade {
 
 using Wall = std::variant<Plane, Blade>;
 
+/// Everything frozen, the walls and the domain together are a vessel that is shaken: its displacement is
+/// amplitude sin(2 pi frequency t), t since the start. Positions and velocities at the door, those of the start too,
+/// are told in the vessel's frame, where frozen spheres rest and shaking is a body force (solver/dem/shaking.hpp).
+struct Shaking {
+    Vec3 amplitude{};      ///< m
+    double frequency = 0;  ///< Hz; a period lasts at least twenty time steps
+};
+
 struct Setup {
     Domain domain;
     Material material;
     Vec3 gravity{0, 0, -9.81};  ///< m/s2
-    double time_step = 1e-5;    ///< s
+    Shaking shaking;
+    double time_step = 1e-5;  ///< s
     std::vector<Sphere> spheres;
     std::vector<Wall> walls;
 };
@@ -103,6 +112,18 @@ struct State {
     std::vector<Vec3> position, velocity, angular_velocity;  ///< velocities of the full step
     std::vector<double> radius;
     std::vector<char> mobile;
+};
+
+/// A contact of the present state: what the laws answer at the velocities of the full step, with the tangential
+/// displacement that the contact has by now. The force normal_force normal + tangential_force acts on `first`, its
+/// reaction on `second`. (A step uses the velocities of the half step before: a damping force differs by O(dt).)
+struct ContactForce {
+    std::int32_t first = 0;   ///< id
+    std::int32_t second = 0;  ///< id, or -1 - w for wall w
+    double overlap = 0;       ///< m
+    Vec3 normal{};            ///< unit, from second to first
+    double normal_force = 0;  ///< N, with damping and cohesion; positive repels
+    Vec3 tangential_force{};  ///< N
 };
 
 /// Work done, for cost and benchmarks.
@@ -134,6 +155,11 @@ public:
     virtual void state(State& into) const = 0;           ///< reuses the vectors' memory
     /// Largest particle-particle overlap over the smaller diameter among the contacts of the last step.
     [[nodiscard]] virtual double largest_overlap() const = 0;
+    /// The largest value of largest_overlap() after any step since the start, or since forget_peak_overlap().
+    [[nodiscard]] virtual double peak_overlap() const = 0;
+    virtual void forget_peak_overlap() = 0;
+    /// Every touching pair with a mobile partner, and every wall touched; the order depends on the state only.
+    virtual void contacts(std::vector<ContactForce>& into) const = 0;
     /// What, where, when the state became untrustworthy; empty: it is sound.
     [[nodiscard]] virtual const std::string& fault() const = 0;
     [[nodiscard]] virtual Work work() const = 0;

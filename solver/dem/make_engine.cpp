@@ -74,6 +74,9 @@ std::unique_ptr<Engine> make_engine(const Setup& setup, const Method& method) {
     check_spheres(setup);
     require(positive(setup.time_step), "the time step must be positive");
     require(geometry::finite(setup.gravity), "gravity must be finite");
+    require(geometry::finite(setup.shaking.amplitude) && not_negative(setup.shaking.frequency),
+            "the amplitude and frequency of shaking must be finite");
+    require(setup.shaking.frequency * setup.time_step <= 0.05, "a period of shaking must last at least twenty steps");
     require(not_negative(method.skin), "the skin must not be negative");
     for (const Wall& wall : setup.walls) std::visit([](const auto& w) { check(w); }, wall);
     if (method.skin > 0) {

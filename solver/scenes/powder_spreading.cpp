@@ -27,7 +27,18 @@ std::vector<ParameterSpec> parameters() {
                "stands on",
                0.0, {0, 1}, if_set("friction")),
         number("restitution", "1", "restitution of particles and walls", 0.5, above(0, 1)),
-        number("diameter", "m", "diameter D of all particles", 0.002, {1e-4, 1e-2}),
+        number("diameter", "m", "diameter D of the particles; of unequal ones see size_distribution", 0.002,
+               {1e-4, 1e-2}),
+        {"size_distribution",
+         "",
+         "by number: 'monodisperse' all D; 'weibull_wide', 'weibull_narrow' the five classes of Wu (2020), 4.44, "
+         "22.76, 40.78, 26.91, 5.11 % of (1 + k w) D, k = -2 ... 2, w = 0.15 and 0.1; 'lognormal' with mean D, without "
+         "its 0.5 % smallest and largest",
+         std::string("monodisperse"),
+         Words{{"monodisperse", "weibull_wide", "weibull_narrow", "lognormal"}},
+         {}},
+        number("size_spread", "1", "standard deviation of the logarithm of the diameter, before truncation", 0.2,
+               {0, 0.5}, {{"size_distribution", Condition::is_word, {"lognormal"}}}),
         number("gap", "m", "height of the blade's lower edge over the base", 0.004, {1e-5, 0.1}),
         number("speed", "m/s", "speed of the blade", 1.4, {1e-3, 10}),
         number("cohesion", "J/m3", "cohesion energy density", 0.0, {0, 1e6}),
@@ -76,8 +87,8 @@ dem::Method method_of(const Inputs& inputs) {
 std::vector<ObservableSpec> observables_of_spreading() {
     return {
         {"mfr", "1",
-         "mass flow rate under the blade over that of the swept gap filled solid: m (N(t2) - N(t1))/(t2 - t1)"
-         "/(W gap v rho), N the centres behind the front face, t1 at 2/7 of the travel, t2 at its end"},
+         "mass flow rate under the blade over that of the swept gap filled solid: (M(t2) - M(t1))/(t2 - t1)"
+         "/(W gap v rho), M the mass of the centres behind the front face, t1 at 2/7 of the travel, t2 at its end"},
         {"mfr_window", "1",
          "mass between the planes of rear and front face and below the gap over that of the slot filled "
          "solid, W gap thickness rho; mean of the samples from t1 to t2"},
@@ -86,7 +97,7 @@ std::vector<ObservableSpec> observables_of_spreading() {
          "thickness/speed"},
         {"mfr_standard_error", "1", "standard error of mfr from the spread of 10 consecutive blocks of the flux"},
         {"max_overlap", "1",
-         "largest overlap of two particles over the diameter, over 141 equidistant samples of the sweep"},
+         "largest overlap of two particles over the smaller diameter, over 141 equidistant samples of the sweep"},
         {"packing_fraction", "1",
          "volume of the spread particles over that of a layer as high as the gap, from where the "
          "front face was at t1 to one thickness behind the blade at the end"},
@@ -99,6 +110,9 @@ std::vector<ObservableSpec> observables_of_spreading() {
          "mean velocity along the blade's motion in the 12 layers of thickness D/2 above the gap, "
          "within 6 D ahead of the front face, from t1 to t2; bin: top of the layer over the gap, in D",
          Shape::profile},
+        {"vx_unevenness", "1",
+         "root mean square second difference of vx_profile from layer to layer, over the speed of the blade: 0 for a "
+         "profile that rises evenly"},
         {"flux_series", "1", "mfr of each 1/140 of the travel; time since the blade started", Shape::series},
     };
 }

@@ -103,13 +103,19 @@ std::vector<ParameterSpec> tpms_discharge_parameters() {
     parameters.push_back(number("tilt", "deg", "angle between gravity and -z", 0, {0, 180}));
     parameters.push_back(number("tilt_azimuth", "deg", "direction into which gravity is tilted, from x to y", 0,
                                 {0, 360}, {nonzero("tilt")}));
+    parameters.push_back(number("vibration_amplitude", "m", "vibration of the whole cell: amplitude of a sine", 0,
+                                {0, 0.01}, {nonzero("vibration_frequency")}));
+    parameters.push_back(number("vibration_frequency", "Hz", "vibration of the whole cell: frequency", 0, {0, 1e6},
+                                {nonzero("vibration_amplitude")}));
+    parameters.push_back(word("vibration_direction", "axis along which the cell vibrates", {"z", "x", "y"},
+                              {nonzero("vibration_amplitude"), nonzero("vibration_frequency")}));
     parameters.push_back(
         number("end_time", "sqrt(2 L/g)", "time after which the case ends", 10, {0, 1000, true, false}));
-    parameters.push_back(
-        word("settle_rule",
-             "quiet: end early when for 1.5 sqrt(2 L/g) no centre has entered or left the cell and none in it was "
-             "faster than 0.001 sqrt(2 g L); none: go on to the end time",
-             {"quiet", "none"}));
+    parameters.push_back(word(
+        "settle_rule",
+        "quiet: end early when for 1.5 sqrt(2 L/g), and two periods of vibration, no centre has entered or left the "
+        "cell and none in it was faster than 0.001 sqrt(2 g L); none: go on to the end time",
+        {"quiet", "none"}));
     parameters.push_back(number("time_step", "s", "time step", 1e-6, {0, unbounded, true, true}));
     parameters.push_back(word("precision", "arithmetic of the contact forces", {"mixed", "double"}));
     return parameters;
@@ -121,15 +127,15 @@ std::vector<ObservableSpec> tpms_discharge_observables() {
         {"time_to_half", "sqrt(2 L/g)", "when half has left; undefined if it never does", Shape::scalar},
         {"time_to_tenth", "sqrt(2 L/g)", "when a tenth is left; undefined if it never is", Shape::scalar},
         {"peak_velocity", "sqrt(2 g L)", "largest speed along gravity in the cell, at any sample", Shape::scalar},
-        {"max_overlap", "particle diameters", "largest overlap, at any sample", Shape::scalar},
-        {"max_force", "m 9.81 m/s2", "largest net normal contact force, at any force sample", Shape::scalar},
+        {"max_overlap", "particle diameters", "largest overlap after any step", Shape::scalar},
+        {"max_force", "m 9.81 m/s2", "largest contact force, at any sample", Shape::scalar},
         {"particles", "1", "mobile particles at the start", Shape::scalar},
         {"wall_particles", "1", "frozen particles of the shell", Shape::scalar},
         {"retention_series", "1", "retention every 0.0165 sqrt(2 L/g)", Shape::series},
         {"velocity_series", "sqrt(2 g L)", "largest speed along gravity in the cell", Shape::series},
         {"overlap_histogram", "1", "share of contacts per 0.0005 diameters of overlap, every 0.165 sqrt(2 L/g)",
          Shape::profile},
-        {"force_histogram", "1", "share of contacts per 10 m 9.81 m/s2 of normal force, every 0.165 sqrt(2 L/g)",
+        {"force_histogram", "1", "share of contacts per 10 m 9.81 m/s2 of contact force, every 0.165 sqrt(2 L/g)",
          Shape::profile},
         {"retained_profile", "1", "retention of twenty layers along z at the end; bin: z/L", Shape::profile},
     };
@@ -157,6 +163,16 @@ TpmsQuestion::TpmsQuestion(const Inputs& inputs, std::uint64_t seed)
     const double tilt = real(inputs, "tilt") * std::numbers::pi / 180;
     const double azimuth = real(inputs, "tilt_azimuth") * std::numbers::pi / 180;
     if (tilt != 0) down = {std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth), -std::cos(tilt)};
+    const std::map<std::string, std::size_t, std::less<>> axes = {{"x", 0}, {"y", 1}, {"z", 2}};
+    shaking.frequency = real(inputs, "vibration_frequency");
+    shaking.amplitude[axes.at(text(inputs, "vibration_direction"))] = real(inputs, "vibration_amplitude");
+    if (shaking.frequency * time_step > 0.05) {
+        char sentence[160];
+        std::snprintf(sentence, sizeof sentence,
+                      "vibration_frequency is %.4g Hz: its period must last at least twenty time steps of %.3g s",
+                      shaking.frequency, time_step);
+        throw std::invalid_argument(sentence);
+    }
     const double rayleigh = dem::rayleigh_time(material, diameter / 2);
     if (time_step > rayleigh) {
         char sentence[160];

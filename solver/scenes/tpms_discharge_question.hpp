@@ -28,6 +28,7 @@ struct TpmsQuestion {
     dem::Material material;
     double gravity = 9.81;  ///< m/s2
     std::array<double, 3> down{0, 0, -1};
+    dem::Shaking shaking;  ///< of the whole cell
     double end_time = 10;  ///< in units of free_fall_time()
     bool stop_when_quiet = true;
     double time_step = 1e-6;  ///< s

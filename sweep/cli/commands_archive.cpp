@@ -2,6 +2,7 @@
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/command.hpp"
+#include "sweep/cli/pictures.hpp"
 #include "sweep/store/store.hpp"
 #include "sweep/workers/compute.hpp"
 
@@ -132,7 +133,7 @@ bool same_samples(const auto& a, const auto& b, const std::string& name) {
     });
 }
 
-int replay(const std::string& database, const std::string& id, Format format) {
+int replay(const std::string& database, const std::string& id, const PictureRequest& pictures, Format format) {
     const Store archive(database, Store::Mode::read);
     const campaign::Case question = require_case(archive, id);
     const auto stored = archive.result(question.id);
@@ -144,8 +145,9 @@ int replay(const std::string& database, const std::string& id, Format format) {
         then != attempts.end() && then->version == build_version() && then->instruction_path == here.instruction_path;
 
     NoArtefacts artefacts;
-    const auto now =
-        workers::compute(question, stored->attempt.number, artefacts, std::nullopt, [](const Scene&) { return true; });
+    const auto now = workers::compute(
+        question, stored->attempt.number, artefacts, std::nullopt, [](const Scene&) { return true; },
+        camera(pictures, question.scene));
     Table table{{"observable", "archive", "replay", "relative_difference"}, {}};
     double worst = 0;
     const auto compare = [&](const std::string& name, double a, double b) {
@@ -223,7 +225,11 @@ std::vector<Command> archive_commands() {
          [](CLI::App& parser, const Format& format) -> Action {
              const auto arguments = with_database(parser);
              parser.add_option("CASE", arguments->text, "case id, or its beginning")->required();
-             return [arguments, &format] { return replay(arguments->database, arguments->text, format); };
+             const auto pictures = std::make_shared<PictureRequest>();
+             declare_pictures(parser, *pictures);
+             return [arguments, pictures, &format] {
+                 return replay(arguments->database, arguments->text, *pictures, format);
+             };
          },
          false},
         {"query", "read-only SQL",

@@ -3,6 +3,7 @@
 #include "sweep/campaign/relevance.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
+#include "sweep/cli/pictures.hpp"
 #include "sweep/store/expression.hpp"
 #include "sweep/workers/compute.hpp"
 
@@ -30,6 +31,7 @@ using Json = nlohmann::ordered_json;
 struct SolveRequest {
     std::string config;
     std::vector<std::string> settings;  ///< NAME=VALUE
+    PictureRequest pictures;
     std::optional<std::uint64_t> seed;  ///< the case's own; none: the campaign's for this question
 };
 
@@ -175,7 +177,8 @@ bool show_progress(const Scene& scene) {
 int solve(const SolveRequest& request, Format format) {
     const campaign::Case question = question_of(request);
     NoArtefacts artefacts;
-    const auto computed = workers::compute(question, 1, artefacts, std::nullopt, show_progress);
+    const auto computed =
+        workers::compute(question, 1, artefacts, std::nullopt, show_progress, camera(request.pictures, question.scene));
     if (::isatty(STDERR_FILENO) == 1) std::cerr << "\r\033[K" << std::flush;
     const CaseResult& result = computed.value();  // the watch never gives it up
     if (format == Format::text) show_text(question, result);
@@ -198,6 +201,7 @@ std::vector<Command> solve_commands() {
                      ->allow_extra_args(false);
                  parser.add_option("--seed", request->seed, "seed of the case; default: as in the campaign")
                      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{0x7FFFFFFFFFFFFFFF}));
+                 declare_pictures(parser, request->pictures);
                  return [request, &format] { return solve(*request, format); };
              },
              false}};

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace grainsweep::workers {
@@ -28,16 +29,54 @@ constexpr double slice_seconds = 0.1;
 // In the scene's time, whose scale is unknown: shorter than any step, then it adapts to the clock.
 constexpr double first_slice = 1e-9;
 
+/// When the next picture is due.
+class Shutter {
+public:
+    Shutter(const Camera& camera, const Scene& scene) : camera_(camera) {
+        if (camera_.frames > 0) shoot(scene);
+    }
+    [[nodiscard]] double next() const {
+        return camera_.frames > 0 && interval_ > 0 ? interval_ * static_cast<double>(due_) : infinite;
+    }
+    void look(const Scene& scene) {
+        if (camera_.frames == 0) return;
+        if (interval_ == 0 && scene.progress() > 0)
+            interval_ = scene.time() / scene.progress() / static_cast<double>(camera_.frames - 1);
+        if (scene.time() < next()) return;
+        shoot(scene);
+        while (next() <= scene.time()) ++due_;
+    }
+    void last(const Scene& scene) {
+        if (camera_.frames > 0 && scene.time() > shot_) shoot(scene);
+    }
+
+private:
+    void shoot(const Scene& scene) {
+        camera_.shoot(scene);
+        shot_ = scene.time();
+    }
+
+    static constexpr double infinite = std::numeric_limits<double>::infinity();
+    const Camera& camera_;
+    double interval_ = 0;  // of the scene's time; 0: not known yet
+    std::int64_t due_ = 1;
+    double shot_ = 0;
+};
+
 /// Advances until the scene is over, fails or is given up; true when it is over.
-bool drive(Scene& scene, const Watch& watch) {
+bool drive(Scene& scene, const Watch& watch, const Camera& camera) {
+    Shutter shutter(camera, scene);
     double slice = first_slice;
     while (!scene.finished() && scene.health().stable()) {
         const auto start = Clock::now();
-        scene.advance(scene.time() + slice);
+        const bool cut = shutter.next() < scene.time() + slice;
+        scene.advance(cut ? shutter.next() : scene.time() + slice);
         const double took = std::max(seconds_since(start), 1e-6);
-        slice *= std::clamp(slice_seconds / took, 0.25, 4.0);
+        if (!cut) slice *= std::clamp(slice_seconds / took, 0.25, 4.0);
+        shutter.look(scene);
         if (!watch(scene)) return false;
     }
+    shutter.last(scene);
     return true;
 }
 
@@ -56,7 +95,7 @@ bool all_finite(const Observations& observations) {
 
 std::optional<campaign::CaseResult> compute(const campaign::Case& question, std::int64_t attempt, Artefacts& artefacts,
                                             const std::optional<Bytes>& resume, const Watch& watch,
-                                            const std::function<void(const Scene&)>& finished) {
+                                            const Camera& camera) {
     const auto start = Clock::now();
     const double processor_start = processor_seconds();
     campaign::CaseResult result;
@@ -88,10 +127,9 @@ std::optional<campaign::CaseResult> compute(const campaign::Case& question, std:
                 scene = info->make(inputs, question.seed, artefacts);  // a checkpoint that does not fit
             }
         }
-        if (!drive(*scene, watch)) return std::nullopt;
+        if (!drive(*scene, watch, camera)) return std::nullopt;
         result.cost.particle_steps = scene->particle_steps();
         result.cost.phases = scene->phase_seconds();
-        if (finished) finished(*scene);
         if (const Health health = scene->health(); !health.stable()) {
             return close(campaign::Outcome::unstable, health.reason);
         }

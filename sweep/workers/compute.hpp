@@ -13,14 +13,19 @@ namespace grainsweep::workers {
 /// the answer. Returns false to give the case up unfinished.
 using Watch = std::function<bool(const Scene&)>;
 
+/// Takes pictures on the way: the first at the start, the last at the end, the others evenly spaced in the scene's
+/// time, as far as its progress after the first step foretells the end. The same moments however the run is sliced.
+struct Camera {
+    std::int64_t frames = 0;                  ///< 0: none
+    std::function<void(const Scene&)> shoot;  ///< reads only
+};
+
 /// Computes the case: skipped when its answer is proven, rejected when the scene cannot be made from its
 /// inputs, unstable when its state became untrustworthy, completed otherwise. `resume`, where given, is
 /// the checkpoint to continue from (one that does not fit is ignored: the case starts anew). `watch`
 /// returning false gives nullopt.
-/// `finished`, where given, sees the scene in its last state.
 [[nodiscard]] std::optional<campaign::CaseResult> compute(const campaign::Case& question, std::int64_t attempt,
                                                           Artefacts& artefacts, const std::optional<Bytes>& resume,
-                                                          const Watch& watch,
-                                                          const std::function<void(const Scene&)>& finished = {});
+                                                          const Watch& watch, const Camera& camera = {});
 
 }  // namespace grainsweep::workers

@@ -29,6 +29,22 @@ dem::Setup powder() {
     return s;
 }
 
+/// The setup's spheres where `time` carries them.
+void move_on(dem::Setup& setup, double time) {
+    const auto engine = dem::fast::make_mixed_engine(setup, dem::Method::Path::best);
+    engine->run(static_cast<std::int64_t>(time / setup.time_step));
+    if (!engine->fault().empty()) throw std::runtime_error(engine->fault());
+    dem::State state;
+    engine->state(state);
+    if (state.id.size() != setup.spheres.size()) throw std::runtime_error("the bed lost particles");
+    for (std::size_t i = 0; i < state.id.size(); ++i) {
+        dem::Sphere& p = setup.spheres[i];
+        p.position = state.position[i];
+        p.velocity = state.velocity[i];
+        p.angular_velocity = state.angular_velocity[i];
+    }
+}
+
 }  // namespace
 
 dem::Setup settled_bed(const BedOptions& o) {
@@ -37,7 +53,7 @@ dem::Setup settled_bed(const BedOptions& o) {
     const double side = pitch * o.per_side;
     s.domain.low = {0, 0, -d};
     s.domain.high = {side, side, pitch * (o.layers + 4)};
-    const stats::Stream stream(5, 1);
+    const stats::Stream stream(o.seed, 1);
     std::uint64_t draw = 0;
     const auto u = [&] { return 2 * stream.uniform(draw++) - 1; };
     for (int k = 0; k < o.layers; ++k)
@@ -51,24 +67,25 @@ dem::Setup settled_bed(const BedOptions& o) {
                 s.spheres.push_back(p);
             }
     dem::Setup falling = s;
-    falling.gravity[2] = -5 * gravity;
     falling.material.restitution = 0.2;
     falling.walls = {dem::Plane{{0, 0, 0}, {0, 0, 1}}};
-    const auto engine = dem::fast::make_mixed_engine(falling, dem::Method::Path::best);
-    engine->run(static_cast<std::int64_t>(o.settle_time / s.time_step));
-    if (!engine->fault().empty()) throw std::runtime_error(engine->fault());
-    dem::State state;
-    engine->state(state);
-    for (std::size_t i = 0; i < state.id.size(); ++i) {
-        dem::Sphere& p = s.spheres[i];
-        p.position = state.position[i];
-        p.mobile = p.position[2] > 0.95 * d;
-        if (p.mobile)
-            p.velocity = state.velocity[i], p.angular_velocity = state.angular_velocity[i];
-        else
-            p.velocity = p.angular_velocity = {};
+    falling.gravity[2] = -5 * gravity;
+    move_on(falling, o.settle_time);  // pressed together, then relieved to rest under its own weight
+    falling.gravity[2] = -gravity;
+    move_on(falling, o.settle_time);
+    for (std::size_t i = 0; i < s.spheres.size(); ++i) {
+        dem::Sphere& p = s.spheres[i] = falling.spheres[i];
+        p.mobile = p.position[2] > 1.4 * d;  // thick enough to let nobody through
+        if (!p.mobile) p.velocity = p.angular_velocity = {};
     }
     return s;
+}
+
+dem::Setup flowing(dem::Setup bed, double degrees, double time) {
+    bed = tilted(std::move(bed), degrees);
+    bed.domain.high[2] += bed.domain.high[2] - bed.domain.low[2];  // room to jump
+    move_on(bed, time);
+    return bed;
 }
 
 dem::Setup replicated(const dem::Setup& bed, int nx, int ny) {
@@ -91,6 +108,14 @@ dem::Setup tilted(dem::Setup bed, double degrees) {
     const double angle = degrees * std::numbers::pi / 180;
     bed.gravity = {gravity * std::sin(angle), 0, -gravity * std::cos(angle)};
     return bed;
+}
+
+dem::Setup small_chute(std::uint64_t seed) {
+    BedOptions o;
+    o.per_side = 10, o.layers = 20, o.seed = seed;
+    dem::Setup s = tilted(settled_bed(o), 26);
+    s.domain.high[2] += s.domain.high[2] - s.domain.low[2];  // room to jump
+    return s;
 }
 
 dem::Setup loose_gas(int per_side) {

@@ -42,10 +42,25 @@ struct PlainDem::Contact {
 PlainDem::PlainDem(const dem::Setup& setup) : setup_(setup), gone_(setup.spheres.size(), 0) {
     for (const dem::Sphere& s : setup.spheres) {
         x_.push_back(s.position);
-        v_.push_back(s.mobile ? s.velocity : Vec3{});
+        v_.push_back(s.mobile ? s.velocity + (1 / setup.time_step) * displacement(1) : Vec3{});
         w_.push_back(s.mobile ? s.angular_velocity : Vec3{});
     }
+    move_frozen();
     forces(false);
+}
+
+Vec3 PlainDem::displacement(std::int64_t step) const {
+    const double t = static_cast<double>(step) * setup_.time_step;
+    return std::sin(2 * pi * setup_.shaking.frequency * t) * setup_.shaking.amplitude;
+}
+
+/// Places of frozen spheres at the present step, and their velocities over the last one.
+void PlainDem::move_frozen() {
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+        if (setup_.spheres[i].mobile) continue;
+        x_[i] = setup_.spheres[i].position + displacement(steps_);
+        v_[i] = (1 / setup_.time_step) * (displacement(steps_) - displacement(steps_ - 1));
+    }
 }
 
 double PlainDem::mass(std::size_t i) const {
@@ -223,6 +238,8 @@ void PlainDem::run(std::int64_t steps) {
                 x_[i] = x_[i] + setup_.time_step * v_[i];
             }
         ++wall_steps_;
+        ++steps_;
+        move_frozen();
         forces(true);
         for (std::size_t i = 0; i < x_.size(); ++i)
             if (setup_.spheres[i].mobile && gone_[i] == 0) kick(i);

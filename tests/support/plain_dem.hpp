@@ -10,7 +10,9 @@
 
 namespace grainsweep::test {
 
-/// Velocity Verlet with the Hertz-Mindlin law of solver/dem/engine.hpp, forces of the start without histories.
+/// Velocity Verlet with the Hertz-Mindlin law of solver/dem/engine.hpp, forces of the start without histories. A shaken
+/// vessel is computed in the laboratory's frame: frozen spheres move (walls do not: give none), and so, at the start,
+/// do the mobile ones that rest in it.
 class PlainDem {
 public:
     explicit PlainDem(const dem::Setup& setup);
@@ -21,6 +23,7 @@ public:
     void remove(std::int32_t id);
 
     [[nodiscard]] const std::vector<dem::Vec3>& position() const { return x_; }
+    [[nodiscard]] dem::Vec3 displacement() const { return displacement(steps_); }  ///< of the vessel, m
     [[nodiscard]] const std::vector<dem::Vec3>& velocity() const { return v_; }
     [[nodiscard]] const std::vector<dem::Vec3>& angular_velocity() const { return w_; }
     [[nodiscard]] const std::vector<dem::Vec3>& force() const { return f_; }
@@ -39,12 +42,15 @@ private:
     /// Moment on i of the rolling resistance.
     [[nodiscard]] dem::Vec3 rolling(const Contact& c, bool update, dem::Vec3& history, const dem::Vec3& force) const;
     [[nodiscard]] double mass(std::size_t i) const;
+    [[nodiscard]] dem::Vec3 displacement(std::int64_t step) const;
+    void move_frozen();
 
     dem::Setup setup_;
     std::vector<dem::Vec3> x_, v_, w_, f_, t_;
     std::vector<char> gone_;
     std::map<Key, dem::Vec3> pair_history_, wall_history_, pair_rolling_, wall_rolling_;
     std::int64_t wall_steps_ = 0;
+    std::int64_t steps_ = 0;
     double largest_overlap_ = 0;
 };
 

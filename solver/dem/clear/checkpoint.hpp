@@ -48,10 +48,12 @@ void ClearEngine<Laws, case_needs>::visit_state(Self& self, Visit&& visit) {
     visit(self.wall_steps_);
     visit(self.displaced_);
     visit(self.largest_overlap_);
+    visit(self.peak_overlap_);
     visit(self.largest_wall_overlap_);
     visit(self.speed_limit_);
     visit(self.work_of_walls_);
     visit(self.work_of_wrapping_);
+    visit(self.work_of_shaking_);
     visit(self.lowest_energy_);
     visit(self.fault_);
     visit(self.work_.steps);
@@ -68,6 +70,7 @@ void ClearEngine<Laws, case_needs>::save(std::vector<std::byte>& into) const {
     out.put(needs);
     out.put(static_cast<std::uint64_t>(spheres_at_start_));
     out.put(time_step_);
+    out.put(shaking_);
     visit_state(*this, [&out](const auto& value) { out.put(value); });
     list_.save(out);
     out.put(static_cast<std::uint64_t>(walls_.size()));
@@ -92,6 +95,7 @@ void ClearEngine<Laws, case_needs>::restore(std::span<const std::byte> from) {
     expect(needs);
     expect(static_cast<std::uint64_t>(spheres_at_start_));
     expect(time_step_);
+    expect(shaking_);
     visit_state(*this, [&in](auto& value) { in.get(value); });
     list_.restore(in);
     std::uint64_t walls = 0;
@@ -106,6 +110,7 @@ void ClearEngine<Laws, case_needs>::restore(std::span<const std::byte> from) {
         walls_.push_back(std::move(contacts));
     }
     in.finish();
+    if (shaken_) shake();
 }
 
 }  // namespace grainsweep::dem::clear

@@ -48,6 +48,9 @@ public:
     [[nodiscard]] double wall_time() const override { return time_step_ * static_cast<double>(wall_steps_); }
     void state(State& into) const override;
     [[nodiscard]] double largest_overlap() const override { return largest_overlap_; }
+    [[nodiscard]] double peak_overlap() const override { return peak_overlap_; }
+    void forget_peak_overlap() override { peak_overlap_ = 0; }
+    void contacts(std::vector<ContactForce>& into) const override;
     [[nodiscard]] const std::string& fault() const override { return fault_; }
     [[nodiscard]] Work work() const override { return work_; }
     void save(std::vector<std::byte>& into) const override;
@@ -109,12 +112,18 @@ private:
     [[nodiscard]] Touch<Partner::particle> touch(std::size_t i, std::size_t j, const Vec3& branch, double r2) const;
     [[nodiscard]] Touch<Partner::wall> touch(std::size_t i, const geometry::Closest& closest, const Vec3& v) const;
     [[nodiscard]] Memory memory_of(std::size_t entry) const;
+    template <class Visit>
+    void for_each_touching_pair(Visit&& visit) const;
+    template <class Visit>
+    void for_each_touched_wall(Visit&& visit) const;
     [[nodiscard]] double mechanical_energy(double& active) const;
 
     // stepping.hpp
     void step();
     void kick_and_drift();
     void kick();
+    void shake();
+    [[nodiscard]] Vec3 momentum() const;
     void rebuild(std::span<const std::int32_t> removed = {});
     void forget_separated();
     void list_walls(std::span<const std::uint32_t> fresh_index);
@@ -135,6 +144,9 @@ private:
     geometry::Domain domain_;
     std::array<Vec3, 27> image_shifts_;
     Vec3 gravity_;
+    Shaking shaking_;
+    bool shaken_;
+    Vec3 body_;  // acceleration of a free particle at the present step: gravity and shaking
     double time_step_;
     double radius_ = 0, mass_ = 0, inverse_mass_ = 0;  // of all particles, unless needs.sizes
     double density_;
@@ -160,10 +172,12 @@ private:
     std::int64_t wall_steps_ = 0;
     bool displaced_ = false;  // a particle has moved half the skin, or is not a number
     double largest_overlap_ = 0;
+    double peak_overlap_ = 0;          // largest of it so far
     double largest_wall_overlap_ = 0;  // over the diameter
     double stiffest_ = 0;              // largest sqrt(R* d)/m* of a contact, m/kg
     double speed_limit_ = 0;
     double work_of_walls_ = 0;     // J, since the walls were set
+    double work_of_shaking_ = 0;   // J, since the start
     double work_of_wrapping_ = 0;  // J, potential energy lost by stepping back through periodic faces
     double lowest_energy_ = 0;     // J, least of energy minus work so far
     std::string fault_;

@@ -74,6 +74,7 @@ void ClearEngine<Laws, case_needs>::evaluate() {
     largest_wall_overlap_ = 0;
     stiffest_ = 0;
     pair_contacts<advance>();
+    peak_overlap_ = std::max(peak_overlap_, largest_overlap_);
     for (auto& wall : walls_) wall_contacts<advance>(wall);
     work_.pair_visits += static_cast<double>(list_.size());
     // Negated, so that a value that is not a number is reported too.
@@ -207,6 +208,55 @@ auto ClearEngine<Laws, case_needs>::memory_of([[maybe_unused]] std::size_t entry
         return {};
 }
 
+/// Calls visit(i, j, touch, memory) for the pairs that touch, in list order.
+template <class Laws, Needs case_needs>
+template <class Visit>
+void ClearEngine<Laws, case_needs>::for_each_touching_pair(Visit&& visit) const {
+    for (std::size_t i = 0; i < p_.size(); ++i)
+        for (std::uint32_t k = list_.begin(i); k < list_.end(i); ++k) {
+            const std::size_t j = list_[k].j();
+            const Vec3 branch = p_.position[i] - (p_.position[j] + image_shifts_[list_[k].image()]);
+            const double reach = radius(i) + radius(j);
+            const double r2 = dot(branch, branch);
+            if (r2 < reach * reach) visit(i, j, touch(i, j, branch, r2), memory_of(k));
+        }
+}
+
+/// Calls visit(i, w, touch, memory) for the walls that are touched.
+template <class Laws, Needs case_needs>
+template <class Visit>
+void ClearEngine<Laws, case_needs>::for_each_touched_wall(Visit&& visit) const {
+    for (std::size_t w = 0; w < walls_.size(); ++w) {
+        const auto& contacts = walls_[w];
+        const Vec3 wall_velocity = velocity_at(contacts.wall, wall_time());
+        const auto each_near = [&](const auto& shape) {
+            for (std::size_t k = 0; k < contacts.near.size(); ++k) {
+                const std::size_t i = contacts.near[k];
+                const Closest closest = shape.closest(p_.position[i]);
+                if (closest.distance >= radius(i)) continue;
+                Memory memory{};
+                if constexpr (needs.tangential_history) memory = contacts.memory[k];
+                visit(i, w, touch(i, closest, wall_velocity), memory);
+            }
+        };
+        std::visit([&](const auto& wall) { each_near(shape_at(wall, wall_time())); }, contacts.wall);
+    }
+}
+
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::contacts(std::vector<ContactForce>& into) const {
+    into.clear();
+    const auto add = [&](std::size_t i, std::int32_t second, const auto& t, Memory memory) {
+        const Response r = laws_.template respond<false>(t, memory);
+        into.push_back({p_.id[i], second, t.overlap, t.normal, r.normal, r.tangential});
+    };
+    for_each_touching_pair(
+        [&](std::size_t i, std::size_t j, const auto& t, const Memory& memory) { add(i, p_.id[j], t, memory); });
+    for_each_touched_wall([&](std::size_t i, std::size_t w, const auto& t, const Memory& memory) {
+        add(i, -1 - static_cast<std::int32_t>(w), t, memory);
+    });
+}
+
 /// Kinetic, gravitational and stored energy; `active` is the part in motion and in contacts.
 template <class Laws, Needs case_needs>
 double ClearEngine<Laws, case_needs>::mechanical_energy(double& active) const {
@@ -218,35 +268,18 @@ double ClearEngine<Laws, case_needs>::mechanical_energy(double& active) const {
         stored += energy;
         squeezed += std::abs(energy);
     };
+    const auto add_contact = [&](std::size_t, std::size_t, const auto& t, const Memory& memory) {
+        add(laws_.energy(t, memory));
+    };
+    for_each_touching_pair(add_contact);
+    for_each_touched_wall(add_contact);
     for (std::size_t i = 0; i < p_.size(); ++i) {
-        for (std::uint32_t k = list_.begin(i); k < list_.end(i); ++k) {
-            const std::size_t j = list_[k].j();
-            const Vec3 branch = p_.position[i] - (p_.position[j] + image_shifts_[list_[k].image()]);
-            const double reach = radius(i) + radius(j);
-            const double r2 = dot(branch, branch);
-            if (r2 < reach * reach) add(laws_.energy(touch(i, j, branch, r2), memory_of(k)));
-        }
         if (!mobile(i)) continue;
         const double mass = 1 / inverse_mass(i);
         motion += 0.5 * mass * dot(p_.velocity[i], p_.velocity[i]);
         height -= mass * dot(gravity_, p_.position[i]);
         if constexpr (needs.spin)
             motion += 0.2 * mass * radius(i) * radius(i) * dot(p_.angular_velocity[i], p_.angular_velocity[i]);
-    }
-    for (const auto& contacts : walls_) {
-        const Vec3 wall_velocity = velocity_at(contacts.wall, wall_time());
-        const auto each_near = [&](const auto& shape) {
-            for (std::size_t k = 0; k < contacts.near.size(); ++k) {
-                const std::size_t i = contacts.near[k];
-                const Closest closest = shape.closest(p_.position[i]);
-                if (closest.distance >= radius(i)) continue;
-                if constexpr (needs.tangential_history)
-                    add(laws_.energy(touch(i, closest, wall_velocity), contacts.memory[k]));
-                else
-                    add(laws_.energy(touch(i, closest, wall_velocity), NoMemory{}));
-            }
-        };
-        std::visit([&](const auto& wall) { each_near(shape_at(wall, wall_time())); }, contacts.wall);
     }
     active = motion + squeezed;
     return motion + height + stored;

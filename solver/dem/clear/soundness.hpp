@@ -3,6 +3,7 @@
 
 #include "solver/dem/clear/forces.hpp"
 #include "solver/dem/limits.hpp"
+#include "solver/dem/shaking.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -52,7 +53,7 @@ void ClearEngine<Laws, case_needs>::learn_speed_limit() {
         if constexpr (needs.spin) start = std::max(start, radius(i) * norm(p_.angular_velocity[i]));
         lightest = std::min(lightest, 1 / inverse_mass(i));
     }
-    double wall = 0;
+    double wall = fastest(shaking_);
     for (const auto& contacts : walls_) wall = std::max(wall, fastest(contacts.wall));
     double fall = 0;  // through the domain; without limit along a periodic axis
     for (std::size_t k = 0; k < 3; ++k) {
@@ -69,11 +70,11 @@ void ClearEngine<Laws, case_needs>::learn_speed_limit() {
     lowest_energy_ = std::numeric_limits<double>::infinity();
 }
 
-/// Energy minus the work of moving walls must not grow: contacts store or dissipate.
+/// Energy minus the work of moving walls and of shaking must not grow: contacts store or dissipate.
 template <class Laws, Needs case_needs>
 void ClearEngine<Laws, case_needs>::check_energy() {
     double active = 0;
-    const double balance = mechanical_energy(active) - work_of_walls_ + work_of_wrapping_;
+    const double balance = mechanical_energy(active) - work_of_walls_ - work_of_shaking_ + work_of_wrapping_;
     const double allowed = largest_sound_energy_gain * (active + std::abs(work_of_walls_));
     if (!(balance - lowest_energy_ <= allowed) && lowest_energy_ < std::numeric_limits<double>::infinity()) {
         std::size_t fastest_particle = 0;

@@ -3,6 +3,7 @@
 
 #include "solver/dem/clear/soundness.hpp"
 #include "solver/dem/material.hpp"
+#include "solver/dem/shaking.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,6 +22,9 @@ ClearEngine<Laws, case_needs>::ClearEngine(const Setup& setup, const Method& met
       domain_{setup.domain.low, setup.domain.high, setup.domain.periodic},
       image_shifts_(domain_.image_shifts()),
       gravity_(setup.gravity),
+      shaking_(setup.shaking),
+      shaken_(!is_still(setup.shaking)),
+      body_(setup.gravity),
       time_step_(setup.time_step),
       density_(setup.material.density),
       swing_factor_(2 * effective_modulus(setup.material) * setup.time_step * setup.time_step),
@@ -73,9 +77,11 @@ void ClearEngine<Laws, case_needs>::run(std::int64_t steps) {
 
 template <class Laws, Needs case_needs>
 void ClearEngine<Laws, case_needs>::step() {
+    if (shaken_) work_of_shaking_ += time_step_ / 2 * dot(body_ - gravity_, momentum());
     kick_and_drift();
     ++wall_steps_;
     ++work_.steps;
+    if (shaken_) shake();
     if (list_is_stale()) {
         if (!sound()) return;
         rebuild();
@@ -83,6 +89,7 @@ void ClearEngine<Laws, case_needs>::step() {
     evaluate<true>();
     if (!fault_.empty()) return;  // before a force beyond its law moves anything
     kick();
+    if (shaken_) work_of_shaking_ += time_step_ / 2 * dot(body_ - gravity_, momentum());
     work_.particle_steps += static_cast<double>(mobile_count());
     if (work_.steps % energy_interval == 0) check_energy();
 }
@@ -95,7 +102,7 @@ void ClearEngine<Laws, case_needs>::kick_and_drift() {
     for (std::size_t i = 0; i < p_.size(); ++i) {
         if (!mobile(i)) continue;
         const double inverse = inverse_mass(i);
-        p_.velocity[i] += half * (inverse * p_.force[i] + gravity_);
+        p_.velocity[i] += half * (inverse * p_.force[i] + body_);
         p_.position[i] += time_step_ * p_.velocity[i];
         if constexpr (needs.spin)
             p_.angular_velocity[i] += (half * inverse / (0.4 * radius(i) * radius(i))) * p_.torque[i];
@@ -111,10 +118,24 @@ void ClearEngine<Laws, case_needs>::kick() {
     for (std::size_t i = 0; i < p_.size(); ++i) {
         if (!mobile(i)) continue;
         const double inverse = inverse_mass(i);
-        p_.velocity[i] += half * (inverse * p_.force[i] + gravity_);
+        p_.velocity[i] += half * (inverse * p_.force[i] + body_);
         if constexpr (needs.spin)
             p_.angular_velocity[i] += (half * inverse / (0.4 * radius(i) * radius(i))) * p_.torque[i];
     }
+}
+
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::shake() {
+    body_ = gravity_ + shaking_acceleration(shaking_, time_step_, work_.steps);
+}
+
+/// Of all mobile particles.
+template <class Laws, Needs case_needs>
+Vec3 ClearEngine<Laws, case_needs>::momentum() const {
+    Vec3 total{};
+    for (std::size_t i = 0; i < p_.size(); ++i)
+        if (mobile(i)) total += (1 / inverse_mass(i)) * p_.velocity[i];
+    return total;
 }
 
 template <class Laws, Needs case_needs>

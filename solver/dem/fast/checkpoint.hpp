@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "solver/dem/engine.hpp"
 #include "solver/dem/fast/columns.hpp"
 
 namespace grainsweep::dem::fast {
@@ -95,16 +96,18 @@ struct Seal {
     std::int32_t width = 0;
     Needs needs{};
     Constants constants{};
+    Shaking shaking{};
 };
 
-[[nodiscard]] inline Seal make_seal(const Field& f, const Kernels& k, const Needs& n) {
+[[nodiscard]] inline Seal make_seal(const Constants& c, const Kernels& k, const Needs& n, const Shaking& shaking) {
     Seal s;
     std::memset(static_cast<void*>(&s), 0, sizeof s);  // padding too: seals are compared by their bytes
     s.format = Seal{}.format;
     s.width = k.width;
     s.needs.unequal = n.unequal, s.needs.frozen = n.frozen, s.needs.friction = n.friction,
     s.needs.cohesion = n.cohesion, s.needs.rolling = n.rolling;
-    std::memcpy(static_cast<void*>(&s.constants), &f.constants, sizeof f.constants);
+    std::memcpy(static_cast<void*>(&s.constants), &c, sizeof c);
+    s.shaking = shaking;
     return s;
 }
 

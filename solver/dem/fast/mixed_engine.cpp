@@ -8,9 +8,11 @@
 
 #include "solver/dem/fast/checkpoint.hpp"
 #include "solver/dem/fast/columns.hpp"
+#include "solver/dem/fast/contact_reader.hpp"
 #include "solver/dem/fast/faults.hpp"
 #include "solver/dem/fast/rebuild.hpp"
 #include "solver/dem/fast/scale.hpp"
+#include "solver/dem/shaking.hpp"
 
 namespace grainsweep::dem::fast {
 
@@ -59,6 +61,9 @@ public:
     [[nodiscard]] double wall_time() const override { return static_cast<double>(wall_steps_) * room_.scale.time; }
     void state(State& into) const override;
     [[nodiscard]] double largest_overlap() const override { return static_cast<double>(tally_.overlap); }
+    [[nodiscard]] double peak_overlap() const override { return static_cast<double>(peak_overlap_); }
+    void forget_peak_overlap() override { peak_overlap_ = 0; }
+    void contacts(std::vector<ContactForce>& into) const override;
     [[nodiscard]] const std::string& fault() const override { return fault_; }
     [[nodiscard]] Work work() const override { return work_; }
     void save(std::vector<std::byte>& into) const override;
@@ -72,6 +77,8 @@ private:
     void make_lists(std::span<const std::int32_t> removed = {});
     void full_step_velocities();
     void restart_forces(std::span<const std::int32_t> removed = {});
+    void shake();
+    [[nodiscard]] Seal seal() const;
     [[nodiscard]] double half_change(std::int32_t particle, int axis) const;
     [[nodiscard]] double half_spin_change(std::int32_t particle, int axis) const;
     [[nodiscard]] Sight sight() const {
@@ -82,6 +89,10 @@ private:
     static void pass(Self& self, Archive& archive);
 
     Room room_;
+    Material material_;
+    Vec3 gravity_;
+    Shaking shaking_;
+    bool shaken_;
     Needs needs_;
     const Kernels* kernels_;
     std::vector<Wall> walls_;
@@ -92,6 +103,7 @@ private:
     Columns columns_;
     Field field_{};
     Tally tally_{};
+    float peak_overlap_ = 0;  ///< largest of tally_.overlap so far
     Drift drift_;
     float inner_skin_ = 0;
     float largest_skin_ = std::numeric_limits<float>::infinity();
@@ -104,6 +116,10 @@ private:
 
 MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin)
     : room_{setup.domain, make_scale(setup), 0.3F},
+      material_(setup.material),
+      gravity_(setup.gravity),
+      shaking_(setup.shaking),
+      shaken_(!is_still(setup.shaking)),
       needs_(make_needs(setup)),
       kernels_(&kernels_of(path, needs_)),
       walls_(setup.walls),
@@ -182,6 +198,12 @@ void MixedEngine::check_walls(const std::vector<Wall>& walls) const {
     }
 }
 
+/// Gives the constants the acceleration of the present step: gravity and the body force of shaking.
+void MixedEngine::shake() {
+    const Vec3 b = shaking_acceleration(shaking_, room_.scale.time, work_.steps);
+    for (std::size_t a = 0; a < 3; ++a) field_.constants.gravity[a] = gravity_in_steps(gravity_[a] + b[a], room_.scale);
+}
+
 /// Change of velocity over half a step by the forces at hand, engine's units.
 double MixedEngine::half_change(std::int32_t i, int a) const {
     const Record& r = field_.records[i];
@@ -224,6 +246,7 @@ void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
     kernels_->walls(field_, tally_);
     kernels_->sweep(field_, false, tally_);
     field_.history_step = 1;
+    peak_overlap_ = std::max(peak_overlap_, tally_.overlap);
     for (std::int32_t i = 0; i < field_.count; ++i) {
         Record& r = field_.records[i];
         Residual& residual = field_.residuals[i];
@@ -308,6 +331,7 @@ void MixedEngine::run(std::int64_t steps) {
         }
         ++work_.steps;
         ++wall_steps_;
+        if (shaken_) shake();
         work_.particle_steps += static_cast<double>(mobile_);
         account_travel();
         if (!fault_.empty()) return;
@@ -317,6 +341,7 @@ void MixedEngine::run(std::int64_t steps) {
         kernels_->walls(field_, tally_);
         kernels_->sweep(field_, s + 1 < steps, tally_);
         columns_.swap_histories(field_);
+        peak_overlap_ = std::max(peak_overlap_, tally_.overlap);
         work_.pair_visits += field_.inner_count;
         if (too_deep()) fault_ = describe_overlap(sight(), tally_);
     }
@@ -373,6 +398,26 @@ void MixedEngine::state(State& into) const {
     }
 }
 
+void MixedEngine::contacts(std::vector<ContactForce>& into) const {
+    std::vector<Motion> motions(size());
+    for (std::int32_t i = 0; i < field_.count; ++i) {
+        const Record& r = field_.records[i];
+        const Residual& residual = field_.residuals[i];
+        Motion& m = motions[static_cast<std::size_t>(i)];
+        for (int a = 0; a < 3; ++a) {
+            const auto axis = static_cast<std::size_t>(a);
+            m.velocity[axis] =
+                (static_cast<double>(r.velocity[a]) + static_cast<double>(residual.velocity[a]) + half_change(i, a)) *
+                room_.scale.speed();
+            m.spin[axis] = (static_cast<double>(r.spin[a]) + half_spin_change(i, a)) / room_.scale.time;
+        }
+    }
+    const ContactReader reader(material_, room_, field_, columns_.id.data(), motions, kernels_->width);
+    into.clear();
+    reader.pairs(into);
+    for (std::size_t w = 0; w < walls_.size(); ++w) reader.wall(walls_[w], w, wall_time(), into);
+}
+
 /// Everything that changes, in one order for writing and reading.
 template <class Self, class Archive>
 void MixedEngine::pass(Self& self, Archive& archive) {
@@ -383,6 +428,7 @@ void MixedEngine::pass(Self& self, Archive& archive) {
     archive.value(self.inner_skin_);
     archive.value(self.room_.skin);
     archive.value(self.tally_);
+    archive.value(self.peak_overlap_);
     archive.value(self.wall_steps_);
     archive.value(self.mobile_);
     archive.value(self.work_.steps);
@@ -414,18 +460,25 @@ void MixedEngine::pass(Self& self, Archive& archive) {
     for (int a = 0; a < c.histories; ++a) archive.column(c.wall_history[a], near_walls);
 }
 
+/// Of the case, the same at every step.
+Seal MixedEngine::seal() const {
+    Constants constants = field_.constants;
+    for (std::size_t a = 0; a < 3; ++a) constants.gravity[a] = gravity_in_steps(gravity_[a], room_.scale);
+    return make_seal(constants, *kernels_, needs_, shaking_);
+}
+
 void MixedEngine::save(std::vector<std::byte>& into) const {
     Writer writer(into);
-    writer.value(make_seal(field_, *kernels_, needs_));
+    writer.value(seal());
     pass(*this, writer);
 }
 
 void MixedEngine::restore(std::span<const std::byte> from) {
     Reader reader(from);
-    Seal seal;
-    reader.value(seal);
-    const Seal own = make_seal(field_, *kernels_, needs_);
-    if (std::memcmp(&seal, &own, sizeof seal) != 0)
+    Seal theirs;
+    reader.value(theirs);
+    const Seal own = seal();
+    if (std::memcmp(&theirs, &own, sizeof own) != 0)
         throw std::invalid_argument("the checkpoint belongs to another setup, instruction path or version");
     pass(*this, reader);
     if (!reader.finished()) throw std::invalid_argument("the checkpoint is longer than its state");
@@ -434,6 +487,7 @@ void MixedEngine::restore(std::span<const std::byte> from) {
     columns_.hold_wall_contacts(size());
     columns_.bind(field_);
     place_walls(field_, walls_, room_, wall_time());
+    if (shaken_) shake();
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -21,10 +22,14 @@ void require_positive(double value, const char* what) {
         refuse(std::string(what) + " must be positive, not " + std::to_string(value));
 }
 
+/// Of a setup without spheres: small beside its domain, so that nothing is refused that would have no effect.
 double largest_radius(const Setup& setup) {
     double radius = 0;
     for (const Sphere& s : setup.spheres) radius = std::max(radius, s.radius);
-    return radius > 0 ? radius : 1;
+    if (radius > 0) return radius;
+    double span = std::numeric_limits<double>::infinity();
+    for (std::size_t a = 0; a < 3; ++a) span = std::min(span, setup.domain.high[a] - setup.domain.low[a]);
+    return span > 0 && std::isfinite(span) ? 0.01 * span : 1;
 }
 
 void check(const Setup& setup) {
@@ -75,6 +80,10 @@ Scale make_scale(const Setup& setup) {
     return s;
 }
 
+float gravity_in_steps(double acceleration, const Scale& scale) {
+    return static_cast<float>(acceleration * scale.time * scale.time / scale.length);
+}
+
 Constants make_constants(const Setup& setup, const Scale& scale) {
     const Material& m = setup.material;
     const double nu = m.poisson_ratio;
@@ -91,7 +100,7 @@ Constants make_constants(const Setup& setup, const Scale& scale) {
         c.unit[a] = scale.unit[axis] / scale.length;
         c.unit_single[a] = f(c.unit[a]);
         c.inverse_unit[a] = f(1 / c.unit[a]);
-        c.gravity[a] = f(setup.gravity[axis] * scale.time * scale.time / scale.length);
+        c.gravity[a] = gravity_in_steps(setup.gravity[axis], scale);
     }
     c.radius = 0.5F;
     c.reach_squared = 1;

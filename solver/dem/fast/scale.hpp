@@ -21,6 +21,8 @@ struct Scale {
 
 /// Throws std::invalid_argument where the setup is impossible for this engine.
 [[nodiscard]] Scale make_scale(const Setup& setup);
+/// An acceleration, m/s2, as change of velocity per step.
+[[nodiscard]] float gravity_in_steps(double acceleration, const Scale& scale);
 [[nodiscard]] Constants make_constants(const Setup& setup, const Scale& scale);
 [[nodiscard]] Needs make_needs(const Setup& setup);
 

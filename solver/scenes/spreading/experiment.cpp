@@ -1,5 +1,6 @@
 #include "solver/scenes/spreading/experiment.hpp"
 
+#include "solver/observables/particle_loads.hpp"
 #include "solver/particles/bytes.hpp"
 
 #include <algorithm>
@@ -10,7 +11,7 @@ namespace grainsweep::spreading {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr std::uint64_t checkpoint_format = 0x6772'6e73'7370'0001ULL;  // "grnssp", version 1
+constexpr std::uint64_t checkpoint_format = 0x6772'6e73'7370'0002ULL;  // "grnssp", version 2
 constexpr std::size_t blocks = 10;       // of the measured flux, 5 mm of travel each by default
 constexpr double layer_thickness = 0.5;  // of the velocity profile, in diameters
 constexpr double profile_reach = 6;      // ahead of the blade, in diameters
@@ -18,9 +19,18 @@ constexpr double relief_pitch = 0.25;    // in diameters
 
 }  // namespace
 
-Experiment::Experiment(const Study& study, std::uint64_t seed, const dem::Method& method)
-    : study_(study), engine_(dem::make_engine(settling(study, seed), method)) {
+Experiment::Experiment(const Study& study, std::uint64_t seed, const dem::Method& method) : study_(study) {
+    settle(settling(study, seed), method);
     if (study_.settle_steps == 0) start_sweep();
+}
+
+void Experiment::settle(const dem::Setup& setup, const dem::Method& method) {
+    volume_.reserve(setup.spheres.size());
+    for (const auto& sphere : setup.spheres) {
+        const double d = 2 * sphere.radius / study_.diameter;
+        volume_.push_back(d * d * d);
+    }
+    engine_ = dem::make_engine(setup, method);
 }
 
 std::int64_t Experiment::step_of_sample(std::int64_t sample) const {
@@ -62,15 +72,15 @@ void Experiment::start_sweep() {
 void Experiment::sample() {
     const double time = time_of_sample(behind_.size());
     engine_->state(state_);
-    behind_.push_back(observables::count_behind(state_, study_.front(time)));
-    under_.push_back(observables::count_under(state_, study_.rear(time), study_.front(time), study_.gap));
+    behind_.push_back(observables::sum_behind(state_, volume_, study_.front(time)));
+    under_.push_back(observables::sum_under(state_, volume_, study_.rear(time), study_.front(time), study_.gap));
     largest_overlap_ = std::max(largest_overlap_, engine_->largest_overlap());
     if (static_cast<std::int64_t>(behind_.size()) > first_measured_sample)
         profile_.add(state_, study_.front(time), study_.front(time) + profile_reach * study_.diameter, study_.gap,
                      layer_thickness * study_.diameter);
 }
 
-/// Mass flow rate of one particle per second in units of the gap swept by the blade, filled solid.
+/// Mass flow rate of one sphere of diameter D per second in units of the gap swept by the blade, filled solid.
 double Experiment::flux_scale() const {
     return study_.particle_mass() / (study_.width * study_.gap * study_.speed * study_.material.density);
 }
@@ -87,8 +97,7 @@ void Experiment::observe_flux(Observations& into) const {
     std::vector<double> flux;
     auto& series = into.series["flux_series"];
     for (std::size_t k = 1; k < behind_.size(); ++k) {
-        const double value = flux_scale() * static_cast<double>(behind_[k] - behind_[k - 1]) /
-                             (time_of_sample(k) - time_of_sample(k - 1));
+        const double value = flux_scale() * (behind_[k] - behind_[k - 1]) / (time_of_sample(k) - time_of_sample(k - 1));
         series.push_back({.time = time_of_sample(k), .bin = nan, .value = value});
         if (k > first_measured_sample) flux.push_back(value);
     }
@@ -96,24 +105,26 @@ void Experiment::observe_flux(Observations& into) const {
 
     const std::size_t first = first_measured_sample;
     const std::size_t last = behind_.size() - 1;
-    into.scalars["mfr"] = flux_scale() * static_cast<double>(behind_[last] - behind_[first]) /
-                          (time_of_sample(last) - time_of_sample(first));
+    into.scalars["mfr"] =
+        flux_scale() * (behind_[last] - behind_[first]) / (time_of_sample(last) - time_of_sample(first));
     into.scalars["mfr_standard_error"] = observables::block_standard_error(flux, blocks);
     double mean = 0;
-    for (std::size_t k = first; k <= last; ++k) mean += static_cast<double>(under_[k]);
+    for (std::size_t k = first; k <= last; ++k) mean += under_[k];
     mean /= static_cast<double>(last - first + 1);
     const double mass = mean * study_.particle_mass();
     const double slot = study_.width * study_.gap * study_.material.density;
     into.scalars["mfr_window"] = mass / (slot * study_.blade_thickness);
     into.scalars["mfr_thesis"] = mass / (slot * study_.speed);
 
+    std::vector<double> velocity;
     auto& profile = into.series["vx_profile"];
     for (std::size_t k = 0; k < profile_layers; ++k) {
         const auto n = profile_.samples[k];
-        profile.push_back({.time = nan,
-                           .bin = layer_thickness * static_cast<double>(k + 1),
-                           .value = n > 0 ? profile_.sum[k] / static_cast<double>(n) : nan});
+        velocity.push_back(n > 0 ? profile_.sum[k] / static_cast<double>(n) : nan);
+        profile.push_back({.time = nan, .bin = layer_thickness * static_cast<double>(k + 1), .value = velocity[k]});
     }
+    if (const double bends = observables::unevenness(velocity); !std::isnan(bends))
+        into.scalars["vx_unevenness"] = bends / study_.speed;
 }
 
 void Experiment::observe_layer(Observations& into) const {
@@ -137,12 +148,21 @@ double Experiment::progress() const {
 
 Snapshot Experiment::snapshot() const {
     dem::State state;
+    std::vector<dem::ContactForce> contacts;
     engine_->state(state);
+    engine_->contacts(contacts);
+    auto loads = observables::particle_loads(state, contacts);
     Snapshot snapshot;
-    snapshot.positions = state.position;
-    snapshot.scalars["radius"] = state.radius;
-    snapshot.vectors["velocity"] = state.velocity;
-    snapshot.vectors["angular_velocity"] = state.angular_velocity;
+    snapshot.positions = std::move(state.position);
+    snapshot.scalars["id"].assign(state.id.begin(), state.id.end());
+    snapshot.scalars["mobile"].assign(state.mobile.begin(), state.mobile.end());
+    for (const double radius : state.radius) snapshot.scalars["diameter"].push_back(2 * radius);
+    snapshot.scalars["overlap"] = std::move(loads.overlap);
+    snapshot.scalars["largest_force"] = std::move(loads.largest);
+    snapshot.scalars["coordination"] = std::move(loads.coordination);
+    snapshot.vectors["velocity"] = std::move(state.velocity);
+    snapshot.vectors["angular_velocity"] = std::move(state.angular_velocity);
+    snapshot.vectors["force"] = std::move(loads.force);
     return snapshot;
 }
 

@@ -30,6 +30,7 @@ private:
     [[nodiscard]] std::int64_t step_of_sample(std::int64_t sample) const;
     [[nodiscard]] double time_of_sample(std::size_t sample) const;
     [[nodiscard]] double flux_scale() const;
+    void settle(const dem::Setup& setup, const dem::Method& method);
     void start_sweep();
     void sample();
     void observe_flux(Observations& into) const;
@@ -39,8 +40,9 @@ private:
     std::unique_ptr<dem::Engine> engine_;
     std::int64_t step_ = 0;
     bool sweeping_ = false;
-    std::vector<std::int64_t> behind_;  // centres behind the front face, by sample
-    std::vector<std::int64_t> under_;   // centres under the blade and below the gap, by sample
+    std::vector<double> volume_;  // by id, of the sphere of diameter D
+    std::vector<double> behind_;  // volume behind the front face, by sample
+    std::vector<double> under_;   // volume under the blade and below the gap, by sample
     observables::VelocityProfile profile_{profile_layers};
     double largest_overlap_ = 0;  // m/m, over the samples of the sweep
     dem::State state_;            // scratch of sample()

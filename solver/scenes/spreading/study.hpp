@@ -4,10 +4,13 @@
 // Geometry (x along the blade's motion, y periodic, z up):
 //     base z = 0; gates at x = 15 mm and 20 mm beyond the end of the travel; blade front at x = 15 mm at the start
 //     start: cubic lattice of 1.1 D with jitter, +-0.05 D, and random velocities, +-0.1 m/s, per component
-// The particles' number is that of a solid area `layer_area` in the xz plane: N = A W / (pi/6 D^3).
+//     start of unequal spheres: random sequential addition at a solid fraction of 0.25, same velocities
+// The particles' number is that of a solid area `layer_area` in the xz plane: N = A W / (pi/6 D^3); unequal spheres are
+// drawn until their volume is as near to A W as it gets.
 #pragma once
 
 #include "solver/dem/engine.hpp"
+#include "solver/particles/size_distribution.hpp"
 #include "solver/scenes/values.hpp"
 
 #include <cstdint>
@@ -17,15 +20,18 @@ namespace grainsweep::spreading {
 
 struct Study {
     dem::Material material;
+    particles::SizeDistribution sizes;  ///< of d/D
     double diameter = 0, gap = 0, speed = 0, gravity = 0;
     double vibration_amplitude = 0, vibration_frequency = 0;
     double width = 0;  ///< m
     double layer_area = 0, travel = 0, blade_thickness = 0, blade_edge_radius = 0;
     double time_step = 0;
 
-    std::int64_t particles = 0, settle_steps = 0, sweep_steps = 0;
+    std::int64_t particles = 0;  ///< of unequal sizes: the expected number
+    std::int64_t settle_steps = 0, sweep_steps = 0;
     std::int64_t lattice_x = 0, lattice_y = 0;
 
+    /// Of a sphere of diameter D.
     [[nodiscard]] double particle_mass() const;
     /// Front face of the blade, s after it started.
     [[nodiscard]] double front(double time) const;

@@ -1,0 +1,33 @@
+#include "sweep/cli/pictures.hpp"
+
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/report/vtk_series.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+namespace grainsweep::cli {
+
+void declare_pictures(CLI::App& parser, PictureRequest& request) {
+    auto* folder =
+        parser.add_option("--vtk", request.folder, "folder for pictures of the particles (VTP files and a PVD series)")
+            ->type_name("DIR");
+    parser.add_option("--frames", request.frames, "pictures from start to end")
+        ->needs(folder)
+        ->check(CLI::Range(2, 9999))
+        ->capture_default_str();
+}
+
+workers::Camera camera(const PictureRequest& request, const std::string& scene) {
+    if (request.folder.empty()) return {};
+    const auto series = std::make_shared<report::VtkSeries>(request.folder, scene);
+    return {request.frames, [series, scene](const Scene& seen) {
+                const Snapshot snapshot = seen.snapshot();
+                if (snapshot.positions.empty() && series->size() == 0)
+                    throw campaign::wrong_question("--vtk", "", fmt::format("scene '{}' shows no particles", scene));
+                series->add(snapshot, seen.time());
+            }};
+}
+
+}  // namespace grainsweep::cli

@@ -1,0 +1,24 @@
+// --vtk DIR and --frames N: pictures on the way, for the commands that compute a case in this process.
+#pragma once
+
+#include "sweep/workers/compute.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <string>
+
+namespace grainsweep::cli {
+
+struct PictureRequest {
+    std::string folder;  ///< empty: no pictures
+    std::int64_t frames = 50;
+};
+
+void declare_pictures(CLI::App& parser, PictureRequest& request);
+
+/// A camera that fills the folder, none where none is asked for. Throws WrongQuestion on its first frame where the
+/// scene shows no particles, store::BrokenWorld where a file cannot be written.
+[[nodiscard]] workers::Camera camera(const PictureRequest& request, const std::string& scene);
+
+}  // namespace grainsweep::cli
