@@ -2,6 +2,7 @@
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/command.hpp"
+#include "sweep/cli/path_option.hpp"
 #include "sweep/cli/pictures.hpp"
 #include "sweep/store/store.hpp"
 #include "sweep/workers/compute.hpp"
@@ -227,7 +228,10 @@ std::vector<Command> archive_commands() {
              parser.add_option("CASE", arguments->text, "case id, or its beginning")->required();
              const auto pictures = std::make_shared<PictureRequest>();
              declare_pictures(parser, *pictures);
-             return [arguments, pictures, &format] {
+             const auto path = std::make_shared<std::string>();
+             declare_path(parser, *path);
+             return [arguments, pictures, path, &format] {
+                 use_path(*path);
                  return replay(arguments->database, arguments->text, *pictures, format);
              };
          },
