@@ -110,7 +110,8 @@ int main(int argc, char** argv) {
     };
     const auto grains = coupling::Granular::of(sphere, 0.9, 0.63);
     dense("ddpm", coupling::SolidsPressure<coupling::AlgebraicTemperature>(grid, walls, sphere, grains, 1e-3, 2));
-    dense("ddpm_ktgf", coupling::SolidsPressure<coupling::TransportedTemperature>(grid, walls, sphere, grains, 1e-3, 2));
+    dense("ddpm_ktgf",
+          coupling::SolidsPressure<coupling::TransportedTemperature>(grid, walls, sphere, grains, 1e-3, 2));
     const double stiffness = coupling::SpringContacts::stiffness(sphere, 0.01, setup.time_step);
     dense("cfd_dem_spring", coupling::SpringContacts(sphere, box, {stiffness, 0.9, 0.3}, particles));
     dense("cfd_dem_projection", coupling::ProjectedContacts(sphere, box, setup.time_step));

@@ -19,18 +19,36 @@ constexpr double relief_pitch = 0.25;    // in diameters
 
 }  // namespace
 
-Experiment::Experiment(const Study& study, std::uint64_t seed, const dem::Method& method) : study_(study) {
-    settle(settling(study, seed), method);
-    if (study_.settle_steps == 0) start_sweep();
-}
-
-void Experiment::settle(const dem::Setup& setup, const dem::Method& method) {
+Experiment::Experiment(const Study& study, std::uint64_t seed, const dem::Method& method, Artefacts& artefacts)
+    : study_(study), artefacts_(artefacts) {
+    const bool shared = study_.bed_seed > 0;
+    const dem::Setup setup = settling(study_, shared ? seed_of_bed(study_.bed_seed) : seed);
+    if (shared) study_.blade_start -= run_up(study_, seed);
     volume_.reserve(setup.spheres.size());
     for (const auto& sphere : setup.spheres) {
         const double d = 2 * sphere.radius / study_.diameter;
         volume_.push_back(d * d * d);
     }
-    engine_ = dem::make_engine(setup, method);
+    if (shared) engine_ = settled_before(setup, method);
+    if (engine_) {
+        step_ = study_.settle_steps;
+        borrowed_particle_steps_ = engine_->work().particle_steps;
+    } else {
+        engine_ = dem::make_engine(setup, method);
+    }
+    if (step_ == study_.settle_steps) start_sweep();
+}
+
+std::unique_ptr<dem::Engine> Experiment::settled_before(const dem::Setup& setup, const dem::Method& method) {
+    const auto bed = artefacts_.get(study_.bed_key);
+    if (!bed) return nullptr;
+    auto engine = dem::make_engine(setup, method);
+    try {
+        engine->restore(*bed);
+    } catch (const std::invalid_argument&) {
+        return nullptr;  // of another build: settle it anew
+    }
+    return engine;
 }
 
 std::int64_t Experiment::step_of_sample(std::int64_t sample) const {
@@ -59,8 +77,17 @@ void Experiment::advance(double until) {
         if (sweeping_)
             sample();
         else
-            start_sweep();
+            end_settling();
     }
+}
+
+void Experiment::end_settling() {
+    if (study_.bed_seed > 0) {
+        Bytes bed;
+        engine_->save(bed);
+        artefacts_.put(study_.bed_key, bed);
+    }
+    start_sweep();
 }
 
 void Experiment::start_sweep() {
@@ -78,6 +105,22 @@ void Experiment::sample() {
     if (static_cast<std::int64_t>(behind_.size()) > first_measured_sample)
         profile_.add(state_, study_.front(time), study_.front(time) + profile_reach * study_.diameter, study_.gap,
                      layer_thickness * study_.diameter);
+    if (known_well_enough()) end_sample_ = static_cast<std::int64_t>(behind_.size()) - 1;
+}
+
+bool Experiment::known_well_enough() const {
+    if (!(study_.standard_error > 0)) return false;
+    const auto measured = static_cast<std::int64_t>(behind_.size()) - 1 - first_measured_sample;
+    if (measured < least_measured_samples || measured % samples_between_looks != 0) return false;
+    return observables::block_standard_error(measured_flux(), blocks) < study_.standard_error;
+}
+
+/// mfr of each sample interval from t1.
+std::vector<double> Experiment::measured_flux() const {
+    std::vector<double> flux;
+    for (std::size_t k = first_measured_sample + 1; k < behind_.size(); ++k)
+        flux.push_back(flux_scale() * (behind_[k] - behind_[k - 1]) / (time_of_sample(k) - time_of_sample(k - 1)));
+    return flux;
 }
 
 /// Mass flow rate of one sphere of diameter D per second in units of the gap swept by the blade, filled solid.
@@ -90,17 +133,18 @@ void Experiment::observe(Observations& into) const {
     if (!sweeping_) return;
     into.scalars["max_overlap"] = largest_overlap_;
     observe_flux(into);
-    if (finished()) observe_layer(into);
+    if (!finished()) return;
+    into.scalars["end_of_travel"] = study_.speed * time_of_sample(static_cast<std::size_t>(end_sample_));
+    observe_layer(into);
 }
 
 void Experiment::observe_flux(Observations& into) const {
-    std::vector<double> flux;
     auto& series = into.series["flux_series"];
     for (std::size_t k = 1; k < behind_.size(); ++k) {
         const double value = flux_scale() * (behind_[k] - behind_[k - 1]) / (time_of_sample(k) - time_of_sample(k - 1));
         series.push_back({.time = time_of_sample(k), .bin = nan, .value = value});
-        if (k > first_measured_sample) flux.push_back(value);
     }
+    const std::vector<double> flux = measured_flux();
     if (flux.empty()) return;
 
     const std::size_t first = first_measured_sample;
@@ -129,8 +173,8 @@ void Experiment::observe_flux(Observations& into) const {
 
 void Experiment::observe_layer(Observations& into) const {
     // From where the flux became steady to one thickness behind the blade, where the powder has come to rest.
-    const double end = time_of_sample(static_cast<std::size_t>(sweep_samples));
-    const double from = study_.front(measured_from * end);
+    const double end = time_of_sample(static_cast<std::size_t>(end_sample_));
+    const double from = study_.front(measured_from * time_of_sample(static_cast<std::size_t>(sweep_samples)));
     const double to = study_.rear(end) - study_.blade_thickness;
     if (!(to > from)) return;
     dem::State state;
@@ -174,6 +218,8 @@ void Experiment::save(Bytes& into) const {
     out.put(checkpoint_format);
     out.put(step_);
     out.put(sweeping_);
+    out.put(borrowed_particle_steps_);
+    out.put(end_sample_);
     out.put(behind_);
     out.put(under_);
     out.put(profile_.sum);
@@ -190,6 +236,8 @@ void Experiment::restore(std::span<const std::byte> from) {
     Bytes engine;
     in.get(step_);
     in.get(sweeping_);
+    in.get(borrowed_particle_steps_);
+    in.get(end_sample_);
     in.get(behind_);
     in.get(under_);
     in.get(profile_.sum);

@@ -3,12 +3,14 @@
 #include "solver/dem/material.hpp"
 #include "solver/dem/time_step.hpp"
 #include "solver/particles/random_addition.hpp"
+#include "solver/scenes/scene.hpp"
 #include "stats/random.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <set>
 #include <stdexcept>
 
 namespace grainsweep::spreading {
@@ -27,13 +29,20 @@ constexpr double start_velocity = 0.1;   // m/s
 constexpr double most_particles = 5e6;
 constexpr double most_steps = 1e10;
 
-enum : std::uint64_t { position_stream = 1, velocity_stream = 2, size_stream = 3, place_stream = 4 };
+enum : std::uint64_t {
+    position_stream = 1,
+    velocity_stream = 2,
+    size_stream = 3,
+    place_stream = 4,
+    bed_stream = 5,
+    start_stream = 6
+};
 
 double number(const Inputs& inputs, const char* name) {
     return std::get<double>(inputs.at(name));
 }
 
-std::string text(const char* format, double a, double b) {
+std::string text(const char* format, double a, double b = 0) {
     char buffer[240];
     std::snprintf(buffer, sizeof buffer, format, a, b);
     return buffer;
@@ -101,6 +110,32 @@ void lay_out(Study& s) {
     require(s.gap < blade_top, text("a gap of %.4g m lies above the top of the blade at %.4g m", s.gap, blade_top));
 }
 
+/// Every input but those the powder cannot feel before the blade starts; the time step, which may follow from some of
+/// them, as it is.
+std::string key_of_bed(const Inputs& inputs, const Study& s) {
+    static const std::set<std::string, std::less<>> unfelt = {"gap",
+                                                              "speed",
+                                                              "vibration_amplitude",
+                                                              "vibration_frequency",
+                                                              "blade_thickness",
+                                                              "blade_edge_radius",
+                                                              "time_step",
+                                                              "time_step_fraction",
+                                                              "standard_error"};
+    std::string key = "powder_spreading: settled bed\nrevision=" + std::to_string(revision) +
+                      "\npath=" + std::string(instruction_path()) +
+                      text("\ntime step=%.17g\nsteps=%.17g\n", s.time_step, static_cast<double>(s.settle_steps));
+    for (const auto& [name, value] : inputs) {
+        if (unfelt.contains(name)) continue;
+        key += name + "=";
+        if (const auto* word = std::get_if<std::string>(&value)) key += *word;
+        if (const auto* count = std::get_if<std::int64_t>(&value)) key += std::to_string(*count);
+        if (const auto* real = std::get_if<double>(&value)) key += text("%.17g", *real + 0.0);
+        key += "\n";
+    }
+    return key;
+}
+
 }  // namespace
 
 double Study::particle_mass() const {
@@ -108,7 +143,7 @@ double Study::particle_mass() const {
 }
 
 double Study::front(double time) const {
-    return first_gate + speed * time;
+    return blade_start + speed * time;
 }
 
 Study study_of(const Inputs& in) {
@@ -133,6 +168,9 @@ Study study_of(const Inputs& in) {
     s.travel = number(in, "travel");
     s.blade_thickness = number(in, "blade_thickness");
     s.blade_edge_radius = number(in, "blade_edge_radius");
+    s.blade_start = first_gate;
+    s.standard_error = number(in, "standard_error");
+    s.bed_seed = std::get<std::int64_t>(in.at("bed_seed"));
     lay_out(s);
     require(s.vibration_frequency == 0 || s.vibration_amplitude < s.gap,
             text("a blade vibrating by %.4g m at a gap of %.4g m strikes the base: make vibration_amplitude smaller "
@@ -160,6 +198,7 @@ Study study_of(const Inputs& in) {
         text("a time step of %.4g s leaves %.4g steps for the sweep, too few to measure a flux", s.time_step, sweep));
     s.settle_steps = std::llround(settle);
     s.sweep_steps = std::llround(sweep);
+    if (s.bed_seed > 0) s.bed_key = key_of_bed(in, s);
     return s;
 }
 
@@ -232,9 +271,17 @@ dem::Setup settling(const Study& s, std::uint64_t seed) {
     return setup;
 }
 
+std::uint64_t seed_of_bed(std::int64_t number) {
+    return stats::bits_at(0, bed_stream, static_cast<std::uint64_t>(number));
+}
+
+double run_up(const Study& s, std::uint64_t seed) {
+    return s.diameter * stats::Stream(seed, start_stream).uniform(0);
+}
+
 std::vector<dem::Wall> sweeping_walls(const Study& s) {
     return {dem::Plane{{0, 0, 0}, {0, 0, 1}},
-            dem::Blade{.front = first_gate,
+            dem::Blade{.front = s.blade_start,
                        .thickness = s.blade_thickness,
                        .bottom = s.gap,
                        .top = blade_top,
