@@ -41,7 +41,14 @@ void fold_ghosts(flow::Field& field, const flow::Grid& grid, const flow::Edges& 
     }
 }
 
-void smooth(flow::Field& field, const flow::Grid& grid, const flow::Edges& edges, int passes) {
+std::array<flow::Edges, 3> frictionless_edges(flow::Sides sides) {
+    for (auto& axis : sides)
+        for (flow::Side& side : axis)
+            if (std::holds_alternative<flow::NoSlip>(side)) side = flow::FreeSlip{};
+    return {flow::velocity_edges(sides, 0), flow::velocity_edges(sides, 1), flow::velocity_edges(sides, 2)};
+}
+
+void smooth(flow::Field& field, const flow::Grid& grid, const flow::Edges& edges, int passes, AtWalls at_walls) {
     // Row by row; along x the row is the line itself, else a line of rows is swept with the old values of the row
     // before kept aside.
     const auto length = static_cast<std::size_t>(grid.cells(0)) + 2;
@@ -54,8 +61,9 @@ void smooth(flow::Field& field, const flow::Grid& grid, const flow::Edges& edges
             const int n = grid.cells(d);
             if (n - first < 1) continue;
             const auto stride = field.stride(d);
-            const int low_end = edge.periodic ? n : first;
-            const int high_end = edge.periodic ? first : n;
+            const int beyond_wall = edge.on_faces && at_walls == AtWalls::taken ? 1 : 0;
+            const int low_end = edge.periodic ? n : first - beyond_wall;
+            const int high_end = edge.periodic ? first : n + beyond_wall;
             if (d == 0) {
                 each_line(field, grid, 0, [&](std::ptrdiff_t line) {
                     double* const v = field.data() + line;
@@ -85,6 +93,42 @@ void smooth(flow::Field& field, const flow::Grid& grid, const flow::Edges& edges
                 }
             }
         }
+    }
+}
+
+FaceDeposit::FaceDeposit(const flow::Grid& grid, const flow::Sides& sides, int passes) : grid_(grid), passes_(passes) {
+    for (int d = 0; d < 3; ++d) {
+        edges_.push_back(flow::velocity_edges(sides, d));
+        weights_.emplace_back(grid, edges_.back());
+    }
+}
+
+void FaceDeposit::clear(flow::FaceVectors& faces) {
+    for (auto& field : faces) std::fill(field.values().begin(), field.values().end(), 0.0);
+}
+
+void FaceDeposit::spread(flow::FaceVectors& faces) const {
+    for (std::size_t d = 0; d < 3; ++d) {
+        flow::Field& field = faces[d];
+        fold_ghosts(field, grid_, edges_[d]);
+        smooth(field, grid_, edges_[d], passes_);
+        const auto& width = weights_[d].inverse_width;
+        for (int k = 1; k <= grid_.cells(2); ++k)
+            for (int j = 1; j <= grid_.cells(1); ++j) {
+                const double yz = width[1][static_cast<std::size_t>(j)] * width[2][static_cast<std::size_t>(k)];
+                double* const row = field.data() + field.index(0, j, k);
+                for (int i = 1; i <= grid_.cells(0); ++i) row[i] *= yz * width[0][static_cast<std::size_t>(i)];
+            }
+    }
+}
+
+void FaceDeposit::smooth_transposed(flow::FaceVectors& faces) const {
+    for (std::size_t d = 0; d < 3; ++d) {
+        smooth(faces[d], grid_, edges_[d], passes_);
+        flow::Edges edges = edges_[d];
+        for (flow::Edge& edge : edges)
+            for (flow::Ghost& ghost : edge.ghost) ghost.constant = 0;
+        fill_ghosts(faces[d], grid_, edges);
     }
 }
 

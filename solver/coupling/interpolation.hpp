@@ -12,11 +12,12 @@
 // h^2/8 u''.
 #pragma once
 
-#include "solver/flow/boundary.hpp"
+#include "solver/flow/transport.hpp"
 
 #include <array>
 #include <cstddef>
 #include <utility>
+#include <vector>
 
 namespace grainsweep::coupling {
 
@@ -137,8 +138,35 @@ private:
 /// scatter and fold_ghosts are together the transpose of fill_ghosts and gather. What falls on a wall the wall takes.
 void fold_ghosts(flow::Field& field, const flow::Grid& grid, const flow::Edges& edges);
 
+/// Edges of the three components of a field that passes no wall and does not change along a wall's normal.
+[[nodiscard]] std::array<flow::Edges, 3> frictionless_edges(flow::Sides sides);
+
+/// What smoothing does with a component normal to a wall: `kept` reflects it, so that nothing is lost; `taken` holds
+/// it at zero on the wall, so that the divergence of a smoothed flux is the smoothed divergence.
+enum class AtWalls { kept, taken };
+
 /// Widens the deposit: `passes` times [1 2 1]/4 along each axis of the extensive quantity, reflected at the sides, so
 /// nothing is lost; symmetric, hence its own transpose. One pass adds half a squared cell to the variance.
-void smooth(flow::Field& field, const flow::Grid& grid, const flow::Edges& edges, int passes);
+void smooth(flow::Field& field, const flow::Grid& grid, const flow::Edges& edges, int passes,
+            AtWalls at_walls = AtWalls::kept);
+
+/// Turns smoothed deposits on the faces into values per volume.
+class FaceDeposit {
+public:
+    FaceDeposit(const flow::Grid& grid, const flow::Sides& sides, int passes);
+
+    static void clear(flow::FaceVectors& faces);
+    /// Extensive deposit, ghosts included -> per volume of each face's control volume.
+    void spread(flow::FaceVectors& faces) const;
+    /// A field on the faces smoothed as deposits are, ghosts filled as its transpose folds them: what particles gather
+    /// from it is what they would have deposited on it.
+    void smooth_transposed(flow::FaceVectors& faces) const;
+
+private:
+    flow::Grid grid_;
+    int passes_;
+    std::vector<flow::Edges> edges_;
+    std::vector<flow::Weights> weights_;
+};
 
 }  // namespace grainsweep::coupling

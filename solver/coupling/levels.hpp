@@ -18,7 +18,6 @@
 #include "solver/coupling/cloud.hpp"
 #include "solver/coupling/motion.hpp"
 #include "solver/flow/state_bytes.hpp"
-#include "solver/flow/transport.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -61,27 +60,22 @@ public:
 
     /// `passes`: of the smoothing of the deposit, see smooth().
     TwoWay(const flow::Grid& grid, const flow::Sides& sides, const Sphere& sphere, std::size_t particles, int passes)
-        : grid_(grid), sphere_(sphere), passes_(passes), rate_(particles, Vec3{}), source_(flow::face_vectors(grid)) {
-        for (int d = 0; d < 3; ++d) {
-            const auto edges = flow::velocity_edges(sides, d);
-            edges_.push_back(edges);
-            weights_.emplace_back(grid, edges);
-        }
+        : sphere_(sphere), deposit_(grid, sides, passes), rate_(particles, Vec3{}), source_(flow::face_vectors(grid)) {
         if constexpr (Form::per_fluid_volume) solid_ = flow::face_vectors(grid);
     }
 
     /// Acceleration of the fluid by the particles standing at `feet` (a Footing each), at vibration s.
     template <class Feet>
     const flow::FaceVectors& source(const Feet& feet, double vibration) {
-        clear(source_);
+        FaceDeposit::clear(source_);
         for (std::size_t p = 0; p < rate_.size(); ++p)
             feet[p].scatter(Form::force_on_fluid(sphere_, rate_[p], vibration), source_);
-        spread(source_);
+        deposit_.spread(source_);
         if constexpr (Form::per_fluid_volume) {
-            clear(solid_);
+            FaceDeposit::clear(solid_);
             const double v = sphere_.volume();
             for (const auto& foot : feet) foot.scatter({v, v, v}, solid_);
-            spread(solid_);
+            deposit_.spread(solid_);
             for (std::size_t d = 0; d < 3; ++d)
                 for (std::size_t m = 0; m < source_[d].size(); ++m)
                     source_[d].values()[m] /= std::max(1 - solid_[d].values()[m], least_fluid);
@@ -97,30 +91,8 @@ public:
     void restore(std::span<const std::byte>& from) { flow::take_bytes<Vec3>(from, rate_); }
 
 private:
-    static void clear(flow::FaceVectors& faces) {
-        for (auto& field : faces) std::fill(field.values().begin(), field.values().end(), 0.0);
-    }
-    // Extensive deposit -> per volume of each face's control volume.
-    void spread(flow::FaceVectors& faces) const {
-        for (std::size_t d = 0; d < 3; ++d) {
-            flow::Field& field = faces[d];
-            fold_ghosts(field, grid_, edges_[d]);
-            smooth(field, grid_, edges_[d], passes_);
-            const auto& width = weights_[d].inverse_width;
-            for (int k = 1; k <= grid_.cells(2); ++k)
-                for (int j = 1; j <= grid_.cells(1); ++j) {
-                    const double yz = width[1][static_cast<std::size_t>(j)] * width[2][static_cast<std::size_t>(k)];
-                    double* const row = field.data() + field.index(0, j, k);
-                    for (int i = 1; i <= grid_.cells(0); ++i) row[i] *= yz * width[0][static_cast<std::size_t>(i)];
-                }
-        }
-    }
-
-    flow::Grid grid_;
     Sphere sphere_;
-    int passes_;
-    std::vector<flow::Edges> edges_;
-    std::vector<flow::Weights> weights_;
+    FaceDeposit deposit_;
     std::vector<Vec3> rate_;  // dV_p/dt of the last step
     flow::FaceVectors source_;
     flow::FaceVectors solid_;  // per_fluid_volume only

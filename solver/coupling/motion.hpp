@@ -76,16 +76,17 @@ public:
         }
     }
 
-    [[nodiscard]] const Sphere& sphere() const { return sphere_; }
-    [[nodiscard]] double time_step() const { return dt_; }
-
-private:
+    /// tau = (xi + 1/2) St/(f Pr) at the slip of a sphere of velocity v in a fluid of velocity u.
     [[nodiscard]] double relaxation(const Vec3& u, const Vec3& v) const {
         const double slip =
             std::sqrt((u[0] - v[0]) * (u[0] - v[0]) + (u[1] - v[1]) * (u[1] - v[1]) + (u[2] - v[2]) * (u[2] - v[2]));
         return free_tau_ / Drag::factor(reynolds_ * slip);
     }
 
+    [[nodiscard]] const Sphere& sphere() const { return sphere_; }
+    [[nodiscard]] double time_step() const { return dt_; }
+
+private:
     Sphere sphere_;
     double dt_, mass_, free_tau_, reynolds_;
 };

@@ -37,6 +37,13 @@ struct Walls {
         }
     }
 
+    /// Between the contact planes; periodic axes are left alone.
+    [[nodiscard]] Vec3 inside(Vec3 x) const {
+        for (std::size_t d = 0; d < 3; ++d)
+            if (!periodic[d]) x[d] = std::clamp(x[d], low[d] + contact, high[d] - contact);
+        return x;
+    }
+
     /// Into the closed box, contact plane included.
     [[nodiscard]] Vec3 clipped(Vec3 x) const {
         for (std::size_t d = 0; d < 3; ++d)

@@ -190,6 +190,20 @@ void HeatState<Boussinesq>::add_force(int d, double time, Field& acceleration) c
     });
 }
 
+void HeatState<Boussinesq>::add_missing(const Field& occupied, double time, FaceVectors& acceleration) const {
+    const int d = heat_.direction;
+    const double strength = heat_.buoyancy * heat_.vibration.at(time);
+    Field& out = acceleration[at(d)];
+    const auto s = out.stride(d);
+    each_row(out, {1, 1, 1}, cells_, [&](std::ptrdiff_t row, int, int) {
+        const double* const share = occupied.data() + row;
+        const double* const theta = temperature_.data() + row;
+        double* const a = out.data() + row;
+        for (int i = 1; i <= cells_[0]; ++i)
+            a[i] -= strength * (0.5 * (share[i - s] + share[i])) * (0.5 * (theta[i - s] + theta[i]));
+    });
+}
+
 void HeatState<Boussinesq>::save(std::vector<std::byte>& into) const {
     append_bytes<double>(into, temperature_.values());
     append_bytes<double>(into, convection_[0].values());
@@ -348,6 +362,11 @@ void Flow<Heat>::advance(const FaceVectors* acceleration) {
     });
     fill_ghosts(pressure_, setup_.grid, pressure_edges_);
     ++steps_;
+}
+
+template <class Heat>
+void Flow<Heat>::add_missing_buoyancy(const Field& occupied, FaceVectors& acceleration) const {
+    heat_.add_missing(occupied, time() + 0.5 * setup_.time_step, acceleration);
 }
 
 template <class Heat>

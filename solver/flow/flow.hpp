@@ -73,6 +73,7 @@ public:
     void start() {}
     void step(const FaceVectors&, bool) {}
     void add_force(int, double, Field&) const {}
+    void add_missing(const Field&, double, FaceVectors&) const {}
     void save(std::vector<std::byte>&) const {}
     void restore(std::span<const std::byte>&) {}
 };
@@ -85,6 +86,8 @@ public:
     void step(const FaceVectors& velocity, bool first);
     /// Adds the buoyancy acceleration B theta^{n+1/2} s(time) to component d.
     void add_force(int d, double time, Field& acceleration) const;
+    /// Subtracts the same of the share `occupied`, with theta^n.
+    void add_missing(const Field& occupied, double time, FaceVectors& acceleration) const;
     void save(std::vector<std::byte>& into) const;
     void restore(std::span<const std::byte>& from);
 
@@ -124,6 +127,7 @@ public:
 
     [[nodiscard]] const Grid& grid() const { return setup_.grid; }
     [[nodiscard]] const Sides& sides() const { return setup_.sides; }
+    [[nodiscard]] double viscosity() const { return setup_.viscosity; }
     [[nodiscard]] std::int64_t steps() const { return steps_; }
     [[nodiscard]] double time_step() const { return setup_.time_step; }
     [[nodiscard]] double time() const { return static_cast<double>(steps_) * setup_.time_step; }
@@ -132,6 +136,10 @@ public:
     [[nodiscard]] const Field& temperature() const requires std::same_as<Heat, Boussinesq> {
         return heat_.temperature();
     }
+
+    /// Takes the buoyancy of the share `occupied` of each cell (ghosts filled) off `acceleration`: for a step to come,
+    /// with the temperature at hand.
+    void add_missing_buoyancy(const Field& occupied, FaceVectors& acceleration) const;
 
     /// What a particle between the last two time levels feels, on the faces, ghosts filled:
     /// velocity (V^n + V^{n+1})/2 and fluid acceleration DV/Dt = (V^{n+1} - V^n)/dt - (3/2 C^n - 1/2 C^{n-1}).

@@ -13,8 +13,9 @@ namespace grainsweep::flow {
 template <class T>
 requires std::is_trivially_copyable_v<T>
 void append_bytes(std::vector<std::byte>& into, std::span<const T> values) {
-    const auto bytes = std::as_bytes(values);
-    into.insert(into.end(), bytes.begin(), bytes.end());
+    const std::size_t before = into.size();
+    into.resize(before + values.size_bytes());
+    if (!values.empty()) std::memcpy(into.data() + before, values.data(), values.size_bytes());
 }
 
 template <class T>

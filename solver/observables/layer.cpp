@@ -7,13 +7,25 @@
 
 namespace grainsweep::observables {
 
-std::int64_t count_behind(const dem::State& state, double front) {
-    return std::ranges::count_if(state.position, [front](const dem::Vec3& x) { return x[0] < front; });
+namespace {
+
+template <class Where>
+double sum_where(const dem::State& state, std::span<const double> carried, Where where) {
+    double sum = 0;
+    for (std::size_t i = 0; i < state.position.size(); ++i)
+        if (where(state.position[i])) sum += carried[static_cast<std::size_t>(state.id[i])];
+    return sum;
 }
 
-std::int64_t count_under(const dem::State& state, double rear, double front, double height) {
-    return std::ranges::count_if(state.position,
-                                 [=](const dem::Vec3& x) { return x[0] >= rear && x[0] < front && x[2] <= height; });
+}  // namespace
+
+double sum_behind(const dem::State& state, std::span<const double> carried, double front) {
+    return sum_where(state, carried, [front](const dem::Vec3& x) { return x[0] < front; });
+}
+
+double sum_under(const dem::State& state, std::span<const double> carried, double rear, double front, double height) {
+    return sum_where(state, carried,
+                     [=](const dem::Vec3& x) { return x[0] >= rear && x[0] < front && x[2] <= height; });
 }
 
 double solid_volume(const dem::State& state, double from, double to) {
@@ -77,6 +89,18 @@ void VelocityProfile::add(const dem::State& state, double from, double to, doubl
         sum[static_cast<std::size_t>(layer)] += state.velocity[i][0];
         ++samples[static_cast<std::size_t>(layer)];
     }
+}
+
+double unevenness(std::span<const double> profile) {
+    double squares = 0;
+    int places = 0;
+    for (std::size_t k = 1; k + 1 < profile.size(); ++k) {
+        const double bend = profile[k - 1] - 2 * profile[k] + profile[k + 1];
+        if (std::isnan(bend)) continue;
+        squares += bend * bend;
+        ++places;
+    }
+    return places > 0 ? std::sqrt(squares / places) : std::numeric_limits<double>::quiet_NaN();
 }
 
 double block_standard_error(std::span<const double> series, std::size_t blocks) {

@@ -13,11 +13,12 @@
 
 namespace grainsweep::observables {
 
-/// Centres with x < front.
-[[nodiscard]] std::int64_t count_behind(const dem::State& state, double front);
+/// Sum of what the particles with centres at x < front carry; `carried` by id, all 1 to count them.
+[[nodiscard]] double sum_behind(const dem::State& state, std::span<const double> carried, double front);
 
-/// Centres with rear <= x < front and z <= height.
-[[nodiscard]] std::int64_t count_under(const dem::State& state, double rear, double front, double height);
+/// The same over the centres with rear <= x < front and z <= height.
+[[nodiscard]] double sum_under(const dem::State& state, std::span<const double> carried, double rear, double front,
+                               double height);
 
 /// Volume of the spheres whose centres have from <= x < to, m3.
 [[nodiscard]] double solid_volume(const dem::State& state, double from, double to);
@@ -47,6 +48,11 @@ struct VelocityProfile {
     explicit VelocityProfile(std::size_t layers) : sum(layers, 0), samples(layers, 0) {}
     void add(const dem::State& state, double from, double to, double bottom, double thickness);
 };
+
+/// How far a profile is from a straight line between neighbouring layers: the root mean square of its second
+/// differences v(k - 1) - 2 v(k) + v(k + 1) over all k where the three values exist (NaN: none there). 0 for
+/// a straight profile, sqrt(6) times the noise of independent values; NaN where no three neighbours have values.
+[[nodiscard]] double unevenness(std::span<const double> profile);
 
 /// Standard error of the mean of a correlated series from the spread of `blocks` means of consecutive, equally long
 /// blocks (batch means); NaN where the series is shorter than two per block. What does not fill a block is left out.

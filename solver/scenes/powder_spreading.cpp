@@ -22,8 +22,23 @@ std::vector<ParameterSpec> parameters() {
     const auto if_set = [](const char* other) { return std::vector<Relevance>{{other, Condition::nonzero, {}}}; };
     return {
         number("friction", "1", "Coulomb friction of particles, base and blade", 0.2, {0, 2}),
+        number("rolling_friction", "1",
+               "rolling friction of particles, base and blade: tangent of the steepest slope a particle "
+               "stands on",
+               0.0, {0, 1}, if_set("friction")),
         number("restitution", "1", "restitution of particles and walls", 0.5, above(0, 1)),
-        number("diameter", "m", "diameter D of all particles", 0.002, {1e-4, 1e-2}),
+        number("diameter", "m", "diameter D of the particles; of unequal ones see size_distribution", 0.002,
+               {1e-4, 1e-2}),
+        {"size_distribution",
+         "",
+         "by number: 'monodisperse' all D; 'weibull_wide', 'weibull_narrow' the five classes of Wu (2020), 4.44, "
+         "22.76, 40.78, 26.91, 5.11 % of (1 + k w) D, k = -2 ... 2, w = 0.15 and 0.1; 'lognormal' with mean D, without "
+         "its 0.5 % smallest and largest",
+         std::string("monodisperse"),
+         Words{{"monodisperse", "weibull_wide", "weibull_narrow", "lognormal"}},
+         {}},
+        number("size_spread", "1", "standard deviation of the logarithm of the diameter, before truncation", 0.2,
+               {0, 0.5}, {{"size_distribution", Condition::is_word, {"lognormal"}}}),
         number("gap", "m", "height of the blade's lower edge over the base", 0.004, {1e-5, 0.1}),
         number("speed", "m/s", "speed of the blade", 1.4, {1e-3, 10}),
         number("cohesion", "J/m3", "cohesion energy density", 0.0, {0, 1e6}),
@@ -42,6 +57,15 @@ std::vector<ParameterSpec> parameters() {
         number("width", "1", "period of the layer across the blade's motion, in diameters", 10, {3, 1000}),
         number("layer_area", "m2", "solid area of the layer in the plane of the motion", 400e-6, {1e-6, 0.1}),
         number("settle_time", "s", "time the layer settles before the blade starts", 0.15, {0, 100}),
+        {"bed_seed",
+         "1",
+         "which settled bed; 0: another one for each case and replicate; n: the n-th one, settled once for all cases "
+         "of the same powder and time step, whatever gap, speed and blade, and kept beside the database. Cases then "
+         "differ by where the blade starts, up to one diameter before the layer, and their means share what is "
+         "particular to the bed",
+         std::int64_t{0},
+         Interval{0, 9.0e15},
+         {{"settle_time", Condition::nonzero, {}}}},
         number("travel", "m", "travel of the blade; the flux counts from 2/7 of it, and the layer is 20 mm longer",
                0.07, {1e-3, 1}),
         number("blade_thickness", "m", "thickness of the blade", 0.005, {1e-4, 0.1}),
@@ -52,6 +76,10 @@ std::vector<ParameterSpec> parameters() {
                0.0, {0, 1e-3}),
         number("time_step_fraction", "1", "time step over the shorter of the two limits", 0.2, above(0, 1),
                {{"time_step", Condition::zero, {}}}),
+        number("standard_error", "1",
+               "ends the sweep once mfr_standard_error is below this, looked at every tenth of the measured "
+               "travel from its half on; 0: sweeps to the end",
+               0.0, {0, 1}),
         {"precision",
          "",
          "arithmetic: 'mixed' vectorised, exact position differences, single precision forces; 'double' the clear "
@@ -72,8 +100,9 @@ dem::Method method_of(const Inputs& inputs) {
 std::vector<ObservableSpec> observables_of_spreading() {
     return {
         {"mfr", "1",
-         "mass flow rate under the blade over that of the swept gap filled solid: m (N(t2) - N(t1))/(t2 - t1)"
-         "/(W gap v rho), N the centres behind the front face, t1 at 2/7 of the travel, t2 at its end"},
+         "mass flow rate under the blade over that of the swept gap filled solid: (M(t2) - M(t1))/(t2 - t1)"
+         "/(W gap v rho), M the mass of the centres behind the front face, t1 at 2/7 of the travel, t2 where the sweep "
+         "ended"},
         {"mfr_window", "1",
          "mass between the planes of rear and front face and below the gap over that of the slot filled "
          "solid, W gap thickness rho; mean of the samples from t1 to t2"},
@@ -81,8 +110,9 @@ std::vector<ObservableSpec> observables_of_spreading() {
          "the same mass over W gap v rho, as eq. 15-17 of Wu (2020) are printed: mfr_window times "
          "thickness/speed"},
         {"mfr_standard_error", "1", "standard error of mfr from the spread of 10 consecutive blocks of the flux"},
+        {"end_of_travel", "m", "travel of the blade when the sweep ended"},
         {"max_overlap", "1",
-         "largest overlap of two particles over the diameter, over 141 equidistant samples of the sweep"},
+         "largest overlap of two particles over the smaller diameter, over 141 equidistant samples of the sweep"},
         {"packing_fraction", "1",
          "volume of the spread particles over that of a layer as high as the gap, from where the "
          "front face was at t1 to one thickness behind the blade at the end"},
@@ -95,6 +125,9 @@ std::vector<ObservableSpec> observables_of_spreading() {
          "mean velocity along the blade's motion in the 12 layers of thickness D/2 above the gap, "
          "within 6 D ahead of the front face, from t1 to t2; bin: top of the layer over the gap, in D",
          Shape::profile},
+        {"vx_unevenness", "1",
+         "root mean square second difference of vx_profile from layer to layer, over the speed of the blade: 0 for a "
+         "profile that rises evenly"},
         {"flux_series", "1", "mfr of each 1/140 of the travel; time since the blade started", Shape::series},
     };
 }
@@ -130,11 +163,11 @@ SceneInfo powder_spreading_scene() {
     SceneInfo info;
     info.name = "powder_spreading";
     info.summary = "a blade spreads a settled layer of powder: flux under the blade and quality of the layer";
-    info.revision = 1;
+    info.revision = spreading::revision;
     info.parameters = parameters();
     info.observables = observables_of_spreading();
-    info.make = [](const Inputs& inputs, std::uint64_t seed, Artefacts&) -> std::unique_ptr<Scene> {
-        return std::make_unique<spreading::Experiment>(spreading::study_of(inputs), seed, method_of(inputs));
+    info.make = [](const Inputs& inputs, std::uint64_t seed, Artefacts& artefacts) -> std::unique_ptr<Scene> {
+        return std::make_unique<spreading::Experiment>(spreading::study_of(inputs), seed, method_of(inputs), artefacts);
     };
     info.estimate_cost = estimate_cost;
     // No gap is proven to pass nothing over the whole range of stiffness, cohesion and speed: soft particles are

@@ -6,10 +6,15 @@
 //   measured:  solver/observables/accumulation.hpp, flow_state.hpp
 // after Manayil Santhosh, Anwar & Lappa 2024 (IAC-24-A1.2.3), with Ra_omega = gamma beta/Pr (their eq. 28 prints
 // gamma beta Pr, with which their own Gershuni numbers do not come out).
+#include "solver/coupling/dense_suspension.hpp"
+#include "solver/coupling/projected_contacts.hpp"
+#include "solver/coupling/solids_pressure.hpp"
+#include "solver/coupling/spring_contacts.hpp"
 #include "solver/scenes/catalogue.hpp"
 #include "solver/scenes/thermovibration/runs.hpp"
 
 #include <cmath>
+#include <type_traits>
 
 namespace grainsweep {
 namespace {
@@ -20,6 +25,10 @@ using Condition = Relevance::Condition;
 const Relevance with_particles{"particles", Condition::nonzero, {}};
 const Relevance vibrated{"frequency", Condition::nonzero, {}};
 const Relevance two_way{"coupling", Condition::is_word, {"two_way"}};
+const Relevance felt_by_fluid{"coupling", Condition::is_word, {"two_way", "ddpm", "ddpm_ktgf", "cfd_dem"}};
+const Relevance stressed{"coupling", Condition::is_word, {"ddpm", "ddpm_ktgf"}};
+const Relevance four_way{"coupling", Condition::is_word, {"cfd_dem"}};
+const Relevance springs{"contact", Condition::is_word, {"spring"}};
 
 ParameterSpec real(std::string name, std::string unit, std::string meaning, double value, Interval bounds,
                    std::vector<Relevance> relevant_if = {}) {
@@ -57,20 +66,37 @@ std::vector<ParameterSpec> parameters() {
         real("density_ratio", "1", "particle density over fluid density (xi)", 1.65, between(0, 1e4), {with_particles}),
         real("stokes", "1", "Stokes number (2/9)(R/L)^2", 3.1e-6, between(1e-12, 2.2e-3), {with_particles}),
         whole("particles", "number of particles; 0: the flow alone", 3150, between(0, 1e6)),
-        word("coupling", "how much particles and fluid know of each other", {"one_way", "two_way"}, {with_particles}),
+        word("coupling",
+             "how much particles and fluid know of each other: the fluid's force; also the particles' on the fluid; "
+             "also "
+             "their volume, with solids pressure from an algebraic (ddpm) or transported (ddpm_ktgf) granular "
+             "temperature; or with resolved contacts (cfd_dem)",
+             {"one_way", "two_way", "ddpm", "ddpm_ktgf", "cfd_dem"}, {with_particles}),
         word("source_form",
              "two-way force on the fluid: all that the fluid does to the particles, or the literal -m dV/dt of eq. 9",
              {"force", "eq9"}, {with_particles, two_way}),
         word("wall_contact", "a particle meets a wall with its surface or with its centre", {"radius", "centre"},
              {with_particles}),
-        real("restitution", "1", "of the rebound from walls", 1, between(0, 1), {with_particles}),
+        real("restitution", "1", "of the rebound from walls", 1, between(0, 1),
+             {with_particles, {"coupling", Condition::is_word, {"one_way", "two_way", "ddpm", "ddpm_ktgf"}}}),
+        word("contact", "contacts as hysteretic springs with friction in sub-steps, or as displacement out of overlap",
+             {"spring", "projection"}, {with_particles, four_way}),
+        real("collision_restitution", "1", "of collisions among particles", 0.9, between(0.05, 1),
+             {with_particles, {"coupling", Condition::is_word, {"ddpm", "ddpm_ktgf", "cfd_dem"}}}),
+        real("friction", "1", "of contacts", 0.3, between(0, 10), {with_particles, four_way, springs}),
+        real("overlap", "1", "of springs under the vibrational force and impact, over the diameter", 0.01,
+             between(1e-5, 0.1), {with_particles, four_way, springs}),
+        real("packing_limit", "1", "largest volume fraction of particles", 0.63, between(0.3, 0.74),
+             {with_particles, stressed}),
+        real("granular_temperature", "(alpha/L)^2", "least granular temperature, and that of the start", 1e-3,
+             between(0, 1e9), {with_particles, stressed}),
         word("particle_start",
              "particles start with the flow, from rest, or are released into the flow once it is periodic",
              {"with_flow", "periodic_flow"}, {with_particles, vibrated, {"coupling", Condition::is_word, {"one_way"}}}),
         word("interpolation", "of the fluid velocity at a particle: linear, or quadratic and exactly divergence-free",
              {"trilinear", "solenoidal"}, {with_particles}),
         whole("smoothing", "passes of [1 2 1]/4 over the deposited force, per axis", 2, between(0, 20),
-              {with_particles, two_way}),
+              {with_particles, felt_by_fluid}),
         whole("cells", "cells of the flow grid per side", 40, between(4, 128)),
         real("clustering", "1", "clustering c of the grid towards all walls, tanh(c s)/tanh(c); 0: uniform", 0,
              between(0, 3)),
@@ -95,6 +121,8 @@ std::vector<ObservableSpec> observables() {
         {"kinetic_energy", "(alpha/L)^2", "mean of |V|^2/2 over the volume and the last period", Shape::scalar},
         {"nusselt", "1", "heat flux through the hot wall over that of conduction, mean of the last period",
          Shape::scalar},
+        {"packing_limited", "1", "share of the steps in which the packing limit moved particles (ddpm levels)",
+         Shape::scalar},
         {"peak_velocity", "alpha/L", "largest velocity component in the last period", Shape::scalar},
         {"accumulation_series", "1", "K on sampling_cells^3, always at the same phase", Shape::series},
         {"accumulation_5", "1", "K on 5^3 cells", Shape::series},
@@ -109,19 +137,43 @@ std::vector<ObservableSpec> observables() {
 template <class Kernel>
 std::unique_ptr<Scene> make_with(const Question& question, std::uint64_t seed, Artefacts& artefacts) {
     using namespace thermovibration;
+    const coupling::Motion<Drag> motion(question.sphere(), question.step());
+    const auto grid = question.grid();
+    const auto sides = Question::sides();
+    const auto particles = static_cast<std::size_t>(question.particles);
+    const int smoothing = static_cast<int>(question.smoothing);
+    const auto dilute = [&]<class Level>(Level level) -> std::unique_ptr<Scene> {
+        using Together = coupling::Suspension<flow::Boussinesq, Level, Kernel, Drag>;
+        return std::make_unique<Live<Together>>(
+            question, Together(question.fluid(), question.vibration(), motion, question.walls(), question.cloud(seed),
+                               std::move(level)));
+    };
+    const auto dense = [&]<class Interaction>(Interaction interaction) -> std::unique_ptr<Scene> {
+        using Together = coupling::DenseSuspension<flow::Boussinesq, Interaction, Kernel, Drag>;
+        return std::make_unique<Live<Together>>(
+            question, Together(question.fluid(), question.vibration(), motion, question.walls(), question.cloud(seed),
+                               std::move(interaction), smoothing));
+    };
+    const auto granular = [&]<class Temperature>(std::type_identity<Temperature>) {
+        return dense(coupling::SolidsPressure<Temperature>(grid, sides, question.sphere(), question.grains(),
+                                                           question.granular_temperature, smoothing));
+    };
+    if (question.particles == 0) return dilute(coupling::OneWay{});
     if (question.coupling == "two_way") {
-        const auto run = [&]<class Form>(Form) -> std::unique_ptr<Scene> {
-            using Level = coupling::TwoWay<Form>;
-            return std::make_unique<Live<Level, Kernel>>(
-                question, seed,
-                Level(question.grid(), Question::sides(), question.sphere(),
-                      static_cast<std::size_t>(question.particles), static_cast<int>(question.smoothing)));
+        const auto form = [&]<class Form>(Form) {
+            return dilute(coupling::TwoWay<Form>(grid, sides, question.sphere(), particles, smoothing));
         };
-        return question.source_form == "force" ? run(coupling::ForceForm{}) : run(coupling::EquationNine{});
+        return question.source_form == "force" ? form(coupling::ForceForm{}) : form(coupling::EquationNine{});
     }
-    if (question.particle_start == "periodic_flow" && !question.steady_force() && question.particles > 0)
+    if (question.coupling == "ddpm") return granular(std::type_identity<coupling::AlgebraicTemperature>{});
+    if (question.coupling == "ddpm_ktgf") return granular(std::type_identity<coupling::TransportedTemperature>{});
+    if (question.coupling == "cfd_dem" && question.contact == "spring")
+        return dense(coupling::SpringContacts(question.sphere(), question.walls(), question.spring(), particles));
+    if (question.coupling == "cfd_dem")
+        return dense(coupling::ProjectedContacts(question.sphere(), question.walls(), question.step()));
+    if (question.particle_start == "periodic_flow" && !question.steady_force())
         return std::make_unique<Carried<Kernel>>(question, seed, artefacts);
-    return std::make_unique<Live<coupling::OneWay, Kernel>>(question, seed, coupling::OneWay{});
+    return dilute(coupling::OneWay{});
 }
 
 std::unique_ptr<Scene> make(const Inputs& inputs, std::uint64_t seed, Artefacts& artefacts) {

@@ -2,6 +2,9 @@
 //
 //   bench_dem [--scene NAME] [--path baseline|avx2|avx512] [--steps N] [--bed FILE --angle DEGREES]
 //
+// Besides the scenes: `laws`, the step of one settled bed under every combination of laws that is compiled; `rebuild`,
+// making the lists anew; `pairs`, what a particle costs by itself and what a contact adds.
+//
 // ns_min is the cheapest window of a hundred steps, ns_mean all of them, lists included, in processor time of this
 // thread. Each phase of a sweep (sift, meet, scatter, advance_range) is a function of its own: `perf record` splits
 // the time without slowing the loop.
@@ -17,6 +20,7 @@
 
 #include "solver/dem/fast/mixed_engine.hpp"
 #include "tests/support/granular_beds.hpp"
+#include "tests/support/peer_programs.hpp"
 
 using namespace grainsweep;
 using dem::Method;
@@ -101,6 +105,76 @@ void spread(const Options& o, const std::string& scene, double diameter, double 
     }
 }
 
+/// The same bed, 200 steps each, under every law: what is absent must cost nothing.
+void laws(const Options& o, const dem::Setup& bed, const dem::Setup& unequal) {
+    const auto run = [&](const char* name, dem::Setup setup, const std::function<void(dem::Setup&)>& change) {
+        change(setup);
+        run_everywhere(o, std::string("law_") + name, setup, 400);
+    };
+    const auto unfrozen = [](dem::Setup& s) {
+        std::erase_if(s.spheres, [](const dem::Sphere& p) { return !p.mobile; });
+        s.gravity = {};
+    };
+    run("frictionless", bed, [](auto& s) { s.material.friction = 0; });
+    run("friction", bed, [](auto&) {});
+    run("friction_no_frozen", bed, unfrozen);
+    run("friction_sjkr", bed, [](auto& s) { s.material.cohesion = 35e3; });
+    run("friction_sjkr2", bed, [](auto& s) {
+        s.material.cohesion = 35e3;
+        s.material.cohesion_area = dem::CohesionArea::sjkr2;
+    });
+    run("friction_rolling", bed, [](auto& s) { s.material.rolling_friction = 0.1; });
+    run("unequal_friction", unequal, [](auto&) {});
+    run("unequal_friction_sjkr", unequal, [](auto& s) { s.material.cohesion = 35e3; });
+}
+
+void rebuild(const Options& o, const dem::Setup& bed) {
+    for (const auto& [name, path] : path_names) {
+        if (!dem::fast::supports(path) || (!o.path.empty() && o.path != name)) continue;
+        const auto engine = dem::fast::make_mixed_engine(bed, path);
+        engine->run(300);
+        double least = 1e300;
+        for (int k = 0; k < 20; ++k) {
+            const double start = processor_seconds();
+            engine->remove({});  // nobody, but lists and forces anew
+            least = std::min(least, processor_seconds() - start);
+        }
+        std::printf(
+            "{\"bench\": \"dem_speed\", \"scene\": \"rebuild\", \"path\": \"%s\", \"particles\": %zu, "
+            "\"ns_per_particle\": %.1f}\n",
+            name.c_str(), engine->size(), 1e9 * least / static_cast<double>(engine->size()));
+        std::fflush(stdout);
+    }
+}
+
+/// Processor nanoseconds per particle and step, least of ten windows.
+double step_cost(const dem::Setup& setup, dem::Method::Path path) {
+    const auto engine = dem::fast::make_mixed_engine(setup, path);
+    engine->run(200);
+    double least = 1e300;
+    for (int k = 0; k < 10; ++k) {
+        const double start = processor_seconds();
+        engine->run(50);
+        least = std::min(least, processor_seconds() - start);
+    }
+    return 1e9 * least / 50 / static_cast<double>(engine->size());
+}
+
+void pairs(const Options& o, const dem::Setup& bed) {
+    dem::State state;
+    dem::fast::make_mixed_engine(bed, dem::Method::Path::best)->state(state);
+    const double contacts = test::figures_of(state, bed).coordination / 2;
+    for (const auto& [name, path] : path_names) {
+        if (!dem::fast::supports(path) || (!o.path.empty() && o.path != name)) continue;
+        const double alone = step_cost(test::loose_gas(27), path), together = step_cost(bed, path);
+        std::printf(
+            "{\"bench\": \"dem_speed\", \"scene\": \"pairs\", \"path\": \"%s\", \"ns_per_lone_particle\": "
+            "%.2f, \"ns_per_contact\": %.2f, \"contacts_per_particle\": %.2f}\n",
+            name.c_str(), alone, (together - alone) / contacts, contacts);
+        std::fflush(stdout);
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -135,6 +209,9 @@ int main(int argc, char** argv) {
              run_everywhere(o, s, test::replicated(test::flowing(bed(0), 26, 0.02), 3, 3), o.steps / 4);
          }},
         {"loose_gas_20k", [&](const auto& s) { run_everywhere(o, s, test::loose_gas(27), o.steps); }},
+        {"laws", [&](const auto&) { laws(o, bed(0), bed(0.25)); }},
+        {"rebuild", [&](const auto&) { rebuild(o, bed(0)); }},
+        {"pairs", [&](const auto&) { pairs(o, bed(0)); }},
         {"spreading_1mm", [&](const auto& s) { spread(o, s, 1e-3, 2e-3); }},
         {"spreading_3mm", [&](const auto& s) { spread(o, s, 3e-3, 4e-3); }},
     };

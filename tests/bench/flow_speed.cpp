@@ -1,7 +1,11 @@
 // Cost of a flow step and its parts: JSON lines {program, compiler, what, cells, milliseconds}, processor time per
 // call, best of five batches.   bench_flow [CELLS [CALLS [NAME]]]
+#include "solver/coupling/dense_suspension.hpp"
 #include "solver/coupling/drag.hpp"
 #include "solver/coupling/periodic_flow.hpp"
+#include "solver/coupling/projected_contacts.hpp"
+#include "solver/coupling/solids_pressure.hpp"
+#include "solver/coupling/spring_contacts.hpp"
 #include "solver/coupling/suspension.hpp"
 #include "solver/flow/flow.hpp"
 
@@ -98,6 +102,19 @@ int main(int argc, char** argv) {
     auto two_way =
         suspension(coupling::Trilinear{}, coupling::TwoWay<coupling::ForceForm>(grid, walls, sphere, particles, 2));
     measure("two_way_force", [&] { two_way.step(); });
+
+    const auto dense = [&]<class Interaction>(const char* what, Interaction interaction) {
+        coupling::DenseSuspension<Boussinesq, Interaction, coupling::Trilinear, coupling::SchillerNaumann> together(
+            flow, heat.vibration, motion, box, cloud, std::move(interaction), 2);
+        measure(what, [&] { together.step(); });
+    };
+    const auto grains = coupling::Granular::of(sphere, 0.9, 0.63);
+    dense("ddpm", coupling::SolidsPressure<coupling::AlgebraicTemperature>(grid, walls, sphere, grains, 1e-3, 2));
+    dense("ddpm_ktgf",
+          coupling::SolidsPressure<coupling::TransportedTemperature>(grid, walls, sphere, grains, 1e-3, 2));
+    const double stiffness = coupling::SpringContacts::stiffness(sphere, 0.01, setup.time_step);
+    dense("cfd_dem_spring", coupling::SpringContacts(sphere, box, {stiffness, 0.9, 0.3}, particles));
+    dense("cfd_dem_projection", coupling::ProjectedContacts(sphere, box, setup.time_step));
 
     coupling::PeriodicFlow periodic(grid);
     for (int s = 0; s < 32; ++s) periodic.add(2 * pi * (s + 0.5) / 32, 32, velocity, acceleration);

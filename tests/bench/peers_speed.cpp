@@ -63,7 +63,7 @@ Measured ours(const dem::Setup& setup, Method::Path path, std::int64_t steps) {
 
 /// The fastest over the skins.
 std::optional<Measured> theirs(const Options& o, test::Peer::Program program, const dem::Setup& setup,
-                               std::int64_t steps) {
+                               std::int64_t steps, bool forgetful = false) {
     const std::string name = program == test::Peer::Program::liggghts ? "liggghts" : "lmp";
     if (!test::installed(name)) return std::nullopt;
     std::optional<Measured> best;
@@ -73,7 +73,7 @@ std::optional<Measured> theirs(const Options& o, test::Peer::Program program, co
         double seconds[2] = {0, 0};
         std::string out;
         for (int k = 0; k < 2; ++k) {
-            const test::Peer peer{program, skin * 2 * setup.spheres[0].radius, k == 0 ? 5 : steps, 100};
+            const test::Peer peer{program, skin * 2 * setup.spheres[0].radius, k == 0 ? 5 : steps, 100, forgetful};
             const auto deck = test::deck_of(setup, peer);
             if (!deck) return std::nullopt;
             folder.write("in.bed", *deck);
@@ -117,6 +117,26 @@ void compare(const Options& o, const std::string& scene, const dem::Setup& setup
             "{}}}\n",
             scene, setup.spheres.size(), steps, name, as_json(us), as_json(liggghts), as_json(lammps), ratio(liggghts),
             ratio(lammps));
+        std::fflush(stdout);
+    }
+}
+
+/// Long flows from the same starts: where single particles have long parted, the figures must agree. LIGGGHTS with
+/// lists of its own pace and with lists anew every step, which changes its law (Peer::forgetful).
+void statistics() {
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        const dem::Setup setup = test::small_chute(seed);
+        const auto steps = std::llround(test::small_chute_time / setup.time_step) - 100;
+        const auto us = ours(setup, Method::Path::best, steps);
+        Options once;
+        once.skins = {0.3};
+        const auto lasting = theirs(once, test::Peer::Program::liggghts, setup, steps);
+        once.skins = {0.1};
+        const auto forgetful = theirs(once, test::Peer::Program::liggghts, setup, steps, true);
+        fmt::print(
+            "{{\"bench\": \"peers\", \"scene\": \"chute_statistics\", \"seed\": {}, \"grainsweep\": {}, "
+            "\"liggghts\": {}, \"liggghts_forgetful\": {}}}\n",
+            seed, as_json(us), as_json(lasting), as_json(forgetful));
         std::fflush(stdout);
     }
 }
@@ -243,6 +263,7 @@ int main(int argc, char** argv) {
         {"cohesive_chute_20k", [&](const auto& s) { compare(o, s, cohesive(chute()), 1000); }},
         {"settled_180k", [&](const auto& s) { compare(o, s, test::replicated(bed(0), 3, 3), 200); }},
         {"chute_180k", [&](const auto& s) { compare(o, s, test::replicated(chute(), 3, 3), 200); }},
+        {"chute_statistics", [&](const auto&) { statistics(); }},
         {"spreading", [&](const auto&) { spreading(); }},
         {"campaign", [&](const auto&) { campaign(); }},
     };

@@ -68,7 +68,7 @@ TEST(ThermovibrationCorners, FinishOrSayWhatWentWrong) {
             }
         }
     }
-    for (const char* coupling : {"one_way", "two_way"})
+    for (const char* coupling : {"one_way", "two_way", "ddpm", "ddpm_ktgf", "cfd_dem"})
         for (std::size_t a = 0; a < ends.size(); ++a)
             for (std::size_t b = a; b < ends.size(); ++b) {
                 Inputs inputs = tiny();

@@ -53,7 +53,7 @@ dem::Setup settled_bed(const BedOptions& o) {
     const double side = pitch * o.per_side;
     s.domain.low = {0, 0, -d};
     s.domain.high = {side, side, pitch * (o.layers + 4)};
-    const stats::Stream stream(5, 1);
+    const stats::Stream stream(o.seed, 1);
     std::uint64_t draw = 0;
     const auto u = [&] { return 2 * stream.uniform(draw++) - 1; };
     for (int k = 0; k < o.layers; ++k)
@@ -75,7 +75,7 @@ dem::Setup settled_bed(const BedOptions& o) {
     move_on(falling, o.settle_time);
     for (std::size_t i = 0; i < s.spheres.size(); ++i) {
         dem::Sphere& p = s.spheres[i] = falling.spheres[i];
-        p.mobile = p.position[2] > 0.95 * d;
+        p.mobile = p.position[2] > 1.4 * d;  // thick enough to let nobody through
         if (!p.mobile) p.velocity = p.angular_velocity = {};
     }
     return s;
@@ -108,6 +108,14 @@ dem::Setup tilted(dem::Setup bed, double degrees) {
     const double angle = degrees * std::numbers::pi / 180;
     bed.gravity = {gravity * std::sin(angle), 0, -gravity * std::cos(angle)};
     return bed;
+}
+
+dem::Setup small_chute(std::uint64_t seed) {
+    BedOptions o;
+    o.per_side = 10, o.layers = 20, o.seed = seed;
+    dem::Setup s = tilted(settled_bed(o), 26);
+    s.domain.high[2] += s.domain.high[2] - s.domain.low[2];  // room to jump
+    return s;
 }
 
 dem::Setup loose_gas(int per_side) {

@@ -13,15 +13,20 @@ struct BedOptions {
     int per_side = 22;           ///< columns of the lattice along x and y
     int layers = 41;             ///< along z
     double spread = 0;           ///< radii within +-spread
+    std::uint64_t seed = 5;      ///< of the jitter
     double settle_time = 10e-3;  ///< s, under gravity raised fivefold, and as long again under its own
 };
 
-/// A bed settled on a plane from a jittered lattice; its lowest layer then frozen and the plane gone. Periodic in x, y.
+/// A bed settled on a plane from a jittered lattice; what lies within 1.4 diameters of it then frozen and the plane
+/// gone. Periodic in x, y.
 [[nodiscard]] dem::Setup settled_bed(const BedOptions& options);
 /// The same bed nx times ny side by side.
 [[nodiscard]] dem::Setup replicated(const dem::Setup& bed, int nx, int ny);
 /// The chute of that inclination after `time`, flowing.
 [[nodiscard]] dem::Setup flowing(dem::Setup bed, double degrees, double time);
+/// A chute of 2,000 spheres at 26 degrees, at rest; after small_chute_time it flows.
+[[nodiscard]] dem::Setup small_chute(std::uint64_t seed);
+inline constexpr double small_chute_time = 0.012;  // s
 /// Gravity turned to a chute of this inclination, degrees, along x.
 [[nodiscard]] dem::Setup tilted(dem::Setup bed, double degrees);
 /// Mobile particles far apart and in motion, three-dimensional periodic.

@@ -40,6 +40,9 @@ struct Peer {
     double skin = 0;         ///< m
     std::int64_t steps = 0;  ///< after `warm` steps
     std::int64_t warm = 100;
+    /// Lists anew every step: LIGGGHTS then forgets the tangential displacement of a pair as it separates, as the law
+    /// says; otherwise a pair that meets again before its lists are rebuilt finds the old one.
+    bool forgetful = false;
 };
 /// nullopt where the program cannot: LAMMPS's gran/hertz/history knows no cohesion.
 [[nodiscard]] std::optional<std::string> deck_of(const dem::Setup& setup, const Peer& peer);

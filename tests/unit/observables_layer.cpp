@@ -25,13 +25,33 @@ dem::State spheres(std::vector<dem::Vec3> positions, double radius) {
 
 }  // namespace
 
-TEST(Layer, CountsCentres) {
+TEST(Layer, SumsOverCentres) {
     const auto s = spheres({{0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {1.5, 0, 4}}, 0.5);
-    EXPECT_EQ(count_behind(s, 1.0), 1);  // x < front: a centre in the plane is in front
-    EXPECT_EQ(count_behind(s, 1.01), 2);
-    EXPECT_EQ(count_under(s, 1, 2, 3), 1);
-    EXPECT_EQ(count_under(s, 1, 2.1, 4), 3);
+    const std::vector<double> each(4, 1.0);
+    EXPECT_EQ(sum_behind(s, each, 1.0), 1);  // x < front: a centre in the plane is in front
+    EXPECT_EQ(sum_behind(s, each, 1.01), 2);
+    EXPECT_EQ(sum_under(s, each, 1, 2, 3), 1);
+    EXPECT_EQ(sum_under(s, each, 1, 2.1, 4), 3);
     EXPECT_NEAR(solid_volume(s, 0.5, 2), 2 * std::numbers::pi / 6, 1e-15);
+    // What is carried belongs to the id, whoever is gone.
+    dem::State fewer = s;
+    fewer.id = {0, 2, 5, 7};
+    const std::vector<double> carried = {1, 90, 10, 90, 90, 100, 90, 1000};
+    EXPECT_EQ(sum_behind(fewer, carried, 1.6), 1 + 10 + 1000);
+}
+
+// Exactly straight, one corner, noise: the second difference of independent values of variance 1 has variance 6.
+TEST(Layer, UnevennessIsTheBendOfAProfile) {
+    EXPECT_EQ(unevenness(std::vector<double>{1, 2, 3, 4, 5}), 0);
+    EXPECT_DOUBLE_EQ(unevenness(std::vector<double>{0, 0, 0, 1, 2}), std::sqrt(1.0 / 3));
+    const double none = std::nan("");
+    EXPECT_DOUBLE_EQ(unevenness(std::vector<double>{0, 0, 3, none, 7, 8, 9}), std::sqrt(9.0 / 2));
+    EXPECT_TRUE(std::isnan(unevenness(std::vector<double>{1, 2, none, 4, 5, none})));
+    EXPECT_TRUE(std::isnan(unevenness(std::vector<double>{1, 2})));
+    const stats::Stream random(1, 1);
+    std::vector<double> noise;
+    for (std::uint64_t k = 0; k < 20'000; ++k) noise.push_back(std::sqrt(12.0) * random.uniform(k));
+    EXPECT_NEAR(unevenness(noise), std::sqrt(6.0), 0.03);
 }
 
 TEST(Layer, ReliefSeesTheUppermostSurfaceAcrossThePeriod) {

@@ -105,7 +105,7 @@ struct Seal {
     s.format = Seal{}.format;
     s.width = k.width;
     s.needs.unequal = n.unequal, s.needs.frozen = n.frozen, s.needs.friction = n.friction,
-    s.needs.cohesion = n.cohesion;
+    s.needs.cohesion = n.cohesion, s.needs.rolling = n.rolling;
     std::memcpy(static_cast<void*>(&s.constants), &c, sizeof c);
     s.shaking = shaking;
     return s;

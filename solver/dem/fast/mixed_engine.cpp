@@ -134,6 +134,7 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin)
     if (skin > 0) room_.skin = static_cast<float>(skin / room_.scale.length);
     room_.skin = std::min(room_.skin, largest_skin_);
     field_.constants = make_constants(setup, room_.scale);
+    columns_.histories = needs_.rolling ? histories_at_most : 3;
     load(setup);
     restart_forces();
 }
@@ -452,11 +453,11 @@ void MixedEngine::pass(Self& self, Archive& archive) {
     archive.column(c.inner_source, inner);
     archive.column(c.inner_reach, inner);
     archive.column(c.touching, inner / 4);
-    for (auto& h : c.history) archive.column(h, inner);
+    for (int a = 0; a < c.histories; ++a) archive.column(c.history[a], inner);
     archive.column(c.segments, self.walls_.size());
     const auto near_walls = self.walls_.empty() ? 0 : static_cast<std::size_t>(c.segments[self.walls_.size() - 1].end);
     archive.column(c.wall_particle, near_walls);
-    for (auto& h : c.wall_history) archive.column(h, near_walls);
+    for (int a = 0; a < c.histories; ++a) archive.column(c.wall_history[a], near_walls);
 }
 
 /// Of the case, the same at every step.

@@ -79,17 +79,22 @@ void walls(const Field& f, Tally& t) {
             m.damping = broadcast(c.damping) * inverse_root(max(rows[3], broadcast(1e-12f)));
             if constexpr (Law::cohesive)
                 m.neck = m.overlap * fma(broadcast(c.wall_square), m.overlap, broadcast(c.wall_linear) * radius);
-            V3 history{load(f.wall_history[0] + k), load(f.wall_history[1] + k), load(f.wall_history[2] + k)};
-            V3 force, turn;
-            respond<Law>(c, m, history_step, history, force, turn);
-            if (f.history_step != 0) {
-                store(f.wall_history[0] + k, history.x);
-                store(f.wall_history[1] + k, history.y);
-                store(f.wall_history[2] + k, history.z);
+            if constexpr (Law::rolling) {
+                m.turning = {rows[4], rows[5], rows[6]};
+                m.turning_mass = rows[3] * inverse(max(radius * radius, broadcast(1e-12f)));
             }
+            Memory memory = load_memory<Law>(f.wall_history, k);
+            V3 force, turn, moment;
+            respond<Law>(c, m, history_step, memory, force, turn, moment);
+            if (f.history_step != 0) store_memory<Law>(f.wall_history, k, memory);
             largest_overlap = max(keep(m.touching, m.overlap * inverse(radius + radius)), largest_overlap);
             const F forces[3] = {force.x, force.y, force.z};
-            const F torques[3] = {turn.x * arm, turn.y * arm, turn.z * arm};
+            F torques[3] = {turn.x * arm, turn.y * arm, turn.z * arm};
+            if constexpr (Law::rolling) {
+                torques[0] = torques[0] + moment.x;
+                torques[1] = torques[1] + moment.y;
+                torques[2] = torques[2] + moment.z;
+            }
             scatter(f.forces, particle, forces, torques);
         }
     }

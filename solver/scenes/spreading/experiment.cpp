@@ -11,7 +11,7 @@ namespace grainsweep::spreading {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr std::uint64_t checkpoint_format = 0x6772'6e73'7370'0001ULL;  // "grnssp", version 1
+constexpr std::uint64_t checkpoint_format = 0x6772'6e73'7370'0002ULL;  // "grnssp", version 2
 constexpr std::size_t blocks = 10;       // of the measured flux, 5 mm of travel each by default
 constexpr double layer_thickness = 0.5;  // of the velocity profile, in diameters
 constexpr double profile_reach = 6;      // ahead of the blade, in diameters
@@ -19,9 +19,36 @@ constexpr double relief_pitch = 0.25;    // in diameters
 
 }  // namespace
 
-Experiment::Experiment(const Study& study, std::uint64_t seed, const dem::Method& method)
-    : study_(study), engine_(dem::make_engine(settling(study, seed), method)) {
-    if (study_.settle_steps == 0) start_sweep();
+Experiment::Experiment(const Study& study, std::uint64_t seed, const dem::Method& method, Artefacts& artefacts)
+    : study_(study), artefacts_(artefacts) {
+    const bool shared = study_.bed_seed > 0;
+    const dem::Setup setup = settling(study_, shared ? seed_of_bed(study_.bed_seed) : seed);
+    if (shared) study_.blade_start -= run_up(study_, seed);
+    volume_.reserve(setup.spheres.size());
+    for (const auto& sphere : setup.spheres) {
+        const double d = 2 * sphere.radius / study_.diameter;
+        volume_.push_back(d * d * d);
+    }
+    if (shared) engine_ = settled_before(setup, method);
+    if (engine_) {
+        step_ = study_.settle_steps;
+        borrowed_particle_steps_ = engine_->work().particle_steps;
+    } else {
+        engine_ = dem::make_engine(setup, method);
+    }
+    if (step_ == study_.settle_steps) start_sweep();
+}
+
+std::unique_ptr<dem::Engine> Experiment::settled_before(const dem::Setup& setup, const dem::Method& method) {
+    const auto bed = artefacts_.get(study_.bed_key);
+    if (!bed) return nullptr;
+    auto engine = dem::make_engine(setup, method);
+    try {
+        engine->restore(*bed);
+    } catch (const std::invalid_argument&) {
+        return nullptr;  // of another build: settle it anew
+    }
+    return engine;
 }
 
 std::int64_t Experiment::step_of_sample(std::int64_t sample) const {
@@ -50,8 +77,17 @@ void Experiment::advance(double until) {
         if (sweeping_)
             sample();
         else
-            start_sweep();
+            end_settling();
     }
+}
+
+void Experiment::end_settling() {
+    if (study_.bed_seed > 0) {
+        Bytes bed;
+        engine_->save(bed);
+        artefacts_.put(study_.bed_key, bed);
+    }
+    start_sweep();
 }
 
 void Experiment::start_sweep() {
@@ -63,15 +99,31 @@ void Experiment::start_sweep() {
 void Experiment::sample() {
     const double time = time_of_sample(behind_.size());
     engine_->state(state_);
-    behind_.push_back(observables::count_behind(state_, study_.front(time)));
-    under_.push_back(observables::count_under(state_, study_.rear(time), study_.front(time), study_.gap));
+    behind_.push_back(observables::sum_behind(state_, volume_, study_.front(time)));
+    under_.push_back(observables::sum_under(state_, volume_, study_.rear(time), study_.front(time), study_.gap));
     largest_overlap_ = std::max(largest_overlap_, engine_->largest_overlap());
     if (static_cast<std::int64_t>(behind_.size()) > first_measured_sample)
         profile_.add(state_, study_.front(time), study_.front(time) + profile_reach * study_.diameter, study_.gap,
                      layer_thickness * study_.diameter);
+    if (known_well_enough()) end_sample_ = static_cast<std::int64_t>(behind_.size()) - 1;
 }
 
-/// Mass flow rate of one particle per second in units of the gap swept by the blade, filled solid.
+bool Experiment::known_well_enough() const {
+    if (!(study_.standard_error > 0)) return false;
+    const auto measured = static_cast<std::int64_t>(behind_.size()) - 1 - first_measured_sample;
+    if (measured < least_measured_samples || measured % samples_between_looks != 0) return false;
+    return observables::block_standard_error(measured_flux(), blocks) < study_.standard_error;
+}
+
+/// mfr of each sample interval from t1.
+std::vector<double> Experiment::measured_flux() const {
+    std::vector<double> flux;
+    for (std::size_t k = first_measured_sample + 1; k < behind_.size(); ++k)
+        flux.push_back(flux_scale() * (behind_[k] - behind_[k - 1]) / (time_of_sample(k) - time_of_sample(k - 1)));
+    return flux;
+}
+
+/// Mass flow rate of one sphere of diameter D per second in units of the gap swept by the blade, filled solid.
 double Experiment::flux_scale() const {
     return study_.particle_mass() / (study_.width * study_.gap * study_.speed * study_.material.density);
 }
@@ -81,46 +133,48 @@ void Experiment::observe(Observations& into) const {
     if (!sweeping_) return;
     into.scalars["max_overlap"] = largest_overlap_;
     observe_flux(into);
-    if (finished()) observe_layer(into);
+    if (!finished()) return;
+    into.scalars["end_of_travel"] = study_.speed * time_of_sample(static_cast<std::size_t>(end_sample_));
+    observe_layer(into);
 }
 
 void Experiment::observe_flux(Observations& into) const {
-    std::vector<double> flux;
     auto& series = into.series["flux_series"];
     for (std::size_t k = 1; k < behind_.size(); ++k) {
-        const double value = flux_scale() * static_cast<double>(behind_[k] - behind_[k - 1]) /
-                             (time_of_sample(k) - time_of_sample(k - 1));
+        const double value = flux_scale() * (behind_[k] - behind_[k - 1]) / (time_of_sample(k) - time_of_sample(k - 1));
         series.push_back({.time = time_of_sample(k), .bin = nan, .value = value});
-        if (k > first_measured_sample) flux.push_back(value);
     }
+    const std::vector<double> flux = measured_flux();
     if (flux.empty()) return;
 
     const std::size_t first = first_measured_sample;
     const std::size_t last = behind_.size() - 1;
-    into.scalars["mfr"] = flux_scale() * static_cast<double>(behind_[last] - behind_[first]) /
-                          (time_of_sample(last) - time_of_sample(first));
+    into.scalars["mfr"] =
+        flux_scale() * (behind_[last] - behind_[first]) / (time_of_sample(last) - time_of_sample(first));
     into.scalars["mfr_standard_error"] = observables::block_standard_error(flux, blocks);
     double mean = 0;
-    for (std::size_t k = first; k <= last; ++k) mean += static_cast<double>(under_[k]);
+    for (std::size_t k = first; k <= last; ++k) mean += under_[k];
     mean /= static_cast<double>(last - first + 1);
     const double mass = mean * study_.particle_mass();
     const double slot = study_.width * study_.gap * study_.material.density;
     into.scalars["mfr_window"] = mass / (slot * study_.blade_thickness);
     into.scalars["mfr_thesis"] = mass / (slot * study_.speed);
 
+    std::vector<double> velocity;
     auto& profile = into.series["vx_profile"];
     for (std::size_t k = 0; k < profile_layers; ++k) {
         const auto n = profile_.samples[k];
-        profile.push_back({.time = nan,
-                           .bin = layer_thickness * static_cast<double>(k + 1),
-                           .value = n > 0 ? profile_.sum[k] / static_cast<double>(n) : nan});
+        velocity.push_back(n > 0 ? profile_.sum[k] / static_cast<double>(n) : nan);
+        profile.push_back({.time = nan, .bin = layer_thickness * static_cast<double>(k + 1), .value = velocity[k]});
     }
+    if (const double bends = observables::unevenness(velocity); !std::isnan(bends))
+        into.scalars["vx_unevenness"] = bends / study_.speed;
 }
 
 void Experiment::observe_layer(Observations& into) const {
     // From where the flux became steady to one thickness behind the blade, where the powder has come to rest.
-    const double end = time_of_sample(static_cast<std::size_t>(sweep_samples));
-    const double from = study_.front(measured_from * end);
+    const double end = time_of_sample(static_cast<std::size_t>(end_sample_));
+    const double from = study_.front(measured_from * time_of_sample(static_cast<std::size_t>(sweep_samples)));
     const double to = study_.rear(end) - study_.blade_thickness;
     if (!(to > from)) return;
     dem::State state;
@@ -164,6 +218,8 @@ void Experiment::save(Bytes& into) const {
     out.put(checkpoint_format);
     out.put(step_);
     out.put(sweeping_);
+    out.put(borrowed_particle_steps_);
+    out.put(end_sample_);
     out.put(behind_);
     out.put(under_);
     out.put(profile_.sum);
@@ -180,6 +236,8 @@ void Experiment::restore(std::span<const std::byte> from) {
     Bytes engine;
     in.get(step_);
     in.get(sweeping_);
+    in.get(borrowed_particle_steps_);
+    in.get(end_sample_);
     in.get(behind_);
     in.get(under_);
     in.get(profile_.sum);

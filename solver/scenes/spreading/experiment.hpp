@@ -10,7 +10,8 @@ namespace grainsweep::spreading {
 
 class Experiment final : public Scene {
 public:
-    Experiment(const Study& study, std::uint64_t seed, const dem::Method& method);
+    /// A shared bed is taken from `artefacts`, which must outlive the experiment, or settled and left there.
+    Experiment(const Study& study, std::uint64_t seed, const dem::Method& method, Artefacts& artefacts);
 
     void advance(double until) override;
     void observe(Observations& into) const override;
@@ -18,7 +19,9 @@ public:
     [[nodiscard]] bool finished() const override { return step_ == last_step(); }
     [[nodiscard]] double progress() const override;
     [[nodiscard]] Health health() const override { return {engine_->fault()}; }
-    [[nodiscard]] double particle_steps() const override { return engine_->work().particle_steps; }
+    [[nodiscard]] double particle_steps() const override {
+        return engine_->work().particle_steps - borrowed_particle_steps_;
+    }
     void save(Bytes& into) const override;
     void restore(std::span<const std::byte> from) override;
     [[nodiscard]] Snapshot snapshot() const override;
@@ -26,21 +29,30 @@ public:
     static constexpr std::size_t profile_layers = 12;
 
 private:
-    [[nodiscard]] std::int64_t last_step() const { return study_.settle_steps + study_.sweep_steps; }
+    [[nodiscard]] std::int64_t last_step() const { return step_of_sample(end_sample_); }
     [[nodiscard]] std::int64_t step_of_sample(std::int64_t sample) const;
     [[nodiscard]] double time_of_sample(std::size_t sample) const;
     [[nodiscard]] double flux_scale() const;
+    [[nodiscard]] std::vector<double> measured_flux() const;
+    [[nodiscard]] bool known_well_enough() const;
+    /// The shared bed as another case left it; nullptr: there is none.
+    [[nodiscard]] std::unique_ptr<dem::Engine> settled_before(const dem::Setup& setup, const dem::Method& method);
+    void end_settling();
     void start_sweep();
     void sample();
     void observe_flux(Observations& into) const;
     void observe_layer(Observations& into) const;
 
     Study study_;
+    Artefacts& artefacts_;
     std::unique_ptr<dem::Engine> engine_;
     std::int64_t step_ = 0;
     bool sweeping_ = false;
-    std::vector<std::int64_t> behind_;  // centres behind the front face, by sample
-    std::vector<std::int64_t> under_;   // centres under the blade and below the gap, by sample
+    double borrowed_particle_steps_ = 0;  // another case's work on the bed
+    std::int64_t end_sample_ = sweep_samples;
+    std::vector<double> volume_;  // by id, of the sphere of diameter D
+    std::vector<double> behind_;  // volume behind the front face, by sample
+    std::vector<double> under_;   // volume under the blade and below the gap, by sample
     observables::VelocityProfile profile_{profile_layers};
     double largest_overlap_ = 0;  // m/m, over the samples of the sweep
     dem::State state_;            // scratch of sample()

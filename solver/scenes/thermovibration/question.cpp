@@ -1,5 +1,8 @@
 #include "solver/scenes/thermovibration/question.hpp"
 
+#include "solver/coupling/projected_contacts.hpp"
+#include "solver/coupling/spring_contacts.hpp"
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -19,6 +22,8 @@ std::int64_t count(const Inputs& inputs, const char* name) {
 std::string word(const Inputs& inputs, const char* name) {
     return std::get<std::string>(inputs.at(name));
 }
+
+constexpr std::int64_t most_substeps = 20000;
 
 std::string shortest(double x) {
     std::array<char, 32> text{};
@@ -42,7 +47,13 @@ Question::Question(const Inputs& inputs)
       wall_contact(word(inputs, "wall_contact")),
       particle_start(word(inputs, "particle_start")),
       interpolation(word(inputs, "interpolation")),
+      contact(word(inputs, "contact")),
       restitution(number(inputs, "restitution")),
+      collision_restitution(number(inputs, "collision_restitution")),
+      friction(number(inputs, "friction")),
+      overlap(number(inputs, "overlap")),
+      packing_limit(number(inputs, "packing_limit")),
+      granular_temperature(number(inputs, "granular_temperature")),
       cells(count(inputs, "cells")),
       clustering(number(inputs, "clustering")),
       steps_per_period(count(inputs, "steps_per_period")),
@@ -54,6 +65,18 @@ Question::Question(const Inputs& inputs)
         throw std::invalid_argument("stokes = " + shortest(stokes) + " makes particles of radius " +
                                     shortest(sphere().radius()) +
                                     " L; point particles need a radius of at most 0.1 L (stokes <= 0.0022)");
+    const double filled = static_cast<double>(particles) * sphere().volume();
+    if (dense() && filled > 0.6)
+        throw std::invalid_argument("particles = " + std::to_string(particles) + " fill " + shortest(filled) +
+                                    " of the cube; there is room for 0.6 (fewer, or a smaller stokes)");
+    if (coupling == "cfd_dem" && contact == "spring") {
+        const coupling::SpringContacts contacts(sphere(), walls(), spring(), 0);
+        if (contacts.substeps(step()) > most_substeps)
+            throw std::invalid_argument(
+                "a contact would need " + std::to_string(contacts.substeps(step())) +
+                " sub-steps in each step, above " + std::to_string(most_substeps) +
+                "; let overlap or collision_restitution be larger, or resolve contacts by projection (contact)");
+    }
     if (end_time < 0.5 * step() * static_cast<double>(window()))
         throw std::invalid_argument("end_time = " + shortest(end_time) + " is less than half of " +
                                     (steady_force() ? "a time step" : "a period of vibration (2 pi/frequency)"));
@@ -103,13 +126,28 @@ flow::Flow<flow::Boussinesq> Question::fluid() const {
 }
 
 coupling::Walls Question::walls() const {
-    const double contact = wall_contact == "radius" ? sphere().radius() : 0;
-    return {{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, {}, contact, restitution};
+    const double distance = wall_contact == "radius" ? sphere().radius() : 0;
+    return {{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, {}, distance, restitution};
+}
+
+coupling::HystereticSpring Question::spring() const {
+    return {coupling::SpringContacts::stiffness(sphere(), overlap, step()), collision_restitution, friction};
 }
 
 coupling::Cloud Question::cloud(std::uint64_t seed) const {
     constexpr std::uint64_t positions = 1;  // the stream of this purpose
-    return coupling::random_cloud(static_cast<std::size_t>(particles), walls(), stats::Stream(seed, positions));
+    auto cloud = coupling::random_cloud(static_cast<std::size_t>(particles), walls(), stats::Stream(seed, positions));
+    if (coupling != "cfd_dem") return cloud;
+    constexpr double tolerated = 1e-3;  // diameters
+    coupling::OverlapRemoval removal(walls(), 2 * sphere().radius());
+    std::vector<coupling::Vec3> displacement;
+    double left = 1;
+    for (int round = 0; round < 100 && left > tolerated; ++round)
+        left = removal.apply(cloud.position, displacement, 10);
+    if (left > tolerated)
+        throw std::invalid_argument("particles = " + std::to_string(particles) +
+                                    " cannot be placed at random without overlap (fewer, or a smaller stokes)");
+    return cloud;
 }
 
 std::string Question::flow_key() const {

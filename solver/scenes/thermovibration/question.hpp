@@ -5,7 +5,8 @@
 #pragma once
 
 #include "solver/coupling/cloud.hpp"
-#include "solver/coupling/motion.hpp"
+#include "solver/coupling/granular.hpp"
+#include "solver/coupling/hysteretic_spring.hpp"
 #include "solver/flow/flow.hpp"
 #include "solver/scenes/values.hpp"
 
@@ -17,8 +18,8 @@ namespace grainsweep::thermovibration {
 struct Question {
     double rayleigh, frequency, start_phase, acceleration, prandtl, density_ratio, stokes;
     std::int64_t particles;
-    std::string coupling, source_form, wall_contact, particle_start, interpolation;
-    double restitution;
+    std::string coupling, source_form, wall_contact, particle_start, interpolation, contact;
+    double restitution, collision_restitution, friction, overlap, packing_limit, granular_temperature;
     std::int64_t cells;
     double clustering;
     std::int64_t steps_per_period, smoothing;
@@ -41,7 +42,14 @@ struct Question {
     [[nodiscard]] flow::Flow<flow::Boussinesq> fluid() const;
     [[nodiscard]] coupling::Sphere sphere() const { return {density_ratio, stokes, prandtl, acceleration, 1}; }
     [[nodiscard]] coupling::Walls walls() const;
+    /// Random; without overlaps where contacts are resolved. Throws std::invalid_argument where there is no room.
     [[nodiscard]] coupling::Cloud cloud(std::uint64_t seed) const;
+    /// Particles take space from the fluid: every level above two_way.
+    [[nodiscard]] bool dense() const { return coupling != "one_way" && coupling != "two_way"; }
+    [[nodiscard]] coupling::Granular grains() const {
+        return coupling::Granular::of(sphere(), collision_restitution, packing_limit);
+    }
+    [[nodiscard]] coupling::HystereticSpring spring() const;
     /// Canonical text of what determines the periodic flow.
     [[nodiscard]] std::string flow_key() const;
 };

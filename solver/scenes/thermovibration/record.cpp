@@ -87,6 +87,7 @@ void Record::observe(Observations& into) const {
         into.scalars["nusselt"] = flow_.nusselt;
         into.scalars["peak_velocity"] = flow_.peak;
     }
+    if (limited_share_ >= 0) into.scalars["packing_limited"] = limited_share_;
     if (times_.empty()) return;
     const auto n = static_cast<int>(question_.sampling_cells);
     const double random = observables::random_accumulation(last_.size(), sampling_total());
@@ -107,6 +108,7 @@ void Record::observe(Observations& into) const {
 void Record::save(std::vector<std::byte>& into) const {
     flow::append_bytes(into, flow_);
     flow::append_bytes(into, static_cast<std::int64_t>(has_flow_));
+    flow::append_bytes(into, limited_share_);
     for (const auto* column : {&times_, &k_, &k5_, &k20_, &k_cells_}) save_column(into, *column);
     save_column(into, last_);
 }
@@ -116,6 +118,7 @@ void Record::restore(std::span<const std::byte>& from) {
     std::int64_t has_flow = 0;
     flow::take_bytes(from, has_flow);
     has_flow_ = has_flow != 0;
+    flow::take_bytes(from, limited_share_);
     for (auto* column : {&times_, &k_, &k5_, &k20_, &k_cells_}) restore_column(from, *column);
     restore_column(from, last_);
 }

@@ -32,6 +32,9 @@ public:
         has_flow_ = true;
     }
 
+    /// Share of the steps so far in which the packing limit moved particles.
+    void set_limited_share(double share) { limited_share_ = share; }
+
     void observe(Observations& into) const;
     void save(std::vector<std::byte>& into) const;
     void restore(std::span<const std::byte>& from);
@@ -42,6 +45,7 @@ private:
     Question question_;
     FlowMeans flow_;
     bool has_flow_ = false;
+    double limited_share_ = -1;  ///< negative: the level has no packing limit
     std::vector<double> times_, k_, k5_, k20_, k_cells_;
     std::vector<coupling::Vec3> last_;  ///< positions of the last sample
 };

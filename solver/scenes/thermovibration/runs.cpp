@@ -51,6 +51,19 @@ std::string fault(const coupling::Cloud& cloud, double time_step, double cell, d
     return {};
 }
 
+std::string fault(const coupling::SolidsVolume& solids, const flow::Grid& grid, double time) {
+    constexpr double densest = 0.7405;  // of equal spheres: pi/sqrt(18)
+    if (solids.largest_fraction() <= densest) return {};
+    const flow::Field& fraction = solids.fraction();
+    for (int k = 1; k <= grid.cells(2); ++k)
+        for (int j = 1; j <= grid.cells(1); ++j)
+            for (int i = 1; i <= grid.cells(0); ++i)
+                if (!(fraction(i, j, k) <= densest))
+                    return text("particles fill %.3g of the cell at (%.4g, %.4g, %.4g), t = %.6g L^2/alpha",
+                                fraction(i, j, k), grid[0].centre(i), grid[1].centre(j), grid[2].centre(k), time);
+    return {};
+}
+
 Snapshot picture(const coupling::Cloud& cloud) {
     Snapshot snapshot;
     snapshot.positions = cloud.position;

@@ -7,34 +7,34 @@
 
 #include "solver/coupling/drag.hpp"
 #include "solver/coupling/periodic_flow.hpp"
+#include "solver/coupling/solids_volume.hpp"
 #include "solver/coupling/suspension.hpp"
 #include "solver/scenes/scene.hpp"
 #include "solver/scenes/thermovibration/record.hpp"
 
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace grainsweep::thermovibration {
 
 using Drag = coupling::SchillerNaumann;
 
 /// Reasons not to trust the state after a step: Courant numbers above 1, values that are no numbers, particles that
-/// cross more than a cell in a step. Empty: none.
+/// cross more than a cell in a step, cells fuller of particles than spheres can fill them. Empty: none.
 [[nodiscard]] std::string fault(const flow::Flow<flow::Boussinesq>& fluid, double time);
 [[nodiscard]] std::string fault(const coupling::Cloud& cloud, double time_step, double cell, double time);
+[[nodiscard]] std::string fault(const coupling::SolidsVolume& solids, const flow::Grid& grid, double time);
 [[nodiscard]] Snapshot picture(const coupling::Cloud& cloud);
 /// Steps between two looks for faults.
 constexpr std::int64_t watch_steps = 8;
 
-template <class Level, class Kernel>
+/// Together: the coupled system, a Suspension or a DenseSuspension.
+template <class Together>
 class Live final : public Scene {
 public:
-    Live(const Question& question, std::uint64_t seed, Level level)
-        : question_(question),
-          record_(question),
-          suspension_(question.fluid(), question.vibration(),
-                      coupling::Motion<Drag>(question.sphere(), question.step()), question.walls(),
-                      question.cloud(seed), std::move(level)) {
+    Live(const Question& question, Together together)
+        : question_(question), record_(question), suspension_(std::move(together)) {
         record_.sample(0, suspension_.cloud());
     }
 
@@ -75,17 +75,22 @@ private:
             if (fault_.empty())
                 fault_ =
                     fault(suspension_.cloud(), fluid.time_step(), 1.0 / static_cast<double>(question_.cells), time());
+            if constexpr (requires { suspension_.solids(); })
+                if (fault_.empty()) fault_ = fault(suspension_.solids(), fluid.grid(), time());
             if (!fault_.empty()) return;
         }
         if (steps() > question_.total_steps() - question_.window()) means_.add(fluid, question_.window());
         if (finished()) record_.set_flow(means_);
+        if constexpr (requires { suspension_.interaction().limited_steps(); })
+            record_.set_limited_share(static_cast<double>(suspension_.interaction().limited_steps()) /
+                                      static_cast<double>(steps()));
         if (steps() % question_.sample_steps() == 0 || finished()) record_.sample(time(), suspension_.cloud());
     }
 
     Question question_;
     Record record_;
     FlowMeans means_;  // of the last window, as far as it has come
-    coupling::Suspension<flow::Boussinesq, Level, Kernel, Drag> suspension_;
+    Together suspension_;
     std::string fault_;
 };
 

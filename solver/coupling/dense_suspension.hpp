@@ -1,0 +1,176 @@
+// Fluid and particles that take each other's space, advanced together:
+//   1. forces of the particles on the fluid at their predicted middle positions (levels.hpp, force form), less what
+//      the particles do to each other
+//   2. the fluid step for the volume flux of both (shared_space.hpp)
+//   3. the particles, in the fluid between them, with their interaction
+//   4. their volume in the cells and the flux that brought it there (solids_volume.hpp)
+//
+// Interaction is what the level adds: SolidsPressure<AlgebraicTemperature> (ddpm),
+// SolidsPressure<TransportedTemperature> (ddpm_ktgf), SpringContacts or ProjectedContacts (cfd_dem), NoInteraction.
+// Terms that hold phi_p and dV_p/dt lag by one step; with phi_p -> 0 the scheme is that of suspension.hpp with
+// TwoWay<ForceForm>.
+#pragma once
+
+#include "solver/coupling/levels.hpp"
+#include "solver/coupling/solids_volume.hpp"
+#include "solver/flow/flow.hpp"
+#include "solver/flow/shared_space.hpp"
+
+#include <utility>
+#include <vector>
+
+namespace grainsweep::coupling {
+
+template <class Heat, class Interaction, class Kernel, class Drag>
+class DenseSuspension {
+public:
+    DenseSuspension(flow::Flow<Heat> fluid, const flow::Vibration& vibration, const Motion<Drag>& motion,
+                    const Walls& walls, Cloud cloud, Interaction interaction, int smoothing)
+        : fluid_(std::move(fluid)),
+          vibration_(vibration),
+          motion_(motion),
+          walls_(walls),
+          cloud_(std::move(cloud)),
+          interaction_(std::move(interaction)),
+          space_(fluid_.grid(), fluid_.sides(), fluid_.viscosity()),
+          deposit_(fluid_.grid(), fluid_.sides(), smoothing),
+          solids_(fluid_.grid(), fluid_.sides(), motion.sphere().volume(), smoothing),
+          handed_(cloud_.size(), Vec3{}),
+          source_(flow::face_vectors(fluid_.grid())),
+          flux_before_(source_),
+          velocity_(source_),
+          acceleration_(source_) {
+        solids_.place(cloud_.position);
+        interaction_.settle(cloud_, walls_, solids_);
+    }
+
+    void step() {
+        const double dt = fluid_.time_step();
+        const double s = vibration_.at(fluid_.time() + 0.5 * dt);
+        feet_.clear();
+        for (std::size_t p = 0; p < cloud_.size(); ++p) feet_.push_back(foot(p));
+        find_source(s, dt);
+        fluid_.step(source_);
+        fluid_.midpoint(velocity_, acceleration_);
+        const FaceVectors& flux = solids_.flux();
+        space_.interstitial(velocity_, flux, solids_.fraction(), between_);
+        flux_before_ = flux;
+        before_ = cloud_.position;
+        interaction_.move(cloud_, motion_, walls_, solids_, feet_, Around{*this, s}, handed_);
+        solids_.place(cloud_.position);
+        interaction_.settle(cloud_, walls_, solids_);
+        solids_.carry(before_, cloud_.position, dt);
+    }
+
+    /// Its velocity is the volume flux of fluid and particles together.
+    [[nodiscard]] const flow::Flow<Heat>& fluid() const { return fluid_; }
+    [[nodiscard]] const Cloud& cloud() const { return cloud_; }
+    [[nodiscard]] const Interaction& interaction() const { return interaction_; }
+    [[nodiscard]] const SolidsVolume& solids() const { return solids_; }
+    /// Momentum flux of the fluid alone, J - j, on face m of component d, as the last step left it.
+    [[nodiscard]] double fluid_flux(std::size_t d, std::size_t m) const {
+        return fluid_.velocity()[d].values()[m] - flux_before_[d].values()[m];
+    }
+
+    void save(std::vector<std::byte>& into) const {
+        fluid_.save(into);
+        flow::append_bytes<Vec3>(into, cloud_.position);
+        flow::append_bytes<Vec3>(into, cloud_.velocity);
+        flow::append_bytes<Vec3>(into, handed_);
+        for (std::size_t d = 0; d < 3; ++d) {
+            flow::append_bytes<double>(into, solids_.flux()[d].values());
+            flow::append_bytes<double>(into, flux_before_[d].values());
+        }
+        interaction_.save(into);
+    }
+    void restore(std::span<const std::byte>& from) {
+        fluid_.restore(from);
+        flow::take_bytes<Vec3>(from, cloud_.position);
+        flow::take_bytes<Vec3>(from, cloud_.velocity);
+        flow::take_bytes<Vec3>(from, handed_);
+        for (std::size_t d = 0; d < 3; ++d) {
+            flow::take_bytes<double>(from, solids_.flux()[d].values());
+            flow::take_bytes<double>(from, flux_before_[d].values());
+        }
+        interaction_.restore(from);
+        solids_.place(cloud_.position);
+    }
+
+private:
+    using FaceVectors = flow::FaceVectors;
+
+    // What particle p feels of the fluid in this step.
+    struct Around {
+        const DenseSuspension& all;
+        double vibration;
+        [[nodiscard]] Surroundings operator()(std::size_t p) const {
+            return {all.feet_[p].gather(all.between_), all.feet_[p].gather(all.acceleration_), vibration, {}};
+        }
+        /// rot u/2 by differences over a diameter.
+        [[nodiscard]] Vec3 rotation(std::size_t p) const {
+            const Vec3 x = all.cloud_.position[p];
+            const double r = all.motion_.sphere().radius();
+            std::array<Vec3, 3> slope;
+            for (std::size_t e = 0; e < 3; ++e) {
+                Vec3 low = x;
+                Vec3 high = x;
+                low[e] -= r;
+                high[e] += r;
+                low = all.walls_.clipped(low);
+                high = all.walls_.clipped(high);
+                const Vec3 below = all.footing(low).gather(all.between_);
+                const Vec3 above = all.footing(high).gather(all.between_);
+                for (std::size_t d = 0; d < 3; ++d) slope[e][d] = (above[d] - below[d]) / (2 * r);
+            }
+            return {0.5 * (slope[1][2] - slope[2][1]), 0.5 * (slope[2][0] - slope[0][2]),
+                    0.5 * (slope[0][1] - slope[1][0])};
+        }
+    };
+
+    [[nodiscard]] Footing<Kernel> footing(const Vec3& x) const { return {fluid_.grid(), walls_.periodic, x}; }
+    // At the predicted middle of the step.
+    [[nodiscard]] Footing<Kernel> foot(std::size_t p) const {
+        Vec3 x = cloud_.position[p];
+        const double half = 0.5 * fluid_.time_step();
+        for (std::size_t d = 0; d < 3; ++d) x[d] += half * cloud_.velocity[p][d];
+        return footing(walls_.clipped(x));
+    }
+
+    void find_source(double vibration, double dt) {
+        const Sphere& sphere = motion_.sphere();
+        const auto axis = static_cast<std::size_t>(sphere.direction);
+        const double drive = (sphere.density_ratio - 1) * sphere.acceleration * vibration;
+        FaceDeposit::clear(source_);
+        for (std::size_t p = 0; p < cloud_.size(); ++p) {
+            Vec3 force;
+            for (std::size_t d = 0; d < 3; ++d) force[d] = sphere.volume() * handed_[p][d];
+            force[axis] += sphere.volume() * drive;
+            feet_[p].scatter(force, source_);
+        }
+        deposit_.spread(source_);
+        const FaceVectors& flux = solids_.flux();
+        for (std::size_t d = 0; d < 3; ++d)
+            for (std::size_t m = 0; m < source_[d].size(); ++m)
+                source_[d].values()[m] += (flux[d].values()[m] - flux_before_[d].values()[m]) / dt;
+        space_.add_excess(fluid_.velocity(), flux, solids_.fraction(), source_);
+        fluid_.add_missing_buoyancy(solids_.fraction(), source_);
+    }
+
+    flow::Flow<Heat> fluid_;
+    flow::Vibration vibration_;
+    Motion<Drag> motion_;
+    Walls walls_;
+    Cloud cloud_;
+    Interaction interaction_;
+    flow::SharedSpace space_;
+    FaceDeposit deposit_;
+    SolidsVolume solids_;
+    std::vector<Vec3> handed_;  // per volume: force of other particles and walls less inertia, in the last step
+    FaceVectors source_, flux_before_;
+    FaceVectors velocity_, acceleration_;
+    FaceVectors between_ = flow::face_vectors(fluid_.grid());  // velocity of the fluid between the particles
+    std::vector<Footing<Kernel>> feet_;
+    std::vector<Vec3> before_;
+};
+
+}  // namespace grainsweep::coupling

@@ -1,0 +1,32 @@
+// No cell holds more particle volume than random close packing.
+//
+// Where phi_p exceeds the limit the excess e = max(phi_p - limit, 0) diffuses away and takes the particles along:
+// each sweep moves the particles at a face by
+//   x += h (e_below - e_above)/(6 phi_p),
+// gathered between the faces; no excess, no motion. Its end is the state with phi_p <= limit that is nearest to the
+// given one in the sense of an unstable sandpile. Only positions change, so momentum is untouched; walls are kept.
+#pragma once
+
+#include "solver/coupling/cloud.hpp"
+#include "solver/coupling/solids_volume.hpp"
+
+namespace grainsweep::coupling {
+
+class PackingLimit {
+public:
+    PackingLimit(const flow::Grid& grid, const flow::Sides& sides, double limit);
+
+    /// `solids` holds the fraction of `positions` before and after. Returns the number of sweeps: 0 where no cell is
+    /// over the limit by more than 0.1 %, at most `most_sweeps`.
+    int restore(std::vector<Vec3>& positions, const Walls& walls, SolidsVolume& solids);
+
+    static constexpr int most_sweeps = 200;
+
+private:
+    flow::Grid grid_;
+    std::array<flow::Edges, 3> edges_;
+    double limit_;
+    flow::FaceVectors shift_;
+};
+
+}  // namespace grainsweep::coupling

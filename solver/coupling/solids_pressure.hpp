@@ -1,0 +1,156 @@
+// Particles as a dense phase: what they do to each other is a pressure of their own (DDPM).
+//
+// Force per volume of a sphere, besides what the fluid does:
+//   a = -(1/phi_p) grad p_s,   p_s = xi phi_p Theta (1 + 2 (1 + e) phi_p g0)                 (granular.hpp)
+// (Popoff & Braun 2007, "A Lagrangian approach to dense particulate flows", ICMF), and no cell over the packing limit
+// (packing_limit.hpp). The type of Theta is the one choice: granular_temperature.hpp. Cells thinner than half of what
+// one particle per cell would fill have no collisions and no stress. The displacement by the stress in one step is
+// held below a tenth of a cell.
+#pragma once
+
+#include "solver/coupling/granular_temperature.hpp"
+#include "solver/coupling/packing_limit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace grainsweep::coupling {
+
+/// One particle on its own: moved, handed over, turned back by walls.
+template <class Motion>
+void advance_free(Cloud& cloud, std::size_t p, const Motion& motion, const Walls& walls, const Surroundings& around,
+                  Vec3& handed) {
+    Vec3& v = cloud.velocity[p];
+    const Vec3 before = v;
+    motion.advance(cloud.position[p], v, around);
+    const double inertia = motion.sphere().density_ratio / motion.time_step();
+    for (std::size_t d = 0; d < 3; ++d) handed[d] = around.other[d] - inertia * (v[d] - before[d]);
+    walls.apply(cloud.position[p], v);
+}
+
+template <class Temperature>
+class SolidsPressure {
+public:
+    SolidsPressure(const flow::Grid& grid, const flow::Sides& sides, const Sphere& sphere, const Granular& grains,
+                   double least_temperature, int smoothing)
+        : grid_(grid),
+          grains_(grains),
+          thinnest_(0.5 * sphere.volume() * static_cast<double>(grid.total_cells())),
+          volume_(sphere.volume()),
+          deposit_(grid, sides, smoothing),
+          mobility_(sphere.stokes / sphere.prandtl),
+          limit_(grid, sides, grains.packing_limit),
+          temperature_(grid, grains, {least_temperature, 1e12, thinnest_}),
+          straining_(grid),
+          mean_velocity_{flow::Field(grid), flow::Field(grid), flow::Field(grid)},
+          pressure_(grid),
+          stress_(flow::face_vectors(grid)) {
+        smallest_ = 1;
+        for (int d = 0; d < 3; ++d)
+            for (int i = 1; i <= grid.cells(d); ++i) smallest_ = std::min(smallest_, grid[d].width(i));
+    }
+
+    /// Advances every particle; `around(p)` is what it feels of the fluid, where it is standing at feet[p].
+    /// handed[p]: the stress less the inertia of the particle, per volume.
+    template <class Motion, class Feet, class Around>
+    void move(Cloud& cloud, const Motion& motion, const Walls& walls, SolidsVolume& solids, const Feet& feet,
+              const Around& around, std::vector<Vec3>& handed) {
+        find_stress(cloud, solids, feet, motion.time_step());
+        const double most = 0.1 * smallest_ / (mobility_ * motion.time_step());
+        for (std::size_t p = 0; p < cloud.size(); ++p) {
+            Surroundings here = around(p);
+            if (stressed_) {
+                here.other = feet[p].gather(stress_);
+                for (double& force : here.other) force = std::clamp(force, -most, most);
+            }
+            advance_free(cloud, p, motion, walls, here, handed[p]);
+        }
+    }
+
+    /// After walls: the packing limit. `solids` is left at the final positions.
+    void settle(Cloud& cloud, const Walls& walls, SolidsVolume& solids) {
+        const int sweeps = limit_.restore(cloud.position, walls, solids);
+        if (sweeps > 0) ++limited_;
+    }
+
+    [[nodiscard]] const flow::Field& temperature() const { return temperature_.values(); }
+    /// Steps in which the packing limit moved particles.
+    [[nodiscard]] std::int64_t limited_steps() const { return limited_; }
+
+    void save(std::vector<std::byte>& into) const {
+        temperature_.save(into);
+        flow::append_bytes(into, limited_);
+    }
+    void restore(std::span<const std::byte>& from) {
+        temperature_.restore(from);
+        flow::take_bytes(from, limited_);
+    }
+
+private:
+    // The stress is divided by the fraction that the particles themselves have on a face, and smoothed and gathered as
+    // that was deposited: the sum over the particles is that of -grad p_s over the faces, which no one loses.
+    template <class Feet>
+    void find_stress(const Cloud& cloud, SolidsVolume& solids, const Feet& feet, double dt) {
+        stressed_ = solids.largest_fraction() > thinnest_;
+        if (!stressed_) {
+            temperature_.rest(solids);
+            return;
+        }
+        solids.mean(cloud.position, cloud.velocity, mean_velocity_);
+        straining_.measure(grid_, solids.fraction(), mean_velocity_, thinnest_);
+        temperature_.advance(solids, straining_, dt);
+        const flow::Field& fraction = solids.fraction();
+        for (std::size_t m = 0; m < fraction.size(); ++m) {
+            const double a = fraction.values()[m];
+            pressure_.values()[m] = a > thinnest_ ? grains_.pressure(a) * temperature_.values().values()[m] : 0;
+        }
+        FaceDeposit::clear(stress_);
+        for (const auto& foot : feet) foot.scatter({volume_, volume_, volume_}, stress_);
+        deposit_.spread(stress_);
+        for (int d = 0; d < 3; ++d) {
+            flow::Field& stress = stress_[static_cast<std::size_t>(d)];
+            const auto stride = stress.stride(d);
+            for (int k = 1; k <= grid_.cells(2); ++k)
+                for (int j = 1; j <= grid_.cells(1); ++j)
+                    for (int i = 1; i <= grid_.cells(0); ++i) {
+                        const auto here = stress.index(i, j, k);
+                        const double difference = pressure_.data()[here] - pressure_.data()[here - stride];
+                        const int face = d == 0 ? i : d == 1 ? j : k;
+                        double& value = stress.data()[here];
+                        value = difference == 0 || !(value > 0) ? 0 : -difference / (grid_[d].spacing(face) * value);
+                    }
+        }
+        deposit_.smooth_transposed(stress_);
+    }
+
+    flow::Grid grid_;
+    Granular grains_;
+    double thinnest_;
+    double volume_;
+    FaceDeposit deposit_;
+    double mobility_;
+    double smallest_ = 1;
+    PackingLimit limit_;
+    Temperature temperature_;
+    Straining straining_;
+    std::array<flow::Field, 3> mean_velocity_;
+    flow::Field pressure_;
+    flow::FaceVectors stress_;
+    bool stressed_ = false;
+    std::int64_t limited_ = 0;
+};
+
+/// Particles that do nothing to each other: the volume they take from the fluid alone.
+struct NoInteraction {
+    template <class Motion, class Feet, class Around>
+    void move(Cloud& cloud, const Motion& motion, const Walls& walls, SolidsVolume&, const Feet&, const Around& around,
+              std::vector<Vec3>& handed) {
+        for (std::size_t p = 0; p < cloud.size(); ++p) advance_free(cloud, p, motion, walls, around(p), handed[p]);
+    }
+    void settle(Cloud&, const Walls&, SolidsVolume&) {}
+    void save(std::vector<std::byte>&) const {}
+    void restore(std::span<const std::byte>&) {}
+};
+
+}  // namespace grainsweep::coupling

@@ -1,0 +1,176 @@
+#include "solver/coupling/solids_volume.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace grainsweep::coupling {
+namespace {
+
+std::size_t at(int i) {
+    return static_cast<std::size_t>(i);
+}
+
+template <class Body>
+void each_cell(const flow::Grid& grid, Body body) {
+    for (int k = 1; k <= grid.cells(2); ++k)
+        for (int j = 1; j <= grid.cells(1); ++j)
+            for (int i = 1; i <= grid.cells(0); ++i) body(i, j, k);
+}
+
+}  // namespace
+
+SolidsVolume::SolidsVolume(const flow::Grid& grid, const flow::Sides& sides, double particle_volume, int passes)
+    : grid_(grid),
+      edges_(flow::pressure_edges(sides)),
+      face_edges_{flow::velocity_edges(sides, 0), flow::velocity_edges(sides, 1), flow::velocity_edges(sides, 2)},
+      particle_volume_(particle_volume),
+      passes_(passes),
+      fraction_(grid),
+      inverse_volume_(grid),
+      flux_(flow::face_vectors(grid)) {
+    inverse_width_x_.push_back(0);
+    for (int i = 1; i <= grid.cells(0); ++i) inverse_width_x_.push_back(1 / grid[0].width(i));
+    each_cell(grid_, [&](int i, int j, int k) {
+        inverse_volume_(i, j, k) = 1 / (grid_[0].width(i) * grid_[1].width(j) * grid_[2].width(k));
+    });
+}
+
+AxisWeights<2> SolidsVolume::weights(int d, double x) const {
+    return Trilinear::across(grid_[d], edges_[at(d)].periodic, x);
+}
+
+int SolidsVolume::inside(int d, int cell) const {
+    const int n = grid_.cells(d);
+    if (cell >= 1 && cell <= n) return cell;
+    return edges_[at(d)].periodic ? (cell - 1 + 4 * n) % n + 1 : std::clamp(cell, 1, n);
+}
+
+void SolidsVolume::place(std::span<const Vec3> positions) {
+    std::fill(fraction_.values().begin(), fraction_.values().end(), 0.0);
+    for (const Vec3& x : positions) {
+        std::array<AxisWeights<2>, 3> w;
+        std::array<std::array<std::ptrdiff_t, 2>, 3> cell{};  // offsets
+        for (int d = 0; d < 3; ++d) {
+            w[at(d)] = weights(d, x[at(d)]);
+            for (int a = 0; a < 2; ++a) cell[at(d)][at(a)] = inside(d, w[at(d)].first + a) * fraction_.stride(d);
+        }
+        double* const fraction = fraction_.data();
+        for (std::size_t c = 0; c < 2; ++c)
+            for (std::size_t b = 0; b < 2; ++b)
+                for (std::size_t a = 0; a < 2; ++a)
+                    fraction[cell[0][a] + cell[1][b] + cell[2][c]] +=
+                        particle_volume_ * (w[2].weight[c] * w[1].weight[b] * w[0].weight[a]);
+    }
+    smooth(fraction_, grid_, edges_, passes_);
+    for (std::size_t m = 0; m < fraction_.size(); ++m) fraction_.values()[m] *= inverse_volume_.values()[m];
+    fill_ghosts(fraction_, grid_, edges_);
+}
+
+void SolidsVolume::mean(std::span<const Vec3> positions, std::span<const Vec3> property,
+                        std::array<flow::Field, 3>& into) {
+    for (auto& field : into) std::fill(field.values().begin(), field.values().end(), 0.0);
+    for (std::size_t p = 0; p < positions.size(); ++p) {
+        std::array<AxisWeights<2>, 3> w;
+        for (int d = 0; d < 3; ++d) w[at(d)] = weights(d, positions[p][at(d)]);
+        for (int c = 0; c < 2; ++c)
+            for (int b = 0; b < 2; ++b)
+                for (int a = 0; a < 2; ++a) {
+                    const double share =
+                        particle_volume_ * (w[2].weight[at(c)] * w[1].weight[at(b)] * w[0].weight[at(a)]);
+                    const auto cell = fraction_.index(inside(0, w[0].first + a), inside(1, w[1].first + b),
+                                                      inside(2, w[2].first + c));
+                    for (std::size_t d = 0; d < 3; ++d) into[d].data()[cell] += share * property[p][d];
+                }
+    }
+    for (auto& field : into) {
+        smooth(field, grid_, edges_, passes_);
+        each_cell(grid_, [&](int i, int j, int k) {
+            const double phi = fraction_(i, j, k);
+            double& value = field(i, j, k);
+            value = phi > 0 ? value * inverse_volume_(i, j, k) / phi : 0;
+        });
+        fill_ghosts(field, grid_, edges_);
+    }
+}
+
+void SolidsVolume::fill(int d, double before, double after, Shares& shares) const {
+    const bool periodic = edges_[at(d)].periodic;
+    int periods = 0;
+    if (periodic) {  // the image of `after` nearest to `before`
+        periods = static_cast<int>(std::round((before - after) / grid_[d].length()));
+    }
+    AxisWeights<2> from = weights(d, before);
+    AxisWeights<2> to = weights(d, after);
+    if (!periodic) {  // all of a share beyond a wall belongs to the cell at the wall
+        const int n = grid_.cells(d);
+        for (AxisWeights<2>* w : {&from, &to}) {
+            if (w->first == 0) *w = {1, {1, 0}};
+            if (w->first == n) *w = {n - 1, {0, 1}};
+            if (w->first == 0) *w = {1, {1, 0}};  // n = 1
+        }
+    }
+    to.first += periods * grid_.cells(d);
+    shares.first = std::min(from.first, to.first);
+    const int count = std::max(from.first, to.first) + 2 - shares.first;
+    shares.before.assign(at(count), 0);
+    shares.change.assign(at(count), 0);
+    for (int a = 0; a < 2; ++a) {
+        shares.before[at(from.first - shares.first + a)] += from.weight[at(a)];
+        shares.change[at(from.first - shares.first + a)] -= from.weight[at(a)];
+        shares.change[at(to.first - shares.first + a)] += to.weight[at(a)];
+    }
+}
+
+// Net share that has passed the face below each cell, one after the other along D.
+template <int D>
+void SolidsVolume::carry_along(const std::array<Shares, 3>& shares, double scale) {
+    constexpr int A = D == 0 ? 1 : 0;
+    constexpr int B = D == 2 ? 1 : 2;
+    const Shares& own = shares[D];
+    if (own.before.size() == 2 && own.change[0] == 0) return;
+    double* const flux = flux_[D].data();
+    const auto stride = flux_[D].stride(D);
+    for (std::size_t b = 0; b < shares[B].before.size(); ++b)
+        for (std::size_t a = 0; a < shares[A].before.size(); ++a) {
+            const double sa = shares[A].before[a];
+            const double da = shares[A].change[a];
+            const double sb = shares[B].before[b];
+            const double db = shares[B].change[b];
+            const double across = scale * (sa * sb + 0.5 * (da * sb + sa * db) + da * db / 3);
+            const auto line = inside(A, shares[A].first + static_cast<int>(a)) * flux_[D].stride(A) +
+                              inside(B, shares[B].first + static_cast<int>(b)) * flux_[D].stride(B);
+            double passed = 0;
+            for (std::size_t c = 0; c + 1 < own.before.size(); ++c) {
+                passed -= own.change[c] * across;
+                flux[line + inside(D, own.first + static_cast<int>(c) + 1) * stride] += passed;
+            }
+        }
+}
+
+void SolidsVolume::carry(std::span<const Vec3> before, std::span<const Vec3> after, double dt) {
+    FaceDeposit::clear(flux_);
+    std::array<Shares, 3> shares;
+    for (std::size_t p = 0; p < before.size(); ++p) {
+        for (int d = 0; d < 3; ++d) fill(d, before[p][at(d)], after[p][at(d)], shares[at(d)]);
+        const double scale = particle_volume_ / dt;
+        carry_along<0>(shares, scale);
+        carry_along<1>(shares, scale);
+        carry_along<2>(shares, scale);
+    }
+    for (int d = 0; d < 3; ++d) {
+        flow::Field& field = flux_[at(d)];
+        smooth(field, grid_, face_edges_[at(d)], passes_, AtWalls::taken);
+        for (int k = 1; k <= grid_.cells(2); ++k)
+            for (int j = 1; j <= grid_.cells(1); ++j) {
+                const double yz = (d == 1 ? 1 : 1 / grid_[1].width(j)) * (d == 2 ? 1 : 1 / grid_[2].width(k));
+                double* const row = field.data() + field.index(0, j, k);
+                for (int i = 1; i <= grid_.cells(0); ++i) row[i] *= d == 0 ? yz : yz * inverse_width_x_[at(i)];
+            }
+    }
+}
+
+double SolidsVolume::largest_fraction() const {
+    return *std::max_element(fraction_.values().begin(), fraction_.values().end());
+}
+
+}  // namespace grainsweep::coupling

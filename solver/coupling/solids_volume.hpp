@@ -1,0 +1,59 @@
+// The volume of the particles on the grid: fraction phi_p of each cell and flux j through each face.
+//
+// A particle's volume is shared among the cell centres around it by trilinear weights, then widened by passes of
+// [1 2 1]/4 (interpolation.hpp). The flux is the one that carries each particle's shares from its old to its new
+// place: the density decomposition of Esirkepov 2001 (doi 10.1016/S0010-4655(00)00228-9, eq. 23), so that
+//   phi_p(new) = phi_p(old) - dt div j
+// holds in every cell to round-off, however the particles moved, on any tensor-product grid; smoothing both keeps it.
+#pragma once
+
+#include "solver/coupling/interpolation.hpp"
+
+#include <span>
+#include <vector>
+
+namespace grainsweep::coupling {
+
+class SolidsVolume {
+public:
+    SolidsVolume(const flow::Grid& grid, const flow::Sides& sides, double particle_volume, int passes);
+
+    /// phi_p of particles standing at `positions`, ghosts filled.
+    void place(std::span<const Vec3> positions);
+    /// j of particles that went from `before` to `after` (inside the box; shortest way along periodic axes) in dt.
+    void carry(std::span<const Vec3> before, std::span<const Vec3> after, double dt);
+    /// Mean of a particle property over the particles of a cell, weighted like phi_p: sum v_p w q / sum v_p w;
+    /// 0 where there are none. Ghosts filled with zero gradient.
+    void mean(std::span<const Vec3> positions, std::span<const Vec3> property, std::array<flow::Field, 3>& into);
+
+    [[nodiscard]] const flow::Field& fraction() const { return fraction_; }
+    [[nodiscard]] const flow::FaceVectors& flux() const { return flux_; }
+    /// Restores what the next step reads; the fraction follows from the positions.
+    [[nodiscard]] flow::FaceVectors& flux() { return flux_; }
+    [[nodiscard]] const flow::Edges& edges() const { return edges_; }
+    [[nodiscard]] double largest_fraction() const;
+
+private:
+    /// Shares of one particle among the cells of one axis, from index `first`.
+    struct Shares {
+        int first = 0;
+        std::vector<double> before, change;
+    };
+    // Weights of two neighbouring cells, `first` and the one after, the first in 0 ... n+1 (folded later).
+    [[nodiscard]] AxisWeights<2> weights(int d, double x) const;
+    [[nodiscard]] int inside(int d, int cell) const;  // folded at walls, wrapped along periodic axes
+    void fill(int d, double before, double after, Shares& shares) const;
+    template <int D>
+    void carry_along(const std::array<Shares, 3>& shares, double scale);
+
+    flow::Grid grid_;
+    flow::Edges edges_;
+    std::array<flow::Edges, 3> face_edges_;
+    double particle_volume_;
+    int passes_;
+    flow::Field fraction_, inverse_volume_;
+    std::vector<double> inverse_width_x_;
+    flow::FaceVectors flux_;
+};
+
+}  // namespace grainsweep::coupling

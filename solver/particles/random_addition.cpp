@@ -1,0 +1,106 @@
+#include "solver/particles/random_addition.hpp"
+
+#include "stats/random.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+namespace grainsweep::particles {
+namespace {
+
+using Vec3 = std::array<double, 3>;
+
+constexpr int most_tries = 100'000;
+
+/// Boxes that remember which spheres reach into them, so that a try looks only at what it could touch.
+class Boxes {
+public:
+    Boxes(const Tray& tray, double edge) : tray_(tray) {
+        for (std::size_t a = 0; a < 3; ++a) {
+            const double length = tray.high[a] - tray.low[a];
+            count_[a] = std::max<std::int64_t>(1, static_cast<std::int64_t>(length / edge));
+            edge_[a] = length / static_cast<double>(count_[a]);
+        }
+        spheres_.resize(static_cast<std::size_t>(count_[0] * count_[1] * count_[2]));
+    }
+
+    /// Calls visit(box) for every box the cube around x reaches into; stops and returns false when visit does.
+    template <class Visit>
+    bool every(const Vec3& x, double radius, Visit visit) {
+        std::array<std::int64_t, 3> first{}, last{};
+        for (std::size_t a = 0; a < 3; ++a) {
+            first[a] = static_cast<std::int64_t>(std::floor((x[a] - radius - tray_.low[a]) / edge_[a]));
+            last[a] = static_cast<std::int64_t>(std::floor((x[a] + radius - tray_.low[a]) / edge_[a]));
+            if (a == 1) {
+                last[a] = std::min(last[a], first[a] + count_[a] - 1);
+            } else {
+                first[a] = std::max<std::int64_t>(first[a], 0);
+                last[a] = std::min(last[a], count_[a] - 1);
+            }
+        }
+        for (std::int64_t i = first[0]; i <= last[0]; ++i)
+            for (std::int64_t j = first[1]; j <= last[1]; ++j)
+                for (std::int64_t k = first[2]; k <= last[2]; ++k) {
+                    const std::int64_t wrapped = ((j % count_[1]) + count_[1]) % count_[1];
+                    if (!visit(spheres_[static_cast<std::size_t>((i * count_[1] + wrapped) * count_[2] + k)]))
+                        return false;
+                }
+        return true;
+    }
+
+private:
+    Tray tray_;
+    std::array<std::int64_t, 3> count_{};
+    Vec3 edge_{};
+    std::vector<std::vector<std::size_t>> spheres_;
+};
+
+}  // namespace
+
+std::vector<Vec3> random_addition(const Tray& tray, std::span<const double> radii, std::uint64_t seed) {
+    std::vector<Vec3> centres(radii.size());
+    if (radii.empty()) return centres;
+    const double period = tray.high[1] - tray.low[1];
+    std::vector<std::size_t> order(radii.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return radii[a] > radii[b]; });
+    if (4 * radii[order.front()] > period)
+        throw std::invalid_argument("the largest sphere is wider than half the period it is to be placed in");
+
+    const double mean = std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(radii.size());
+    Boxes boxes(tray, 2 * mean);
+    for (const std::size_t i : order) {
+        const double r = radii[i];
+        stats::Generator random(stats::bits_at(seed, 0, i));
+        const auto free = [&](const Vec3& x) {
+            return boxes.every(x, r, [&](const std::vector<std::size_t>& present) {
+                return std::ranges::none_of(present, [&](std::size_t j) {
+                    double dy = x[1] - centres[j][1];
+                    dy -= period * std::nearbyint(dy / period);
+                    const double dx = x[0] - centres[j][0], dz = x[2] - centres[j][2], reach = r + radii[j];
+                    return dx * dx + dy * dy + dz * dz < reach * reach;
+                });
+            });
+        };
+        bool placed = false;
+        for (int tries = 0; tries < most_tries && !placed; ++tries) {
+            for (std::size_t a = 0; a < 3; ++a) {
+                const double inset = a == 1 ? 0 : r;
+                const double room = tray.high[a] - tray.low[a] - 2 * inset;
+                centres[i][a] = tray.low[a] + inset + std::max(room, 0.0) * random.uniform();
+            }
+            placed = free(centres[i]);
+        }
+        if (!placed)
+            throw std::invalid_argument("the layer has no room for all its particles: make layer_area smaller");
+        boxes.every(centres[i], r, [i](std::vector<std::size_t>& present) {
+            present.push_back(i);
+            return true;
+        });
+    }
+    return centres;
+}
+
+}  // namespace grainsweep::particles

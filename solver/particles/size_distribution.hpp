@@ -1,0 +1,47 @@
+// Diameters of powder particles, as a distribution by number of d/D.
+//
+//     equal      d = D
+//     classes    d = d_k with share p_k: the five classes of Wu (2020), tables 3.2 and 3.3, there a discretised
+//                Weibull distribution: 4.44, 22.76, 40.78, 26.91, 5.11 % with d = (1 + k w) D, k = -2 ... 2,
+//                w = 0.15 (wide) or 0.1 (narrow). Their mean is (1 + 0.0549 w) D.
+//     lognormal  ln d normal with standard deviation s, without its 0.5 % smallest and 0.5 % largest; the median is
+//                chosen so that the mean of what is left is D
+// With a = Phi^-1(0.995) and median m the moments of the truncated lognormal are
+//     E[d^k] = m^k exp(k^2 s^2/2) (Phi(a - k s) - Phi(-a - k s))/0.99.
+#pragma once
+
+#include <variant>
+#include <vector>
+
+namespace grainsweep::particles {
+
+class SizeDistribution {
+public:
+    /// All equal.
+    SizeDistribution() = default;
+    /// The thesis's five classes, `width` D apart; 0 < width < 0.5.
+    [[nodiscard]] static SizeDistribution weibull_classes(double width);
+    /// Standard deviation of ln d before truncation; spread >= 0.
+    [[nodiscard]] static SizeDistribution lognormal(double spread);
+
+    /// One size, without any draw. A lognormal without spread is not asked here: it draws, and gets D each time.
+    [[nodiscard]] bool equal() const { return std::holds_alternative<Equal>(law_); }
+    /// d/D below which lies the share u of all particles, 0 <= u < 1: of a uniform u, a draw.
+    [[nodiscard]] double diameter(double u) const;
+    [[nodiscard]] double smallest() const;
+    [[nodiscard]] double largest() const;
+    /// E[(d/D)^power].
+    [[nodiscard]] double moment(int power) const;
+
+private:
+    struct Equal {};
+    struct Classes {
+        double width = 0;
+    };
+    struct Lognormal {
+        double spread = 0, median = 1;
+    };
+    std::variant<Equal, Classes, Lognormal> law_;
+};
+
+}  // namespace grainsweep::particles
