@@ -1,6 +1,7 @@
 // Error against cost of the DEM: what each numerical setting does to what is measured, and what it costs.
 //
 //   bench_accuracy [--scene collision|settling|chute|spreading] [--seeds N] [--figure FILE.svg]
+//   bench_accuracy --lines FILE --figure FILE.svg      draws what earlier runs printed
 //
 //   collision  512 oblique impacts at once (10 to 85 degrees, spinning): rms error of rebound velocities against the
 //              same impacts with a step 400 times finer in double precision
@@ -12,10 +13,12 @@
 // standard error of that difference stands beside it. Cost is processor time of this thread, every step and list
 // included. One JSON line per setting; the figure joins the settings no other beats.
 #include <ctime>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <functional>
 #include <limits>
 #include <map>
@@ -331,19 +334,37 @@ void spreading(std::vector<Setting>& all, int seeds) {
     all.insert(all.end(), settings.begin(), settings.end());
 }
 
+/// What json_line wrote.
+std::vector<Setting> read_lines(const std::string& file) {
+    std::ifstream in(file);
+    if (!in) throw std::runtime_error("cannot read " + file);
+    std::vector<Setting> all;
+    for (std::string line; std::getline(in, line);) {
+        const auto j = nlohmann::json::parse(line);
+        if (j.contains("outcome")) continue;
+        Setting s{j.at("scene"), j.at("setting"), j.at("measured"), j.at("cost_seconds")};
+        s.error = j.at("relative_error"), s.uncertainty = j.at("uncertainty");
+        s.is_reference = j.at("reference");
+        all.push_back(s);
+    }
+    return all;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-    std::string scene, figure;
+    std::string scene, figure, lines;
     int seeds = 12;
     for (int i = 1; i + 1 < argc; i += 2) {
         const std::string name = argv[i];
         if (name == "--scene") scene = argv[i + 1];
         if (name == "--seeds") seeds = std::max(2, std::stoi(argv[i + 1]));
         if (name == "--figure") figure = argv[i + 1];
+        if (name == "--lines") lines = argv[i + 1];
     }
     std::vector<Setting> all;
-    const auto wanted = [&](const char* name) { return scene.empty() || scene == name; };
+    if (!lines.empty()) all = read_lines(lines);
+    const auto wanted = [&](const char* name) { return lines.empty() && (scene.empty() || scene == name); };
     if (wanted("collision")) collision(all);
     if (wanted("settling")) settling(all, seeds);
     if (wanted("chute")) chute(all, seeds);
