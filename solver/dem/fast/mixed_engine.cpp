@@ -505,10 +505,29 @@ bool supports(Method::Path path) {
     }
 }
 
-Method::Path best_path() {
+namespace {
+
+Method::Path widest_path() {
     if (supports(Method::Path::avx512)) return Method::Path::avx512;
     if (supports(Method::Path::avx2)) return Method::Path::avx2;
     return Method::Path::baseline;
+}
+
+/// A fact of the process like its processor: chosen at its start, before any engine is made.
+Method::Path& preferred() {
+    static Method::Path path = widest_path();
+    return path;
+}
+
+}  // namespace
+
+Method::Path best_path() {
+    return preferred();
+}
+
+void prefer(Method::Path path) {
+    if (!supports(path)) throw std::invalid_argument("this processor lacks the instructions of the path asked for");
+    preferred() = path == Method::Path::best ? widest_path() : path;
 }
 
 std::unique_ptr<Engine> make_mixed_engine(const Setup& setup, Method::Path path, double skin) {
