@@ -9,7 +9,9 @@
 //
 // Work that cannot matter is not done: frozen spheres that no mobile one can touch while overlaps stay below
 // a tenth of a diameter are dropped (particles/reach.hpp), a larger one at any step is reported unstable; a case ends
-// when no mobile sphere is left, and, under the rule "quiet", when the powder has come to rest.
+// when no mobile sphere is left, and, under the rule "quiet", when the powder has come to rest: for 1.5 t* no more than
+// one sphere in ten thousand (or one) moved at a time, and the count changed by no more. Those few may still leave;
+// beyond them the rule presumes that what rests stays at rest.
 #include "solver/geometry/tpms_outlet.hpp"
 #include "solver/geometry/vector.hpp"
 #include "solver/observables/beverloo.hpp"
@@ -41,6 +43,7 @@ constexpr std::int64_t samples_per_force_sample = 10;
 constexpr double quiet_time = 1.5;    // t*
 constexpr double quiet_periods = 2;   // of vibration
 constexpr double quiet_speed = 1e-3;  // sqrt(2 g L)
+constexpr double quiet_share = 1e-4;  // of the powder may move faster, and leave
 constexpr double overlap_bin = 0.0005, force_bin = 10;
 constexpr std::size_t layers = 20;
 
@@ -49,7 +52,6 @@ struct Moment {
     std::int64_t step = 0;
     std::int64_t in_cell = 0;  ///< mobile centres in the cell
     double fastest_down = 0;   ///< in the cell, along gravity, m/s
-    double fastest = 0;        ///< in the cell, m/s
     std::int64_t mobile = 0;   ///< not yet gone
     std::int64_t at_rest = 0;  ///< in the cell, slower than quiet_speed
 };
@@ -126,6 +128,7 @@ private:
     std::int64_t step_ = 0;
     std::int64_t mobile_left_ = 0;
     std::int64_t quiet_since_ = 0;  // step of the last sample that was not quiet
+    std::int64_t quiet_count_ = 0;  // in the cell then
     double max_overlap_ = 0;        // diameters
     double max_force_ = 0;          // m 9.81
     std::vector<Moment> moments_;
@@ -199,12 +202,15 @@ void TpmsDischarge::sample() {
         ++now.in_cell;
         now.fastest_down = std::max(now.fastest_down, geometry::dot(state_.velocity[i], question_.down));
         const double speed = geometry::norm(state_.velocity[i]);
-        now.fastest = std::max(now.fastest, speed);
         now.at_rest += speed < slow ? 1 : 0;
     }
     now.mobile = mobile_left_;
-    const bool quiet = !moments_.empty() && now.in_cell == moments_.back().in_cell && now.fastest < slow;
-    if (!quiet) quiet_since_ = step_;
+    const auto few =
+        std::max<std::int64_t>(1, static_cast<std::int64_t>(quiet_share * static_cast<double>(start_count_)));
+    if (now.in_cell - now.at_rest > few || std::abs(now.in_cell - quiet_count_) > few) {
+        quiet_since_ = step_;
+        quiet_count_ = now.in_cell;
+    }
     moments_.push_back(now);
     sample_forces((step_ / sample_interval_) % samples_per_force_sample == 0 || step_ == last_step_);
 
@@ -321,6 +327,7 @@ void TpmsDischarge::save(Bytes& into) const {
     out.put(step_);
     out.put(mobile_left_);
     out.put(quiet_since_);
+    out.put(quiet_count_);
     out.put(max_overlap_);
     out.put(max_force_);
     out.put(moments_);
@@ -337,6 +344,7 @@ void TpmsDischarge::restore(std::span<const std::byte> from) {
     in.get(step_);
     in.get(mobile_left_);
     in.get(quiet_since_);
+    in.get(quiet_count_);
     in.get(max_overlap_);
     in.get(max_force_);
     in.get(moments_);
