@@ -28,6 +28,8 @@ SolidsVolume::SolidsVolume(const flow::Grid& grid, const flow::Sides& sides, dou
       fraction_(grid),
       inverse_volume_(grid),
       flux_(flow::face_vectors(grid)) {
+    inverse_width_x_.push_back(0);
+    for (int i = 1; i <= grid.cells(0); ++i) inverse_width_x_.push_back(1 / grid[0].width(i));
     each_cell(grid_, [&](int i, int j, int k) {
         inverse_volume_(i, j, k) = 1 / (grid_[0].width(i) * grid_[1].width(j) * grid_[2].width(k));
     });
@@ -39,23 +41,24 @@ AxisWeights<2> SolidsVolume::weights(int d, double x) const {
 
 int SolidsVolume::inside(int d, int cell) const {
     const int n = grid_.cells(d);
-    if (edges_[at(d)].periodic) return (cell - 1 + 4 * n) % n + 1;
-    return std::clamp(cell, 1, n);
+    if (cell >= 1 && cell <= n) return cell;
+    return edges_[at(d)].periodic ? (cell - 1 + 4 * n) % n + 1 : std::clamp(cell, 1, n);
 }
 
 void SolidsVolume::place(std::span<const Vec3> positions) {
     std::fill(fraction_.values().begin(), fraction_.values().end(), 0.0);
     for (const Vec3& x : positions) {
         std::array<AxisWeights<2>, 3> w;
-        std::array<std::array<int, 2>, 3> cell{};
+        std::array<std::array<std::ptrdiff_t, 2>, 3> cell{};  // offsets
         for (int d = 0; d < 3; ++d) {
             w[at(d)] = weights(d, x[at(d)]);
-            cell[at(d)] = {inside(d, w[at(d)].first), inside(d, w[at(d)].first + 1)};
+            for (int a = 0; a < 2; ++a) cell[at(d)][at(a)] = inside(d, w[at(d)].first + a) * fraction_.stride(d);
         }
+        double* const fraction = fraction_.data();
         for (std::size_t c = 0; c < 2; ++c)
             for (std::size_t b = 0; b < 2; ++b)
                 for (std::size_t a = 0; a < 2; ++a)
-                    fraction_(cell[0][a], cell[1][b], cell[2][c]) +=
+                    fraction[cell[0][a] + cell[1][b] + cell[2][c]] +=
                         particle_volume_ * (w[2].weight[c] * w[1].weight[b] * w[0].weight[a]);
     }
     smooth(fraction_, grid_, edges_, passes_);
@@ -124,21 +127,22 @@ void SolidsVolume::carry_along(const std::array<Shares, 3>& shares, double scale
     constexpr int A = D == 0 ? 1 : 0;
     constexpr int B = D == 2 ? 1 : 2;
     const Shares& own = shares[D];
+    if (own.before.size() == 2 && own.change[0] == 0) return;
+    double* const flux = flux_[D].data();
+    const auto stride = flux_[D].stride(D);
     for (std::size_t b = 0; b < shares[B].before.size(); ++b)
         for (std::size_t a = 0; a < shares[A].before.size(); ++a) {
             const double sa = shares[A].before[a];
             const double da = shares[A].change[a];
             const double sb = shares[B].before[b];
             const double db = shares[B].change[b];
-            const double across = sa * sb + 0.5 * da * sb + 0.5 * sa * db + da * db / 3;
-            std::array<int, 3> cell{};
-            cell[A] = inside(A, shares[A].first + static_cast<int>(a));
-            cell[B] = inside(B, shares[B].first + static_cast<int>(b));
+            const double across = scale * (sa * sb + 0.5 * (da * sb + sa * db) + da * db / 3);
+            const auto line = inside(A, shares[A].first + static_cast<int>(a)) * flux_[D].stride(A) +
+                              inside(B, shares[B].first + static_cast<int>(b)) * flux_[D].stride(B);
             double passed = 0;
             for (std::size_t c = 0; c + 1 < own.before.size(); ++c) {
                 passed -= own.change[c] * across;
-                cell[D] = inside(D, own.first + static_cast<int>(c) + 1);
-                flux_[D](cell[0], cell[1], cell[2]) += scale * passed;
+                flux[line + inside(D, own.first + static_cast<int>(c) + 1) * stride] += passed;
             }
         }
 }
@@ -156,12 +160,12 @@ void SolidsVolume::carry(std::span<const Vec3> before, std::span<const Vec3> aft
     for (int d = 0; d < 3; ++d) {
         flow::Field& field = flux_[at(d)];
         smooth(field, grid_, face_edges_[at(d)], passes_, AtWalls::taken);
-        each_cell(grid_, [&](int i, int j, int k) {
-            const double x = d == 0 ? 1 : grid_[0].width(i);
-            const double y = d == 1 ? 1 : grid_[1].width(j);
-            const double z = d == 2 ? 1 : grid_[2].width(k);
-            field(i, j, k) /= x * y * z;
-        });
+        for (int k = 1; k <= grid_.cells(2); ++k)
+            for (int j = 1; j <= grid_.cells(1); ++j) {
+                const double yz = (d == 1 ? 1 : 1 / grid_[1].width(j)) * (d == 2 ? 1 : 1 / grid_[2].width(k));
+                double* const row = field.data() + field.index(0, j, k);
+                for (int i = 1; i <= grid_.cells(0); ++i) row[i] *= d == 0 ? yz : yz * inverse_width_x_[at(i)];
+            }
     }
 }
 

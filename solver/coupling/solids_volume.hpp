@@ -10,6 +10,7 @@
 #include "solver/coupling/interpolation.hpp"
 
 #include <span>
+#include <vector>
 
 namespace grainsweep::coupling {
 
@@ -51,6 +52,7 @@ private:
     double particle_volume_;
     int passes_;
     flow::Field fraction_, inverse_volume_;
+    std::vector<double> inverse_width_x_;
     flow::FaceVectors flux_;
 };
 

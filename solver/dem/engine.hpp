@@ -35,7 +35,11 @@ struct Material {
     double density = 7980;     ///< kg/m3
     double restitution = 0.5;  ///< (0, 1]
     double friction = 0.2;     ///< Coulomb, particle-particle and particle-wall; 0: no tangential law at all
+    /// mu_r, tangent of the steepest slope on which a sphere stays at rest, [0, 1]; 0: no rolling resistance at all
     double rolling_friction = 0;
+    /// eta_r, damping of the rolling spring over the critical one, [0, 1]; it matters only while the spring holds:
+    /// what stopped rolling rocks on its spring, and 0.3 ends that within about one period
+    double rolling_damping = 0.3;
     double cohesion = 0;  ///< cohesion energy density, J/m3; 0: no cohesion law at all
     CohesionArea cohesion_area = CohesionArea::sjkr;
     FrictionLimit friction_limit = FrictionLimit::contact;
@@ -120,6 +124,7 @@ struct ContactForce {
     Vec3 normal{};            ///< unit, from second to first
     double normal_force = 0;  ///< N, with damping and cohesion; positive repels
     Vec3 tangential_force{};  ///< N
+    Vec3 rolling_moment{};    ///< N m on `first` besides that of the forces, minus that on `second`
 };
 
 /// Work done, for cost and benchmarks.

@@ -36,9 +36,17 @@ Hertz hertz(const Material& m) {
 
 Mindlin mindlin(const Material& m, double time_step) {
     const double stiffness = 8 * effective_shear_modulus(m);
-    return {.stiffness = stiffness,
-            .damping = -two_sqrt_five_sixths * damping_ratio(m.restitution) * std::sqrt(stiffness),
-            .friction = m.friction,
+    return {
+        .stiffness = stiffness,
+        .damping = m.friction > 0 ? -two_sqrt_five_sixths * damping_ratio(m.restitution) * std::sqrt(stiffness) : 0.0,
+        .friction = m.friction,
+        .time_step = time_step};
+}
+
+RollingResistance rolling_resistance(const Material& m, double time_step) {
+    return {.stiffness = 2.25 * m.rolling_friction * m.rolling_friction * hertz(m).stiffness,
+            .friction = m.rolling_friction,
+            .damping_ratio = m.rolling_damping,
             .time_step = time_step};
 }
 

@@ -10,6 +10,7 @@
 #include "solver/dem/laws/cohesion.hpp"
 #include "solver/dem/laws/hertz.hpp"
 #include "solver/dem/laws/mindlin.hpp"
+#include "solver/dem/laws/rolling.hpp"
 
 namespace grainsweep::dem {
 
@@ -19,6 +20,7 @@ namespace grainsweep::dem {
 [[nodiscard]] double sphere_mass(double radius, double density);         ///< kg
 
 [[nodiscard]] Hertz hertz(const Material& material);
-[[nodiscard]] Mindlin mindlin(const Material& material, double time_step);
+[[nodiscard]] Mindlin mindlin(const Material& material, double time_step);  ///< without friction: no force at all
+[[nodiscard]] RollingResistance rolling_resistance(const Material& material, double time_step);
 
 }  // namespace grainsweep::dem

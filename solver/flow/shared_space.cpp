@@ -3,6 +3,8 @@
 #include "solver/flow/vector_clones.hpp"
 
 #include <algorithm>
+#include <type_traits>
+#include <utility>
 
 namespace grainsweep::flow {
 namespace {
@@ -10,12 +12,6 @@ namespace {
 std::size_t at(int i) {
     return static_cast<std::size_t>(i);
 }
-
-// The geometry of one direction at one place: the control volume and the two gaps between values on its sides.
-struct Across {
-    std::ptrdiff_t step;
-    double inverse_width, low_gap, high_gap;
-};
 
 // The fields of one component's row at i = 0.
 struct Row {
@@ -50,47 +46,46 @@ template <int D, int E>
     }
 }
 
-struct RowGeometry {
-    const double* inverse_width_x;  // of the control volumes of component D along x
-    const double* gap_x;            // gap_x[i]: below value i along x
-    const double* own_x;            // D = 0: spacing along x at the face
+// Where a row of edges lies: the gap below it along E, and the shares and spacing along D.
+struct EdgeRow {
+    const double* gap_x;  // E = x
+    const double* own_x;  // D = x, as the next two
     const double* lower_x;
     const double* upper_x;
-    Across y, z;
-    double own, lower, upper;  // along D when that is y or z
-    std::ptrdiff_t sy, sz;
+    double gap, own, lower, upper;  // the same where the direction is not x
+    std::ptrdiff_t s, e;            // strides along D and E
     int first, last;
 };
 
-template <int D>
-GRAINSWEEP_VECTOR_CLONES void excess_row(double* __restrict out, const Row& row, const RowGeometry& g) {
+// Flux difference through the low sides of a row of control volumes.
+template <int D, int E>
+GRAINSWEEP_VECTOR_CLONES void flux_row(double* __restrict flux, const Row& row, const EdgeRow& edge) {
     const Row r = row;
-    const double* const width_x = g.inverse_width_x;
-    const double* const gap_x = g.gap_x;
-    const double* const own_x = g.own_x;
-    const double* const lower_x = g.lower_x;
-    const double* const upper_x = g.upper_x;
-    const Across y = g.y;
-    const Across z = g.z;
-    const double own_d = g.own;
-    const double lower_d = g.lower;
-    const double upper_d = g.upper;
-    const std::ptrdiff_t s = D == 0 ? 1 : D == 1 ? g.sy : g.sz;
-    const int last = g.last;
-    for (int i = g.first; i <= last; ++i) {
-        const double lower = D == 0 ? lower_x[i] : lower_d;
-        const double upper = D == 0 ? upper_x[i] : upper_d;
-        const double own = D == 0 ? own_x[i] : own_d;
-        out[i] += (flux_difference<D, 0>(r, i + 1, s, 1, lower, upper, gap_x[i + 1], own) -
-                   flux_difference<D, 0>(r, i, s, 1, lower, upper, gap_x[i], own)) *
-                      width_x[i] +
-                  (flux_difference<D, 1>(r, i + y.step, s, y.step, lower, upper, y.high_gap, own) -
-                   flux_difference<D, 1>(r, i, s, y.step, lower, upper, y.low_gap, own)) *
-                      y.inverse_width +
-                  (flux_difference<D, 2>(r, i + z.step, s, z.step, lower, upper, z.high_gap, own) -
-                   flux_difference<D, 2>(r, i, s, z.step, lower, upper, z.low_gap, own)) *
-                      z.inverse_width;
-    }
+    const EdgeRow g = edge;
+    const std::ptrdiff_t s = D == 0 ? 1 : g.s;
+    const std::ptrdiff_t e = E == 0 ? 1 : g.e;
+    for (int i = g.first; i <= g.last; ++i)
+        flux[i] = flux_difference<D, E>(r, i, s, e, D == 0 ? g.lower_x[i] : g.lower, D == 0 ? g.upper_x[i] : g.upper,
+                                        E == 0 ? g.gap_x[i] : g.gap, D == 0 ? g.own_x[i] : g.own);
+}
+
+// out += net inflow of the three pairs of fluxes.
+GRAINSWEEP_VECTOR_CLONES
+void balance_row(double* __restrict out, const double* __restrict x, const double* __restrict width_x,
+                 const double* __restrict y_low, const double* __restrict y_high, double width_y,
+                 const double* __restrict z_low, const double* __restrict z_high, double width_z, int first, int last) {
+    for (int i = first; i <= last; ++i)
+        out[i] += (x[i + 1] - x[i]) * width_x[i] + (y_high[i] - y_low[i]) * width_y + (z_high[i] - z_low[i]) * width_z;
+}
+
+template <int E>
+void flux_row_of(int d, double* flux, const Row& row, const EdgeRow& edge) {
+    if (d == 0)
+        flux_row<0, E>(flux, row, edge);
+    else if (d == 1)
+        flux_row<1, E>(flux, row, edge);
+    else
+        flux_row<2, E>(flux, row, edge);
 }
 
 }  // namespace
@@ -141,52 +136,64 @@ void SharedSpace::add_excess(const FaceVectors& mixture, const FaceVectors& part
                              FaceVectors& acceleration) {
     fluid_flux(mixture, particle_flux, flux_);
     interstitial(mixture, particle_flux, solids, velocity_);
-    for (int d = 0; d < 3; ++d) {
-        const auto m = at(d);
-        const Weights& w = weights_[m];
-        const Field& shape = mixture[m];
-        // Values of component d lie at faces along d, at centres across it.
-        const auto gap = [&](int e, int i) {  // below value i along e
-            return e == d ? inverse_width_[at(e)][at(i - 1)] : inverse_spacing_[at(e)][at(i)];
+    for (int d = 0; d < 3; ++d) add_excess_of(d, mixture, solids, acceleration[at(d)]);
+}
+
+// Each flux is found once: a row's high side along y and z is the next row's low side.
+void SharedSpace::add_excess_of(int d, const FaceVectors& mixture, const Field& solids, Field& acceleration) {
+    const auto m = at(d);
+    const Weights& w = weights_[m];
+    const Field& shape = mixture[m];
+    // Values of component d lie at faces along d, at centres across it.
+    const auto gap = [&](int e, int i) {  // below value i along e
+        return e == d ? inverse_width_[at(e)][at(i - 1)] : inverse_spacing_[at(e)][at(i)];
+    };
+    std::vector<double> gap_x{0};
+    for (int i = 1; i <= cells_[0] + 1; ++i) gap_x.push_back(gap(0, i));
+    // The low sides along E of the row (j, k), up to i = last.
+    const auto find = [&]<int E>(std::integral_constant<int, E>, int j, int k, int last, double* flux) {
+        const auto start = shape.index(0, j, k);
+        const auto rows = [&](const FaceVectors& v) {
+            return std::array<const double*, 3>{v[0].data() + start, v[1].data() + start, v[2].data() + start};
         };
-        std::vector<double> gap_x{0};
-        for (int i = 1; i <= cells_[0] + 1; ++i) gap_x.push_back(gap(0, i));
-        for (int k = w.first[2]; k <= cells_[2]; ++k)
-            for (int j = w.first[1]; j <= cells_[1]; ++j) {
-                const auto start = shape.index(0, j, k);
-                const auto rows = [&](const FaceVectors& v) {
-                    return std::array<const double*, 3>{v[0].data() + start, v[1].data() + start, v[2].data() + start};
-                };
-                const Row row{mixture[m].data() + start,
-                              velocity_[m].data() + start,
-                              solids.data() + start,
-                              rows(mixture),
-                              rows(velocity_),
-                              rows(flux_),
-                              viscosity_};
-                const int along = d == 1 ? j : k;
-                const RowGeometry g{w.inverse_width[0].data(),
-                                    gap_x.data(),
-                                    inverse_spacing_[0].data(),
-                                    w.lower[0].data(),
-                                    w.upper[0].data(),
-                                    {shape.stride(1), w.inverse_width[1][at(j)], gap(1, j), gap(1, j + 1)},
-                                    {shape.stride(2), w.inverse_width[2][at(k)], gap(2, k), gap(2, k + 1)},
-                                    d == 0 ? 0 : inverse_spacing_[m][at(along)],
-                                    d == 0 ? 0 : w.lower[m][at(along)],
-                                    d == 0 ? 0 : w.upper[m][at(along)],
-                                    shape.stride(1),
-                                    shape.stride(2),
-                                    w.first[0],
-                                    cells_[0]};
-                double* const out = acceleration[m].data() + start;
-                if (d == 0)
-                    excess_row<0>(out, row, g);
-                else if (d == 1)
-                    excess_row<1>(out, row, g);
-                else
-                    excess_row<2>(out, row, g);
-            }
+        const Row row{mixture[m].data() + start,
+                      velocity_[m].data() + start,
+                      solids.data() + start,
+                      rows(mixture),
+                      rows(velocity_),
+                      rows(flux_),
+                      viscosity_};
+        const auto along = at(d == 1 ? j : k);
+        const bool x = d == 0;
+        flux_row_of<E>(d, flux, row,
+                       {gap_x.data(), inverse_spacing_[0].data(), w.lower[0].data(), w.upper[0].data(),
+                        E == 0 ? 0 : gap(E, E == 1 ? j : k), x || d == E ? 0 : inverse_spacing_[m][along],
+                        x || d == E ? 0 : w.lower[m][along], x || d == E ? 0 : w.upper[m][along], shape.stride(d),
+                        shape.stride(E), w.first[0], last});
+    };
+    constexpr std::integral_constant<int, 0> along_x;
+    constexpr std::integral_constant<int, 1> along_y;
+    constexpr std::integral_constant<int, 2> along_z;
+    const auto length = at(cells_[0]) + 2;
+    std::vector<double> x(length);
+    std::vector<double> y_low(length);
+    std::vector<double> y_high(length);
+    std::vector<double> z_low(length * (at(cells_[1]) + 2));  // a plane of rows
+    std::vector<double> z_high(length);
+    for (int j = w.first[1]; j <= cells_[1]; ++j) find(along_z, j, w.first[2], cells_[0], &z_low[at(j) * length]);
+    for (int k = w.first[2]; k <= cells_[2]; ++k) {
+        find(along_y, w.first[1], k, cells_[0], y_low.data());
+        for (int j = w.first[1]; j <= cells_[1]; ++j) {
+            find(along_x, j, k, cells_[0] + 1, x.data());
+            find(along_y, j + 1, k, cells_[0], y_high.data());
+            find(along_z, j, k + 1, cells_[0], z_high.data());
+            double* const below = &z_low[at(j) * length];
+            balance_row(acceleration.data() + shape.index(0, j, k), x.data(), w.inverse_width[0].data(), y_low.data(),
+                        y_high.data(), w.inverse_width[1][at(j)], below, z_high.data(), w.inverse_width[2][at(k)],
+                        w.first[0], cells_[0]);
+            std::swap(y_low, y_high);
+            std::copy(z_high.begin(), z_high.end(), below);
+        }
     }
 }
 

@@ -36,6 +36,7 @@ public:
                     FaceVectors& acceleration);
 
 private:
+    void add_excess_of(int d, const FaceVectors& mixture, const Field& solids, Field& acceleration);
     void fluid_flux(const FaceVectors& mixture, const FaceVectors& particle_flux, FaceVectors& flux) const;
 
     Grid grid_;

@@ -6,8 +6,9 @@ namespace grainsweep::particles {
 
 using namespace geometry;
 
-void PairMemory::carry(const NeighbourList& old, const NeighbourList& fresh,
-                       std::span<const std::uint32_t> fresh_index) {
+template <class Value>
+void PairMemory<Value>::carry(const NeighbourList& old, const NeighbourList& fresh,
+                              std::span<const std::uint32_t> fresh_index) {
     // Buckets by the pair's first particle in the new order.
     const auto for_each_live = [&](auto&& visit) {
         for (std::size_t i = 0; i < old.particles(); ++i)
@@ -20,17 +21,17 @@ void PairMemory::carry(const NeighbourList& old, const NeighbourList& fresh,
             }
     };
     first_.assign(fresh.particles() + 1, 0);
-    for_each_live([&](std::uint32_t a, std::uint32_t b, const Vec3&) { ++first_[std::min(a, b)]; });
+    for_each_live([&](std::uint32_t a, std::uint32_t b, const Value&) { ++first_[std::min(a, b)]; });
     std::uint32_t total = 0;
     for (auto& entry : first_) {
         total += entry;
         entry = total;  // one past the bucket's end; filling moves it to the beginning
     }
     remembered_.resize(total);
-    for_each_live([&](std::uint32_t a, std::uint32_t b, const Vec3& v) {
+    for_each_live([&](std::uint32_t a, std::uint32_t b, const Value& v) {
         remembered_[--first_[std::min(a, b)]] = a < b ? Remembered{b, v} : Remembered{a, -v};
     });
-    value.assign(fresh.size(), Vec3{});
+    value.assign(fresh.size(), Value{});
     live.assign(fresh.size(), 0);
     for (std::size_t i = 0; i < fresh.particles(); ++i)
         for (std::uint32_t m = first_[i]; m < first_[i + 1]; ++m)
@@ -41,5 +42,8 @@ void PairMemory::carry(const NeighbourList& old, const NeighbourList& fresh,
                     break;
                 }
 }
+
+template class PairMemory<Vec3>;
+template class PairMemory<TangentialAndRolling>;
 
 }  // namespace grainsweep::particles

@@ -1,7 +1,7 @@
 // What touching pairs remember, stored in the order of the neighbour list.
 //
-// When the list is rebuilt and the particles are sorted anew, a memory follows its pair; an antisymmetric
-// quantity (measured from j to i) changes sign when i and j swap.
+// When the list is rebuilt and the particles are sorted anew, a memory follows its pair; antisymmetric
+// quantities (measured from j to i) change sign when i and j swap.
 #pragma once
 
 #include "solver/particles/neighbour_list.hpp"
@@ -17,9 +17,21 @@ namespace grainsweep::particles {
 /// Index of a particle that is no longer there.
 inline constexpr std::uint32_t gone = std::numeric_limits<std::uint32_t>::max();
 
+/// Memory of a pair that resists rolling: both quantities are antisymmetric.
+struct TangentialAndRolling {
+    Vec3 tangential{};
+    Vec3 rolling{};
+
+    friend TangentialAndRolling operator-(const TangentialAndRolling& a) {
+        return {geometry::operator-(a.tangential), geometry::operator-(a.rolling)};
+    }
+};
+
+/// Value: Vec3 or TangentialAndRolling.
+template <class Value>
 class PairMemory {
 public:
-    std::vector<Vec3> value;         ///< per list entry; zero where `live` is 0
+    std::vector<Value> value;        ///< per list entry; zero where `live` is 0
     std::vector<std::uint8_t> live;  ///< 1: the pair touched at the last evaluation
 
     /// Values of `old` entries move to the same pairs of `fresh`; fresh_index[i] is the new index of old i.
@@ -28,10 +40,13 @@ public:
 private:
     struct Remembered {
         std::uint32_t j;
-        Vec3 value;
+        Value value;
     };
     std::vector<std::uint32_t> first_;
     std::vector<Remembered> remembered_;
 };
+
+extern template class PairMemory<Vec3>;
+extern template class PairMemory<TangentialAndRolling>;
 
 }  // namespace grainsweep::particles

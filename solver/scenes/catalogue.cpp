@@ -4,6 +4,8 @@
 #include "solver/scenes/scene.hpp"
 
 #include <algorithm>
+#include <array>
+#include <stdexcept>
 
 namespace grainsweep {
 
@@ -37,6 +39,26 @@ const SceneInfo* find_scene(std::string_view name) {
     const auto scenes = scene_catalogue();
     const auto found = std::ranges::find(scenes, name, &SceneInfo::name);
     return found == scenes.end() ? nullptr : &*found;
+}
+
+namespace {
+
+constexpr std::array<std::string_view, 3> path_words = {"baseline", "avx2", "avx512"};
+constexpr std::array paths = {dem::Method::Path::baseline, dem::Method::Path::avx2, dem::Method::Path::avx512};
+
+}  // namespace
+
+std::span<const std::string_view> instruction_path_words() {
+    return path_words;
+}
+
+bool choose_instruction_path(std::string_view word) {
+    const auto at = std::ranges::find(path_words, word);
+    if (at == path_words.end()) throw std::invalid_argument("there is no instruction path of this name");
+    const auto path = paths[static_cast<std::size_t>(at - path_words.begin())];
+    if (!dem::fast::supports(path)) return false;
+    dem::fast::prefer(path);
+    return true;
 }
 
 std::string_view instruction_path() {

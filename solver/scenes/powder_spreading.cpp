@@ -22,6 +22,10 @@ std::vector<ParameterSpec> parameters() {
     const auto if_set = [](const char* other) { return std::vector<Relevance>{{other, Condition::nonzero, {}}}; };
     return {
         number("friction", "1", "Coulomb friction of particles, base and blade", 0.2, {0, 2}),
+        number("rolling_friction", "1",
+               "rolling friction of particles, base and blade: tangent of the steepest slope a particle "
+               "stands on",
+               0.0, {0, 1}, if_set("friction")),
         number("restitution", "1", "restitution of particles and walls", 0.5, above(0, 1)),
         number("diameter", "m", "diameter D of the particles; of unequal ones see size_distribution", 0.002,
                {1e-4, 1e-2}),
@@ -161,6 +165,13 @@ SceneInfo powder_spreading_scene() {
     info.name = "powder_spreading";
     info.summary = "a blade spreads a settled layer of powder: flux under the blade and quality of the layer";
     info.revision = spreading::revision;
+    // Error of mfr and cost of each: tests/bench/accuracy_speed, table in solver/dem/README.md.
+    const auto numerics = [](double fraction, double width, const char* precision) {
+        return Inputs{{"time_step_fraction", fraction}, {"width", width}, {"precision", std::string(precision)}};
+    };
+    info.accuracy = {{"fast", numerics(0.3, 5, "mixed")},
+                     {"balanced", numerics(0.2, 10, "mixed")},
+                     {"reference", numerics(0.05, 20, "double")}};
     info.parameters = parameters();
     info.observables = observables_of_spreading();
     info.make = [](const Inputs& inputs, std::uint64_t seed, Artefacts& artefacts) -> std::unique_ptr<Scene> {

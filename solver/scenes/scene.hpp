@@ -110,5 +110,11 @@ struct SceneInfo {
 
 /// The instruction set the solver's inner loops run with in this process: "x86-64-v2", "avx2", "avx512".
 [[nodiscard]] std::string_view instruction_path();
+/// Words that choose_instruction_path knows: "baseline" (x86-64-v2), "avx2", "avx512".
+[[nodiscard]] std::span<const std::string_view> instruction_path_words();
+/// Makes the particle loops of this process run with a narrower instruction set than the widest there is, for tests
+/// and benchmarks; to be called before a scene is made. False, and nothing changes: this processor lacks it.
+/// Throws std::invalid_argument on any other word.
+[[nodiscard]] bool choose_instruction_path(std::string_view word);
 
 }  // namespace grainsweep

@@ -2,6 +2,7 @@
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/command.hpp"
+#include "sweep/cli/path_option.hpp"
 #include "sweep/cli/run_campaign.hpp"
 #include "sweep/report/summary.hpp"
 #include "sweep/workers/worker.hpp"
@@ -61,7 +62,9 @@ Command run_command() {
                 parser.add_option("--max-cases", request->max_cases, "settle at most N cases in this run; 0: all")
                     ->check(CLI::NonNegativeNumber);
                 parser.add_flag("--quiet", request->quiet, "no progress, no table");
+                declare_path(parser, request->path);
                 return [request, again, &format] {
+                    use_path(request->path);
                     if (!again->empty()) request->again = outcome_asked_again(*again);
                     const RunReport report = run_campaign(*request);
                     if (!request->quiet || format != Format::text) show(report, format);
@@ -79,7 +82,10 @@ Command worker_command() {
                                   "folder of shared starting states and checkpoints");
                 parser.add_option("--checkpoint-seconds", options->checkpoint_seconds, "a case is saved this often");
                 parser.add_option("--lease-seconds", options->lease_seconds, "silence after which it ends itself");
-                return [options] {
+                const auto path = std::make_shared<std::string>();
+                declare_path(parser, *path);
+                return [options, path] {
+                    use_path(*path);
                     options->version = build_version();
                     return workers::work(*options);
                 };

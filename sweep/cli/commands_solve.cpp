@@ -3,6 +3,7 @@
 #include "sweep/campaign/relevance.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
+#include "sweep/cli/path_option.hpp"
 #include "sweep/cli/pictures.hpp"
 #include "sweep/store/expression.hpp"
 #include "sweep/workers/compute.hpp"
@@ -32,6 +33,7 @@ struct SolveRequest {
     std::string config;
     std::vector<std::string> settings;  ///< NAME=VALUE
     PictureRequest pictures;
+    std::string path;                   ///< instruction path; empty: the widest there is
     std::optional<std::uint64_t> seed;  ///< the case's own; none: the campaign's for this question
 };
 
@@ -93,6 +95,7 @@ Json json_of(const Sample& sample) {
 Json json_of(const campaign::Case& question, const CaseResult& result) {
     Json object = {
         {"scene", question.scene}, {"revision", question.revision}, {"case_id", question.id}, {"seed", question.seed}};
+    object["instruction_path"] = instruction_path();
     object["inputs"] = Json::object();
     for (const auto& [name, value] : question.inputs) object["inputs"][name] = report::to_json(report::to_cell(value));
     object["outcome"] = campaign::to_string(result.outcome);
@@ -202,7 +205,11 @@ std::vector<Command> solve_commands() {
                  parser.add_option("--seed", request->seed, "seed of the case; default: as in the campaign")
                      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{0x7FFFFFFFFFFFFFFF}));
                  declare_pictures(parser, request->pictures);
-                 return [request, &format] { return solve(*request, format); };
+                 declare_path(parser, request->path);
+                 return [request, &format] {
+                     use_path(request->path);
+                     return solve(*request, format);
+                 };
              },
              false}};
 }

@@ -83,11 +83,13 @@ std::unique_ptr<schedule::Judge> make_judge(const campaign::Campaign& campaign, 
                                              option("points"));
 }
 
-std::vector<std::string> worker_command(const campaign::Campaign& campaign, const fs::path& artefacts) {
+std::vector<std::string> worker_command(const campaign::Campaign& campaign, const fs::path& artefacts,
+                                        const std::string& path) {
     std::vector<std::string> command = campaign.execution.launcher;
     const std::vector<std::string> own = {fs::read_symlink("/proc/self/exe").string(), "worker", "--artefacts",
                                           artefacts.string()};
     command.insert(command.end(), own.begin(), own.end());
+    if (!path.empty()) command.insert(command.end(), {"--path", path});
     return command;
 }
 
@@ -138,7 +140,8 @@ RunReport run_campaign(const RunRequest& request) {
                         std::move(questions.places), rules);
 
     const std::size_t workers = worker_count(campaign, request);
-    workers::Pool pool({worker_command(campaign, artefacts), workers, campaign.limits.wall_seconds, build_version()});
+    workers::Pool pool(
+        {worker_command(campaign, artefacts, request.path), workers, campaign.limits.wall_seconds, build_version()});
     ProgressLine line(request.quiet, workers);
     store::ArtefactFolder folder(artefacts);
     schedule::Watchers watchers;

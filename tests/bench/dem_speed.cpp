@@ -123,6 +123,7 @@ void laws(const Options& o, const dem::Setup& bed, const dem::Setup& unequal) {
         s.material.cohesion = 35e3;
         s.material.cohesion_area = dem::CohesionArea::sjkr2;
     });
+    run("friction_rolling", bed, [](auto& s) { s.material.rolling_friction = 0.1; });
     run("unequal_friction", unequal, [](auto&) {});
     run("unequal_friction_sjkr", unequal, [](auto& s) { s.material.cohesion = 35e3; });
 }

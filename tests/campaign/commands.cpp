@@ -124,6 +124,51 @@ TEST(Commands, WrongArgumentsAreOneSentenceAndTwo) {
     }
 }
 
+// The particle loops of a narrower processor, through the whole program: the same answer to single precision, and the
+// archive says which it was. A path that this processor lacks is a wrong question.
+TEST(Commands, PathForcesTheInstructionSetOfParticles) {
+    const Folder folder;
+    folder.write("c.json", R"({"campaign": "c", "scene": "powder_spreading",
+        "factors": [{"name": "friction", "levels": [0.2]}],
+        "fixed": {"gap": 0.004, "diameter": 0.002, "width": 3, "layer_area": 4e-5, "travel": 0.02, "settle_time": 0.001},
+        "design": {"kind": "lattice"}})");
+    const std::vector<std::pair<std::string, std::string>> paths = {
+        {"baseline", "x86-64-v2"}, {"avx2", "avx2"}, {"avx512", "avx512"}};
+    std::vector<double> rates;
+    for (const auto& [word, recorded] : paths) {
+        const auto solved = in_folder(folder, {"solve", "c.json", "--path", word, "--format", "json"});
+        const std::string database = word + ".db";
+        const auto run = in_folder(folder, {"run", "c.json", "-j", "1", "--db", database, "--path", word, "--quiet"});
+        EXPECT_EQ(run.code, solved.code);
+        if (solved.code == 2) {
+            EXPECT_NE(solved.err.find("--path: got " + word + "; this processor lacks"), std::string::npos)
+                << solved.err;
+            EXPECT_FALSE(std::filesystem::exists(folder / database));
+            continue;
+        }
+        ASSERT_EQ(solved.code, 0) << solved.err;
+        const auto answer = json::parse(solved.out);
+        EXPECT_EQ(answer["instruction_path"], recorded);
+        rates.push_back(answer["scalars"]["mfr"]);
+        const auto rows = json::parse(
+            in_folder(folder, {"query", database, "SELECT instruction_path FROM provenance", "--format", "json"}).out);
+        ASSERT_EQ(rows.size(), 1U);
+        EXPECT_EQ(rows[0]["instruction_path"], recorded);
+        // The worker computed with the path it was told: the stored bits are those of this path, replayed.
+        const auto id = answer["case_id"].get<std::string>();
+        const auto again = in_folder(folder, {"replay", database, id, "--path", word, "--format", "json"});
+        EXPECT_EQ(again.code, 0) << again.out;
+        EXPECT_EQ(json::parse(again.out)["verdict"], "equal to the last bit");
+    }
+    EXPECT_GE(rates.size(), 1U) << "every x86-64-v2 processor has the baseline";
+    for (const char* command : {"solve", "run"}) {
+        const auto wrong = in_folder(folder, {command, "c.json", "--path", "avx521"});
+        EXPECT_EQ(wrong.code, 2);
+        EXPECT_EQ(wrong.err,
+                  "grainsweep: --path: got avx521; must be 'baseline', 'avx2' or 'avx512'. Did you mean 'avx512'?\n");
+    }
+}
+
 TEST(Commands, VersionNamesTheBuild) {
     const Folder folder;
     const auto ended = in_folder(folder, {"--version"});

@@ -125,6 +125,10 @@ TEST(FastAgainstPlain, WithoutFriction) {
     s = test::boxed_lattice(4, 0.5, 0.2, 6);
     s.material.friction = 0;
     compare({"frictionless_unequal", s, 800});
+    s = test::boxed_lattice(5, 0.4, 0, 12);  // some touch at the start: no dashpot may act on them
+    s.material.friction = 0;
+    s.material.cohesion = 2e5;
+    compare({"frictionless_cohesive", s, 600});
 }
 
 TEST(FastAgainstPlain, EveryCohesionAndLimit) {
@@ -156,6 +160,31 @@ TEST(FastAgainstPlain, BladeMovingAndVibrating) {
             s.walls.push_back(b);
             compare({round == 0 ? "blade_sharp" : "blade_round", s, 500});
         }
+}
+
+// Rolling resistance everywhere at once: pairs of all sizes, frozen spheres, planes, a blade; with and without what
+// Coulomb's and the rolling limit see of cohesion, and without friction.
+TEST(FastAgainstPlain, RollingResistance) {
+    for (const double spread : {0.0, 0.25})
+        for (const double friction : {0.0, 0.4})
+            for (const double cohesion : {0.0, 2e5}) {
+                dem::Setup s = test::boxed_lattice(5, 0.4, spread, 12);
+                s.material.friction = friction;
+                s.material.rolling_friction = 0.15;
+                s.material.cohesion = cohesion;
+                s.material.friction_limit = spread > 0 ? dem::FrictionLimit::net : dem::FrictionLimit::contact;
+                s.spheres[60].mobile = s.spheres[31].mobile = false;
+                for (const std::size_t i : {31U, 60U}) s.spheres[i].velocity = s.spheres[i].angular_velocity = {};
+                dem::Blade b;
+                b.front = s.domain.low[0] + 2.95e-3;
+                b.thickness = 2e-3;
+                b.bottom = s.domain.low[2] + 5.5e-3;
+                b.top = b.bottom + 20e-3;
+                b.speed = 0.8;
+                s.walls.erase(s.walls.begin() + 1);
+                s.walls.push_back(b);
+                compare({"rolling", s, 300});
+            }
 }
 
 TEST(FastAgainstPlain, NewWallsAndRemovedParticles) {

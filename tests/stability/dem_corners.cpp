@@ -127,7 +127,9 @@ TEST(DemCorners, ImpossibleSetupsAreRefusedInOneSentence) {
     refused([](dem::Setup& s) { s.spheres[1].velocity[0] = std::nan(""); });
     refused([](dem::Setup& s) { s.material.restitution = 0; });
     refused([](dem::Setup& s) { s.material.friction = -0.1; });
-    refused([](dem::Setup& s) { s.material.rolling_friction = 0.1; });
+    refused([](dem::Setup& s) { s.material.rolling_friction = -0.1; });
+    refused([](dem::Setup& s) { s.material.rolling_friction = 1.1; });
+    refused([](dem::Setup& s) { s.material.rolling_damping = 2; });
     refused([](dem::Setup& s) { s.material.youngs_modulus = std::numeric_limits<double>::infinity(); });
     refused([](dem::Setup& s) { s.domain.high = s.domain.low; });
     refused([](dem::Setup& s) { s.domain.periodic = {true, true, true}, s.domain.high = {0.003, 1, 1}; });
@@ -140,8 +142,10 @@ TEST(DemCorners, CheckpointsContinueBitForBit) {
     for (const double ratio : {1.0, 3.0})
         for (const bool frozen : {false, true})
             for (const double friction : {0.0, 0.4})
-                for (const double cohesion : {0.0, 1e4}) {
+                for (const auto& [cohesion, rolling] :
+                     {std::pair(0.0, 0.0), std::pair(1e4, 0.0), std::pair(0.0, 0.2)}) {
                     auto setup = tests::boxed_gas(64, 0.4, ratio, 6);
+                    setup.material.rolling_friction = rolling;
                     setup.gravity = {0, 0, -9.81};
                     setup.material.friction = friction;
                     setup.material.cohesion = cohesion;

@@ -35,6 +35,8 @@ Vec3 cross(const Vec3& a, const Vec3& b) {
 struct PlainDem::Contact {
     Vec3 n, velocity, surface;  // v_i - v_j; (R_i - d/2) w_i + (R_j - d/2) w_j
     double overlap, radius, mass, neck;
+    Vec3 turning;            // w_i - w_j
+    double inverse_inertia;  // sum of 1/(7/5 m R^2)
 };
 
 PlainDem::PlainDem(const dem::Setup& setup) : setup_(setup), gone_(setup.spheres.size(), 0) {
@@ -100,6 +102,27 @@ void PlainDem::respond(const Contact& c, bool update, Vec3& history, Vec3& force
     turn = cross(c.n, tangential);
 }
 
+Vec3 PlainDem::rolling(const Contact& c, bool update, Vec3& history, const Vec3& force) const {
+    const dem::Material& m = setup_.material;
+    if (m.rolling_friction == 0) return {};
+    const double young = m.youngs_modulus / (2 * (1 - m.poisson_ratio * m.poisson_ratio));
+    const double kn = 4.0 / 3 * young * std::sqrt(c.radius * c.overlap);
+    const double kr = 2.25 * kn * std::pow(m.rolling_friction * c.radius, 2);
+    const double net = dot(force, c.n);
+    const double seen = m.friction_limit == dem::FrictionLimit::net ? net : net + c.neck;
+    const double limit = m.rolling_friction * c.radius * std::abs(seen);
+    const Vec3 turning = c.turning - dot(c.turning, c.n) * c.n;
+    Vec3 moment = history;
+    if (update) moment = moment + (setup_.time_step * kr) * turning;
+    Vec3 viscous = (2 * m.rolling_damping * std::sqrt(kr / c.inverse_inertia)) * turning;
+    if (norm(moment) > limit) {
+        moment = (limit / norm(moment)) * moment;
+        viscous = {};
+    }
+    if (update) history = moment;
+    return (-1.0) * (moment + viscous);
+}
+
 void PlainDem::pair(std::size_t i, std::size_t j, bool update) {
     const dem::Material& m = setup_.material;
     Vec3 d = x_[i] - x_[j];
@@ -113,6 +136,7 @@ void PlainDem::pair(std::size_t i, std::size_t j, bool update) {
     const double r = norm(d), overlap = ri + rj - r;
     if (overlap <= 0) {
         pair_history_.erase({i, j});
+        pair_rolling_.erase({i, j});
         return;
     }
     largest_overlap_ = std::max(largest_overlap_, overlap / (2 * std::min(ri, rj)));
@@ -135,8 +159,11 @@ void PlainDem::pair(std::size_t i, std::size_t j, bool update) {
     respond(c, update, pair_history_[{i, j}], force, turn);
     f_[i] = f_[i] + force;
     f_[j] = f_[j] - force;
-    t_[i] = t_[i] - (ri - overlap / 2) * turn;
-    t_[j] = t_[j] - (rj - overlap / 2) * turn;
+    c.turning = w_[i] - w_[j];
+    c.inverse_inertia = (1 / (mass(i) * ri * ri) + 1 / (mass(j) * rj * rj)) / 1.4;
+    const Vec3 moment = rolling(c, update, pair_rolling_[{i, j}], force);
+    t_[i] = t_[i] - (ri - overlap / 2) * turn + moment;
+    t_[j] = t_[j] - (rj - overlap / 2) * turn - moment;
 }
 
 void PlainDem::wall(std::size_t i, std::size_t w, bool update) {
@@ -163,6 +190,7 @@ void PlainDem::wall(std::size_t i, std::size_t w, bool update) {
     c.overlap = ri - distance;
     if (c.overlap <= 0) {
         wall_history_.erase({i, w});
+        wall_rolling_.erase({i, w});
         return;
     }
     c.surface = (ri - c.overlap / 2) * w_[i];
@@ -176,7 +204,9 @@ void PlainDem::wall(std::size_t i, std::size_t w, bool update) {
     Vec3 force{}, turn{};
     respond(c, update, wall_history_[{i, w}], force, turn);
     f_[i] = f_[i] + force;
-    t_[i] = t_[i] - (ri - c.overlap / 2) * turn;
+    c.turning = w_[i];
+    c.inverse_inertia = 1 / (1.4 * mass(i) * ri * ri);
+    t_[i] = t_[i] - (ri - c.overlap / 2) * turn + rolling(c, update, wall_rolling_[{i, w}], force);
 }
 
 void PlainDem::forces(bool update) {
@@ -219,15 +249,17 @@ void PlainDem::run(std::int64_t steps) {
 void PlainDem::set_walls(std::vector<dem::Wall> walls) {
     setup_.walls = std::move(walls);
     wall_history_.clear();
+    wall_rolling_.clear();
     wall_steps_ = 0;
     forces(false);
 }
 
 void PlainDem::remove(std::int32_t id) {
     gone_[static_cast<std::size_t>(id)] = 1;
-    std::erase_if(pair_history_, [&](const auto& h) {
-        return h.first.first == static_cast<std::size_t>(id) || h.first.second == static_cast<std::size_t>(id);
-    });
+    for (auto* histories : {&pair_history_, &pair_rolling_})
+        std::erase_if(*histories, [&](const auto& h) {
+            return h.first.first == static_cast<std::size_t>(id) || h.first.second == static_cast<std::size_t>(id);
+        });
     forces(false);
 }
 

@@ -39,6 +39,8 @@ private:
     void wall(std::size_t i, std::size_t w, bool update);
     /// Force on i and n x F_t of one contact.
     void respond(const Contact& c, bool update, dem::Vec3& history, dem::Vec3& force, dem::Vec3& turn) const;
+    /// Moment on i of the rolling resistance.
+    [[nodiscard]] dem::Vec3 rolling(const Contact& c, bool update, dem::Vec3& history, const dem::Vec3& force) const;
     [[nodiscard]] double mass(std::size_t i) const;
     [[nodiscard]] dem::Vec3 displacement(std::int64_t step) const;
     void move_frozen();
@@ -46,7 +48,7 @@ private:
     dem::Setup setup_;
     std::vector<dem::Vec3> x_, v_, w_, f_, t_;
     std::vector<char> gone_;
-    std::map<Key, dem::Vec3> pair_history_, wall_history_;
+    std::map<Key, dem::Vec3> pair_history_, wall_history_, pair_rolling_, wall_rolling_;
     std::int64_t wall_steps_ = 0;
     std::int64_t steps_ = 0;
     double largest_overlap_ = 0;

@@ -128,6 +128,9 @@ TEST(Contact, NeedsWhatItsLawsNeed) {
     static_assert(!Contact<Hertz, Cohesion<SjkrArea>>::needs.spin);
     static_assert(std::is_same_v<Contact<Hertz>::Memory, NoMemory>);
     static_assert(sizeof(Cohesion<SjkrArea>) == sizeof(double));
+    static_assert(std::is_same_v<Contact<Hertz, Mindlin>::Memory, Vec3>);
+    static_assert(Contact<Hertz, Mindlin, RollingResistance>::needs.rolling_history);
+    static_assert(sizeof(Contact<Hertz, Mindlin, RollingResistance>::Memory) == 2 * sizeof(Vec3));
 }
 
 TEST(TimeStep, LimitsAreThoseOfThePapers) {

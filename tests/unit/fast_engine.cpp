@@ -78,9 +78,10 @@ TEST(FastEngine, HowARunIsCutChangesNoBit) {
 }
 
 TEST(FastEngine, RestoredEnginesContinueBitForBit) {
-    for (const double spread : {0.0, 0.3})
+    for (const auto& [spread, rolling] : {std::pair(0.0, 0.0), std::pair(0.3, 0.0), std::pair(0.3, 0.2)})
         for (const auto path : paths()) {
-            const dem::Setup setup = test::boxed_lattice(4, 0.5, spread, 3);
+            dem::Setup setup = test::boxed_lattice(4, 0.5, spread, 3);
+            setup.material.rolling_friction = rolling;
             const auto first = make_mixed_engine(setup, path), second = make_mixed_engine(setup, path);
             first->run(350);
             std::vector<dem::Wall> fewer(setup.walls.begin(), setup.walls.begin() + 2);
@@ -227,7 +228,7 @@ TEST(FastEngine, ImpossibleSetupsAreRefusedInOneSentence) {
     };
     refused([](dem::Setup& s) { s.time_step = 0; });
     refused([](dem::Setup& s) { s.material.restitution = 0; });
-    refused([](dem::Setup& s) { s.material.rolling_friction = 0.1; });
+    refused([](dem::Setup& s) { s.material.rolling_friction = -0.1; });
     refused([](dem::Setup& s) { s.spheres[0].radius = -1; });
     refused([](dem::Setup& s) { s.spheres[0].velocity[1] = std::numeric_limits<double>::quiet_NaN(); });
     refused([](dem::Setup& s) { s.domain.high[1] = 1.5e-3; });

@@ -29,7 +29,7 @@ template <Needs needs>
 struct WallContacts {
     Wall wall;
     std::vector<std::uint32_t> near;
-    [[no_unique_address]] particles::Column<needs.tangential_history, Vec3> memory;
+    [[no_unique_address]] particles::Column<needs.tangential_history, MemoryFor<needs>> memory;
     Vec3 displacement_at_build{};
 };
 
@@ -58,6 +58,7 @@ public:
 
 private:
     using Memory = typename Laws::Memory;
+    using StoredMemory = std::conditional_t<needs.tangential_history, Memory, Vec3>;
 
     // One radius for all, or a column: the same words for both.
     [[nodiscard]] double radius(std::size_t i) const {
@@ -85,6 +86,11 @@ private:
         if constexpr (needs.sizes) return 1 / (p_.inverse_mass[i] + p_.inverse_mass[j]);
         if constexpr (needs.frozen) return p_.mobile[i] && p_.mobile[j] ? mass_ / 2 : mass_;
         return mass_ / 2;
+    }
+    /// 1/(1/I_i + 1/I_j) about the contact; a frozen partner does not turn.
+    [[nodiscard]] double rolling_inertia(std::size_t i, std::size_t j) const requires(needs.sizes) {
+        const double ri = radius(i), rj = radius(j);
+        return inertia_about_contact / (inverse_mass(i) / (ri * ri) + inverse_mass(j) / (rj * rj));
     }
     [[nodiscard]] double effective_radius(std::size_t i, std::size_t j) const {
         if constexpr (needs.sizes) return p_.radius[i] * p_.radius[j] / (p_.radius[i] + p_.radius[j]);
@@ -153,7 +159,7 @@ private:
     std::vector<Vec3> position_at_build_;
     std::vector<std::uint32_t> near_open_face_;
     particles::NeighbourList list_;
-    particles::PairMemory pairs_;  // empty unless needs.tangential_history
+    particles::PairMemory<StoredMemory> pairs_;  // empty unless needs.tangential_history
     std::vector<WallContacts<needs>> walls_;
     particles::Cells cells_;
     struct Touching {

@@ -35,6 +35,10 @@ template <class Laws, Needs case_needs>
                           (t.radius_j - t.overlap / 2) * p_.angular_velocity[j];
         t.slip = v - t.normal_velocity * t.normal - cross(turn, t.normal);
     }
+    if constexpr (needs.rolling_history) {
+        t.turning = p_.angular_velocity[i] - p_.angular_velocity[j];
+        t.rolling_inertia = rolling_inertia(i, j);
+    }
     return t;
 }
 
@@ -55,6 +59,10 @@ template <class Laws, Needs case_needs>
     if constexpr (needs.spin)
         t.slip =
             v - t.normal_velocity * t.normal - cross((t.radius_i - t.overlap / 2) * p_.angular_velocity[i], t.normal);
+    if constexpr (needs.rolling_history) {
+        t.turning = p_.angular_velocity[i];
+        t.rolling_inertia = inertia_about_contact * t.reduced_mass * t.radius_i * t.radius_i;
+    }
     return t;
 }
 
@@ -102,7 +110,7 @@ std::size_t ClearEngine<Laws, case_needs>::find_touching(std::size_t first, std:
             } else if constexpr (needs.tangential_history) {
                 if (pairs_.live[k] != static_cast<std::uint8_t>(inside)) [[unlikely]] {
                     pairs_.live[k] = inside ? 1 : 0;
-                    pairs_.value[k] = Vec3{};
+                    pairs_.value[k] = {};
                 }
             }
         }
@@ -143,6 +151,10 @@ void ClearEngine<Laws, case_needs>::pair_contacts() {
                 p_.torque[i] -= (t.radius_i - t.overlap / 2) * moment;
                 p_.torque[j] -= (t.radius_j - t.overlap / 2) * moment;
             }
+            if constexpr (needs.rolling_history) {
+                p_.torque[i] += r.rolling;
+                p_.torque[j] -= r.rolling;
+            }
         }
     }
     if constexpr (equal_contacts) {
@@ -163,7 +175,7 @@ void ClearEngine<Laws, case_needs>::wall_contacts(WallContacts<needs>& contacts)
             const std::size_t i = contacts.near[k];
             const Closest closest = shape.closest(p_.position[i]);
             if (closest.distance >= radius(i)) {
-                if constexpr (needs.tangential_history) contacts.memory[k] = Vec3{};
+                if constexpr (needs.tangential_history) contacts.memory[k] = {};
                 continue;
             }
             const auto t = touch(i, closest, wall_velocity);
@@ -180,6 +192,7 @@ void ClearEngine<Laws, case_needs>::wall_contacts(WallContacts<needs>& contacts)
             p_.force[i] += f;
             total += f;
             if constexpr (needs.spin) p_.torque[i] -= (t.radius_i - t.overlap / 2) * cross(t.normal, r.tangential);
+            if constexpr (needs.rolling_history) p_.torque[i] += r.rolling;
         }
     };
     std::visit([&](const auto& wall) { each_near(shape_at(wall, wall_time())); }, contacts.wall);
@@ -235,7 +248,7 @@ void ClearEngine<Laws, case_needs>::contacts(std::vector<ContactForce>& into) co
     into.clear();
     const auto add = [&](std::size_t i, std::int32_t second, const auto& t, Memory memory) {
         const Response r = laws_.template respond<false>(t, memory);
-        into.push_back({p_.id[i], second, t.overlap, t.normal, r.normal, r.tangential});
+        into.push_back({p_.id[i], second, t.overlap, t.normal, r.normal, r.tangential, r.rolling});
     };
     for_each_touching_pair(
         [&](std::size_t i, std::size_t j, const auto& t, const Memory& memory) { add(i, p_.id[j], t, memory); });

@@ -12,11 +12,24 @@ std::unique_ptr<Engine> make(const Setup& setup, const Method& method, Laws laws
     return std::make_unique<ClearEngine<Laws, case_needs>>(setup, method, std::move(laws));
 }
 
-AnyLaws any_laws(const Material& m, double time_step) {
+/// Cohesion stands before friction where friction sees it, behind it otherwise; the other one is zero.
+struct Necks {
+    Cohesion<ChosenArea> before, after;
+};
+Necks necks(const Material& m) {
     const bool friction_sees_it = m.friction_limit == FrictionLimit::net;
-    const Cohesion<ChosenArea> before{friction_sees_it ? m.cohesion : 0.0, {m.cohesion_area}};
-    const Cohesion<ChosenArea> after{friction_sees_it ? 0.0 : m.cohesion, {m.cohesion_area}};
+    return {{friction_sees_it ? m.cohesion : 0.0, {m.cohesion_area}},
+            {friction_sees_it ? 0.0 : m.cohesion, {m.cohesion_area}}};
+}
+
+AnyLaws any_laws(const Material& m, double time_step) {
+    const auto [before, after] = necks(m);
     return {{hertz(m), before, mindlin(m, time_step), after}};
+}
+
+AnyRollingLaws any_rolling_laws(const Material& m, double time_step) {
+    const auto [before, after] = necks(m);
+    return {{hertz(m), before, mindlin(m, time_step), rolling_resistance(m, time_step), after}};
 }
 
 }  // namespace
@@ -31,6 +44,7 @@ std::unique_ptr<Engine> make_clear_engine(const Setup& setup, const Method& meth
     const bool plain_sjkr =
         cohesion && m.cohesion_area == CohesionArea::sjkr && m.friction_limit == FrictionLimit::contact;
 
+    if (m.rolling_friction > 0) return make<many_sizes>(setup, method, any_rolling_laws(m, setup.time_step));
     const Frictional frictional{{hertz(m), mindlin(m, setup.time_step)}};
     const FrictionalSjkr frictional_sjkr{{hertz(m), mindlin(m, setup.time_step), {m.cohesion, {}}}};
     if (!sizes && !frozen) {

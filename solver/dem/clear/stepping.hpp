@@ -201,17 +201,17 @@ void ClearEngine<Laws, case_needs>::forget_separated() {
             const Vec3 branch = p_.position[i] - (p_.position[j] + image_shifts_[list_[k].image()]);
             const double reach = radius(i) + radius(j);
             if (dot(branch, branch) < reach * reach) continue;
-            pairs_.value[k] = Vec3{};
+            pairs_.value[k] = {};
             pairs_.live[k] = 0;
         }
 }
 
 template <class Laws, Needs case_needs>
 void ClearEngine<Laws, case_needs>::list_walls([[maybe_unused]] std::span<const std::uint32_t> fresh_index) {
-    [[maybe_unused]] std::vector<Vec3> remembered;
+    [[maybe_unused]] std::vector<StoredMemory> remembered;
     for (auto& contacts : walls_) {
         if constexpr (needs.tangential_history) {
-            remembered.assign(p_.size(), Vec3{});
+            remembered.assign(p_.size(), StoredMemory{});
             for (std::size_t k = 0; k < contacts.near.size(); ++k)
                 if (const auto i = fresh_index[contacts.near[k]]; i != particles::gone)
                     remembered[i] = contacts.memory[k];

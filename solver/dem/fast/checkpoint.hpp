@@ -92,7 +92,7 @@ private:
 
 /// What must agree between the engine that wrote and the one that reads.
 struct Seal {
-    std::uint64_t format = 0x67737765657032;  // changes with the layout of what follows
+    std::uint64_t format = 0x67737765657033;  // changes with the layout of what follows
     std::int32_t width = 0;
     Needs needs{};
     Constants constants{};
@@ -105,7 +105,7 @@ struct Seal {
     s.format = Seal{}.format;
     s.width = k.width;
     s.needs.unequal = n.unequal, s.needs.frozen = n.frozen, s.needs.friction = n.friction,
-    s.needs.cohesion = n.cohesion;
+    s.needs.cohesion = n.cohesion, s.needs.rolling = n.rolling;
     std::memcpy(static_cast<void*>(&s.constants), &c, sizeof c);
     s.shaking = shaking;
     return s;

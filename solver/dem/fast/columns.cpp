@@ -40,12 +40,13 @@ void Columns::bind(Field& f) const {
     f.outer_reach = outer_reach.data();
     f.outer_touching = outer_touching.data();
     f.row = row.data();
-    for (int a = 0; a < 3; ++a) {
+    f.histories = histories;
+    for (int a = 0; a < histories_at_most; ++a) {
         f.history[a] = history[a].data();
         f.history_next[a] = history_next[a].data();
-        f.column[a] = column[a].data();
         f.wall_history[a] = wall_history[a].data();
     }
+    for (int a = 0; a < 3; ++a) f.column[a] = column[a].data();
     f.column_radius = column_radius.data();
     f.column_mobile = column_mobile.data();
     f.cell_start = cell_start.data();
@@ -73,19 +74,18 @@ void Columns::hold_pairs(std::size_t pairs) {
     inner_first.hold(n), inner_second.hold(n), inner_source.hold(n), inner_reach.hold(n);
     touching.hold(n), touching_next.hold(n);
     owner.hold(n);
-    for (auto& h : history) h.hold(n);
-    for (auto& h : history_next) h.hold(n);
+    for (int a = 0; a < histories; ++a) history[a].hold(n), history_next[a].hold(n);
 }
 
 void Columns::hold_wall_contacts(std::size_t contacts) {
     wall_particle.hold(contacts + spare);
-    for (auto& h : wall_history) h.hold(contacts + spare);
-    for (auto& h : wall_history_next) h.hold(contacts + spare);
+    for (int a = 0; a < histories; ++a)
+        wall_history[a].hold(contacts + spare), wall_history_next[a].hold(contacts + spare);
 }
 
 void Columns::swap_histories(Field& f) {
     touching.swap(touching_next);
-    for (int a = 0; a < 3; ++a) history[a].swap(history_next[a]);
+    for (int a = 0; a < histories; ++a) history[a].swap(history_next[a]);
     bind(f);
 }
 

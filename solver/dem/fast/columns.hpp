@@ -54,6 +54,7 @@ private:
 
 /// Everything a Field points to, and what only rebuilding needs.
 struct Columns {
+    std::int32_t histories = 3;  ///< history columns in use; the others stay empty
     Column<Record> records, records_next;
     Column<Residual> residuals, residuals_next;
     Column<Force> forces;
@@ -63,7 +64,7 @@ struct Columns {
     Column<std::int32_t> inner_source;
     Column<float> inner_reach;
     Column<std::uint16_t> touching, touching_next;
-    Column<float> history[3], history_next[3];
+    Column<float> history[histories_at_most], history_next[histories_at_most];
 
     Column<Place> outer_first, outer_second;
     Column<std::int32_t> row;
@@ -78,7 +79,7 @@ struct Columns {
     Column<WallShape> walls;
     Column<WallSegment> segments;
     Column<Place> wall_particle;
-    Column<float> wall_history[3], wall_history_next[3];
+    Column<float> wall_history[histories_at_most], wall_history_next[histories_at_most];
 
     /// Points the field at the columns.
     void bind(Field& f) const;

@@ -15,6 +15,7 @@ constexpr Kernels compiled{width, sweep<Law>, advance<Law>, walls<Law>, search<L
 
 inline const Kernels& choose(const Needs& n) {
     using enum Needs::Cohesion;
+    if (n.rolling) return compiled<Law<true, true, true, general, true>>;
     if (n.friction && n.cohesion == none) {
         if (n.unequal) return compiled<Law<true, true, true, none>>;
         return n.frozen ? compiled<Law<false, true, true, none>> : compiled<Law<false, false, true, none>>;

@@ -290,6 +290,14 @@ GRAINSWEEP_LANES void load_surface(const Record* r, const Place* first, const Pl
     for (int c = 0; c < 4; ++c) rows[c].v = out[c];
 }
 
+/// Rows 0-2: differences of spins; row 3: difference of radii.
+GRAINSWEEP_LANES void load_spin_difference(const Record* r, const Place* first, const Place* second, F* rows) {
+    __m256 a[4], out[4];
+    for (int e = 0; e < 4; ++e) a[e] = _mm256_sub_ps(two_blocks<2>(r, first + e), two_blocks<2>(r, second + e));
+    transpose_blocks(a, out);
+    for (int c = 0; c < 4; ++c) rows[c].v = out[c];
+}
+
 /// Four-component vectors of eight pairs, block b of out[k] belonging to pair 4b+k.
 GRAINSWEEP_LANES void to_blocks(F x, F y, F z, __m256* out) {
     const __m256 zero = _mm256_setzero_ps();

@@ -278,6 +278,18 @@ GRAINSWEEP_LANES void load_surface(const Record* r, const Place* first, const Pl
     rows[3].v = high_pairs(t2, t3);
 }
 
+/// Rows 0-2: differences of spins; row 3: difference of radii.
+GRAINSWEEP_LANES void load_spin_difference(const Record* r, const Place* first, const Place* second, F* rows) {
+    __m512 a[4];
+    for (int e = 0; e < 4; ++e) a[e] = _mm512_sub_ps(four_blocks<2>(r, first + e), four_blocks<2>(r, second + e));
+    const __m512 t0 = _mm512_unpacklo_ps(a[0], a[1]), t1 = _mm512_unpacklo_ps(a[2], a[3]);
+    const __m512 t2 = _mm512_unpackhi_ps(a[0], a[1]), t3 = _mm512_unpackhi_ps(a[2], a[3]);
+    rows[0].v = low_pairs(t0, t1);
+    rows[1].v = high_pairs(t0, t1);
+    rows[2].v = low_pairs(t2, t3);
+    rows[3].v = high_pairs(t2, t3);
+}
+
 /// Four-component vectors of sixteen pairs, block b of out[k] belonging to pair 4b+k.
 GRAINSWEEP_LANES void to_blocks(F x, F y, F z, __m512* out) {
     const __m512 zero = _mm512_setzero_ps();

@@ -279,6 +279,13 @@ GRAINSWEEP_LANES void load_surface(const Record* r, const Place* first, const Pl
     transpose_blocks(a, rows);
 }
 
+/// Rows 0-2: differences of spins; row 3: difference of radii.
+GRAINSWEEP_LANES void load_spin_difference(const Record* r, const Place* first, const Place* second, F* rows) {
+    __m128 a[4];
+    for (int e = 0; e < 4; ++e) a[e] = _mm_sub_ps(block<2>(r, first[e]), block<2>(r, second[e]));
+    transpose_blocks(a, rows);
+}
+
 GRAINSWEEP_LANES void to_blocks(F x, F y, F z, F* out) {
     const __m128 rows[4] = {x.v, y.v, z.v, _mm_setzero_ps()};
     transpose_blocks(rows, out);

@@ -49,6 +49,9 @@ struct alignas(32) Force {
     float torque[4];
 };
 
+/// Numbers a contact remembers: tangential displacement, and with rolling resistance the rolling moment.
+constexpr std::int32_t histories_at_most = 6;
+
 /// Constants of the contact law, in the engine's units.
 struct Constants {
     double unit[3];  ///< length of one position unit
@@ -63,17 +66,20 @@ struct Constants {
     float damping;            ///< -2 sqrt(5/6) beta sqrt(2 E*)
     float damping_ratio;      ///< tangential over normal damping, sqrt(8 G*/(2 E*))
     float friction;
-    float root_radius;     ///< sqrt(R*) of an equal pair
-    float damping_pair;    ///< damping sqrt(m*) of two mobile equal particles
-    float damping_frozen;  ///< ... of a mobile and a frozen one, or a wall
-    float inverse_mass;    ///< of a mobile particle where they are equal
-    float rotation;        ///< 2.5/R^2 where radii are equal
-    float neck_lens;       ///< cohesive force per pi/4 (Rs^2-r^2)(r^2-Rd^2)/r^2
-    float neck_linear;     ///< ... per R* d
-    float neck_square;     ///< ... per d^2
-    float wall_linear;     ///< cohesive force on a wall per R d
-    float wall_square;     ///< ... per d^2
-    float net_limit;       ///< 1: Coulomb's limit sees the cohesive force, 0: it does not
+    float root_radius;       ///< sqrt(R*) of an equal pair
+    float damping_pair;      ///< damping sqrt(m*) of two mobile equal particles
+    float damping_frozen;    ///< ... of a mobile and a frozen one, or a wall
+    float inverse_mass;      ///< of a mobile particle where they are equal
+    float rotation;          ///< 2.5/R^2 where radii are equal
+    float neck_lens;         ///< cohesive force per pi/4 (Rs^2-r^2)(r^2-Rd^2)/r^2
+    float neck_linear;       ///< ... per R* d
+    float neck_square;       ///< ... per d^2
+    float wall_linear;       ///< cohesive force on a wall per R d
+    float wall_square;       ///< ... per d^2
+    float net_limit;         ///< 1: Coulomb's limit sees the cohesive force, 0: it does not
+    float rolling;           ///< 2.25 mu_r^2 4/3 E*
+    float rolling_friction;  ///< mu_r
+    float rolling_damping;   ///< 2 eta_r sqrt(7/5): the dashpot over sqrt(k_r/sum of 1/(m R^2))
 };
 
 /// Shape of a wall at the present time, relative to the middle of the domain, in the engine's units.
@@ -98,6 +104,7 @@ struct alignas(32) Tally {
     float velocity_low[8];
     float overlap;       ///< of pairs, over the smaller diameter
     float wall_overlap;  ///< over the diameter
+    double wall_work;    ///< of the walls on the particles over the step
     std::int64_t contacts;
 };
 
@@ -123,8 +130,9 @@ struct Field {
     // Bit k of mask b: pair b*width+k touched at the last step; histories of those, in that order, without gaps.
     std::uint16_t* touching;
     std::uint16_t* touching_next;
-    float* history[3];
-    float* history_next[3];
+    std::int32_t histories;  ///< columns in use: 3, or 6 with rolling resistance
+    float* history[histories_at_most];
+    float* history_next[histories_at_most];
     float history_step;  ///< 1: the step displaces the tangential springs, 0: it only looks
 
     // Outer list, sorted by the first particle.
@@ -149,7 +157,7 @@ struct Field {
     WallSegment* segments;
     std::int32_t wall_count;
     Place* wall_particle;
-    float* wall_history[3];
+    float* wall_history[histories_at_most];
 };
 
 /// The operations compiled once per instruction path.
@@ -175,6 +183,7 @@ struct Needs {
     bool frozen;   ///< particles of infinite mass are present
     bool friction;
     enum class Cohesion : std::int32_t { none, lens, general } cohesion;  ///< lens: sjkr, friction blind to it
+    bool rolling;
 };
 
 [[nodiscard]] const Kernels& baseline_kernels(const Needs&);

@@ -22,13 +22,15 @@ inline constexpr double travel_limit = 0.25;
 
 /// Whether this processor can run a path; `best` always.
 [[nodiscard]] bool supports(Method::Path path);
-/// The widest path this processor has.
+/// What `best` means in this process: the widest path the processor has, unless prefer said otherwise.
 [[nodiscard]] Method::Path best_path();
+/// From now on `best` means this path, which must be supported. For tests and benchmarks of the narrower ones; engines
+/// that exist keep theirs.
+void prefer(Method::Path path);
 
 /// Precision: positions are multiples of a period over 2^32, or of about an open extent over 2^31; forces are rounded
 /// to 1e-7. `skin` (m): of the outer neighbour list, 0: chosen from the motion.
-/// Throws std::invalid_argument with one sentence on an impossible setup, a path this processor lacks, or rolling
-/// friction.
+/// Throws std::invalid_argument with one sentence on an impossible setup or a path this processor lacks.
 [[nodiscard]] std::unique_ptr<Engine> make_mixed_engine(const Setup& setup, Method::Path path, double skin = 0);
 
 }  // namespace grainsweep::dem::fast

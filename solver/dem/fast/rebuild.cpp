@@ -178,8 +178,8 @@ void for_each_contact(const Field& f, std::int32_t width, Visit visit) {
         }
 }
 
-/// Finds every old contact in the new outer list and moves its history; a spring that saw its particles change places
-/// changes its sign.
+/// Finds every old contact in the new outer list and moves its history; what saw its particles change places changes
+/// its sign.
 void carry_histories(Field& f, Columns& c, const Kernels& kernels) {
     const auto outer = static_cast<std::size_t>(f.outer_count);
     c.owner.clear(outer);
@@ -204,10 +204,10 @@ void carry_histories(Field& f, Columns& c, const Kernels& kernels) {
             static_cast<std::uint16_t>(c.outer_touching[batch] | (1U << (o % static_cast<std::size_t>(kernels.width))));
         const auto from = static_cast<std::size_t>(std::abs(owner) - 1);
         const float sign = owner > 0 ? 1.0F : -1.0F;
-        for (int a = 0; a < 3; ++a) c.history_next[a][to] = sign * c.history[a][from];
+        for (int a = 0; a < c.histories; ++a) c.history_next[a][to] = sign * c.history[a][from];
         ++to;
     }
-    for (int a = 0; a < 3; ++a) c.history[a].swap(c.history_next[a]);
+    for (int a = 0; a < c.histories; ++a) c.history[a].swap(c.history_next[a]);
     c.bind(f);
 }
 
@@ -297,7 +297,7 @@ void list_wall_contacts(Field& f, Columns& c, const Kernels& kernels, const Room
         const auto add = [&](std::int32_t particle, std::int32_t from) {
             const auto k = static_cast<std::size_t>(n++);
             c.wall_particle[k] = place_of(particle);
-            for (int a = 0; a < 3; ++a)
+            for (int a = 0; a < c.histories; ++a)
                 c.wall_history_next[a][k] = from == none ? 0 : c.wall_history[a][static_cast<std::size_t>(from)];
         };
         const double near = static_cast<double>(room.skin) * (1 + 1e-5);
@@ -309,7 +309,7 @@ void list_wall_contacts(Field& f, Columns& c, const Kernels& kernels, const Room
         while ((n - begin) % kernels.width != 0) add(f.count + 2, none);
         f.segments[w] = {begin, n};
     }
-    for (int a = 0; a < 3; ++a) c.wall_history[a].swap(c.wall_history_next[a]);
+    for (int a = 0; a < c.histories; ++a) c.wall_history[a].swap(c.wall_history_next[a]);
     c.bind(f);
 }
 

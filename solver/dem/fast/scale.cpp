@@ -40,8 +40,8 @@ void check(const Setup& setup) {
     if (!(m.poisson_ratio > -1 && m.poisson_ratio <= 0.5)) refuse("poisson_ratio must lie in (-1, 0.5]");
     if (!(m.restitution > 0 && m.restitution <= 1)) refuse("restitution must lie in (0, 1]");
     if (!(m.friction >= 0) || !(m.cohesion >= 0)) refuse("friction and cohesion must not be negative");
-    if (m.rolling_friction != 0)
-        refuse("rolling_friction is not computed in mixed precision: ask for double precision");
+    if (!(m.rolling_friction >= 0 && m.rolling_friction <= 1)) refuse("rolling_friction must lie in [0, 1]");
+    if (!(m.rolling_damping >= 0 && m.rolling_damping <= 1)) refuse("rolling_damping must lie in [0, 1]");
     for (std::size_t i = 0; i < setup.spheres.size(); ++i) {
         const Sphere& s = setup.spheres[i];
         bool finite = std::isfinite(s.radius) && s.radius > 0;
@@ -109,7 +109,8 @@ Constants make_constants(const Setup& setup, const Scale& scale) {
     c.tangential = f(8 * shear);
     const double damping = -2 * std::sqrt(5.0 / 6) * beta * std::sqrt(2 * young);
     c.damping = f(damping);
-    c.damping_ratio = f(std::sqrt(8 * shear / (2 * young)));
+    // Without friction a spring that is not displaced yet would count as sticking, with a dashpot.
+    c.damping_ratio = m.friction > 0 ? f(std::sqrt(8 * shear / (2 * young))) : 0.0F;
     c.friction = f(m.friction);
     c.root_radius = 0.5F;
     c.inverse_mass = 1;
@@ -132,6 +133,9 @@ Constants make_constants(const Setup& setup, const Scale& scale) {
             c.neck_square = c.wall_square = f(-neck * pi / 4);
             break;
     }
+    c.rolling = f(2.25 * m.rolling_friction * m.rolling_friction * 4.0 / 3 * young);
+    c.rolling_friction = f(m.rolling_friction);
+    c.rolling_damping = f(2 * m.rolling_damping * std::sqrt(1.4));
     c.net_limit = m.friction_limit == FrictionLimit::net ? 1.0F : 0.0F;
     return c;
 }
@@ -148,8 +152,9 @@ Needs make_needs(const Setup& setup) {
                  : m.cohesion_area == CohesionArea::sjkr && m.friction_limit == FrictionLimit::contact
                      ? Needs::Cohesion::lens
                      : Needs::Cohesion::general;
+    n.rolling = m.rolling_friction > 0;
     // the general kernel computes with each particle's own radius
-    if (n.cohesion == Needs::Cohesion::general || (!n.friction && n.cohesion != Needs::Cohesion::none))
+    if (n.rolling || n.cohesion == Needs::Cohesion::general || (!n.friction && n.cohesion != Needs::Cohesion::none))
         n.unequal = true;
     return n;
 }

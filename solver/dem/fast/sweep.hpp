@@ -51,7 +51,7 @@ GRAINSWEEP_PHASE void sift(const Field& f, std::int32_t batches, Packed& p, Prog
         if (f.read_ahead != 0) {
             for (int q = 0; q < width; ++q) prefetch(record_at(f.records, second[q + 64]));
             if constexpr (Law::friction)
-                for (int a = 0; a < 3; ++a) {
+                for (int a = 0; a < Law::histories; ++a) {
                     prefetch(f.history[a] + s.read + 256);
                     prefetch(f.history_next[a] + s.written + 256);
                 }
@@ -71,9 +71,10 @@ GRAINSWEEP_PHASE void sift(const Field& f, std::int32_t batches, Packed& p, Prog
         if constexpr (Law::friction) {
             const unsigned before = f.touching[s.batch];
             if (before == now)  // most vectors keep their contacts
-                for (int a = 0; a < 3; ++a) store(f.history_next[a] + s.written, load(f.history[a] + s.read));
+                for (int a = 0; a < Law::histories; ++a)
+                    store(f.history_next[a] + s.written, load(f.history[a] + s.read));
             else
-                for (int a = 0; a < 3; ++a)
+                for (int a = 0; a < Law::histories; ++a)
                     store(f.history_next[a] + s.written, compress(expand(load(f.history[a] + s.read), before), now));
             f.touching_next[s.batch] = static_cast<std::uint16_t>(now);
             s.read += __builtin_popcount(before);
@@ -89,6 +90,17 @@ GRAINSWEEP_LANES F closeness(const Constants& c, I x, I y, I z, D reach_squared)
     const D dx = exact(x) * broadcast(c.unit[0]), dy = exact(y) * broadcast(c.unit[1]),
             dz = exact(z) * broadcast(c.unit[2]);
     return single(fnma(dx, dx, fnma(dy, dy, fnma(dz, dz, reach_squared))));
+}
+
+/// Sum over both particles of 1/(m R^2).
+GRAINSWEEP_LANES F sum_of_turning_masses(const Record* records, const Place* first, const Place* second) {
+    float sum[width];
+    for (int q = 0; q < width; ++q) {
+        const Record &a = *record_at(records, first[q]), &b = *record_at(records, second[q]);
+        sum[q] =
+            a.inverse_mass * a.inverse_radius * a.inverse_radius + b.inverse_mass * b.inverse_radius * b.inverse_radius;
+    }
+    return load(sum);
 }
 
 /// Force and torques of the packed pairs, into the outcome rows; histories from stream index `at` on.
@@ -155,18 +167,21 @@ GRAINSWEEP_PHASE void meet(const Field& f, Packed& p, int batches, std::int64_t 
         }
         if constexpr (Law::cohesive)
             m.neck = pair_neck<Law>(c, near, inverse_distance, m.overlap, difference, m.root_radius);
-        V3 history{}, force, turn;
-        if constexpr (Law::friction)
-            history = {load(f.history_next[0] + at + b * width), load(f.history_next[1] + at + b * width),
-                       load(f.history_next[2] + at + b * width)};
-        respond<Law>(c, m, history_step, history, force, turn);
+        if constexpr (Law::rolling) {
+            F spin_row[4];
+            load_spin_difference(f.records, first, second, spin_row);
+            m.turning = {spin_row[0], spin_row[1], spin_row[2]};
+            m.turning_mass = sum_of_turning_masses(f.records, first, second);
+        }
+        Memory memory{};
+        V3 force, turn, moment;
+        if constexpr (Law::friction) memory = load_memory<Law>(f.history_next, at + b * width);
+        respond<Law>(c, m, history_step, memory, force, turn, moment);
         store(p.outcome[b][0], force.x);
         store(p.outcome[b][1], force.y);
         store(p.outcome[b][2], force.z);
         if constexpr (Law::friction) {
-            store(f.history_next[0] + at + b * width, history.x);
-            store(f.history_next[1] + at + b * width, history.y);
-            store(f.history_next[2] + at + b * width, history.z);
+            store_memory<Law>(f.history_next, at + b * width, memory);
             store(p.outcome[b][3], turn.x * arm_first);
             store(p.outcome[b][4], turn.y * arm_first);
             store(p.outcome[b][5], turn.z * arm_first);
@@ -174,6 +189,14 @@ GRAINSWEEP_PHASE void meet(const Field& f, Packed& p, int batches, std::int64_t 
                 store(p.outcome[b][6], turn.x * arm_second);
                 store(p.outcome[b][7], turn.y * arm_second);
                 store(p.outcome[b][8], turn.z * arm_second);
+            }
+            if constexpr (Law::rolling) {
+                store(p.outcome[b][3], fma(turn.x, arm_first, moment.x));
+                store(p.outcome[b][4], fma(turn.y, arm_first, moment.y));
+                store(p.outcome[b][5], fma(turn.z, arm_first, moment.z));
+                store(p.outcome[b][6], fms(turn.x, arm_second, moment.x));
+                store(p.outcome[b][7], fms(turn.y, arm_second, moment.y));
+                store(p.outcome[b][8], fms(turn.z, arm_second, moment.z));
             }
         }
     }

@@ -48,6 +48,18 @@ GRAINSWEEP_LANES Surface blade_surface(const WallShape& w, D x, D, D z) {
             fma(oz, inverse_length, inside * (one - sideways) * up)};
 }
 
+/// Sum over lanes of force times velocity.
+GRAINSWEEP_LANES double work_of(V3 force, const float* velocity) {
+    float lane[3][width];
+    store(lane[0], force.x);
+    store(lane[1], force.y);
+    store(lane[2], force.z);
+    double work = 0;
+    for (int a = 0; a < 3; ++a)
+        for (int q = 0; q < width; ++q) work += static_cast<double>(lane[a][q]) * static_cast<double>(velocity[a]);
+    return work;
+}
+
 template <class Law>
 void walls(const Field& f, Tally& t) {
     const unsigned denormals = flush_denormals();
@@ -58,6 +70,7 @@ void walls(const Field& f, Tally& t) {
     for (std::int32_t w = 0; w < f.wall_count; ++w) {
         const WallShape& shape = f.walls[w];
         for (int q = 0; q < width; ++q) origin[q] = static_cast<Place>(shape.record * places_per_index);
+        V3 push{broadcast(0.0f), broadcast(0.0f), broadcast(0.0f)};
         for (std::int32_t k = f.segments[w].begin; k < f.segments[w].end; k += width) {
             const Place* particle = f.wall_particle + k;
             I ix, iy, iz;
@@ -79,19 +92,26 @@ void walls(const Field& f, Tally& t) {
             m.damping = broadcast(c.damping) * inverse_root(max(rows[3], broadcast(1e-12f)));
             if constexpr (Law::cohesive)
                 m.neck = m.overlap * fma(broadcast(c.wall_square), m.overlap, broadcast(c.wall_linear) * radius);
-            V3 history{load(f.wall_history[0] + k), load(f.wall_history[1] + k), load(f.wall_history[2] + k)};
-            V3 force, turn;
-            respond<Law>(c, m, history_step, history, force, turn);
-            if (f.history_step != 0) {
-                store(f.wall_history[0] + k, history.x);
-                store(f.wall_history[1] + k, history.y);
-                store(f.wall_history[2] + k, history.z);
+            if constexpr (Law::rolling) {
+                m.turning = {rows[4], rows[5], rows[6]};
+                m.turning_mass = rows[3] * inverse(max(radius * radius, broadcast(1e-12f)));
             }
+            Memory memory = load_memory<Law>(f.wall_history, k);
+            V3 force, turn, moment;
+            respond<Law>(c, m, history_step, memory, force, turn, moment);
+            if (f.history_step != 0) store_memory<Law>(f.wall_history, k, memory);
             largest_overlap = max(keep(m.touching, m.overlap * inverse(radius + radius)), largest_overlap);
+            push = {push.x + force.x, push.y + force.y, push.z + force.z};
             const F forces[3] = {force.x, force.y, force.z};
-            const F torques[3] = {turn.x * arm, turn.y * arm, turn.z * arm};
+            F torques[3] = {turn.x * arm, turn.y * arm, turn.z * arm};
+            if constexpr (Law::rolling) {
+                torques[0] = torques[0] + moment.x;
+                torques[1] = torques[1] + moment.y;
+                torques[2] = torques[2] + moment.z;
+            }
             scatter(f.forces, particle, forces, torques);
         }
+        if (shape.is_blade != 0) t.wall_work += work_of(push, f.records[shape.record].velocity);
     }
     t.wall_overlap = largest(largest_overlap);
     restore_denormals(denormals);

@@ -3,11 +3,28 @@
 
 #include "solver/dem/laws/touch.hpp"
 #include "solver/particles/needs.hpp"
+#include "solver/particles/pair_memory.hpp"
 
 #include <tuple>
 #include <type_traits>
 
 namespace grainsweep::dem {
+
+/// What a pair must remember for these needs.
+template <particles::Needs needs>
+using MemoryFor = std::conditional_t<needs.rolling_history, particles::TangentialAndRolling,
+                                     std::conditional_t<needs.tangential_history, Vec3, NoMemory>>;
+
+/// A law's own part of it.
+template <class Law, class Memory>
+[[nodiscard]] auto& part_of(Memory& memory) {
+    if constexpr (!std::is_same_v<std::remove_const_t<Memory>, particles::TangentialAndRolling>)
+        return memory;
+    else if constexpr (Law::needs.rolling_history)
+        return memory.rolling;
+    else
+        return memory.tangential;
+}
 
 /// A law may say that the memory of a pair outlives a separation: until the neighbour list is rebuilt, and beyond if
 /// the pair touches again at that moment. Ours do not.
@@ -20,7 +37,7 @@ template <class... Laws>
 struct Contact {
     static constexpr particles::Needs needs = (particles::Needs{} | ... | Laws::needs);
     static constexpr bool remembers_separation = (dem::remembers_separation<Laws> || ...);
-    using Memory = std::conditional_t<needs.tangential_history, Vec3, NoMemory>;
+    using Memory = MemoryFor<needs>;
 
     std::tuple<Laws...> laws;
 
@@ -28,14 +45,22 @@ struct Contact {
     template <bool advance, Partner partner>
     [[nodiscard]] Response respond(const Touch<partner>& t, Memory& memory) const {
         Response r;
-        std::apply([&](const auto&... law) { (law.template add<advance>(t, r, memory), ...); }, laws);
+        std::apply(
+            [&](const auto&... law) {
+                (law.template add<advance>(t, r, part_of<std::remove_cvref_t<decltype(law)>>(memory)), ...);
+            },
+            laws);
         return r;
     }
 
     /// Energy stored in the pair, J.
     template <Partner partner>
     [[nodiscard]] double energy(const Touch<partner>& t, const Memory& memory) const {
-        return std::apply([&](const auto&... law) { return (0.0 + ... + law.energy(t, memory)); }, laws);
+        return std::apply(
+            [&](const auto&... law) {
+                return (0.0 + ... + law.energy(t, part_of<std::remove_cvref_t<decltype(law)>>(memory)));
+            },
+            laws);
     }
 };
 

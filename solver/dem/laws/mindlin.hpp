@@ -16,7 +16,8 @@
 namespace grainsweep::dem {
 
 struct Mindlin {
-    static constexpr particles::Needs needs{.spin = true, .tangential_history = true, .sizes = false, .frozen = false};
+    static constexpr particles::Needs needs{
+        .spin = true, .tangential_history = true, .sizes = false, .frozen = false, .rolling_history = false};
 
     double stiffness = 0;  ///< 8 G*, Pa
     double damping = 0;    ///< -2 sqrt(5/6) beta sqrt(8 G*), sqrt(Pa)

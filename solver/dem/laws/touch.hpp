@@ -26,13 +26,19 @@ struct Touch {
     Vec3 normal{};                ///< from j to i
     double normal_velocity = 0;   ///< v . n, negative while approaching, m/s
     Vec3 slip{};                  ///< tangential velocity of i over j at the contact, m/s; only where a law needs spin
+    Vec3 turning{};               ///< w_i - w_j, rad/s; only where a law resists rolling
+    double rolling_inertia = 0;   ///< 1/(1/I_i + 1/I_j), I = 7/5 m R^2 about the contact, kg m2; likewise
 };
 
 /// Sum of what the laws said so far. Laws speak in their order: friction sees what stands here before it.
 struct Response {
     double normal = 0;  ///< along n, N; positive repels
     Vec3 tangential{};  ///< N
+    Vec3 rolling{};     ///< moment on i besides that of the forces, minus that on j, N m
 };
+
+/// 7/5 m R^2: moment of inertia of a sphere about a point of its surface, over m R^2.
+inline constexpr double inertia_about_contact = 1.4;
 
 /// Where a law keeps no memory.
 struct NoMemory {};

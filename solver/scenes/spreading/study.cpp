@@ -149,6 +149,7 @@ double Study::front(double time) const {
 Study study_of(const Inputs& in) {
     Study s;
     s.material.friction = number(in, "friction");
+    s.material.rolling_friction = number(in, "rolling_friction");
     s.material.restitution = number(in, "restitution");
     s.material.cohesion = number(in, "cohesion");
     s.material.cohesion_area = area_of(std::get<std::string>(in.at("cohesion_law")));

@@ -1,0 +1,217 @@
+// Rolling resistance (solver/dem/laws/rolling.hpp) against LIGGGHTS 3.8, against closed forms, and in both engines.
+#include "solver/dem/engine.hpp"
+#include "solver/dem/material.hpp"
+#include "tests/support/reference.hpp"
+#include "tests/support/spheres.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+using namespace grainsweep;
+using dem::Method;
+using dem::Vec3;
+
+namespace {
+
+constexpr double radius = 1e-3;
+constexpr double gravity = 9.81;
+
+dem::Setup soft_spheres(double rolling_friction, double time_step) {
+    dem::Setup s;
+    s.domain = {{-0.05, -0.05, -0.02}, {0.05, 0.05, 0.05}, {}};
+    s.material.youngs_modulus = 5e6;
+    s.material.poisson_ratio = 0.3;
+    s.material.density = 2500;
+    s.material.restitution = 0.6;
+    s.material.friction = 0.5;
+    s.material.rolling_friction = rolling_friction;
+    s.material.rolling_damping = 0.3;
+    s.gravity = {};
+    s.time_step = time_step;
+    return s;
+}
+
+Method method(Method::Precision precision) {
+    Method m;
+    m.precision = precision;
+    return m;
+}
+constexpr auto exact = Method::Precision::double_precision;
+constexpr auto mixed = Method::Precision::mixed;
+
+/// Largest difference to a recorded trajectory: positions over the diameter, speeds and R w over the largest speed.
+double deviation(const std::string& name, const dem::Setup& setup, Method::Precision precision) {
+    const auto table =
+        tests::read_table(std::filesystem::path(GRAINSWEEP_SOURCE) / "tests/reference/rolling" / (name + ".csv"));
+    double fastest = 0;
+    for (const auto& sphere : setup.spheres)
+        fastest =
+            std::max({fastest, geometry::norm(sphere.velocity), radius * geometry::norm(sphere.angular_velocity)});
+    const auto engine = dem::make_engine(setup, method(precision));
+    dem::State state;
+    double worst = 0;
+    for (std::size_t r = 0; r < table.rows; ++r) {
+        engine->run(static_cast<std::int64_t>(table.at("step", r)) - engine->work().steps);
+        engine->state(state);
+        const auto i = static_cast<std::size_t>(table.at("id", r)) - 1;
+        const auto differs = [&](const Vec3& mine, const std::array<const char*, 3>& columns, double scale) {
+            for (std::size_t k = 0; k < 3; ++k)
+                worst = std::max(worst, std::abs(mine[k] - table.at(columns[k], r)) * scale);
+        };
+        differs(state.position[i], {"x", "y", "z"}, 1 / (2 * radius));
+        differs(state.velocity[i], {"vx", "vy", "vz"}, 1 / fastest);
+        differs(state.angular_velocity[i], {"omegax", "omegay", "omegaz"}, radius / fastest);
+    }
+    EXPECT_EQ(engine->fault(), "");
+    EXPECT_GT(table.rows, 15U);
+    return worst;
+}
+
+/// A sphere on a plane through the origin, at the overlap that carries its weight.
+struct OnPlane {
+    dem::Setup setup;
+    double mass, overlap, arm;
+};
+
+OnPlane on_plane(double rolling_friction, double slope) {
+    OnPlane p{soft_spheres(rolling_friction, 5e-7), 0, 0, 0};
+    p.setup.material.friction = 0.8;
+    p.mass = dem::sphere_mass(radius, p.setup.material.density);
+    p.setup.gravity = {gravity * std::sin(slope), 0, -gravity * std::cos(slope)};
+    const double stiffness = dem::hertz(p.setup.material).stiffness * std::sqrt(radius);
+    p.overlap = std::pow(p.mass * gravity * std::cos(slope) / stiffness, 2.0 / 3);
+    p.arm = radius - p.overlap / 2;
+    p.setup.spheres = {{{0, 0, radius - p.overlap}, {}, {}, radius, true}};
+    p.setup.walls = {dem::Plane{}};
+    return p;
+}
+
+/// Acceleration between two times, m/s2.
+double acceleration(const dem::Setup& setup, Method::Precision precision, std::int64_t first, std::int64_t last) {
+    const auto engine = dem::make_engine(setup, method(precision));
+    engine->run(first);
+    const double before = tests::state_of(*engine).velocity[0][0];
+    engine->run(last - first);
+    EXPECT_EQ(engine->fault(), "");
+    return (tests::state_of(*engine).velocity[0][0] - before) / (setup.time_step * static_cast<double>(last - first));
+}
+
+}  // namespace
+
+// Same formulas and time step: a pair differs by rounding, which a contact that yields does not multiply; in mixed
+// precision thousands of roundings of 6e-8 to the spins add up. At a plane LIGGGHTS turns a spring by (R - d/2)/(R - d)
+// times the angle: overlaps reach 2 % of R in the impact, 0.1 % in rolling, of which the moment below its limit feels
+// half.
+TEST(DemRolling, EqualsLiggghts) {
+    auto pair = soft_spheres(0.1, 1e-7);
+    pair.spheres = {{{0, 0, 0}, {}, {0, 30, 5}, 1e-3, true},
+                    {{1.72e-3, 1e-4, 0}, {-0.1, 0, 0}, {4, -20, 3}, 7e-4, true}};
+    EXPECT_LT(deviation("pair_spin", pair, exact), 1e-12);
+    EXPECT_LT(deviation("pair_spin", pair, mixed), 1e-5);
+
+    auto yielding = soft_spheres(0.01, 2e-7);
+    yielding.spheres = {{{0, 0, 0}, {0.02, 0, 0}, {0, 300, 50}, 1e-3, true},
+                        {{2.005e-3, 1e-4, 3e-4}, {-0.1, 0, 0.05}, {40, 200, 30}, 1e-3, true}};
+    EXPECT_LT(deviation("pair_yield", yielding, exact), 1e-12);
+    EXPECT_LT(deviation("pair_yield", yielding, mixed), 1e-5);
+
+    auto rolling = soft_spheres(0.05, 2e-6);
+    rolling.gravity = {0, 0, -9.81};
+    rolling.walls = {dem::Plane{}};
+    rolling.spheres = {{{0, 0, 1e-3 + 1e-9}, {0.03, 0, 0}, {0, 30, 0}, 1e-3, true}};
+    EXPECT_LT(deviation("plane_roll", rolling, exact), 1e-3);
+    EXPECT_LT(deviation("plane_roll", rolling, mixed), 1e-3);
+
+    auto impact = soft_spheres(0.1, 2e-7);
+    impact.walls = {dem::Plane{}};
+    impact.spheres = {{{0, 0, 1.001e-3}, {0.1, 0.02, -0.2}, {10, -40, 20}, 1e-3, true}};
+    EXPECT_LT(deviation("plane_impact", impact, exact), 2e-3);
+    EXPECT_LT(deviation("plane_impact", impact, mixed), 2e-3);
+}
+
+// m dv/dt = -f,  I dw/dt = f a - mu_r R m g,  v = a w  with the arm a = R - d/2 of this law:
+//     dv/dt = -mu_r g (R/a)/(1 + 2/5 (R/a)^2)        that is -5/7 mu_r g for a hard sphere.
+TEST(DemRolling, DeceleratesARollingSphere) {
+    for (const double mu_r : {0.02, 0.1}) {
+        auto p = on_plane(mu_r, 0);
+        p.setup.spheres[0].velocity = {0.05, 0, 0};
+        p.setup.spheres[0].angular_velocity = {0, 0.05 / p.arm, 0};
+        const double ratio = radius / p.arm;
+        const double expected = -mu_r * gravity * ratio / (1 + 0.4 * ratio * ratio);
+        EXPECT_NEAR(expected, -5.0 / 7 * mu_r * gravity, 2e-4 * mu_r * gravity);
+        // The wind-up of the spring rings in the tangential spring for a while.
+        EXPECT_NEAR(acceleration(p.setup, exact, 20000, 60000) / expected, 1, 1e-4) << mu_r;
+        // A spin is a single-precision number: the same change added to it step by step is rounded alike each time, by
+        // up to half the distance to the next number.
+        const auto turn = static_cast<float>(0.05 / p.arm * p.setup.time_step);  // per step, as the engine keeps it
+        const double change = -expected / p.arm * std::pow(p.setup.time_step, 2);
+        const double rounding = 0.5 * static_cast<double>(turn - std::nextafter(turn, 0.0F)) / change;
+        EXPECT_NEAR(acceleration(p.setup, mixed, 20000, 60000) / expected, 1, 1e-4 + rounding) << mu_r;
+        EXPECT_LT(rounding, 0.03) << "the test should say something";
+    }
+}
+
+// On a slope it rests while tan(angle) < mu_r, and beyond rolls with
+//     dv/dt = g (sin(angle) - mu_r cos(angle) R/a)/(1 + 2/5 (R/a)^2).
+TEST(DemRolling, StandsOnASlopeBelowItsAngle) {
+    constexpr double mu_r = 0.2;
+    for (const auto precision : {exact, mixed}) {
+        auto below = on_plane(mu_r, std::atan(0.95 * mu_r));
+        const auto engine = dem::make_engine(below.setup, method(precision));
+        engine->run(100000);  // 50 ms, a hundred periods of rocking
+        const auto state = tests::state_of(*engine);
+        EXPECT_LT(std::abs(state.velocity[0][0]), 1e-6);
+        EXPECT_LT(state.position[0][0], 10 * below.overlap) << "the spring gives by d/(2.25 mu_r)";
+        EXPECT_GT(state.position[0][0], 0);
+
+        const double slope = std::atan(1.2 * mu_r);
+        const auto above = on_plane(mu_r, slope);
+        const double ratio = radius / above.arm;
+        const double expected =
+            gravity * (std::sin(slope) - mu_r * std::cos(slope) * ratio) / (1 + 0.4 * ratio * ratio);
+        EXPECT_NEAR(acceleration(above.setup, precision, 20000, 60000) / expected, 1, 1e-3);
+    }
+}
+
+// What has stopped rocks about its contact: I_r = 7/5 m R^2, k_r = 2.25 m g/d mu_r^2 R^2, decaying with the damping
+// ratio asked for. The tangential spring in series, and I about the contact point at R - d/2 instead of R, are worth
+// k_r/(k_t a^2) + 3 d/R, below 1 % here.
+TEST(DemRolling, RocksToRestWithTheDampingRatioAskedFor) {
+    constexpr double mu_r = 0.05;
+    for (const double damping : {0.05, 0.3}) {
+        auto p = on_plane(mu_r, 0);
+        p.setup.material.rolling_damping = damping;
+        const double stiffness = 2.25 * p.mass * gravity / p.overlap * mu_r * mu_r * radius * radius;
+        const double frequency = std::sqrt(stiffness / (1.4 * p.mass * radius * radius));
+        const double damped = frequency * std::sqrt(1 - damping * damping);
+        const double start = 0.01 * p.overlap * frequency / radius;  // rad/s, far below the limit
+        p.setup.spheres[0].angular_velocity = {0, start, 0};
+        p.setup.spheres[0].velocity = {p.arm * start, 0, 0};
+        const auto half_periods = std::llround(2 * std::numbers::pi / damped / p.setup.time_step);
+        const auto engine = dem::make_engine(p.setup, {});
+        engine->run(half_periods);
+        const double after = static_cast<double>(half_periods) * p.setup.time_step;
+        const double expected =
+            std::exp(-damping * frequency * after) *
+            (std::cos(damped * after) - damping / std::sqrt(1 - damping * damping) * std::sin(damped * after));
+        EXPECT_NEAR(tests::state_of(*engine).angular_velocity[0][1] / start, expected, 0.01) << damping;
+    }
+}
+
+// A law that is absent is absent: the same bits as before, and no memory for it.
+TEST(DemRolling, AGasWithRollingResistanceLosesSpinSooner) {
+    double spin[2] = {};
+    for (const int k : {0, 1}) {
+        auto gas = tests::boxed_gas(200, 0.5, 2, 21);
+        gas.material.rolling_friction = k == 0 ? 0 : 0.3;
+        const auto engine = dem::make_engine(gas, {});
+        engine->run(4000);
+        ASSERT_EQ(engine->fault(), "");
+        for (const auto& w : tests::state_of(*engine).angular_velocity) spin[k] += geometry::dot(w, w);
+    }
+    EXPECT_LT(spin[1], 0.9 * spin[0]);
+}
