@@ -20,6 +20,7 @@
 #include "solver/flow/state_bytes.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -28,6 +29,25 @@ namespace grainsweep::coupling {
 
 struct OneWay {
     static constexpr bool acts_on_fluid = false;
+    static constexpr bool mirrored = false;
+};
+
+/// One-way in a fluid that is its own mirror image in x: only the half x < 0 of the flow exists, closed by a plane of
+/// symmetry (FreeSlip), and particles beyond it feel the image.
+struct OneWayMirrored {
+    static constexpr bool acts_on_fluid = false;
+    static constexpr bool mirrored = true;
+
+    [[nodiscard]] static Vec3 below(Vec3 x) {
+        x[0] = -std::abs(x[0]);
+        return x;
+    }
+    /// What a particle at x feels, from what its image below the plane does.
+    static void turn(const Vec3& x, Surroundings& around) {
+        if (!(x[0] > 0)) return;
+        around.velocity[0] = -around.velocity[0];
+        around.acceleration[0] = -around.acceleration[0];
+    }
 };
 
 struct ForceForm {
@@ -55,6 +75,7 @@ template <class Form>
 class TwoWay {
 public:
     static constexpr bool acts_on_fluid = true;
+    static constexpr bool mirrored = false;
     /// Least share of a cell that is fluid: random close packing leaves 1 - 0.63.
     static constexpr double least_fluid = 0.37;
 

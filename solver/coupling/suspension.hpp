@@ -43,7 +43,13 @@ public:
         for (const std::size_t p : order_.of(cloud_, fluid_.grid())) {
             Vec3& x = cloud_.position[p];
             Vec3& v = cloud_.velocity[p];
-            if constexpr (Level::acts_on_fluid) {
+            if constexpr (Level::mirrored) {
+                const Vec3 middle = predicted(p);
+                const Footing<Kernel> at(fluid_.grid(), walls_.periodic, Level::below(middle));
+                Surroundings around{at.gather(velocity_), at.gather(acceleration_), s, {}};
+                Level::turn(middle, around);
+                motion_.advance(x, v, around);
+            } else if constexpr (Level::acts_on_fluid) {
                 const Vec3 before = v;
                 move(x, v, feet_[p], s);
                 level_.remember(p, {(v[0] - before[0]) / dt, (v[1] - before[1]) / dt, (v[2] - before[2]) / dt});
@@ -72,13 +78,14 @@ public:
     }
 
 private:
-    // At the predicted middle of the step.
-    [[nodiscard]] Footing<Kernel> foot(std::size_t p) const {
+    // The middle of the step.
+    [[nodiscard]] Vec3 predicted(std::size_t p) const {
         Vec3 x = cloud_.position[p];
         const double half = 0.5 * fluid_.time_step();
         for (std::size_t d = 0; d < 3; ++d) x[d] += half * cloud_.velocity[p][d];
-        return {fluid_.grid(), walls_.periodic, walls_.clipped(x)};
+        return walls_.clipped(x);
     }
+    [[nodiscard]] Footing<Kernel> foot(std::size_t p) const { return {fluid_.grid(), walls_.periodic, predicted(p)}; }
 
     void move(Vec3& x, Vec3& v, const Footing<Kernel>& at, double vibration) const {
         motion_.advance(x, v, {at.gather(velocity_), at.gather(acceleration_), vibration, {}});

@@ -8,6 +8,7 @@ namespace grainsweep::flow {
 
 Axis::Axis(int cells, double low, double high, double clustering)
     : cells_(cells),
+      mapped_(cells),
       low_(low),
       high_(high),
       clustering_(clustering),
@@ -40,6 +41,18 @@ Axis Axis::uniform(int cells, double low, double high) {
 
 Axis Axis::clustered(int cells, double low, double high, double clustering) {
     return {cells, low, high, clustering};
+}
+
+Axis Axis::lower_half() const {
+    if (cells_ % 2 != 0) throw std::invalid_argument("half an axis needs an even number of cells");
+    Axis half = *this;
+    half.cells_ = cells_ / 2;
+    half.high_ = middle_;
+    const auto n = static_cast<std::size_t>(half.cells_);
+    half.faces_.resize(n + 3);
+    half.centres_.resize(n + 2);
+    half.widths_.resize(n + 2);
+    return half;
 }
 
 }  // namespace grainsweep::flow

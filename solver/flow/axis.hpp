@@ -28,6 +28,10 @@ public:
     /// clustering > 0 narrows the cells at both ends; 0 is uniform. Throws std::invalid_argument.
     [[nodiscard]] static Axis clustered(int cells, double low, double high, double clustering);
 
+    /// The cells below the middle of an axis of an even number; faces, centres and widths are the same bits. Throws
+    /// std::invalid_argument.
+    [[nodiscard]] Axis lower_half() const;
+
     [[nodiscard]] int cells() const { return cells_; }
     [[nodiscard]] double low() const { return low_; }
     [[nodiscard]] double high() const { return high_; }
@@ -43,14 +47,14 @@ public:
     /// Cell and smooth offset s of a position in [low, high]; positions outside go to the nearest end.
     [[nodiscard]] Place locate(double x) const {
         const double t = std::clamp((x - middle_) / half_, -1.0, 1.0);
-        const double in_cells = 0.5 * ((clustering_ > 0 ? unclustered(t) : t) + 1) * cells_;
+        const double in_cells = 0.5 * ((clustering_ > 0 ? unclustered(t) : t) + 1) * mapped_;
         // Written so that a position that is no number still yields a cell that exists.
         const int cell = in_cells < cells_ - 1 ? static_cast<int>(in_cells) : cells_ - 1;
         return {cell + 1, in_cells - cell};
     }
     /// dx/ds of the smooth map at a position (the local cell width).
     [[nodiscard]] double stretch(double x) const {
-        const double equal = 2 * half_ / cells_;
+        const double equal = 2 * half_ / mapped_;
         if (clustering_ == 0) return equal;
         const double a = std::clamp((x - middle_) / half_, -1.0, 1.0) * tanh_;
         return equal * clustering_ / tanh_ * (1 - a * a);
@@ -66,6 +70,7 @@ private:
     }
 
     int cells_;
+    int mapped_;  // cells of the map between low and high: twice as many on a half axis
     double low_, high_, clustering_;
     double middle_, half_, tanh_;
     std::vector<double> faces_, centres_, widths_;

@@ -100,6 +100,10 @@ std::vector<ParameterSpec> parameters() {
         whole("cells", "cells of the flow grid per side", 40, between(4, 128)),
         real("clustering", "1", "clustering c of the grid towards all walls, tanh(c s)/tanh(c); 0: uniform", 0,
              between(0, 3)),
+        word("symmetry",
+             "the flow of one-way particles: the whole cube, or half of it as its own mirror image in x (even cells), "
+             "which it starts as and stays unless a convection that breaks the symmetry sets in",
+             {"none", "mirror"}, {{"coupling", Condition::is_word, {"one_way"}}}),
         whole("steps_per_period", "time steps per period of vibration", 32, between(8, 4096), {vibrated}),
         real("time_step", "L^2/alpha", "time step under a steady force", 1e-4, between(1e-9, 1),
              {{"frequency", Condition::zero, {}}}),
@@ -158,7 +162,14 @@ std::unique_ptr<Scene> make_with(const Question& question, std::uint64_t seed, A
         return dense(coupling::SolidsPressure<Temperature>(grid, sides, question.sphere(), question.grains(),
                                                            question.granular_temperature, smoothing));
     };
-    if (question.particles == 0) return dilute(coupling::OneWay{});
+    const bool carried =
+        question.particles > 0 && question.particle_start == "periodic_flow" && !question.steady_force();
+    const auto one_way = [&]<class Level>(Level level) -> std::unique_ptr<Scene> {
+        if (carried) return std::make_unique<Carried<Level, Kernel>>(question, seed, artefacts);
+        return dilute(level);
+    };
+    if (question.mirrored()) return one_way(coupling::OneWayMirrored{});
+    if (question.particles == 0 || question.coupling == "one_way") return one_way(coupling::OneWay{});
     if (question.coupling == "two_way") {
         const auto form = [&]<class Form>(Form) {
             return dilute(coupling::TwoWay<Form>(grid, sides, question.sphere(), particles, smoothing));
@@ -169,11 +180,7 @@ std::unique_ptr<Scene> make_with(const Question& question, std::uint64_t seed, A
     if (question.coupling == "ddpm_ktgf") return granular(std::type_identity<coupling::TransportedTemperature>{});
     if (question.coupling == "cfd_dem" && question.contact == "spring")
         return dense(coupling::SpringContacts(question.sphere(), question.walls(), question.spring(), particles));
-    if (question.coupling == "cfd_dem")
-        return dense(coupling::ProjectedContacts(question.sphere(), question.walls(), question.step()));
-    if (question.particle_start == "periodic_flow" && !question.steady_force())
-        return std::make_unique<Carried<Kernel>>(question, seed, artefacts);
-    return dilute(coupling::OneWay{});
+    return dense(coupling::ProjectedContacts(question.sphere(), question.walls(), question.step()));
 }
 
 std::unique_ptr<Scene> make(const Inputs& inputs, std::uint64_t seed, Artefacts& artefacts) {
@@ -214,7 +221,7 @@ SceneInfo thermovibration_scene() {
     SceneInfo info;
     info.name = "thermovibration";
     info.summary = "particles in a heated, vibrated cube of fluid: do they gather, into what, how fast";
-    info.revision = 1;
+    info.revision = 2;
     info.parameters = parameters();
     info.observables = observables();
     info.accuracy = {

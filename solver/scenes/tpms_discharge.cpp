@@ -9,8 +9,12 @@
 //
 // Work that cannot matter is not done: frozen spheres that no mobile one can touch while overlaps stay below
 // a tenth of a diameter are dropped (particles/reach.hpp), a larger one at any step is reported unstable; a case ends
-// when no mobile sphere is left, and, under the rule "quiet", when the powder has come to rest.
+// when no mobile sphere is left, and, under the rule "quiet", when the powder has come to rest: for 1.5 t* no more than
+// one sphere in ten thousand (or one) moved at a time, and the count changed by no more. Those few may still leave;
+// beyond them the rule presumes that what rests stays at rest.
+#include "solver/geometry/tpms_outlet.hpp"
 #include "solver/geometry/vector.hpp"
+#include "solver/observables/beverloo.hpp"
 #include "solver/observables/histogram.hpp"
 #include "solver/observables/particle_loads.hpp"
 #include "solver/particles/bytes.hpp"
@@ -24,6 +28,7 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 
 namespace grainsweep {
@@ -38,6 +43,7 @@ constexpr std::int64_t samples_per_force_sample = 10;
 constexpr double quiet_time = 1.5;    // t*
 constexpr double quiet_periods = 2;   // of vibration
 constexpr double quiet_speed = 1e-3;  // sqrt(2 g L)
+constexpr double quiet_share = 1e-4;  // of the powder may move faster, and leave
 constexpr double overlap_bin = 0.0005, force_bin = 10;
 constexpr std::size_t layers = 20;
 
@@ -46,7 +52,8 @@ struct Moment {
     std::int64_t step = 0;
     std::int64_t in_cell = 0;  ///< mobile centres in the cell
     double fastest_down = 0;   ///< in the cell, along gravity, m/s
-    double fastest = 0;        ///< in the cell, m/s
+    std::int64_t mobile = 0;   ///< not yet gone
+    std::int64_t at_rest = 0;  ///< in the cell, slower than quiet_speed
 };
 
 /// One bin of a histogram taken at a step.
@@ -74,7 +81,8 @@ particles::Packing packing_of(const TpmsQuestion& question, Artefacts& artefacts
 
 class TpmsDischarge final : public Scene {
 public:
-    TpmsDischarge(const TpmsQuestion& question, const particles::TpmsFilling& filling);
+    /// Outlet in diameters; fraction: of the packing that the cell was cut from.
+    TpmsDischarge(const TpmsQuestion& question, const particles::TpmsFilling& filling, double outlet, double fraction);
 
     void advance(double until) override;
     void observe(Observations& into) const override;
@@ -103,9 +111,12 @@ private:
     void sample_forces(bool histograms);
     /// When the retention first fell to a share, in t*; NaN if it never did.
     [[nodiscard]] double time_to(double share) const;
+    /// Share of the powder per t* that Beverloo's law lets through the outlet.
+    [[nodiscard]] double beverloo() const;
     void observe_profile(Observations& into) const;
 
     TpmsQuestion question_;
+    double outlet_ = 0, fraction_ = 0;
     std::size_t wall_spheres_ = 0;
     std::int64_t start_count_ = 0;
     std::array<std::int64_t, layers> start_layers_{};
@@ -117,6 +128,7 @@ private:
     std::int64_t step_ = 0;
     std::int64_t mobile_left_ = 0;
     std::int64_t quiet_since_ = 0;  // step of the last sample that was not quiet
+    std::int64_t quiet_count_ = 0;  // in the cell then
     double max_overlap_ = 0;        // diameters
     double max_force_ = 0;          // m 9.81
     std::vector<Moment> moments_;
@@ -124,8 +136,9 @@ private:
     std::string fault_;
 };
 
-TpmsDischarge::TpmsDischarge(const TpmsQuestion& question, const particles::TpmsFilling& filling)
-    : question_(question), wall_spheres_(filling.wall_spheres) {
+TpmsDischarge::TpmsDischarge(const TpmsQuestion& question, const particles::TpmsFilling& filling, double outlet,
+                             double fraction)
+    : question_(question), outlet_(outlet), fraction_(fraction), wall_spheres_(filling.wall_spheres) {
     const double d = question.diameter;
     dem::Setup setup;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -178,7 +191,9 @@ void TpmsDischarge::advance(double until) {
 
 void TpmsDischarge::sample() {
     engine_->state(state_);
-    Moment now{.step = step_, .in_cell = 0, .fastest_down = 0, .fastest = 0};
+    Moment now{};
+    now.step = step_;
+    const double slow = quiet_speed * question_.free_fall_speed();
     mobile_left_ = 0;
     for (std::size_t i = 0; i < state_.id.size(); ++i) {
         if (state_.mobile[i] == 0) continue;
@@ -186,11 +201,16 @@ void TpmsDischarge::sample() {
         if (!in_cell(state_.position[i])) continue;
         ++now.in_cell;
         now.fastest_down = std::max(now.fastest_down, geometry::dot(state_.velocity[i], question_.down));
-        now.fastest = std::max(now.fastest, geometry::norm(state_.velocity[i]));
+        const double speed = geometry::norm(state_.velocity[i]);
+        now.at_rest += speed < slow ? 1 : 0;
     }
-    const bool quiet = !moments_.empty() && now.in_cell == moments_.back().in_cell &&
-                       now.fastest < quiet_speed * question_.free_fall_speed();
-    if (!quiet) quiet_since_ = step_;
+    now.mobile = mobile_left_;
+    const auto few =
+        std::max<std::int64_t>(1, static_cast<std::int64_t>(quiet_share * static_cast<double>(start_count_)));
+    if (now.in_cell - now.at_rest > few || std::abs(now.in_cell - quiet_count_) > few) {
+        quiet_since_ = step_;
+        quiet_count_ = now.in_cell;
+    }
     moments_.push_back(now);
     sample_forces((step_ / sample_interval_) % samples_per_force_sample == 0 || step_ == last_step_);
 
@@ -224,9 +244,10 @@ void TpmsDischarge::sample_forces(bool histograms) {
 
 bool TpmsDischarge::finished() const {
     if (step_ >= last_step_ || mobile_left_ == 0) return true;
-    const double quiet = static_cast<double>(step_ - quiet_since_) * question_.time_step;
-    return question_.stop_when_quiet && quiet >= quiet_time * question_.free_fall_time() &&
-           quiet * question_.shaking.frequency >= quiet_periods;
+    const double frequency = question_.shaking.frequency;
+    const double needed =
+        std::max(quiet_time * question_.free_fall_time(), frequency > 0 ? quiet_periods / frequency : 0.0);
+    return question_.stop_when_quiet && static_cast<double>(step_ - quiet_since_) * question_.time_step >= needed;
 }
 
 double TpmsDischarge::time_to(double share) const {
@@ -240,6 +261,13 @@ double TpmsDischarge::time_to(double share) const {
         return in_t_star(from + part * (static_cast<double>(moments_[k].step) - from));
     }
     return std::numeric_limits<double>::quiet_NaN();
+}
+
+double TpmsDischarge::beverloo() const {
+    if (question_.down != std::array<double, 3>{0, 0, -1}) return std::numeric_limits<double>::quiet_NaN();
+    const double d = question_.diameter;
+    return observables::beverloo_rate(outlet_ * d, d, fraction_, question_.gravity) * question_.free_fall_time() /
+           static_cast<double>(start_count_);
 }
 
 void TpmsDischarge::observe_profile(Observations& into) const {
@@ -262,11 +290,15 @@ void TpmsDischarge::observe(Observations& into) const {
     double peak = 0;
     auto& retention = into.series["retention_series"];
     auto& velocity = into.series["velocity_series"];
+    auto& mobile = into.series["mobile_series"];
+    auto& at_rest = into.series["at_rest_series"];
     for (const Moment& moment : moments_) {
         const double t = in_t_star(static_cast<double>(moment.step));
         const double speed = moment.fastest_down / question_.free_fall_speed();
         retention.push_back({.time = t, .value = static_cast<double>(moment.in_cell) / start});
         velocity.push_back({.time = t, .value = speed});
+        mobile.push_back({.time = t, .value = static_cast<double>(moment.mobile) / start});
+        at_rest.push_back({.time = t, .value = static_cast<double>(moment.at_rest) / start});
         peak = std::max(peak, speed);
     }
     const auto add_bins = [&](const char* name, const std::vector<Bin>& bins) {
@@ -280,6 +312,9 @@ void TpmsDischarge::observe(Observations& into) const {
     into.scalars["retention"] = static_cast<double>(moments_.back().in_cell) / start;
     into.scalars["time_to_half"] = time_to(0.5);
     into.scalars["time_to_tenth"] = time_to(0.1);
+    into.scalars["discharge_rate"] = 0.25 / (time_to(0.5) - time_to(0.75));
+    into.scalars["beverloo_rate"] = beverloo();
+    into.scalars["outlet_diameter"] = outlet_;
     into.scalars["peak_velocity"] = peak;
     into.scalars["max_overlap"] = max_overlap_;
     into.scalars["max_force"] = max_force_;
@@ -292,6 +327,7 @@ void TpmsDischarge::save(Bytes& into) const {
     out.put(step_);
     out.put(mobile_left_);
     out.put(quiet_since_);
+    out.put(quiet_count_);
     out.put(max_overlap_);
     out.put(max_force_);
     out.put(moments_);
@@ -308,6 +344,7 @@ void TpmsDischarge::restore(std::span<const std::byte> from) {
     in.get(step_);
     in.get(mobile_left_);
     in.get(quiet_since_);
+    in.get(quiet_count_);
     in.get(max_overlap_);
     in.get(max_force_);
     in.get(moments_);
@@ -366,11 +403,16 @@ SceneInfo tpms_discharge_scene() {
     info.make = [](const Inputs& inputs, std::uint64_t seed, Artefacts& artefacts) -> std::unique_ptr<Scene> {
         const TpmsQuestion question(inputs, seed);
         const geometry::TpmsShell shell(question.cell, question.side, question.edge, question.shell);
-        const auto filling = particles::fill_tpms(packing_of(question, artefacts), shell, 1 - most_overlap);
+        const particles::Packing packing = packing_of(question, artefacts);
+        const auto filling = particles::fill_tpms(packing, shell, 1 - most_overlap);
         if (filling.mobile.empty())
             throw std::invalid_argument(
                 "the shell leaves no room for a mobile particle: make it thinner or the edge longer");
-        return std::make_unique<TpmsDischarge>(question, filling);
+        // A wall particle stands half a diameter out of the shell on either side.
+        const double outlet = std::max(0.0, geometry::outlet_diameter(shell) - 1);
+        const double fraction =
+            std::numbers::pi / 6 * static_cast<double>(packing.positions.size()) / std::pow(question.edge, 3);
+        return std::make_unique<TpmsDischarge>(question, filling, outlet, fraction);
     };
     info.estimate_cost = estimate_cost;
     info.proven_answer = [](const Inputs&) -> std::optional<ProvenAnswer> { return std::nullopt; };

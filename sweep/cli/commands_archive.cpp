@@ -134,9 +134,26 @@ bool same_samples(const auto& a, const auto& b, const std::string& name) {
     });
 }
 
+/// A case of an archive written before its scene grew: a parameter the archive does not know takes its default, which
+/// is what its absence from the case's identity means. Another revision is another experiment.
+campaign::Case as_asked_today(campaign::Case question) {
+    const SceneInfo* scene = find_scene(question.scene);
+    if (scene == nullptr)
+        throw campaign::wrong_question("CASE", question.id,
+                                       "is of a scene this build does not have: " + question.scene);
+    if (scene->revision != question.revision)
+        throw campaign::wrong_question(
+            "CASE", question.id,
+            fmt::format("is of revision {} of scene '{}', and this build computes revision {}: "
+                        "replay it with the build that made it (grainsweep explain names it)",
+                        question.revision, question.scene, scene->revision));
+    for (const auto& [name, value] : scene->defaults()) question.inputs.try_emplace(name, value);
+    return question;
+}
+
 int replay(const std::string& database, const std::string& id, const PictureRequest& pictures, Format format) {
     const Store archive(database, Store::Mode::read);
-    const campaign::Case question = require_case(archive, id);
+    const campaign::Case question = as_asked_today(require_case(archive, id));
     const auto stored = archive.result(question.id);
     if (!stored) throw campaign::wrong_question("CASE", id, "has no result to compare with yet");
     const auto attempts = archive.attempts(question.id);
@@ -157,8 +174,8 @@ int replay(const std::string& database, const std::string& id, const PictureRequ
         table.rows.push_back({name, report::to_cell(a), report::to_cell(b), report::to_cell(difference)});
     };
     auto names = stored->observations.scalars;
-    names.insert(now->observations.scalars.begin(), now->observations.scalars.end());
-    for (const auto& [name, ignored] : names) {
+    if (same_path) names.insert(now->observations.scalars.begin(), now->observations.scalars.end());
+    for (const auto& [name, ignored] : names) {  // another build may measure more than the archive knows
         compare(name, at(stored->observations.scalars, name), at(now->observations.scalars, name));
     }
     bool same_series = true;

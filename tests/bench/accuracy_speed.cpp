@@ -1,6 +1,8 @@
 // Error against cost of the DEM: what each numerical setting does to what is measured, and what it costs.
 //
 //   bench_accuracy [--scene collision|settling|chute|spreading] [--seeds N] [--figure FILE.svg]
+//                  [--only TEXT]                      of the settings of spreading, those with TEXT in their names
+//   bench_accuracy --lines FILE --figure FILE.svg      draws what earlier runs printed
 //
 //   collision  512 oblique impacts at once (10 to 85 degrees, spinning): rms error of rebound velocities against the
 //              same impacts with a step 400 times finer in double precision
@@ -12,10 +14,12 @@
 // standard error of that difference stands beside it. Cost is processor time of this thread, every step and list
 // included. One JSON line per setting; the figure joins the settings no other beats.
 #include <ctime>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <functional>
 #include <limits>
 #include <map>
@@ -78,27 +82,38 @@ std::vector<Numerics> numerics(double finest, bool exact, bool softened) {
     return all;
 }
 
-/// Running mean and its error.
-struct Mean {
-    double sum = 0, square = 0;
-    int n = 0;
-    void add(double x) { sum += x, square += x * x, ++n; }
-    [[nodiscard]] double value() const { return sum / n; }
-    [[nodiscard]] double variance() const { return n > 1 ? std::max(0.0, square - sum * sum / n) / (n - 1) / n : 0; }
-};
+/// One figure per seed.
+using Runs = std::vector<double>;
 
-/// Fills in errors against the setting marked as the reference.
-void compare_means(std::vector<Setting>& settings, const std::vector<Mean>& means) {
+double mean(const Runs& runs) {
+    double sum = 0;
+    for (const double x : runs) sum += x / static_cast<double>(runs.size());
+    return sum;
+}
+
+double error_of_mean(const Runs& runs) {
+    const double centre = mean(runs);
+    double square = 0;
+    for (const double x : runs) square += (x - centre) * (x - centre);
+    const auto n = static_cast<double>(runs.size());
+    return std::sqrt(square / (n - 1) / n);
+}
+
+/// Fills in errors against the setting marked as the reference: means of the differences from seed to seed, since what
+/// a start has in common with itself does not count.
+void compare_means(std::vector<Setting>& settings, const std::vector<Runs>& runs) {
     std::size_t reference = 0;
     for (std::size_t k = 0; k < settings.size(); ++k)
         if (settings[k].is_reference) reference = k;
-    const Mean& r = means[reference];
+    const double scale = mean(runs[reference]);
     for (std::size_t k = 0; k < settings.size(); ++k) {
         if (k == reference) continue;
-        settings[k].unstable = std::isnan(means[k].value());
-        if (settings[k].unstable) continue;
-        settings[k].error = means[k].value() / r.value() - 1;
-        settings[k].uncertainty = std::sqrt(means[k].variance() + r.variance()) / std::abs(r.value());
+        Runs differences;
+        for (std::size_t seed = 0; seed < std::min(runs[k].size(), runs[reference].size()); ++seed)
+            differences.push_back((runs[k][seed] - runs[reference][seed]) / scale);
+        settings[k].error = mean(differences);
+        settings[k].unstable = std::isnan(settings[k].error);
+        settings[k].uncertainty = error_of_mean(differences);
     }
 }
 
@@ -192,17 +207,17 @@ void chaotic(std::vector<Setting>& all, const std::string& scene, const std::str
              const std::vector<Numerics>& list, int seeds,
              const std::function<double(const Numerics&, std::uint64_t)>& job) {
     std::vector<Setting> settings;
-    std::vector<Mean> means(list.size());
+    std::vector<Runs> runs(list.size());
     for (std::size_t k = 0; k < list.size(); ++k) {
         const double start = processor_seconds();
-        for (int seed = 1; seed <= seeds; ++seed) means[k].add(job(list[k], static_cast<std::uint64_t>(seed)));
+        for (int seed = 1; seed <= seeds; ++seed) runs[k].push_back(job(list[k], static_cast<std::uint64_t>(seed)));
         Setting s{scene, list[k].name, measured, (processor_seconds() - start) / seeds};
         s.is_reference = list[k].is_reference;
         settings.push_back(s);
-        std::fprintf(stderr, "%s, %s: %.5g +- %.2g, %.3g s\n", scene.c_str(), s.name.c_str(), means[k].value(),
-                     std::sqrt(means[k].variance()), s.cost);
+        std::fprintf(stderr, "%s, %s: %.5g +- %.2g, %.3g s\n", scene.c_str(), s.name.c_str(), mean(runs[k]),
+                     error_of_mean(runs[k]), s.cost);
     }
-    compare_means(settings, means);
+    compare_means(settings, runs);
     test::mark_dominated(settings);
     for (const auto& s : settings) std::printf("%s\n", test::json_line(s).c_str());
     std::fflush(stdout);
@@ -256,7 +271,7 @@ void chute(std::vector<Setting>& all, int seeds) {
 
 // ---- spreading -------------------------------------------------------------------------------------------------
 
-void spreading(std::vector<Setting>& all, int seeds) {
+void spreading(std::vector<Setting>& all, int seeds, const std::string& only) {
     const SceneInfo& scene = *find_scene("powder_spreading");
     struct Question {
         double friction, diameter, gap, speed;
@@ -285,14 +300,19 @@ void spreading(std::vector<Setting>& all, int seeds) {
     choices.push_back({"step 0.2 E x 10", {{"youngs_modulus", 2.1e8}}});
     choices.push_back({"step 0.2 E x 100", {{"youngs_modulus", 2.1e9}}, false, 6});
     choices.push_back({"step 0.2 settle 0.1", {{"settle_time", 0.1}}});
+    for (const auto& [name, inputs] : scene.accuracy)  // the set called reference is finer than this comparison
+        if (name != "reference") choices.push_back({"accuracy " + name, inputs});
+    if (!only.empty())
+        std::erase_if(choices,
+                      [&](const Choice& c) { return !c.is_reference && c.name.find(only) == std::string::npos; });
     std::vector<Setting> settings;
-    std::vector<Mean> means(choices.size());
+    std::vector<Runs> runs(choices.size());
     for (std::size_t k = 0; k < choices.size(); ++k) {
         const double start = processor_seconds();
         NoArtefacts none;
-        const int runs = std::max(2, seeds / choices[k].share);
-        for (int seed = 1; seed <= runs; ++seed) {
-            double mean = 0;  // over the questions, each counting alike
+        const int count = std::max(2, seeds / choices[k].share);
+        for (int seed = 1; seed <= count; ++seed) {
+            double over_questions = 0;  // each question counting alike
             for (const auto& q : questions) {
                 Inputs inputs = scene.defaults();
                 inputs["friction"] = q.friction, inputs["diameter"] = q.diameter;
@@ -302,40 +322,60 @@ void spreading(std::vector<Setting>& all, int seeds) {
                 run->advance(std::numeric_limits<double>::infinity());
                 Observations seen;
                 run->observe(seen);
-                mean += run->health().stable() ? seen.scalars.at("mfr") / static_cast<double>(questions.size())
-                                               : std::numeric_limits<double>::quiet_NaN();
+                over_questions += run->health().stable()
+                                      ? seen.scalars.at("mfr") / static_cast<double>(questions.size())
+                                      : std::numeric_limits<double>::quiet_NaN();
             }
-            means[k].add(mean);
+            runs[k].push_back(over_questions);
         }
-        Setting s{"spreading", choices[k].name, "mfr", (processor_seconds() - start) / runs};
+        Setting s{"spreading", choices[k].name, "mfr", (processor_seconds() - start) / count};
         s.is_reference = choices[k].is_reference;
         settings.push_back(s);
-        std::fprintf(stderr, "spreading, %s: %.5f +- %.5f, %.3g s\n", s.name.c_str(), means[k].value(),
-                     std::sqrt(means[k].variance()), s.cost);
+        std::fprintf(stderr, "spreading, %s: %.5f +- %.5f, %.3g s\n", s.name.c_str(), mean(runs[k]),
+                     error_of_mean(runs[k]), s.cost);
     }
-    compare_means(settings, means);
+    compare_means(settings, runs);
     test::mark_dominated(settings);
     for (const auto& s : settings) std::printf("%s\n", test::json_line(s).c_str());
     all.insert(all.end(), settings.begin(), settings.end());
 }
 
+/// What json_line wrote.
+std::vector<Setting> read_lines(const std::string& file) {
+    std::ifstream in(file);
+    if (!in) throw std::runtime_error("cannot read " + file);
+    std::vector<Setting> all;
+    for (std::string line; std::getline(in, line);) {
+        const auto j = nlohmann::json::parse(line);
+        if (j.contains("outcome")) continue;
+        Setting s{j.at("scene"), j.at("setting"), j.at("measured"), j.at("cost_seconds")};
+        s.error = j.at("relative_error"), s.uncertainty = j.at("uncertainty");
+        s.is_reference = j.at("reference");
+        all.push_back(s);
+    }
+    return all;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-    std::string scene, figure;
+    std::string scene, figure, lines, only;
     int seeds = 12;
     for (int i = 1; i + 1 < argc; i += 2) {
         const std::string name = argv[i];
         if (name == "--scene") scene = argv[i + 1];
         if (name == "--seeds") seeds = std::max(2, std::stoi(argv[i + 1]));
         if (name == "--figure") figure = argv[i + 1];
+        if (name == "--only") only = argv[i + 1];
+        if (name == "--lines") lines = argv[i + 1];
     }
     std::vector<Setting> all;
-    const auto wanted = [&](const char* name) { return scene.empty() || scene == name; };
+    if (!lines.empty()) all = read_lines(lines);
+    const auto wanted = [&](const char* name) { return lines.empty() && (scene.empty() || scene == name); };
     if (wanted("collision")) collision(all);
     if (wanted("settling")) settling(all, seeds);
     if (wanted("chute")) chute(all, seeds);
-    if (wanted("spreading")) spreading(all, seeds);
+    if (wanted("spreading")) spreading(all, seeds, only);
     test::mark_dominated(all);
     if (!figure.empty()) test::draw(all, figure);
     return 0;

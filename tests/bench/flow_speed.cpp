@@ -66,6 +66,14 @@ int main(int argc, char** argv) {
     flow.set_temperature([](double, double, double z) { return z; });
 
     measure("flow_step", [&] { flow.step(); });
+    if (n % 2 == 0) {
+        const Grid half_grid{{axis.lower_half(), axis, axis}};
+        Sides half_walls = walls;
+        half_walls[0][1] = FreeSlip{};
+        Flow<Boussinesq> half({half_grid, half_walls, 18, setup.time_step}, heat);
+        half.set_temperature([](double, double, double z) { return z; });
+        measure("flow_step_mirrored", [&] { half.step(); });
+    }
     FaceVectors velocity = face_vectors(grid);
     FaceVectors acceleration = face_vectors(grid);
     measure("midpoint", [&] { flow.midpoint(velocity, acceleration); });
@@ -116,16 +124,20 @@ int main(int argc, char** argv) {
     dense("cfd_dem_spring", coupling::SpringContacts(sphere, box, {stiffness, 0.9, 0.3}, particles));
     dense("cfd_dem_projection", coupling::ProjectedContacts(sphere, box, setup.time_step));
 
-    coupling::PeriodicFlow periodic(grid);
-    for (int s = 0; s < 32; ++s) periodic.add(2 * pi * (s + 0.5) / 32, 32, velocity, acceleration);
+    coupling::PeriodSum period(grid);
+    for (int s = 0; s < 32; ++s) period.add(2 * pi * (s + 0.5) / 32, 32, velocity, acceleration);
+    const coupling::PeriodicFlow periodic(grid, period);
     auto carried = cloud;
     coupling::VisitOrder order;
     int step = 0;
     measure("replay_trilinear", [&] {
         const double phase = 2 * pi * (step++ % 32 + 0.5) / 32;
+        const double c = std::cos(phase);
+        const double s = std::sin(phase);
+        const std::array<double, 5> basis{1, c, s, c * c - s * s, 2 * s * c};
         for (const std::size_t p : order.of(carried, grid)) {
             const coupling::Footing<coupling::Trilinear> foot(grid, box.periodic, box.clipped(carried.position[p]));
-            auto around = periodic.at(foot, phase);
+            auto around = periodic.at(foot, basis);
             around.vibration = std::sin(phase);
             motion.advance(carried.position[p], carried.velocity[p], around);
             box.apply(carried.position[p], carried.velocity[p]);

@@ -13,12 +13,12 @@ using namespace grainsweep;
 namespace {
 
 std::unique_ptr<dem::Engine> engine_of(const particles::TpmsFilling& filling, double edge,
-                                       dem::Method::Precision precision) {
+                                       dem::Method::Precision precision, double margin = 2) {
     constexpr double d = 45e-6;
     dem::Setup setup;
     for (std::size_t k = 0; k < 3; ++k) {
-        setup.domain.low[k] = -2 * d;
-        setup.domain.high[k] = (edge + 2) * d;
+        setup.domain.low[k] = -margin * d;
+        setup.domain.high[k] = (edge + margin) * d;
     }
     setup.material.youngs_modulus = 2.11e6;
     setup.material.restitution = 0.64;
@@ -71,6 +71,31 @@ TEST_P(TpmsWall, SpheresOutOfReachChangeNoBit) {
         moved += std::abs(b.position[i][2] - x[2] * 45e-6) > 45e-6 ? 1 : 0;
     }
     EXPECT_GT(moved, 100U);  // the comparison saw motion: so many fell by more than a diameter
+}
+
+TEST(TpmsDischarge, NothingThatIsTwoDiametersOutsideComesBack) {
+    // The scene takes such particles out. Here they stay in a domain three cells wide and are followed.
+    const double edge = 10, d = 45e-6;
+    const auto packing = particles::random_close_packing({.edge = edge, .fraction = 0.62, .seed = 1});
+    const geometry::TpmsShell shell(geometry::TpmsCell::gyroid, +1, edge, 1);
+    const auto filling = particles::fill_tpms(packing, shell, 0.9);
+    const auto engine = engine_of(filling, edge, dem::Method::Precision::double_precision, 20);
+    std::vector<char> left(filling.mobile.size() + filling.wall.size(), 0);
+    dem::State state;
+    for (int look = 0; look < 300; ++look) {  // 1.7 t*
+        engine->run(10);
+        ASSERT_EQ(engine->fault(), "");
+        engine->state(state);
+        for (std::size_t i = 0; i < state.id.size(); ++i) {
+            if (state.mobile[i] == 0) continue;
+            double outside = 0;  // of the cell, along the worst axis
+            for (const double x : state.position[i]) outside = std::max({outside, -x / d, x / d - edge});
+            char& gone = left[static_cast<std::size_t>(state.id[i])];
+            if (outside > 2) gone = 1;
+            EXPECT_TRUE(gone == 0 || outside > 0) << state.id[i];
+        }
+    }
+    EXPECT_GT(std::ranges::count(left, 1), 200);
 }
 
 TEST(TpmsDischarge, EarlyRetentionOfASmallCellIsThatOfAnotherProgram) {

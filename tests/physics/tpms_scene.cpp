@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -125,6 +126,15 @@ TEST(TpmsScene, SpheresWithoutWallFallFreely) {
             EXPECT_NEAR(velocity[k].value, t, 1e-12);  // v/sqrt(2 g L) = t/t*, exact in velocity Verlet
         }
     }
+    const auto& mobile = answer.series.at("mobile_series");
+    const auto& at_rest = answer.series.at("at_rest_series");
+    for (std::size_t k = 0; k < mobile.size(); ++k) {
+        const double t = mobile[k].time;
+        double present = 0;  // a sphere that left is gone at the latest when its list is rebuilt
+        for (const auto& x : spheres) present += t <= std::sqrt((x[2] + 2) / edge) ? 1 : 0;
+        EXPECT_EQ(mobile[k].value, present / static_cast<double>(spheres.size())) << t;
+        EXPECT_EQ(at_rest[k].value, k == 0 ? 1 : 0);
+    }
     // The last sphere has left the box, two diameters below: the case ends there, not at 10 t*.
     EXPECT_NEAR(retention.back().time, std::sqrt((highest + 2) / edge), 2 * 0.0165);
     EXPECT_NEAR(answer.scalars.at("peak_velocity"), std::sqrt(highest / edge), 0.0165);
@@ -134,6 +144,41 @@ TEST(TpmsScene, SpheresWithoutWallFallFreely) {
     std::ranges::sort(times);
     half = times[(times.size() + 1) / 2 - 1];
     EXPECT_NEAR(answer.scalars.at("time_to_half"), half, 0.0165);
+    const double quarter = times[(times.size() + 3) / 4 - 1];
+    EXPECT_NEAR(0.25 / answer.scalars.at("discharge_rate"), half - quarter, 2 * 0.0165);
+}
+
+TEST(TpmsScene, AVibratingCellSeesItsPowderFallAsInTheLaboratory) {
+    // z(t) = z0 + v t - g t^2/2 - A sin(w t) in the cell, v = A sin(w dt)/dt: the powder starts at rest in it.
+    const double edge = 12, d = 45e-6, amplitude = 20e-6, dt = 1e-6;
+    const double w = 2 * std::numbers::pi * 1000;
+    const auto spheres = loose_spheres(edge);
+    const PackingFile file(spheres);
+    for (const std::size_t axis : {std::size_t{2}, std::size_t{0}}) {
+        Inputs inputs = small_cell(edge);
+        inputs["packing"] = file.word();
+        inputs["vibration_amplitude"] = amplitude;
+        inputs["vibration_frequency"] = 1000.0;
+        inputs["vibration_direction"] = std::string(axis == 2 ? "z" : "x");
+        const double g = std::get<double>(inputs["gravity"]), t_star = std::sqrt(2 * edge * d / g);
+        const Observations answer = run(inputs);
+        std::size_t differ = 0;
+        const auto& retention = answer.series.at("retention_series");
+        for (const auto& sample : retention) {
+            const double t = sample.time * t_star;
+            double inside = 0, above = 0;
+            for (const auto& x : spheres) {
+                std::array<double, 3> place = {x[0] * d, x[1] * d, x[2] * d - 0.5 * g * t * t};
+                place[axis] += amplitude * (std::sin(w * dt) / dt * t - std::sin(w * t));
+                const bool in = std::ranges::all_of(place, [&](double c) { return c >= 0 && c <= edge * d; });
+                inside += in ? 1 : 0;
+                above += x[2] * d - 0.5 * g * t * t >= 0 ? 1 : 0;
+            }
+            EXPECT_EQ(sample.value, inside / static_cast<double>(spheres.size())) << sample.time;
+            differ += inside != above ? 1 : 0;
+        }
+        EXPECT_GT(differ, 5U);  // the vibration is seen
+    }
 }
 
 TEST(TpmsScene, TiltedGravityPullsSideways) {
@@ -298,8 +343,27 @@ TEST(TpmsScene, ImpossibleQuestionsGetASentence) {
     inputs["time_step"] = 1e-5;
     EXPECT_THAT(refusal(inputs), HasSubstr("Rayleigh time"));
     inputs = small_cell(8);
+    inputs["vibration_amplitude"] = 1e-6;
+    inputs["vibration_frequency"] = 6e4;
+    EXPECT_THAT(refusal(inputs), HasSubstr("at least twenty time steps"));
+    inputs = small_cell(8);
     inputs["packing"] = "file:" + std::string(32, '0') + ":/no/such/packing.csv";
     EXPECT_THAT(refusal(inputs), HasSubstr("cannot read /no/such/packing.csv"));
+}
+
+TEST(TpmsScene, VibrationFreesAJammedCell) {
+    // Left alone this cell keeps nine tenths of its powder; at ten times gravity most of it leaves.
+    Inputs inputs = small_cell(10);
+    inputs["shell"] = 1.5;
+    inputs["precision"] = std::string("mixed");
+    inputs["cohesion"] = 35e3;
+    inputs["end_time"] = 6.0;
+    const double still = run(inputs).scalars.at("retention");
+    inputs["vibration_frequency"] = 500.0;
+    inputs["vibration_amplitude"] = 10 * std::get<double>(inputs["gravity"]) / std::pow(2 * std::numbers::pi * 500, 2);
+    const double shaken = run(inputs).scalars.at("retention");
+    EXPECT_GT(still, 0.8);
+    EXPECT_LT(shaken, 0.3);
 }
 
 TEST(TpmsScene, TooLongAStepIsReportedUnstable) {

@@ -64,9 +64,9 @@ std::string panel(const std::vector<Setting>& settings, double x0, double y0) {
         if (s.is_reference || s.unstable) continue;
         out += fmt::format(
             "<circle cx='{0:.1f}' cy='{1:.1f}' r='4' stroke='#1663a6' fill='{2}'/>"
-            "<text x='{3:.1f}' y='{4:.1f}' font-size='9'>{5}</text>\n",
-            x.at(s.cost), y.at(seen_error(s)), s.dominated ? "#fff" : "#1663a6", x.at(s.cost) + 6,
-            y.at(seen_error(s)) - 4, s.name);
+            "<text x='{3:.1f}' y='{4:.1f}' font-size='9' transform='rotate(-40 {3:.1f} {4:.1f})'>{5}</text>\n",
+            x.at(s.cost), y.at(seen_error(s)), s.dominated ? "#fff" : "#1663a6", x.at(s.cost) + 4,
+            y.at(seen_error(s)) - 5, s.name);
     }
     return out;
 }

@@ -120,6 +120,18 @@ TEST_P(ContactForces, OnlyTouchingPairsWithAMobileSphere) {
     EXPECT_TRUE(contacts_of(*engine_of(frozen)).empty());
 }
 
+TEST_P(ContactForces, FrozenSpheresMayOverlap) {
+    // A wall cut from a packing may be as tight as it likes: its pairs are never looked at.
+    dem::Setup tight = pair(0.4 * diameter, false, 0);
+    tight.spheres[0].mobile = false;
+    tight.spheres.push_back({{0, 3 * diameter, 0}, {0.01, 0, 0}, {}, diameter / 2, true});
+    const auto engine = engine_of(tight);
+    engine->run(100);
+    EXPECT_EQ(engine->fault(), "");
+    EXPECT_EQ(engine->peak_overlap(), 0);
+    EXPECT_EQ(engine->work().particle_steps, 100);
+}
+
 TEST_P(ContactForces, MoveTheParticlesAsNewtonSays) {
     // Velocity Verlet: v(t+dt) - v(t) = dt (g + (f(t) + f(t+dt))/2m), the same for spins.
     const dem::Setup setup = lossless_box();

@@ -48,6 +48,7 @@ Question::Question(const Inputs& inputs)
       particle_start(word(inputs, "particle_start")),
       interpolation(word(inputs, "interpolation")),
       contact(word(inputs, "contact")),
+      symmetry(word(inputs, "symmetry")),
       restitution(number(inputs, "restitution")),
       collision_restitution(number(inputs, "collision_restitution")),
       friction(number(inputs, "friction")),
@@ -65,6 +66,9 @@ Question::Question(const Inputs& inputs)
         throw std::invalid_argument("stokes = " + shortest(stokes) + " makes particles of radius " +
                                     shortest(sphere().radius()) +
                                     " L; point particles need a radius of at most 0.1 L (stokes <= 0.0022)");
+    if (mirrored() && cells % 2 != 0)
+        throw std::invalid_argument("cells = " + std::to_string(cells) +
+                                    " has no plane in the middle; symmetry = mirror needs an even number");
     const double filled = static_cast<double>(particles) * sphere().volume();
     if (dense() && filled > 0.6)
         throw std::invalid_argument("particles = " + std::to_string(particles) + " fill " + shortest(filled) +
@@ -108,6 +112,12 @@ flow::Grid Question::grid() const {
     return {{axis, axis, axis}};
 }
 
+flow::Grid Question::flow_grid() const {
+    auto whole = grid();
+    if (mirrored()) whole.axes[0] = whole.axes[0].lower_half();
+    return whole;
+}
+
 flow::Sides Question::sides() {
     const std::array<flow::Side, 2> walls{flow::NoSlip{}, flow::NoSlip{}};
     return {walls, walls, walls};
@@ -120,7 +130,9 @@ flow::Flow<flow::Boussinesq> Question::fluid() const {
     heat.buoyancy = -prandtl * rayleigh;
     heat.direction = 1;
     heat.vibration = vibration();
-    flow::Flow<flow::Boussinesq> fluid({grid(), sides(), prandtl, step()}, heat);
+    auto around = sides();
+    if (mirrored()) around[0][1] = flow::FreeSlip{};
+    flow::Flow<flow::Boussinesq> fluid({flow_grid(), around, prandtl, step()}, heat);
     fluid.set_temperature([](double, double, double z) { return z; });
     return fluid;
 }
@@ -151,10 +163,10 @@ coupling::Cloud Question::cloud(std::uint64_t seed) const {
 }
 
 std::string Question::flow_key() const {
-    return "thermovibration periodic flow 1; cells=" + std::to_string(cells) + "; clustering=" + shortest(clustering) +
+    return "thermovibration periodic flow 2; cells=" + std::to_string(cells) + "; clustering=" + shortest(clustering) +
            "; frequency=" + shortest(frequency) + "; prandtl=" + shortest(prandtl) +
            "; rayleigh=" + shortest(rayleigh) + "; start_phase=" + shortest(start_phase) +
-           "; steps_per_period=" + std::to_string(steps_per_period);
+           "; steps_per_period=" + std::to_string(steps_per_period) + "; symmetry=" + (mirrored() ? "mirror" : "none");
 }
 
 }  // namespace grainsweep::thermovibration

@@ -18,7 +18,7 @@ namespace grainsweep::thermovibration {
 struct Question {
     double rayleigh, frequency, start_phase, acceleration, prandtl, density_ratio, stokes;
     std::int64_t particles;
-    std::string coupling, source_form, wall_contact, particle_start, interpolation, contact;
+    std::string coupling, source_form, wall_contact, particle_start, interpolation, contact, symmetry;
     double restitution, collision_restitution, friction, overlap, packing_limit, granular_temperature;
     std::int64_t cells;
     double clustering;
@@ -39,6 +39,9 @@ struct Question {
     [[nodiscard]] flow::Vibration vibration() const { return {frequency, start_phase}; }
     [[nodiscard]] flow::Grid grid() const;
     [[nodiscard]] static flow::Sides sides();
+    /// Of the fluid: the half x < 0 where the flow is taken as its own mirror image.
+    [[nodiscard]] bool mirrored() const { return symmetry == "mirror" && (coupling == "one_way" || particles == 0); }
+    [[nodiscard]] flow::Grid flow_grid() const;
     [[nodiscard]] flow::Flow<flow::Boussinesq> fluid() const;
     [[nodiscard]] coupling::Sphere sphere() const { return {density_ratio, stokes, prandtl, acceleration, 1}; }
     [[nodiscard]] coupling::Walls walls() const;

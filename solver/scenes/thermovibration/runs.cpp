@@ -1,5 +1,7 @@
 #include "solver/scenes/thermovibration/runs.hpp"
 
+#include "solver/observables/flow_state.hpp"
+
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -16,12 +18,9 @@ std::string text(const char* format, double a, double b, double c, double d, dou
     return line.data();
 }
 
-// Sum over the cells and components of a field's square.
-double sum_of_squares(const flow::FaceVectors& field) {
-    double sum = 0;
-    for (const auto& component : field)
-        for (const double v : component.values()) sum += v * v;
-    return sum;
+// Root of the mean square over the volume.
+double size_of(const flow::Grid& grid, const flow::FaceVectors& field) {
+    return std::sqrt(2 * observables::kinetic_energy(grid, field));
 }
 
 }  // namespace
@@ -100,23 +99,20 @@ void SpinUp::step() {
         for (std::size_t d = 0; d < 3; ++d)
             for (std::size_t m = 0; m < mean_[d].size(); ++m)
                 mean_[d].values()[m] += share * fluid_.velocity()[d].values()[m];
-        mean_square_ += share * sum_of_squares(fluid_.velocity());
+        mean_square_ += share * 2 * observables::kinetic_energy(fluid_.grid(), fluid_.velocity());
         if (in_period == per_period - 1) compare();
     }
 }
 
 void SpinUp::compare() {
-    double change = 0;
     for (std::size_t d = 0; d < 3; ++d)
-        for (std::size_t m = 0; m < mean_[d].size(); ++m) {
-            const double difference = mean_[d].values()[m] - previous_mean_[d].values()[m];
-            change += difference * difference;
-        }
+        for (std::size_t m = 0; m < mean_[d].size(); ++m) previous_mean_[d].values()[m] -= mean_[d].values()[m];
+    const double change = size_of(fluid_.grid(), previous_mean_);
+    const double size = size_of(fluid_.grid(), mean_);
     const double periods_to_come =
         1 / (std::numbers::pi * std::numbers::pi * question_.period() * static_cast<double>(judged_every));
-    const double to_come = std::sqrt(change) * std::max(1.0, periods_to_come);
-    const bool settled =
-        to_come <= 0.02 * std::sqrt(sum_of_squares(mean_)) || to_come <= 1e-5 * std::sqrt(mean_square_);
+    const double to_come = change * std::max(1.0, periods_to_come);
+    const bool settled = to_come <= 0.02 * size || to_come <= 1e-5 * std::sqrt(mean_square_);
     passes_ = settled ? passes_ + 1 : 0;
     std::swap(mean_, previous_mean_);
     for (auto& component : mean_) std::fill(component.values().begin(), component.values().end(), 0.0);
@@ -127,7 +123,7 @@ void SpinUp::compare() {
         fault_ = text(
             "the flow had not become periodic by t = %.4g L^2/alpha (mean velocity still to change by %.2g of "
             "its size); release the particles with the flow instead (particle_start)",
-            time(), to_come / std::sqrt(sum_of_squares(previous_mean_)), 0, 0, 0);
+            time(), to_come / size, 0, 0, 0);
 }
 
 void SpinUp::save(std::vector<std::byte>& into) const {

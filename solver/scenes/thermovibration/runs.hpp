@@ -108,7 +108,7 @@ public:
     [[nodiscard]] bool periodic() const { return stage_ == Stage::stored; }
     [[nodiscard]] const std::string& fault() const { return fault_; }
     [[nodiscard]] const FlowMeans& means() const { return means_; }
-    [[nodiscard]] const coupling::PeriodicFlow& stored() const { return stored_; }
+    [[nodiscard]] coupling::PeriodicFlow stored() const { return {fluid_.grid(), stored_}; }
 
     void save(std::vector<std::byte>& into) const;
     void restore(std::span<const std::byte>& from);
@@ -125,17 +125,17 @@ private:
     std::int64_t passes_ = 0;
     Stage stage_ = Stage::settling;
     FlowMeans means_;
-    coupling::PeriodicFlow stored_;
+    coupling::PeriodSum stored_;
     std::string fault_;
 };
 
-template <class Kernel>
+template <class Level, class Kernel>
 class Carried final : public Scene {
 public:
     Carried(const Question& question, std::uint64_t seed, Artefacts& artefacts)
         : question_(question),
           artefacts_(artefacts),
-          grid_(question.grid()),
+          grid_(question.flow_grid()),
           walls_(question.walls()),
           motion_(question.sphere(), question.step()),
           cloud_(question.cloud(seed)),
@@ -237,8 +237,14 @@ private:
             coupling::Vec3& v = cloud_.velocity[p];
             coupling::Vec3 middle = x;
             for (std::size_t d = 0; d < 3; ++d) middle[d] += 0.5 * dt * v[d];
-            const coupling::Footing<Kernel> foot(grid_, walls_.periodic, walls_.clipped(middle));
-            auto around = flow_.at(foot, basis);
+            middle = walls_.clipped(middle);
+            coupling::Surroundings around;
+            if constexpr (Level::mirrored) {
+                around = flow_.at(coupling::Footing<Kernel>(grid_, walls_.periodic, Level::below(middle)), basis);
+                Level::turn(middle, around);
+            } else {
+                around = flow_.at(coupling::Footing<Kernel>(grid_, walls_.periodic, middle), basis);
+            }
             around.vibration = vibration;
             motion_.advance(x, v, around);
             walls_.apply(x, v);

@@ -1,0 +1,233 @@
+// What the TPMS scene skips and what that saves; and its error against its cost.
+//
+//   bench_tpms [--edge N] [--seeds N] [--part skips|skin|accuracy]
+//
+//   skips      wall spheres never reached, frozen pairs, particles that left, the early end, powder at rest: each line
+//              names the work with and without the skip, and how far the answers differ (tests prove the first three
+//              to the last bit)
+//   skin       cost of the neighbour skins, mixed precision; a list misses no contact whatever its skin
+//   accuracy   retention of a P cell at 1 t*, over packings: steps, precisions, settle rule, against a step a quarter
+//              of the study's in double precision from the same packings; the standard error of the difference beside
+//              it
+//
+// Cost is processor time of this thread. One JSON line per figure.
+#include <ctime>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "solver/dem/engine.hpp"
+#include "solver/particles/near_pairs.hpp"
+#include "solver/particles/tpms_filling.hpp"
+#include "solver/scenes/scene.hpp"
+#include "tests/support/trade_off.hpp"
+
+using namespace grainsweep;
+using dem::Method;
+
+namespace {
+
+constexpr double diameter = 45e-6;
+
+double processor_seconds() {
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// A P cell with the column stress of the full one. floor: how far below it the domain goes on, in edges.
+dem::Setup cell_of(const particles::TpmsFilling& filling, double edge, double cohesion, double floor) {
+    dem::Setup s;
+    for (std::size_t k = 0; k < 3; ++k) {
+        s.domain.low[k] = -(2 + (k == 2 ? floor * edge : 0)) * diameter;
+        s.domain.high[k] = (edge + 2) * diameter;
+    }
+    s.material.youngs_modulus = 2.11e6;
+    s.material.restitution = 0.64;
+    s.material.friction = 0.5;
+    s.material.cohesion = cohesion;
+    s.gravity = {0, 0, -9.81 * 100 / edge};
+    s.time_step = 1e-6;
+    for (const auto* spheres : {&filling.mobile, &filling.wall})
+        for (const auto& x : *spheres)
+            s.spheres.push_back({{x[0] * diameter, x[1] * diameter, x[2] * diameter},
+                                 {},
+                                 {},
+                                 diameter / 2,
+                                 spheres == &filling.mobile});
+    return s;
+}
+
+struct Run {
+    double seconds = 0;
+    dem::Work work;
+};
+
+Run run(const dem::Setup& setup, std::int64_t steps, double skin = 0) {
+    Method method;
+    method.precision = Method::Precision::mixed;
+    method.skin = skin;
+    const auto engine = dem::make_engine(setup, method);
+    const double start = processor_seconds();
+    engine->run(steps);
+    if (!engine->fault().empty()) std::fprintf(stderr, "%s\n", engine->fault().c_str());
+    return {processor_seconds() - start, engine->work()};
+}
+
+void print_skip(const char* skip, double without, double with, const char* unit, double difference) {
+    std::printf(
+        "{\"bench\": \"tpms\", \"skip\": \"%s\", \"without\": %.6g, \"with\": %.6g, \"unit\": \"%s\", "
+        "\"saved\": %.3f, \"difference\": %.3g}\n",
+        skip, without, with, unit, 1 - with / without, difference);
+    std::fflush(stdout);
+}
+
+Observations answer_of(Inputs inputs, double& seconds, double& steps, std::string& fault) {
+    NoArtefacts none;
+    const auto scene = find_scene("tpms_discharge")->make(inputs, 1, none);
+    const double start = processor_seconds();
+    scene->advance(1e9);
+    seconds = processor_seconds() - start;
+    steps = scene->particle_steps();
+    fault = scene->health().reason;
+    Observations answer;
+    scene->observe(answer);
+    return answer;
+}
+
+Inputs cell_inputs(double edge) {
+    Inputs inputs = find_scene("tpms_discharge")->defaults();
+    inputs["edge"] = edge;
+    inputs["shell"] = 2.0;
+    inputs["gravity"] = 9.81 * 100 / edge;
+    return inputs;
+}
+
+void skips(double edge) {
+    const auto packing = particles::random_close_packing({.edge = edge, .fraction = 0.62, .seed = 1});
+    const geometry::TpmsShell shell(geometry::TpmsCell::schwarz_p, +1, edge, 4);
+    const auto whole = particles::fill_tpms(packing, shell, 0), lean = particles::fill_tpms(packing, shell, 0.9);
+    constexpr std::int64_t steps = 2000;
+    print_skip("wall spheres never reached", run(cell_of(whole, edge, 0, 0), steps).seconds,
+               run(cell_of(lean, edge, 0, 0), steps).seconds, "s", 0);
+
+    double all = 0, useful = 0;
+    std::vector<std::array<double, 3>> positions = lean.mobile;
+    positions.insert(positions.end(), lean.wall.begin(), lean.wall.end());
+    particles::for_each_near_pair(positions, 1.2, [&](std::size_t i, std::size_t j, double) {
+        all += 1;
+        useful += i < lean.mobile.size() || j < lean.mobile.size() ? 1 : 0;
+    });
+    print_skip("pairs of frozen spheres", all, useful, "pairs within 1.2 diameters at the start", 0);
+
+    const double t_star = std::sqrt(2 * edge * diameter / (9.81 * 100 / edge));
+    const auto discharge = static_cast<std::int64_t>(4 * t_star / 1e-6);
+    print_skip("particles that left", run(cell_of(lean, edge, 0, 20), discharge).seconds,
+               run(cell_of(lean, edge, 0, 0), discharge).seconds, "s over 4 t*", 0);
+
+    Inputs inputs = cell_inputs(edge);
+    inputs["cohesion"] = 35e3;
+    double early_cost = 0, late_cost = 0, steps_done = 0;
+    std::string fault;
+    const auto early = answer_of(inputs, early_cost, steps_done, fault);
+    inputs["settle_rule"] = std::string("none");
+    const auto late = answer_of(inputs, late_cost, steps_done, fault);
+    print_skip("early end of a jammed cell", late_cost, early_cost, "s to 10 t*",
+               early.scalars.at("retention") - late.scalars.at("retention"));
+
+    double resting = 0, present = 0;
+    for (const auto& sample : late.series.at("at_rest_series")) resting += sample.value;
+    for (const auto& sample : late.series.at("mobile_series")) present += sample.value;
+    std::printf(
+        "{\"bench\": \"tpms\", \"not_skipped\": \"powder at rest in a jammed cell\", "
+        "\"share_of_particle_steps\": %.3f}\n",
+        resting / present);
+}
+
+void skins(double edge) {
+    const auto packing = particles::random_close_packing({.edge = edge, .fraction = 0.62, .seed = 1});
+    const geometry::TpmsShell shell(geometry::TpmsCell::schwarz_p, +1, edge, 4);
+    const dem::Setup setup = cell_of(particles::fill_tpms(packing, shell, 0.9), edge, 20e3, 0);
+    for (const double skin : {0.0, 0.05, 0.1, 0.2, 0.4, 0.7}) {
+        const Run r = run(setup, 3000, skin * diameter);
+        std::printf(
+            "{\"bench\": \"tpms\", \"skin_in_diameters\": \"%s\", \"ns_per_particle_step\": %.1f, "
+            "\"rebuilds\": %lld}\n",
+            skin > 0 ? std::to_string(skin).c_str() : "adapted", 1e9 * r.seconds / r.work.particle_steps,
+            static_cast<long long>(r.work.rebuilds));
+        std::fflush(stdout);
+    }
+}
+
+double retention_at(const Observations& answer, double t) {
+    return std::ranges::lower_bound(answer.series.at("retention_series"), t - 0.009, {}, &Sample::time)->value;
+}
+
+void accuracy(double edge, int seeds) {
+    struct Numerics {
+        const char* name;
+        double step;
+        const char* precision;
+    };
+    const std::vector<Numerics> all = {{"reference", 2.5e-7, "double"},      {"step 0.25 us", 2.5e-7, "mixed"},
+                                       {"step 0.5 us", 5e-7, "mixed"},       {"step 1 us", 1e-6, "mixed"},
+                                       {"step 1 us double", 1e-6, "double"}, {"step 2 us", 2e-6, "mixed"},
+                                       {"step 3 us", 3e-6, "mixed"},         {"step 4 us", 4e-6, "mixed"}};
+    std::vector<std::vector<double>> retention(all.size());
+    std::vector<test::Setting> settings;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        test::Setting s;
+        s.scene = "tpms_discharge";
+        s.name = all[k].name;
+        s.measured = "retention at 1 t*";
+        s.is_reference = k == 0;
+        for (int seed = 1; seed <= seeds; ++seed) {
+            Inputs inputs = cell_inputs(edge);
+            inputs["packing_seed"] = std::int64_t{seed};
+            inputs["end_time"] = 1.05;
+            inputs["time_step"] = all[k].step;
+            inputs["precision"] = std::string(all[k].precision);
+            double seconds = 0, steps = 0;
+            std::string fault;
+            const auto answer = answer_of(inputs, seconds, steps, fault);
+            s.cost += seconds / seeds;
+            s.unstable = s.unstable || !fault.empty();
+            if (fault.empty()) retention[k].push_back(retention_at(answer, 1));
+        }
+        if (k > 0 && !s.unstable) {
+            double sum = 0, square = 0, reference = 0;
+            const double n = seeds;
+            for (std::size_t i = 0; i < retention[k].size(); ++i) {
+                const double difference = retention[k][i] - retention[0][i];
+                sum += difference, square += difference * difference, reference += retention[0][i];
+            }
+            s.error = sum / reference;
+            s.uncertainty = std::sqrt(std::max(0.0, square - sum * sum / n) / (n - 1) / n) / (reference / n);
+        }
+        settings.push_back(s);
+    }
+    test::mark_dominated(settings);
+    for (const auto& s : settings) std::printf("%s\n", test::json_line(s).c_str());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    double edge = 20;
+    int seeds = 8;
+    std::string part;
+    for (int i = 1; i + 1 < argc; i += 2) {
+        const std::string name = argv[i], value = argv[i + 1];
+        if (name == "--edge") edge = std::stod(value);
+        if (name == "--seeds") seeds = std::stoi(value);
+        if (name == "--part") part = value;
+    }
+    if (part.empty() || part == "skips") skips(edge);
+    if (part.empty() || part == "skin") skins(edge);
+    if (part.empty() || part == "accuracy") accuracy(edge, seeds);
+    return 0;
+}
