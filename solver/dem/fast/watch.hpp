@@ -1,8 +1,8 @@
 // Watch over the mixed engine's speeds and energy, as over the clear one's (dem/limits.hpp).
 //
 // Energy minus the work of gravity and of moving walls must not grow: contacts store or dissipate. The sum is made in
-// double precision every energy_interval steps; looking costs about as much as two steps. Work of gravity is that over
-// the displacements since the last look, which knows no difference between a period and the next: looks come early
+// double precision every energy_interval steps; looking costs about as much as seven steps. Work of gravity is that
+// over the displacements since the last look, which knows no difference between a period and the next: looks come early
 // enough that nobody covers a quarter of a period between two of them where gravity acts along one. A vessel that is
 // shaken is not balanced, for the work of shaking would take the momentum of every step.
 #pragma once
@@ -22,7 +22,7 @@
 namespace grainsweep::dem::fast {
 
 /// Steps between two looks at the energy.
-inline constexpr std::int64_t energy_interval = 512;
+inline constexpr std::int64_t energy_interval = 1024;
 
 /// What a look sees: the state at a full step.
 struct Moment {
