@@ -10,8 +10,8 @@
 // Work that cannot matter is not done: frozen spheres that no mobile one can touch while overlaps stay below
 // a tenth of a diameter are dropped (particles/reach.hpp), a larger one at any step is reported unstable; a case ends
 // when no mobile sphere is left, and, under the rule "quiet", when the powder has come to rest: for 1.5 t* no more than
-// one sphere in ten thousand (or one) moved at a time, and the count changed by no more. Those few may still leave;
-// beyond them the rule presumes that what rests stays at rest.
+// one sphere in a thousand of those left (or one) moved at a time, and the count changed by no more. Those few may
+// still leave; beyond them the rule presumes that what rests stays at rest.
 #include "solver/geometry/tpms_outlet.hpp"
 #include "solver/geometry/vector.hpp"
 #include "solver/observables/beverloo.hpp"
@@ -43,7 +43,7 @@ constexpr std::int64_t samples_per_force_sample = 10;
 constexpr double quiet_time = 1.5;    // t*
 constexpr double quiet_periods = 2;   // of vibration
 constexpr double quiet_speed = 1e-3;  // sqrt(2 g L)
-constexpr double quiet_share = 1e-4;  // of the powder may move faster, and leave
+constexpr double quiet_share = 1e-3;  // of the powder in the cell may move faster, and leave
 constexpr double overlap_bin = 0.0005, force_bin = 10;
 constexpr std::size_t layers = 20;
 
@@ -206,7 +206,7 @@ void TpmsDischarge::sample() {
     }
     now.mobile = mobile_left_;
     const auto few =
-        std::max<std::int64_t>(1, static_cast<std::int64_t>(quiet_share * static_cast<double>(start_count_)));
+        std::max<std::int64_t>(1, static_cast<std::int64_t>(quiet_share * static_cast<double>(now.in_cell)));
     if (now.in_cell - now.at_rest > few || std::abs(now.in_cell - quiet_count_) > few) {
         quiet_since_ = step_;
         quiet_count_ = now.in_cell;
@@ -358,6 +358,7 @@ void TpmsDischarge::restore(std::span<const std::byte> from) {
     engine_->state(state_);
 }
 
+/// As the cell sees it; wall spheres that nothing can touch are not there.
 Snapshot TpmsDischarge::snapshot() const {
     dem::State state;
     std::vector<dem::ContactForce> contacts;
