@@ -19,8 +19,8 @@
 #include "solver/particles/bytes.hpp"
 #include "solver/particles/tpms_filling.hpp"
 #include "solver/scenes/catalogue.hpp"
-#include "solver/scenes/tpms_discharge_question.hpp"
-#include "solver/scenes/tpms_discharge_record.hpp"
+#include "solver/scenes/tpms/question.hpp"
+#include "solver/scenes/tpms/record.hpp"
 
 #include <algorithm>
 #include <cmath>

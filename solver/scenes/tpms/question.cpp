@@ -1,4 +1,4 @@
-#include "solver/scenes/tpms_discharge_question.hpp"
+#include "solver/scenes/tpms/question.hpp"
 
 #include "solver/dem/material.hpp"
 #include "solver/dem/time_step.hpp"

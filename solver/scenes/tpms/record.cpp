@@ -1,4 +1,4 @@
-#include "solver/scenes/tpms_discharge_record.hpp"
+#include "solver/scenes/tpms/record.hpp"
 
 #include "solver/geometry/vector.hpp"
 #include "solver/observables/histogram.hpp"

@@ -4,7 +4,7 @@
 
 #include "solver/dem/engine.hpp"
 #include "solver/particles/bytes.hpp"
-#include "solver/scenes/tpms_discharge_question.hpp"
+#include "solver/scenes/tpms/question.hpp"
 
 #include <cstdint>
 #include <span>
