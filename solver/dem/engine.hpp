@@ -124,6 +124,7 @@ struct ContactForce {
     Vec3 normal{};            ///< unit, from second to first
     double normal_force = 0;  ///< N, with damping and cohesion; positive repels
     Vec3 tangential_force{};  ///< N
+    Vec3 rolling_moment{};    ///< N m on `first` besides that of the forces, minus that on `second`
 };
 
 /// Work done, for cost and benchmarks.

@@ -1,6 +1,7 @@
 // Error against cost of the DEM: what each numerical setting does to what is measured, and what it costs.
 //
 //   bench_accuracy [--scene collision|settling|chute|spreading] [--seeds N] [--figure FILE.svg]
+//                  [--only TEXT]                      of the settings of spreading, those with TEXT in their names
 //   bench_accuracy --lines FILE --figure FILE.svg      draws what earlier runs printed
 //
 //   collision  512 oblique impacts at once (10 to 85 degrees, spinning): rms error of rebound velocities against the
@@ -270,7 +271,7 @@ void chute(std::vector<Setting>& all, int seeds) {
 
 // ---- spreading -------------------------------------------------------------------------------------------------
 
-void spreading(std::vector<Setting>& all, int seeds) {
+void spreading(std::vector<Setting>& all, int seeds, const std::string& only) {
     const SceneInfo& scene = *find_scene("powder_spreading");
     struct Question {
         double friction, diameter, gap, speed;
@@ -299,6 +300,11 @@ void spreading(std::vector<Setting>& all, int seeds) {
     choices.push_back({"step 0.2 E x 10", {{"youngs_modulus", 2.1e8}}});
     choices.push_back({"step 0.2 E x 100", {{"youngs_modulus", 2.1e9}}, false, 6});
     choices.push_back({"step 0.2 settle 0.1", {{"settle_time", 0.1}}});
+    for (const auto& [name, inputs] : scene.accuracy)  // the set called reference is finer than this comparison
+        if (name != "reference") choices.push_back({"accuracy " + name, inputs});
+    if (!only.empty())
+        std::erase_if(choices,
+                      [&](const Choice& c) { return !c.is_reference && c.name.find(only) == std::string::npos; });
     std::vector<Setting> settings;
     std::vector<Runs> runs(choices.size());
     for (std::size_t k = 0; k < choices.size(); ++k) {
@@ -353,13 +359,14 @@ std::vector<Setting> read_lines(const std::string& file) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    std::string scene, figure, lines;
+    std::string scene, figure, lines, only;
     int seeds = 12;
     for (int i = 1; i + 1 < argc; i += 2) {
         const std::string name = argv[i];
         if (name == "--scene") scene = argv[i + 1];
         if (name == "--seeds") seeds = std::max(2, std::stoi(argv[i + 1]));
         if (name == "--figure") figure = argv[i + 1];
+        if (name == "--only") only = argv[i + 1];
         if (name == "--lines") lines = argv[i + 1];
     }
     std::vector<Setting> all;
@@ -368,7 +375,7 @@ int main(int argc, char** argv) {
     if (wanted("collision")) collision(all);
     if (wanted("settling")) settling(all, seeds);
     if (wanted("chute")) chute(all, seeds);
-    if (wanted("spreading")) spreading(all, seeds);
+    if (wanted("spreading")) spreading(all, seeds, only);
     test::mark_dominated(all);
     if (!figure.empty()) test::draw(all, figure);
     return 0;

@@ -202,7 +202,7 @@ TEST(DemRolling, RocksToRestWithTheDampingRatioAskedFor) {
     }
 }
 
-// A law that is absent is absent: the same bits as before, and no memory for it.
+// Among many, of two sizes and between planes: less rotation is left.
 TEST(DemRolling, AGasWithRollingResistanceLosesSpinSooner) {
     double spin[2] = {};
     for (const int k : {0, 1}) {

@@ -1,11 +1,17 @@
 // The spreading scene over its declared ranges: refused in a sentence, reported unstable, or answered in numbers.
 #include "solver/scenes/scene.hpp"
 #include "stats/random.hpp"
+#include "sweep/campaign/campaign.hpp"
+#include "sweep/workers/compute.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
 
 using namespace grainsweep;
 
@@ -13,6 +19,11 @@ namespace {
 
 const SceneInfo& spreading() {
     return *find_scene("powder_spreading");
+}
+
+double as_number(const Value& value) {
+    if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
+    return std::get<double>(value);
 }
 
 /// Runs a case that is cheap enough and expects an answer or a fault. Returns the fault.
@@ -45,7 +56,7 @@ Inputs small_case() {
 TEST(PowderSpreadingCorners, DefaultsLieWithinTheBoundsAndAreRelevantOnce) {
     for (const auto& p : spreading().parameters) {
         if (const auto* interval = std::get_if<Interval>(&p.bounds)) {
-            EXPECT_TRUE(interval->contains(std::get<double>(p.default_value))) << p.name;
+            EXPECT_TRUE(interval->contains(as_number(p.default_value))) << p.name;
         }
         for (const auto& r : p.relevant_if) EXPECT_NE(spreading().find_parameter(r.other), nullptr) << p.name;
         EXPECT_FALSE(p.meaning.empty());
@@ -65,7 +76,10 @@ TEST(PowderSpreadingCorners, EveryBoundIsMadeOrRefused) {
         if (interval == nullptr) continue;
         for (const double end : {interval->low + (interval->low_open ? 1e-6 : 0.0), interval->high}) {
             Inputs inputs = spreading().defaults();
-            inputs[p.name] = end;
+            if (std::holds_alternative<double>(p.default_value))
+                inputs[p.name] = end;
+            else
+                inputs[p.name] = static_cast<std::int64_t>(end);
             try {
                 EXPECT_GT(spreading().estimate_cost(inputs), 0) << p.name << " " << end;
             } catch (const std::invalid_argument& sentence) {
@@ -126,4 +140,98 @@ TEST(PowderSpreadingCorners, TooMuchIsReported) {
     jammed["speed"] = 10.0;
     jammed["time_step"] = 1e-5;
     EXPECT_NE(verdict(jammed, 5).find("overlap"), std::string::npos);
+}
+
+// The ends of every parameter and their worst meetings, through what `solve` and the workers call: an answer in finite
+// and possible numbers, or unstable or rejected in a sentence.
+TEST(PowderSpreadingCorners, EveryExtremeIsAnsweredOrReported) {
+    using Changes = std::vector<std::pair<const char*, Value>>;
+    const std::string lognormal = "lognormal", wide = "weibull_wide";
+    const std::vector<Changes> table = {
+        {{"diameter", 2e-4}, {"layer_area", 1e-6}, {"width", 3.0}},
+        {{"diameter", 0.01}, {"layer_area", 4e-4}, {"gap", 0.01}},
+        {{"youngs_modulus", 1e5}},
+        {{"youngs_modulus", 1e11}},
+        {{"speed", 10.0}},
+        {{"speed", 0.01}, {"travel", 0.002}},
+        {{"friction", 0.0}},
+        {{"friction", 2.0}},
+        {{"restitution", 0.01}},
+        {{"restitution", 1.0}},
+        {{"friction", 0.0}, {"restitution", 1.0}},
+        {{"friction", 2.0}, {"restitution", 0.01}, {"speed", 10.0}},
+        {{"cohesion", 1e6}},
+        {{"cohesion", 1e6}, {"cohesion_law", std::string("sjkr2")}, {"youngs_modulus", 1e5}},
+        {{"cohesion", 1e6}, {"cohesion_law", std::string("paper")}, {"youngs_modulus", 1e6}},
+        {{"cohesion", 1e6}, {"friction", 0.0}, {"restitution", 1.0}, {"youngs_modulus", 1e7}},
+        {{"gap", 1e-5}},
+        {{"gap", 1e-5}, {"speed", 10.0}, {"youngs_modulus", 1e5}},
+        {{"gap", 0.06}},
+        {{"gap", 0.1}},
+        {{"width", 3.0}},
+        {{"width", 40.0}},
+        {{"poisson_ratio", 0.0}},
+        {{"poisson_ratio", 0.49}},
+        {{"density", 100.0}},
+        {{"density", 25000.0}},
+        {{"gravity", 1e-3}},
+        {{"gravity", 100.0}},
+        {{"gravity", 1e-3}, {"speed", 10.0}, {"restitution", 1.0}},
+        {{"vibration_amplitude", 0.0039}, {"vibration_frequency", 50.0}},
+        {{"vibration_amplitude", 1e-5}, {"vibration_frequency", 1e5}},
+        {{"vibration_amplitude", 0.003}, {"vibration_frequency", 1e4}},
+        {{"blade_thickness", 1e-4}},
+        {{"blade_thickness", 0.1}},
+        {{"blade_edge_radius", 0.0025}},
+        {{"time_step_fraction", 1.0}},
+        {{"time_step", 1e-9}, {"travel", 0.001}, {"speed", 10.0}, {"settle_time", 0.0}},
+        {{"time_step", 1e-3}},
+        {{"settle_time", 0.0}},
+        {{"settle_time", 0.0}, {"bed_seed", std::int64_t{1}}},
+        {{"travel", 0.001}},
+        {{"standard_error", 1.0}},
+        {{"standard_error", 1e-9}, {"gap", 1e-4}},
+        {{"size_distribution", lognormal}, {"size_spread", 0.5}, {"width", 10.0}, {"layer_area", 2e-5}},
+        {{"size_distribution", lognormal}, {"size_spread", 0.5}, {"speed", 10.0}, {"width", 10.0}, {"cohesion", 1e6}},
+        {{"size_distribution", lognormal}, {"size_spread", 0.5}, {"layer_area", 1e-6}, {"width", 7.0}},
+        {{"size_distribution", wide}, {"gap", 1e-4}, {"youngs_modulus", 1e5}},
+        {{"size_distribution", wide}, {"width", 3.0}, {"friction", 0.0}},
+        {{"size_distribution", wide}, {"time_step_fraction", 1.0}},
+    };
+    std::map<campaign::Outcome, int> outcomes;
+    for (const char* precision : {"mixed", "double"})
+        for (const auto& changes : table) {
+            Inputs inputs = small_case();
+            inputs["precision"] = std::string(precision);
+            std::string what = precision;
+            for (const auto& [name, value] : changes) {
+                inputs[name] = value;
+                what += std::string(" ") + name;
+                if (const auto* x = std::get_if<double>(&value)) what += "=" + std::to_string(*x);
+            }
+            SCOPED_TRACE(what);
+            NoArtefacts none;
+            const auto result = workers::compute(campaign::make_case(spreading(), inputs, 9), 1, none, std::nullopt,
+                                                 [](const Scene&) { return true; });
+            ASSERT_TRUE(result.has_value());
+            ++outcomes[result->outcome];
+            if (result->outcome != campaign::Outcome::completed) {
+                EXPECT_TRUE(result->outcome == campaign::Outcome::unstable ||
+                            result->outcome == campaign::Outcome::rejected);
+                EXPECT_GT(result->message.size(), 20U);
+                EXPECT_EQ(result->message.find("nan"), std::string::npos) << result->message;
+                continue;
+            }
+            const auto& scalars = result->observations.scalars;
+            for (const auto& [name, value] : scalars) EXPECT_TRUE(std::isfinite(value)) << name;
+            EXPECT_GT(scalars.at("particles"), 0);
+            EXPECT_GE(scalars.at("max_overlap"), 0);
+            EXPECT_LE(scalars.at("max_overlap"), 0.3);
+            EXPECT_GE(scalars.at("mfr_window"), 0);
+            for (const auto& [name, samples] : result->observations.series)
+                for (const auto& sample : samples) EXPECT_FALSE(std::isinf(sample.value)) << name;
+        }
+    EXPECT_GT(outcomes[campaign::Outcome::completed], 50);
+    EXPECT_GT(outcomes[campaign::Outcome::unstable], 2);
+    EXPECT_GT(outcomes[campaign::Outcome::rejected], 2);
 }

@@ -248,7 +248,7 @@ void ClearEngine<Laws, case_needs>::contacts(std::vector<ContactForce>& into) co
     into.clear();
     const auto add = [&](std::size_t i, std::int32_t second, const auto& t, Memory memory) {
         const Response r = laws_.template respond<false>(t, memory);
-        into.push_back({p_.id[i], second, t.overlap, t.normal, r.normal, r.tangential});
+        into.push_back({p_.id[i], second, t.overlap, t.normal, r.normal, r.tangential, r.rolling});
     };
     for_each_touching_pair(
         [&](std::size_t i, std::size_t j, const auto& t, const Memory& memory) { add(i, p_.id[j], t, memory); });

@@ -10,17 +10,13 @@ namespace grainsweep::dem::fast {
 
 using namespace geometry;
 
-namespace {
-
-Contact<Hertz, Cohesion<ChosenArea>, Mindlin, Cohesion<ChosenArea>> laws_of(const Material& m) {
+ContactReader::Laws ContactReader::laws_of(const Material& m) {
     // Friction sees the laws before it; no law advances a spring here, so none needs a time step.
     const bool friction_sees_it = m.friction_limit == FrictionLimit::net;
     const Cohesion<ChosenArea> before{friction_sees_it ? m.cohesion : 0.0, {m.cohesion_area}};
     const Cohesion<ChosenArea> after{friction_sees_it ? 0.0 : m.cohesion, {m.cohesion_area}};
-    return {{hertz(m), before, mindlin(m, 0), after}};
+    return {{hertz(m), before, mindlin(m, 0), rolling_resistance(m, 0), after}};
 }
-
-}  // namespace
 
 ContactReader::ContactReader(const Material& material, const Room& room, const Field& field, const std::int32_t* id,
                              std::span<const Motion> motions, std::int32_t width)
@@ -35,65 +31,86 @@ double ContactReader::mass(std::int32_t i) const {
     return inverse > 0 ? room_.scale.mass / inverse : std::numeric_limits<double>::infinity();
 }
 
+ContactReader::Memory ContactReader::memory(const float* const* column, std::int64_t at) const {
+    const Scale& scale = room_.scale;
+    Memory m;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        m.tangential[axis] = static_cast<double>(column[axis][at]) * scale.length;
+    if (field_.histories > 3) {
+        const double moment = scale.mass * scale.speed() * scale.speed();
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            m.rolling[axis] = static_cast<double>(column[3 + axis][at]) * moment;
+    }
+    return m;
+}
+
 /// Completes a touch whose geometry is known and appends what the laws say of it.
 template <Partner partner>
-void ContactReader::add(Touch<partner>& t, std::int32_t i, std::int32_t second, const Vec3& velocity, const Vec3& turn,
-                        Vec3 spring, std::vector<ContactForce>& into) const {
-    t.root = std::sqrt(t.effective_radius * t.overlap);
+void ContactReader::add(Touch<partner> t, std::int32_t i, std::int32_t second, const Vec3& velocity, const Vec3& turn,
+                        const Vec3& turning, Memory memory, std::vector<ContactForce>& into) const {
     t.damping_root = std::sqrt(t.root * t.reduced_mass);
     t.normal_velocity = dot(velocity, t.normal);
     t.slip = velocity - t.normal_velocity * t.normal - cross(turn, t.normal);
-    const Response r = laws_.respond<false>(t, spring);
-    into.push_back({id_[i], second, t.overlap, t.normal, r.normal, r.tangential});
+    t.turning = turning;
+    const Response r = laws_.respond<false>(t, memory);
+    into.push_back({id_[i], second, t.overlap, t.normal, r.normal, r.tangential, r.rolling});
 }
 
-void ContactReader::pair(std::int32_t i, std::int32_t j, const Vec3& spring, std::vector<ContactForce>& into) const {
+bool ContactReader::touches(std::int32_t i, std::int32_t j, Touch<Partner::particle>& t) const {
     const Record &a = field_.records[i], &b = field_.records[j];
     Vec3 branch{};
     for (std::size_t axis = 0; axis < 3; ++axis)  // the difference of two positions is that of the nearest images
         branch[axis] = static_cast<std::int32_t>(static_cast<std::uint32_t>(a.position[axis]) -
                                                  static_cast<std::uint32_t>(b.position[axis])) *
                        room_.scale.unit[axis];
-    Touch<Partner::particle> t;
     t.radius_i = radius(i);
     t.radius_j = radius(j);
-    t.distance = norm(branch);
-    t.overlap = t.radius_i + t.radius_j - t.distance;
-    if (!(t.overlap > 0) || (!(a.inverse_mass > 0) && !(b.inverse_mass > 0))) return;
+    const double reach = t.radius_i + t.radius_j;
+    const double square = dot(branch, branch);
+    if (!(square < reach * reach)) return false;
+    t.distance = std::sqrt(square);
+    t.overlap = reach - t.distance;
+    if (!(t.overlap > 0) || (!(a.inverse_mass > 0) && !(b.inverse_mass > 0))) return false;
     t.normal = (1 / t.distance) * branch;
-    t.effective_radius = t.radius_i * t.radius_j / (t.radius_i + t.radius_j);
-    t.reduced_mass = 1 / (1 / mass(i) + 1 / mass(j));
-    const Motion &of_i = motions_[static_cast<std::size_t>(i)], &of_j = motions_[static_cast<std::size_t>(j)];
-    const Vec3 turn = (t.radius_i - t.overlap / 2) * of_i.spin + (t.radius_j - t.overlap / 2) * of_j.spin;
-    add(t, i, id_[j], of_i.velocity - of_j.velocity, turn, spring, into);
+    t.effective_radius = t.radius_i * t.radius_j / reach;
+    t.root = std::sqrt(t.effective_radius * t.overlap);
+    return true;
 }
 
-void ContactReader::pairs(std::vector<ContactForce>& into) const {
-    std::int64_t stream = 0;  // springs of the pairs whose bit is set, without gaps
+template <class Visit>
+void ContactReader::for_each_pair(Visit&& visit) const {
+    std::int64_t stream = 0;  // memories of the pairs whose bit is set, without gaps
     for (std::int32_t k = 0; k < field_.inner_count; ++k) {
         const auto i = static_cast<std::int32_t>(field_.inner_first[k] / places_per_index);
         const auto j = static_cast<std::int32_t>(field_.inner_second[k] / places_per_index);
-        Vec3 spring{};
-        if ((field_.touching[k / width_] >> (k % width_) & 1) != 0) {
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                spring[axis] = static_cast<double>(field_.history[axis][stream]) * room_.scale.length;
-            ++stream;
-        }
-        if (i < field_.count && j < field_.count) pair(i, j, spring, into);  // others fill the list up
+        const bool remembered = (field_.touching[k / width_] >> (k % width_) & 1) != 0;
+        const std::int64_t at = remembered ? stream++ : 0;
+        if (i >= field_.count || j >= field_.count) continue;  // they fill the list up
+        Touch<Partner::particle> t;
+        if (touches(i, j, t)) visit(i, j, t, remembered ? memory(field_.history, at) : Memory{});
     }
 }
 
-void ContactReader::wall(const Wall& wall, std::size_t w, double time, std::vector<ContactForce>& into) const {
-    const Vec3 velocity = velocity_at(wall, time);
+void ContactReader::pairs(std::vector<ContactForce>& into) const {
+    for_each_pair([&](std::int32_t i, std::int32_t j, Touch<Partner::particle>& t, const Memory& memory) {
+        t.reduced_mass = 1 / (1 / mass(i) + 1 / mass(j));
+        t.rolling_inertia =
+            inertia_about_contact / (1 / (mass(i) * t.radius_i * t.radius_i) + 1 / (mass(j) * t.radius_j * t.radius_j));
+        const Motion &of_i = motions_[static_cast<std::size_t>(i)], &of_j = motions_[static_cast<std::size_t>(j)];
+        const Vec3 turn = (t.radius_i - t.overlap / 2) * of_i.spin + (t.radius_j - t.overlap / 2) * of_j.spin;
+        add(t, i, id_[j], of_i.velocity - of_j.velocity, turn, of_i.spin - of_j.spin, memory, into);
+    });
+}
+
+template <class Visit>
+void ContactReader::for_each_at_wall(const Wall& wall, std::size_t w, double time, Visit&& visit) const {
     const auto each_near = [&](const auto& shape, double middle) {
         for (std::int32_t k = field_.segments[w].begin; k < field_.segments[w].end; ++k) {
             const auto i = static_cast<std::int32_t>(field_.wall_particle[k] / places_per_index);
             if (i >= field_.count) continue;  // fills the segment up
-            Vec3 x{}, spring{};
-            for (std::size_t axis = 0; axis < 3; ++axis) {
+            Vec3 x{};
+            for (std::size_t axis = 0; axis < 3; ++axis)
                 x[axis] = room_.scale.centre[axis] + field_.records[i].position[axis] * room_.scale.unit[axis];
-                spring[axis] = static_cast<double>(field_.wall_history[axis][k]) * room_.scale.length;
-            }
             if (room_.domain.periodic[0]) {  // the image nearest to the wall
                 const double period = room_.domain.high[0] - room_.domain.low[0];
                 x[0] -= period * std::nearbyint((x[0] - middle) / period);
@@ -105,10 +122,8 @@ void ContactReader::wall(const Wall& wall, std::size_t w, double time, std::vect
             t.overlap = t.radius_i - closest.distance;
             if (!(t.overlap > 0)) continue;
             t.normal = closest.normal;
-            t.reduced_mass = mass(i);
-            const Motion& motion = motions_[static_cast<std::size_t>(i)];
-            const Vec3 turn = (t.radius_i - t.overlap / 2) * motion.spin;
-            add(t, i, -1 - static_cast<std::int32_t>(w), motion.velocity - velocity, turn, spring, into);
+            t.root = std::sqrt(t.effective_radius * t.overlap);
+            visit(i, t, memory(field_.wall_history, k));
         }
     };
     if (const auto* plane = std::get_if<Plane>(&wall)) {
@@ -117,6 +132,31 @@ void ContactReader::wall(const Wall& wall, std::size_t w, double time, std::vect
         const Bar bar = shape_at(std::get<Blade>(wall), time);
         each_near(bar, (bar.rear + bar.front) / 2);
     }
+}
+
+void ContactReader::wall(const Wall& wall, std::size_t w, double time, std::vector<ContactForce>& into) const {
+    const Vec3 velocity = velocity_at(wall, time);
+    for_each_at_wall(wall, w, time, [&](std::int32_t i, Touch<Partner::wall>& t, const Memory& memory) {
+        t.reduced_mass = mass(i);
+        t.rolling_inertia = inertia_about_contact * t.reduced_mass * t.radius_i * t.radius_i;
+        const Motion& motion = motions_[static_cast<std::size_t>(i)];
+        const Vec3 turn = (t.radius_i - t.overlap / 2) * motion.spin;
+        add(t, i, -1 - static_cast<std::int32_t>(w), motion.velocity - velocity, turn, motion.spin, memory, into);
+    });
+}
+
+StoredEnergy ContactReader::stored(std::span<const Wall> walls, double time) const {
+    StoredEnergy e;
+    const auto add_energy = [&](const auto& t, const Memory& memory) {
+        const double energy = laws_.energy(t, memory);
+        e.sum += energy;
+        e.squeezed += std::abs(energy);
+    };
+    for_each_pair([&](std::int32_t, std::int32_t, const auto& t, const Memory& memory) { add_energy(t, memory); });
+    for (std::size_t w = 0; w < walls.size(); ++w)
+        for_each_at_wall(walls[w], w, time,
+                         [&](std::int32_t, const auto& t, const Memory& memory) { add_energy(t, memory); });
+    return e;
 }
 
 }  // namespace grainsweep::dem::fast

@@ -14,6 +14,7 @@
 #include "solver/dem/laws/contact.hpp"
 #include "solver/dem/laws/hertz.hpp"
 #include "solver/dem/laws/mindlin.hpp"
+#include "solver/dem/laws/rolling.hpp"
 
 namespace grainsweep::dem::fast {
 
@@ -23,9 +24,15 @@ struct Motion {
     Vec3 spin{};      ///< rad/s
 };
 
+/// Energy in contacts, J: the sum, and the sum of absolute values (cohesion stores less than nothing).
+struct StoredEnergy {
+    double sum = 0;
+    double squeezed = 0;
+};
+
 class ContactReader {
 public:
-    /// All views must outlive the reader; `motions` in the order of the records.
+    /// All views must outlive the reader; `motions` in the order of the records, empty where only energy is asked.
     ContactReader(const Material& material, const Room& room, const Field& field, const std::int32_t* id,
                   std::span<const Motion> motions, std::int32_t width);
 
@@ -33,16 +40,28 @@ public:
     void pairs(std::vector<ContactForce>& into) const;
     /// Appends the particles that touch wall number w at time t since the walls were set.
     void wall(const Wall& wall, std::size_t w, double time, std::vector<ContactForce>& into) const;
+    /// The energy of all contacts; `walls` as they are at time t since they were set.
+    [[nodiscard]] StoredEnergy stored(std::span<const Wall> walls, double time) const;
 
 private:
-    using Laws = Contact<Hertz, Cohesion<ChosenArea>, Mindlin, Cohesion<ChosenArea>>;
+    // Any material: what it lacks has zero coefficients.
+    using Laws = Contact<Hertz, Cohesion<ChosenArea>, Mindlin, RollingResistance, Cohesion<ChosenArea>>;
+    using Memory = Laws::Memory;
 
+    [[nodiscard]] static Laws laws_of(const Material& material);
     [[nodiscard]] double radius(std::int32_t i) const;
     [[nodiscard]] double mass(std::int32_t i) const;  ///< kg; infinite where frozen
-    void pair(std::int32_t i, std::int32_t j, const Vec3& spring, std::vector<ContactForce>& into) const;
+    [[nodiscard]] Memory memory(const float* const* column, std::int64_t at) const;
+    [[nodiscard]] bool touches(std::int32_t i, std::int32_t j, Touch<Partner::particle>& t) const;
+    /// Calls visit(i, j, touch, memory) for the pairs that touch, with the geometry of the touch only.
+    template <class Visit>
+    void for_each_pair(Visit&& visit) const;
+    /// Calls visit(i, touch, memory) for the particles that touch the wall.
+    template <class Visit>
+    void for_each_at_wall(const Wall& wall, std::size_t w, double time, Visit&& visit) const;
     template <Partner partner>
-    void add(Touch<partner>& t, std::int32_t i, std::int32_t second, const Vec3& velocity, const Vec3& turn,
-             Vec3 spring, std::vector<ContactForce>& into) const;
+    void add(Touch<partner> t, std::int32_t i, std::int32_t second, const Vec3& velocity, const Vec3& turn,
+             const Vec3& turning, Memory memory, std::vector<ContactForce>& into) const;
 
     const Room& room_;
     const Field& field_;

@@ -63,6 +63,27 @@ std::string describe_fast_particle(const Sight& s) {
     return text + where_and_when(s, worst);
 }
 
+std::string describe_faster_than(const Sight& s, double limit) {
+    std::int32_t worst = 0;
+    double most = -1;
+    for (std::int32_t i = 0; i < s.field.count; ++i) {
+        const float* v = s.field.records[i].velocity;
+        const double speed =
+            std::hypot(static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])) *
+            s.scale.speed();
+        if (speed > most) most = speed, worst = i;
+    }
+    if (!(most > limit)) return {};
+    char text[160];
+    std::snprintf(text, sizeof text, "a particle moves at %.4g m/s, faster than anything here allows (%.4g m/s)", most,
+                  limit);
+    return text + where_and_when(s, worst);
+}
+
+std::string describe(const Sight& s, const std::string& what, std::int32_t i) {
+    return what + where_and_when(s, i);
+}
+
 /// Looks for the pair again, by the positions the forces were computed at or one step later.
 std::string describe_overlap(const Sight& s, const Tally& tally) {
     double most = 0;

@@ -30,6 +30,10 @@ struct Sight {
 };
 
 [[nodiscard]] std::string describe_fast_particle(const Sight& sight);
+/// Empty where no particle moves faster than `limit` (m/s).
+[[nodiscard]] std::string describe_faster_than(const Sight& sight, double limit);
+/// `what` is wrong, with particle number `i` of the records.
+[[nodiscard]] std::string describe(const Sight& sight, const std::string& what, std::int32_t i);
 [[nodiscard]] std::string describe_overlap(const Sight& sight, const Tally& tally);
 
 }  // namespace grainsweep::dem::fast

@@ -104,6 +104,7 @@ struct alignas(32) Tally {
     float velocity_low[8];
     float overlap;       ///< of pairs, over the smaller diameter
     float wall_overlap;  ///< over the diameter
+    double wall_work;    ///< of the walls on the particles over the step
     std::int64_t contacts;
 };
 

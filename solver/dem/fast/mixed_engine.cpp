@@ -12,6 +12,7 @@
 #include "solver/dem/fast/faults.hpp"
 #include "solver/dem/fast/rebuild.hpp"
 #include "solver/dem/fast/scale.hpp"
+#include "solver/dem/fast/watch.hpp"
 #include "solver/dem/shaking.hpp"
 
 namespace grainsweep::dem::fast {
@@ -73,6 +74,10 @@ private:
     void load(const Setup& setup);
     void check_walls(const std::vector<Wall>& walls) const;
     void begin_tally();
+    [[nodiscard]] std::vector<Motion> motions() const;
+    [[nodiscard]] Moment moment(std::span<const Motion> motions) const;
+    void learn_limits();
+    void check_energy();
     void account_travel();
     void make_lists(std::span<const std::int32_t> removed = {});
     void full_step_velocities();
@@ -100,6 +105,7 @@ private:
     SoundOverlaps sound_;
     bool box_includes_rest_ = true;  ///< something at rest, or a face, bounds displacements besides the particles
 
+    Watch watch_;
     Columns columns_;
     Field field_{};
     Tally tally_{};
@@ -124,6 +130,7 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin)
       kernels_(&kernels_of(path, needs_)),
       walls_(setup.walls),
       sound_(sound_overlaps(setup)),
+      watch_(setup, room_.scale),
       adapts_skin_(!(skin > 0)) {
     check_walls(walls_);
     for (std::size_t a = 0; a < 3; ++a)  // a pair must not meet across both ends of a period
@@ -137,6 +144,7 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin)
     columns_.histories = needs_.rolling ? histories_at_most : 3;
     load(setup);
     restart_forces();
+    learn_limits();
 }
 
 void MixedEngine::load(const Setup& setup) {
@@ -276,6 +284,7 @@ void MixedEngine::begin_tally() {
             tally_.velocity_low[a] = std::min(tally_.velocity_low[a], v);
         }
     tally_.overlap = tally_.wall_overlap = 0;
+    tally_.wall_work = 0;
     tally_.contacts = 0;
 }
 
@@ -297,6 +306,9 @@ void MixedEngine::account_travel() {
     drift_.inner += drift_.last_step;
     if (field_.count > 0 && (!finite || !(fastest < static_cast<float>(travel_limit) * smallest_diameter_)))
         fault_ = describe_fast_particle(sight());
+    else if (watch_.too_fast(static_cast<double>(fastest)))
+        fault_ = describe_faster_than(sight(), watch_.speed_limit());
+    watch_.book_travel(static_cast<double>(fastest));
 }
 
 /// Rebuilds or refreshes the lists where displacements since demand it. A pair outside the outer list had a gap
@@ -310,7 +322,9 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
             room_.skin = std::min(
                 static_cast<float>(std::clamp(std::sqrt(outer_balance * per_step), outer_skin_least, outer_skin_most)),
                 largest_skin_);
+        const std::int32_t before = field_.count;
         rebuild(field_, columns_, *kernels_, room_, removed);
+        if (field_.count < before) watch_.forget_balance();
         drift_.outer = 0;
         drift_.steps = 0;
         mobile_ = 0;
@@ -323,9 +337,27 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
     drift_.inner = 0;
 }
 
+Moment MixedEngine::moment(std::span<const Motion> motions) const {
+    const ContactReader reader(material_, room_, field_, columns_.id.data(), {}, kernels_->width);
+    return {field_, room_, columns_.id.data(), motions, reader.stored(walls_, wall_time())};
+}
+
+void MixedEngine::learn_limits() {
+    const std::vector<Motion> now = motions();
+    watch_.learn(moment(now), walls_);
+}
+
+void MixedEngine::check_energy() {
+    const std::vector<Motion> now = motions();
+    std::int32_t particle = 0;
+    const std::string what = watch_.look(moment(now), particle);
+    if (!what.empty()) fault_ = describe(sight(), what, particle);
+}
+
 void MixedEngine::run(std::int64_t steps) {
+    bool advanced = false;  // the sweep before has moved the particles on
     for (std::int64_t s = 0; s < steps && fault_.empty(); ++s) {
-        if (s == 0) {
+        if (!advanced) {
             begin_tally();
             kernels_->advance(field_, tally_);
         }
@@ -337,13 +369,17 @@ void MixedEngine::run(std::int64_t steps) {
         if (!fault_.empty()) return;
         place_walls(field_, walls_, room_, wall_time());
         make_lists();
+        const bool look = watch_.due(work_.steps);  // at a state of the full step, so nobody moves on before
+        advanced = s + 1 < steps && !look;
         begin_tally();
         kernels_->walls(field_, tally_);
-        kernels_->sweep(field_, s + 1 < steps, tally_);
+        watch_.book_push(tally_.wall_work);
+        kernels_->sweep(field_, advanced, tally_);
         columns_.swap_histories(field_);
         peak_overlap_ = std::max(peak_overlap_, tally_.overlap);
         work_.pair_visits += field_.inner_count;
         if (too_deep()) fault_ = describe_overlap(sight(), tally_);
+        if (look && fault_.empty()) check_energy();
     }
 }
 
@@ -356,6 +392,7 @@ void MixedEngine::set_walls(std::vector<Wall> walls) {
     columns_.bind(field_);
     for (std::size_t w = 0; w < walls_.size(); ++w) columns_.segments[w] = {0, 0};
     restart_forces();
+    learn_limits();
 }
 
 void MixedEngine::remove(std::span<const std::int32_t> ids) {
@@ -398,12 +435,13 @@ void MixedEngine::state(State& into) const {
     }
 }
 
-void MixedEngine::contacts(std::vector<ContactForce>& into) const {
-    std::vector<Motion> motions(size());
+/// Velocities of the full step, in the order of the records.
+std::vector<Motion> MixedEngine::motions() const {
+    std::vector<Motion> all(size());
     for (std::int32_t i = 0; i < field_.count; ++i) {
         const Record& r = field_.records[i];
         const Residual& residual = field_.residuals[i];
-        Motion& m = motions[static_cast<std::size_t>(i)];
+        Motion& m = all[static_cast<std::size_t>(i)];
         for (int a = 0; a < 3; ++a) {
             const auto axis = static_cast<std::size_t>(a);
             m.velocity[axis] =
@@ -412,7 +450,12 @@ void MixedEngine::contacts(std::vector<ContactForce>& into) const {
             m.spin[axis] = (static_cast<double>(r.spin[a]) + half_spin_change(i, a)) / room_.scale.time;
         }
     }
-    const ContactReader reader(material_, room_, field_, columns_.id.data(), motions, kernels_->width);
+    return all;
+}
+
+void MixedEngine::contacts(std::vector<ContactForce>& into) const {
+    const std::vector<Motion> now = motions();
+    const ContactReader reader(material_, room_, field_, columns_.id.data(), now, kernels_->width);
     into.clear();
     reader.pairs(into);
     for (std::size_t w = 0; w < walls_.size(); ++w) reader.wall(walls_[w], w, wall_time(), into);
@@ -429,6 +472,7 @@ void MixedEngine::pass(Self& self, Archive& archive) {
     archive.value(self.room_.skin);
     archive.value(self.tally_);
     archive.value(self.peak_overlap_);
+    Watch::pass(self.watch_, archive);
     archive.value(self.wall_steps_);
     archive.value(self.mobile_);
     archive.value(self.work_.steps);

@@ -48,6 +48,18 @@ GRAINSWEEP_LANES Surface blade_surface(const WallShape& w, D x, D, D z) {
             fma(oz, inverse_length, inside * (one - sideways) * up)};
 }
 
+/// Sum over lanes of force times velocity.
+GRAINSWEEP_LANES double work_of(V3 force, const float* velocity) {
+    float lane[3][width];
+    store(lane[0], force.x);
+    store(lane[1], force.y);
+    store(lane[2], force.z);
+    double work = 0;
+    for (int a = 0; a < 3; ++a)
+        for (int q = 0; q < width; ++q) work += static_cast<double>(lane[a][q]) * static_cast<double>(velocity[a]);
+    return work;
+}
+
 template <class Law>
 void walls(const Field& f, Tally& t) {
     const unsigned denormals = flush_denormals();
@@ -58,6 +70,7 @@ void walls(const Field& f, Tally& t) {
     for (std::int32_t w = 0; w < f.wall_count; ++w) {
         const WallShape& shape = f.walls[w];
         for (int q = 0; q < width; ++q) origin[q] = static_cast<Place>(shape.record * places_per_index);
+        V3 push{broadcast(0.0f), broadcast(0.0f), broadcast(0.0f)};
         for (std::int32_t k = f.segments[w].begin; k < f.segments[w].end; k += width) {
             const Place* particle = f.wall_particle + k;
             I ix, iy, iz;
@@ -88,6 +101,7 @@ void walls(const Field& f, Tally& t) {
             respond<Law>(c, m, history_step, memory, force, turn, moment);
             if (f.history_step != 0) store_memory<Law>(f.wall_history, k, memory);
             largest_overlap = max(keep(m.touching, m.overlap * inverse(radius + radius)), largest_overlap);
+            push = {push.x + force.x, push.y + force.y, push.z + force.z};
             const F forces[3] = {force.x, force.y, force.z};
             F torques[3] = {turn.x * arm, turn.y * arm, turn.z * arm};
             if constexpr (Law::rolling) {
@@ -97,6 +111,7 @@ void walls(const Field& f, Tally& t) {
             }
             scatter(f.forces, particle, forces, torques);
         }
+        if (shape.is_blade != 0) t.wall_work += work_of(push, f.records[shape.record].velocity);
     }
     t.wall_overlap = largest(largest_overlap);
     restore_denormals(denormals);

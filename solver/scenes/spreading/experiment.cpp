@@ -91,6 +91,7 @@ void Experiment::end_settling() {
 }
 
 void Experiment::start_sweep() {
+    engine_->forget_peak_overlap();
     engine_->set_walls(sweeping_walls(study_));
     sweeping_ = true;
     sample();
@@ -101,7 +102,6 @@ void Experiment::sample() {
     engine_->state(state_);
     behind_.push_back(observables::sum_behind(state_, volume_, study_.front(time)));
     under_.push_back(observables::sum_under(state_, volume_, study_.rear(time), study_.front(time), study_.gap));
-    largest_overlap_ = std::max(largest_overlap_, engine_->largest_overlap());
     if (static_cast<std::int64_t>(behind_.size()) > first_measured_sample)
         profile_.add(state_, study_.front(time), study_.front(time) + profile_reach * study_.diameter, study_.gap,
                      layer_thickness * study_.diameter);
@@ -131,7 +131,7 @@ double Experiment::flux_scale() const {
 void Experiment::observe(Observations& into) const {
     into.scalars["particles"] = static_cast<double>(engine_->size());
     if (!sweeping_) return;
-    into.scalars["max_overlap"] = largest_overlap_;
+    into.scalars["max_overlap"] = engine_->peak_overlap();
     observe_flux(into);
     if (!finished()) return;
     into.scalars["end_of_travel"] = study_.speed * time_of_sample(static_cast<std::size_t>(end_sample_));
@@ -224,7 +224,6 @@ void Experiment::save(Bytes& into) const {
     out.put(under_);
     out.put(profile_.sum);
     out.put(profile_.samples);
-    out.put(largest_overlap_);
     out.put(engine);
 }
 
@@ -242,7 +241,6 @@ void Experiment::restore(std::span<const std::byte> from) {
     in.get(under_);
     in.get(profile_.sum);
     in.get(profile_.samples);
-    in.get(largest_overlap_);
     in.get(engine);
     in.finish();
     engine_->restore(engine);

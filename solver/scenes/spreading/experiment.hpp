@@ -54,8 +54,7 @@ private:
     std::vector<double> behind_;  // volume behind the front face, by sample
     std::vector<double> under_;   // volume under the blade and below the gap, by sample
     observables::VelocityProfile profile_{profile_layers};
-    double largest_overlap_ = 0;  // m/m, over the samples of the sweep
-    dem::State state_;            // scratch of sample()
+    dem::State state_;  // scratch of sample()
 };
 
 }  // namespace grainsweep::spreading

@@ -193,9 +193,10 @@ Study study_of(const Inputs& in) {
             text("%.4g time steps of %.4g s are more than can be counted on: soften the particles or speed up the "
                  "blade",
                  settle + sweep, s.time_step));
-    require(
-        sweep >= static_cast<double>(sweep_samples),
-        text("a time step of %.4g s leaves %.4g steps for the sweep, too few to measure a flux", s.time_step, sweep));
+    require(sweep >= static_cast<double>(sweep_samples),
+            text("a time step of %.4g s leaves %.4g steps for the sweep, too few to measure a flux: make it smaller or "
+                 "travel longer",
+                 s.time_step, sweep));
     s.settle_steps = std::llround(settle);
     s.sweep_steps = std::llround(sweep);
     if (s.bed_seed > 0) s.bed_key = key_of_bed(in, s);

@@ -1,0 +1,121 @@
+#include "solver/dem/fast/watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "solver/dem/limits.hpp"
+#include "solver/dem/moving_wall.hpp"
+#include "solver/dem/shaking.hpp"
+#include "solver/geometry/vector.hpp"
+
+namespace grainsweep::dem::fast {
+
+using namespace geometry;
+
+Watch::Watch(const Setup& setup, const Scale& scale)
+    : gravity_(setup.gravity),
+      domain_(setup.domain),
+      speed_unit_(scale.speed()),
+      energy_unit_(scale.mass * scale.speed() * scale.speed()),
+      shaking_speed_(fastest(setup.shaking)),
+      balanced_(is_still(setup.shaking)),
+      seen_(setup.spheres.size()) {
+    for (std::size_t a = 0; a < 3; ++a)
+        if (domain_.periodic[a] && gravity_[a] != 0)
+            quarter_period_ = std::min(quarter_period_, (domain_.high[a] - domain_.low[a]) / scale.length / 4);
+}
+
+double Watch::kinetic(const Moment& now) const {
+    const Scale& s = now.room.scale;
+    double energy = 0;
+    for (std::int32_t i = 0; i < now.field.count; ++i) {
+        const Record& r = now.field.records[i];
+        if (!(r.inverse_mass > 0)) continue;
+        const Motion& m = now.motions[static_cast<std::size_t>(i)];
+        const double mass = s.mass / static_cast<double>(r.inverse_mass);
+        const double radius = static_cast<double>(r.radius) * s.length;
+        energy += mass * (0.5 * dot(m.velocity, m.velocity) + 0.2 * radius * radius * dot(m.spin, m.spin));
+    }
+    return energy;
+}
+
+/// Books the work of gravity since the last look.
+void Watch::fall(const Moment& now) {
+    const Scale& s = now.room.scale;
+    double work = 0;
+    for (std::int32_t i = 0; i < now.field.count; ++i) {
+        const Record& r = now.field.records[i];
+        Place3& seen = seen_[static_cast<std::size_t>(now.id[i])];
+        if (r.inverse_mass > 0) {
+            Vec3 moved{};
+            for (std::size_t a = 0; a < 3; ++a)
+                moved[a] = static_cast<std::int32_t>(static_cast<std::uint32_t>(r.position[a]) -
+                                                     static_cast<std::uint32_t>(seen[a])) *
+                           s.unit[a];
+            work += s.mass / static_cast<double>(r.inverse_mass) * dot(gravity_, moved);
+        }
+        std::copy(r.position, r.position + 3, seen.begin());
+    }
+    work_of_gravity_ += work;
+    covered_ = 0;
+}
+
+void Watch::learn(const Moment& now, std::span<const Wall> walls) {
+    double start = 0, lightest = std::numeric_limits<double>::infinity(), wall = 0, free_fall = 0;
+    for (std::int32_t i = 0; i < now.field.count; ++i) {
+        const Record& r = now.field.records[i];
+        if (!(r.inverse_mass > 0)) continue;
+        const Motion& m = now.motions[static_cast<std::size_t>(i)];
+        const double radius = static_cast<double>(r.radius) * now.room.scale.length;
+        start = std::max({start, norm(m.velocity), radius * norm(m.spin)});
+        lightest = std::min(lightest, now.room.scale.mass / static_cast<double>(r.inverse_mass));
+    }
+    for (const Wall& w : walls) wall = std::max(wall, fastest(w));
+    for (std::size_t a = 0; a < 3; ++a)  // through the domain; without limit along a periodic axis
+        if (gravity_[a] != 0)
+            free_fall =
+                domain_.periodic[a]
+                    ? std::numeric_limits<double>::infinity()
+                    : std::hypot(free_fall, std::sqrt(2 * std::abs(gravity_[a]) * (domain_.high[a] - domain_.low[a])));
+    const double active = kinetic(now) + now.stored.squeezed;
+    const double released = std::isfinite(lightest) ? std::sqrt(2 * active / lightest) : 0;
+    speed_limit_ = largest_sound_speed_factor * (start + wall + shaking_speed_ + free_fall + released);
+    work_of_walls_ = 0;
+    fall(now);
+    forget_balance();
+}
+
+void Watch::book_travel(double fastest_component) {
+    covered_ += std::numbers::sqrt3 * fastest_component;
+}
+
+bool Watch::too_fast(double fastest_component) const {
+    return std::numbers::sqrt3 * fastest_component * speed_unit_ > speed_limit_;
+}
+
+bool Watch::due(std::int64_t steps) const {
+    return balanced_ && (steps % energy_interval == 0 || covered_ > quarter_period_);
+}
+
+std::string Watch::look(const Moment& now, std::int32_t& particle) {
+    fall(now);
+    const double motion = kinetic(now);
+    const double active = motion + now.stored.squeezed;
+    const double balance = motion + now.stored.sum - work_of_gravity_ - work_of_walls_;
+    const double allowed = largest_sound_energy_gain * (active + std::abs(work_of_walls_));
+    const double gain = balance - lowest_energy_;
+    lowest_energy_ = std::min(lowest_energy_, balance);
+    if (gain <= allowed) return {};
+    double most = -1;
+    for (std::int32_t i = 0; i < now.field.count; ++i)
+        if (const double speed = norm(now.motions[static_cast<std::size_t>(i)].velocity); !(speed <= most))
+            most = speed, particle = i;
+    char text[200];
+    std::snprintf(text, sizeof text, "contacts created %.3g J of energy, %.3g times what moves; the fastest particle",
+                  gain, gain / active);
+    return text;
+}
+
+}  // namespace grainsweep::dem::fast

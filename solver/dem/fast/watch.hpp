@@ -1,0 +1,88 @@
+// Watch over the mixed engine's speeds and energy, as over the clear one's (dem/limits.hpp).
+//
+// Energy minus the work of gravity and of moving walls must not grow: contacts store or dissipate. The sum is made in
+// double precision every energy_interval steps; looking costs about as much as seven steps. Work of gravity is that
+// over the displacements since the last look, which knows no difference between a period and the next: looks come early
+// enough that nobody covers a quarter of a period between two of them where gravity acts along one. A vessel that is
+// shaken is not balanced, for the work of shaking would take the momentum of every step.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "solver/dem/engine.hpp"
+#include "solver/dem/fast/contact_reader.hpp"
+#include "solver/dem/fast/layout.hpp"
+#include "solver/dem/fast/rebuild.hpp"
+
+namespace grainsweep::dem::fast {
+
+/// Steps between two looks at the energy.
+inline constexpr std::int64_t energy_interval = 1024;
+
+/// What a look sees: the state at a full step.
+struct Moment {
+    const Field& field;
+    const Room& room;
+    const std::int32_t* id;
+    std::span<const Motion> motions;  ///< in the order of the records
+    StoredEnergy stored;
+};
+
+class Watch {
+public:
+    Watch(const Setup& setup, const Scale& scale);
+
+    /// Learns the largest speed anything here could reach, from the state of the start or with new walls.
+    void learn(const Moment& now, std::span<const Wall> walls);
+    /// Books a step by the largest component of its velocities, engine's units.
+    void book_travel(double fastest);
+    /// Books work of the walls on the particles, engine's units.
+    void book_push(double work) { work_of_walls_ += work * energy_unit_; }
+    /// Particles left: their energy is gone.
+    void forget_balance() { lowest_energy_ = std::numeric_limits<double>::infinity(); }
+
+    /// Whether the speed limit may be exceeded, judged by the largest component.
+    [[nodiscard]] bool too_fast(double fastest) const;
+    [[nodiscard]] bool due(std::int64_t steps) const;
+    /// What is wrong and with which particle; empty: the balance is sound.
+    [[nodiscard]] std::string look(const Moment& now, std::int32_t& particle);
+
+    [[nodiscard]] double speed_limit() const { return speed_limit_; }  ///< m/s
+
+    /// Everything that changes.
+    template <class Archive>
+    static void pass(auto& self, Archive& archive) {
+        archive.value(self.lowest_energy_);
+        archive.value(self.work_of_walls_);
+        archive.value(self.work_of_gravity_);
+        archive.value(self.speed_limit_);
+        archive.value(self.covered_);
+        archive.list(self.seen_);
+    }
+
+private:
+    using Place3 = std::array<std::int32_t, 3>;
+
+    [[nodiscard]] double kinetic(const Moment& now) const;
+    void fall(const Moment& now);
+
+    Vec3 gravity_;
+    Domain domain_;
+    double speed_unit_, energy_unit_;
+    double shaking_speed_;                                             ///< m/s, of the vessel
+    double quarter_period_ = std::numeric_limits<double>::infinity();  ///< shortest along gravity, in lengths
+    bool balanced_;                                                    ///< false: a shaken vessel
+
+    double lowest_energy_ = std::numeric_limits<double>::infinity();  ///< J
+    double work_of_walls_ = 0, work_of_gravity_ = 0;                  ///< J
+    double speed_limit_ = std::numeric_limits<double>::infinity();
+    double covered_ = 0;        ///< at most, since the last look, in lengths
+    std::vector<Place3> seen_;  ///< positions of the last look, by id
+};
+
+}  // namespace grainsweep::dem::fast
