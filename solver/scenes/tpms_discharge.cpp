@@ -10,17 +10,17 @@
 // Work that cannot matter is not done: frozen spheres that no mobile one can touch while overlaps stay below
 // a tenth of a diameter are dropped (particles/reach.hpp), a larger one at any step is reported unstable; a case ends
 // when no mobile sphere is left, and, under the rule "quiet", when the powder has come to rest: for 1.5 t* no more than
-// one sphere in ten thousand (or one) moved at a time, and the count changed by no more. Those few may still leave;
-// beyond them the rule presumes that what rests stays at rest.
+// one sphere in a thousand of those left (or one) moved at a time, and the count changed by no more. Those few may
+// still leave; beyond them the rule presumes that what rests stays at rest.
 #include "solver/geometry/tpms_outlet.hpp"
 #include "solver/geometry/vector.hpp"
 #include "solver/observables/beverloo.hpp"
-#include "solver/observables/histogram.hpp"
 #include "solver/observables/particle_loads.hpp"
 #include "solver/particles/bytes.hpp"
 #include "solver/particles/tpms_filling.hpp"
 #include "solver/scenes/catalogue.hpp"
-#include "solver/scenes/tpms_discharge_question.hpp"
+#include "solver/scenes/tpms/question.hpp"
+#include "solver/scenes/tpms/record.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -40,28 +40,8 @@ constexpr double margin = 2;            // diameters around the cell before a sp
 constexpr double most_overlap = 0.1;    // diameters: what the dropped wall spheres presume
 constexpr double sample_time = 0.0165;  // t*, between two samples
 constexpr std::int64_t samples_per_force_sample = 10;
-constexpr double quiet_time = 1.5;    // t*
-constexpr double quiet_periods = 2;   // of vibration
 constexpr double quiet_speed = 1e-3;  // sqrt(2 g L)
-constexpr double quiet_share = 1e-4;  // of the powder may move faster, and leave
-constexpr double overlap_bin = 0.0005, force_bin = 10;
 constexpr std::size_t layers = 20;
-
-/// What is measured at one moment.
-struct Moment {
-    std::int64_t step = 0;
-    std::int64_t in_cell = 0;  ///< mobile centres in the cell
-    double fastest_down = 0;   ///< in the cell, along gravity, m/s
-    std::int64_t mobile = 0;   ///< not yet gone
-    std::int64_t at_rest = 0;  ///< in the cell, slower than quiet_speed
-};
-
-/// One bin of a histogram taken at a step.
-struct Bin {
-    std::int64_t step = 0;
-    double centre = 0;
-    double share = 0;
-};
 
 particles::Packing packing_of(const TpmsQuestion& question, Artefacts& artefacts) {
     if (const auto file = file_word(question.packing)) {
@@ -103,14 +83,7 @@ public:
 private:
     [[nodiscard]] bool in_cell(const Vec3& x) const;
     [[nodiscard]] std::size_t layer(const Vec3& x) const;
-    [[nodiscard]] double in_t_star(double step) const {
-        return step * question_.time_step / question_.free_fall_time();
-    }
     void sample();
-    /// The largest contact force, and with `histograms` how overlaps and forces are distributed.
-    void sample_forces(bool histograms);
-    /// When the retention first fell to a share, in t*; NaN if it never did.
-    [[nodiscard]] double time_to(double share) const;
     /// Share of the powder per t* that Beverloo's law lets through the outlet.
     [[nodiscard]] double beverloo() const;
     void observe_profile(Observations& into) const;
@@ -127,18 +100,19 @@ private:
 
     std::int64_t step_ = 0;
     std::int64_t mobile_left_ = 0;
-    std::int64_t quiet_since_ = 0;  // step of the last sample that was not quiet
-    std::int64_t quiet_count_ = 0;  // in the cell then
-    double max_overlap_ = 0;        // diameters
-    double max_force_ = 0;          // m 9.81
-    std::vector<Moment> moments_;
-    std::vector<Bin> overlaps_, forces_;
+    double max_overlap_ = 0;  // diameters
+    TpmsRecord record_;
     std::string fault_;
 };
 
 TpmsDischarge::TpmsDischarge(const TpmsQuestion& question, const particles::TpmsFilling& filling, double outlet,
                              double fraction)
-    : question_(question), outlet_(outlet), fraction_(fraction), wall_spheres_(filling.wall_spheres) {
+    : question_(question),
+      outlet_(outlet),
+      fraction_(fraction),
+      wall_spheres_(filling.wall_spheres),
+      start_count_(static_cast<std::int64_t>(filling.mobile.size())),
+      record_(question_, start_count_) {
     const double d = question.diameter;
     dem::Setup setup;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -154,7 +128,7 @@ TpmsDischarge::TpmsDischarge(const TpmsQuestion& question, const particles::Tpms
     };
     for (const auto& x : filling.mobile) add(x, true);
     for (const auto& x : filling.wall) add(x, false);
-    start_count_ = mobile_left_ = static_cast<std::int64_t>(filling.mobile.size());
+    mobile_left_ = start_count_;
     for (const auto& sphere : setup.spheres)
         if (sphere.mobile) ++start_layers_[layer(sphere.position)];
 
@@ -205,14 +179,9 @@ void TpmsDischarge::sample() {
         now.at_rest += speed < slow ? 1 : 0;
     }
     now.mobile = mobile_left_;
-    const auto few =
-        std::max<std::int64_t>(1, static_cast<std::int64_t>(quiet_share * static_cast<double>(start_count_)));
-    if (now.in_cell - now.at_rest > few || std::abs(now.in_cell - quiet_count_) > few) {
-        quiet_since_ = step_;
-        quiet_count_ = now.in_cell;
-    }
-    moments_.push_back(now);
-    sample_forces((step_ / sample_interval_) % samples_per_force_sample == 0 || step_ == last_step_);
+    record_.add(now);
+    engine_->contacts(contacts_);
+    record_.add(contacts_, step_, (step_ / sample_interval_) % samples_per_force_sample == 0 || step_ == last_step_);
 
     max_overlap_ = engine_->peak_overlap();
     if (fault_.empty() && max_overlap_ > most_overlap) {
@@ -226,41 +195,9 @@ void TpmsDischarge::sample() {
     }
 }
 
-void TpmsDischarge::sample_forces(bool histograms) {
-    engine_->contacts(contacts_);
-    std::vector<double> overlaps, forces;
-    for (const auto& contact : contacts_) {
-        const double force = std::hypot(contact.normal_force, geometry::norm(contact.tangential_force));
-        max_force_ = std::max(max_force_, force / question_.standard_weight());
-        if (!histograms) continue;
-        overlaps.push_back(contact.overlap / question_.diameter);
-        forces.push_back(force / question_.standard_weight());
-    }
-    for (const auto& [centre, share] : observables::histogram(overlaps, overlap_bin))
-        overlaps_.push_back({step_, centre, share});
-    for (const auto& [centre, share] : observables::histogram(forces, force_bin))
-        forces_.push_back({step_, centre, share});
-}
-
 bool TpmsDischarge::finished() const {
     if (step_ >= last_step_ || mobile_left_ == 0) return true;
-    const double frequency = question_.shaking.frequency;
-    const double needed =
-        std::max(quiet_time * question_.free_fall_time(), frequency > 0 ? quiet_periods / frequency : 0.0);
-    return question_.stop_when_quiet && static_cast<double>(step_ - quiet_since_) * question_.time_step >= needed;
-}
-
-double TpmsDischarge::time_to(double share) const {
-    const double target = share * static_cast<double>(start_count_);
-    for (std::size_t k = 1; k < moments_.size(); ++k) {
-        const auto before = static_cast<double>(moments_[k - 1].in_cell);
-        const auto after = static_cast<double>(moments_[k].in_cell);
-        if (after > target) continue;
-        const double part = before > after ? (before - target) / (before - after) : 0;
-        const auto from = static_cast<double>(moments_[k - 1].step);
-        return in_t_star(from + part * (static_cast<double>(moments_[k].step) - from));
-    }
-    return std::numeric_limits<double>::quiet_NaN();
+    return question_.stop_when_quiet && record_.is_quiet(step_);
 }
 
 double TpmsDischarge::beverloo() const {
@@ -286,39 +223,12 @@ void TpmsDischarge::observe_profile(Observations& into) const {
 }
 
 void TpmsDischarge::observe(Observations& into) const {
-    const auto start = static_cast<double>(start_count_);
-    double peak = 0;
-    auto& retention = into.series["retention_series"];
-    auto& velocity = into.series["velocity_series"];
-    auto& mobile = into.series["mobile_series"];
-    auto& at_rest = into.series["at_rest_series"];
-    for (const Moment& moment : moments_) {
-        const double t = in_t_star(static_cast<double>(moment.step));
-        const double speed = moment.fastest_down / question_.free_fall_speed();
-        retention.push_back({.time = t, .value = static_cast<double>(moment.in_cell) / start});
-        velocity.push_back({.time = t, .value = speed});
-        mobile.push_back({.time = t, .value = static_cast<double>(moment.mobile) / start});
-        at_rest.push_back({.time = t, .value = static_cast<double>(moment.at_rest) / start});
-        peak = std::max(peak, speed);
-    }
-    const auto add_bins = [&](const char* name, const std::vector<Bin>& bins) {
-        auto& series = into.series[name];
-        for (const Bin& bin : bins)
-            series.push_back({.time = in_t_star(static_cast<double>(bin.step)), .bin = bin.centre, .value = bin.share});
-    };
-    add_bins("overlap_histogram", overlaps_);
-    add_bins("force_histogram", forces_);
+    record_.observe(into);
     observe_profile(into);
-    into.scalars["retention"] = static_cast<double>(moments_.back().in_cell) / start;
-    into.scalars["time_to_half"] = time_to(0.5);
-    into.scalars["time_to_tenth"] = time_to(0.1);
-    into.scalars["discharge_rate"] = 0.25 / (time_to(0.5) - time_to(0.75));
     into.scalars["beverloo_rate"] = beverloo();
     into.scalars["outlet_diameter"] = outlet_;
-    into.scalars["peak_velocity"] = peak;
     into.scalars["max_overlap"] = max_overlap_;
-    into.scalars["max_force"] = max_force_;
-    into.scalars["particles"] = start;
+    into.scalars["particles"] = static_cast<double>(start_count_);
     into.scalars["wall_particles"] = static_cast<double>(wall_spheres_);
 }
 
@@ -326,14 +236,9 @@ void TpmsDischarge::save(Bytes& into) const {
     particles::ByteWriter out(into);
     out.put(step_);
     out.put(mobile_left_);
-    out.put(quiet_since_);
-    out.put(quiet_count_);
     out.put(max_overlap_);
-    out.put(max_force_);
-    out.put(moments_);
-    out.put(overlaps_);
-    out.put(forces_);
     out.put(fault_);
+    record_.save(out);
     std::vector<std::byte> engine;
     engine_->save(engine);
     out.put(engine);
@@ -343,14 +248,9 @@ void TpmsDischarge::restore(std::span<const std::byte> from) {
     particles::ByteReader in(from);
     in.get(step_);
     in.get(mobile_left_);
-    in.get(quiet_since_);
-    in.get(quiet_count_);
     in.get(max_overlap_);
-    in.get(max_force_);
-    in.get(moments_);
-    in.get(overlaps_);
-    in.get(forces_);
     in.get(fault_);
+    record_.restore(in);
     std::vector<std::byte> engine;
     in.get(engine);
     in.finish();
@@ -358,6 +258,7 @@ void TpmsDischarge::restore(std::span<const std::byte> from) {
     engine_->state(state_);
 }
 
+/// As the cell sees it; wall spheres that nothing can touch are not there.
 Snapshot TpmsDischarge::snapshot() const {
     dem::State state;
     std::vector<dem::ContactForce> contacts;

@@ -1,4 +1,4 @@
-#include "solver/scenes/tpms_discharge_question.hpp"
+#include "solver/scenes/tpms/question.hpp"
 
 #include "solver/dem/material.hpp"
 #include "solver/dem/time_step.hpp"
@@ -113,9 +113,9 @@ std::vector<ParameterSpec> tpms_discharge_parameters() {
         number("end_time", "sqrt(2 L/g)", "time after which the case ends", 10, {0, 1000, true, false}));
     parameters.push_back(
         word("settle_rule",
-             "quiet: end early when for 1.5 sqrt(2 L/g), and two periods of vibration, at most one particle in 10,000 "
-             "(or one) in the cell was faster than 0.001 sqrt(2 g L) and as many entered or left it, which is what "
-             "the retention may then be wrong by; none: go on to the end time",
+             "quiet: end early when for 1.5 sqrt(2 L/g), and two periods of vibration, at most a thousandth "
+             "of the powder in the cell (or one particle) was faster than 0.001 sqrt(2 g L), and as much left it: the "
+             "relative error of the retention; none: go on to the end time",
              {"quiet", "none"}));
     parameters.push_back(number("time_step", "s", "time step", 1e-6, {0, unbounded, true, true}));
     parameters.push_back(word("precision", "arithmetic of the contact forces", {"mixed", "double"}));

@@ -1,0 +1,61 @@
+// What a TPMS discharge has shown so far: counts and speeds at each sample, contact forces, and whether the powder has
+// come to rest.
+#pragma once
+
+#include "solver/dem/engine.hpp"
+#include "solver/particles/bytes.hpp"
+#include "solver/scenes/tpms/question.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace grainsweep {
+
+/// What is measured at one moment.
+struct Moment {
+    std::int64_t step = 0;
+    std::int64_t in_cell = 0;  ///< mobile centres in the cell
+    double fastest_down = 0;   ///< in the cell, along gravity, m/s
+    std::int64_t mobile = 0;   ///< not yet gone
+    std::int64_t at_rest = 0;  ///< in the cell, slower than quiet_speed
+};
+
+/// One bin of a histogram taken at a step.
+struct Bin {
+    std::int64_t step = 0;
+    double centre = 0;
+    double share = 0;
+};
+
+class TpmsRecord {
+public:
+    /// start: mobile particles at time 0. The question must outlive the record.
+    TpmsRecord(const TpmsQuestion& question, std::int64_t start) : question_(&question), start_(start) {}
+
+    void add(const Moment& now);
+    /// The largest contact force, and with `histograms` how overlaps and forces are distributed.
+    void add(std::span<const dem::ContactForce> contacts, std::int64_t step, bool histograms);
+
+    /// Whether at this step the powder has been at rest for as long as the rule "quiet" asks.
+    [[nodiscard]] bool is_quiet(std::int64_t step) const;
+    /// When the retention first fell to a share, in t*; NaN if it never did.
+    [[nodiscard]] double time_to(double share) const;
+    void observe(Observations& into) const;
+
+    void save(particles::ByteWriter& out) const;
+    void restore(particles::ByteReader& in);
+
+private:
+    [[nodiscard]] double in_t_star(double step) const;
+
+    const TpmsQuestion* question_;
+    std::int64_t start_;
+    std::int64_t quiet_since_ = 0;  // step of the last sample that was not quiet
+    std::int64_t quiet_count_ = 0;  // in the cell then
+    double max_force_ = 0;          // m 9.81
+    std::vector<Moment> moments_;
+    std::vector<Bin> overlaps_, forces_;
+};
+
+}  // namespace grainsweep
