@@ -73,7 +73,7 @@ public:
         for (std::size_t d = 0; d < 3; ++d)
             for (std::size_t m = 0; m < shape_.size(); ++m)
                 for (std::size_t t = 0; t < 2 * terms; ++t)
-                    amplitudes_[d][m][t] = static_cast<float>(period.amplitudes()[d][m][t]);
+                    amplitudes_[d][m][t / 4][t % 4] = static_cast<float>(period.amplitudes()[d][m][t]);
     }
 
     /// Velocity and acceleration at a particle at `phase`.
@@ -101,18 +101,27 @@ public:
     }
 
 private:
-    using Node = std::array<float, 2 * terms>;  // velocity, then acceleration
+    using Four = float __attribute__((vector_size(16)));
+    using Node = std::array<Four, 3>;  // velocity, then acceleration; two places are free
 
     template <int D, class Kernel>
     void component(const Footing<Kernel>& foot, const std::array<double, terms>& basis, Surroundings& around) const {
-        std::array<double, 2 * terms> sum{};
+        Four first{};
+        Four second{};
+        Four third{};
         const Node* const nodes = amplitudes_[D].data();
         foot.template visit<D>(shape_, [&](std::ptrdiff_t at, double weight) {
-            for (std::size_t t = 0; t < 2 * terms; ++t) sum[t] += weight * static_cast<double>(nodes[at][t]);
+            const Node& node = nodes[at];
+            const auto w = static_cast<float>(weight);
+            first += w * node[0];
+            second += w * node[1];
+            third += w * node[2];
         });
+        const std::array<float, 2 * terms> sum{first[0],  first[1],  first[2],  first[3], second[0],
+                                               second[1], second[2], second[3], third[0], third[1]};
         for (std::size_t t = 0; t < terms; ++t) {
-            around.velocity[D] += basis[t] * sum[t];
-            around.acceleration[D] += basis[t] * sum[terms + t];
+            around.velocity[D] += basis[t] * static_cast<double>(sum[t]);
+            around.acceleration[D] += basis[t] * static_cast<double>(sum[terms + t]);
         }
     }
 

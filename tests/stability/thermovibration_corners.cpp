@@ -78,3 +78,104 @@ TEST(ThermovibrationCorners, FinishOrSayWhatWentWrong) {
                 expect_sound(inputs, std::string(coupling) + ' ' + ends[a].first + ' ' + ends[b].first);
             }
 }
+
+namespace {
+
+const char* const levels[] = {"one_way", "two_way", "ddpm", "ddpm_ktgf", "cfd_dem"};
+
+// A coarse run 21 for some periods: an answer, or empty and a reason.
+Observations answer(const char* level, const Inputs& changes, double periods, std::string& reason) {
+    NoArtefacts none;
+    Inputs inputs = info().defaults();
+    inputs["coupling"] = std::string(level);
+    inputs["cells"] = std::int64_t{12};
+    inputs["particles"] = std::int64_t{400};
+    inputs["steps_per_period"] = std::int64_t{16};
+    inputs["sampling_cells"] = std::int64_t{4};
+    inputs["end_time"] = periods * 2 * 3.14159265358979323846 / 1.667e4;
+    for (const auto& [name, value] : changes) inputs[name] = value;
+    const auto scene = info().make(inputs, 1, none);
+    while (!scene->finished() && scene->health().stable()) scene->advance(scene->time() + 1);
+    reason = scene->health().reason;
+    Observations found;
+    if (!reason.empty()) return found;
+    scene->observe(found);
+    for (const auto& particle : scene->snapshot().positions)
+        for (const double x : particle) EXPECT_LE(std::abs(x), 0.5) << level;
+    return found;
+}
+
+}  // namespace
+
+// Light and heavy particles, small and large, weak and violent convection: no energy out of nothing. The fluid cannot
+// be faster than the force on the densest cloud could make it in a quarter of a period.
+TEST(ThermovibrationCorners, StayBoundedOverDecades) {
+    std::vector<Inputs> corners;
+    for (const double xi : {0.01, 0.1, 10.0, 100.0}) corners.push_back({{"density_ratio", xi}});
+    for (const double stokes : {1e-11, 1e-9, 1e-7, 1e-5, 1e-4}) corners.push_back({{"stokes", stokes}});
+    corners.push_back({{"rayleigh", 4.81e7}});
+    corners.push_back({{"density_ratio", 100.0}, {"stokes", 5e-5}});
+    corners.push_back({{"density_ratio", 0.01}, {"stokes", 5e-5}, {"clustering", 2.0}});
+    int stable = 0;
+    for (const char* level : levels)
+        for (Inputs changes : corners) {
+            if (std::string(level) == "cfd_dem") changes["contact"] = std::string("projection");
+            std::string reason;
+            const auto found = answer(level, changes, 6, reason);
+            if (!reason.empty()) {
+                EXPECT_NE(reason.find("t = "), std::string::npos) << reason;
+                continue;
+            }
+            ++stable;
+            const auto number = [&](const char* name, double otherwise) {
+                const auto given = changes.find(name);
+                return given == changes.end() ? otherwise : std::get<double>(given->second);
+            };
+            const double heavy = std::abs(number("density_ratio", 1.65) - 1) * 0.74;
+            const double drive = 18 * number("rayleigh", 4.81e5) + heavy * 1.72e9;
+            EXPECT_LT(found.scalars.at("peak_velocity"), 2 * drive / 1.667e4) << level;
+        }
+    EXPECT_GE(stable, 40);  // of 60
+}
+
+// From 8 steps per period on the energy of the flow is of second order in the step at every level: what a level adds
+// one step late is a small part of it.
+TEST(ThermovibrationCorners, EightStepsPerPeriodAreSecondOrderAlready) {
+    for (const char* level : levels) {
+        std::string reason;
+        const auto energy = [&](std::int64_t steps) {
+            const auto found = answer(level, {{"steps_per_period", steps}}, 3, reason);
+            EXPECT_EQ(reason, "") << level << ' ' << steps;
+            return found.scalars.at("kinetic_energy");
+        };
+        const double coarse = energy(8);
+        const double middle = energy(16);
+        const double fine = energy(32);
+        EXPECT_NEAR(std::log2((coarse - middle) / (middle - fine)), 2, 0.25) << level;
+        EXPECT_LT(std::abs(middle - fine), 0.02 * fine) << level;
+    }
+}
+
+// So many particles that cells are packed from the start, and more than there is room for.
+TEST(ThermovibrationCorners, PackedCubesRunOrSayWhyNot) {
+    const double large = 8e-4;  // R = 0.06
+    for (const char* level : {"two_way", "ddpm", "ddpm_ktgf", "cfd_dem"})
+        for (const char* contact : {"spring", "projection"})
+            for (const std::int64_t particles : {100, 300, 500, 700}) {
+                Inputs changes{{"stokes", large},
+                               {"particles", particles},
+                               {"cells", std::int64_t{6}},
+                               {"acceleration", 1e6},
+                               {"contact", std::string(contact)}};
+                std::string reason;
+                try {
+                    const auto found = answer(level, changes, 2, reason);
+                    if (!reason.empty()) {
+                        EXPECT_NE(reason.find("t = "), std::string::npos) << reason;
+                    }
+                    for (const auto& [name, value] : found.scalars) EXPECT_TRUE(std::isfinite(value)) << name;
+                } catch (const std::invalid_argument& refusal) {
+                    EXPECT_GE(particles, 300) << level << ": " << refusal.what();
+                }
+            }
+}

@@ -47,7 +47,8 @@ TEST(PeriodicFlow, GivesBackWhatItKeepsAtEveryPhase) {
     }
     const PeriodicFlow periodic(grid, period);
     const Footing<Trilinear> foot(grid, {}, {0.13, -0.21, 0.37});
-    constexpr double rounded = 5 * 0.5 * 6e-8;  // five amplitudes of up to a half in single precision
+    // Five amplitudes of up to a half, kept, weighted and summed in single precision.
+    constexpr double rounded = 5 * 0.5 * 4 * 6e-8;
     for (const double phase : {0.0, 0.1, 2.0, 6.0}) {
         const auto around = periodic.at(foot, phase);
         const Vec3 velocity = foot.gather(field_at(grid, phase, 0, 1));
