@@ -103,9 +103,9 @@ double acceleration(const dem::Setup& setup, Method::Precision precision, std::i
 }  // namespace
 
 // Same formulas and time step: a pair differs by rounding, which a contact that yields does not multiply; in mixed
-// precision thousands of roundings of 6e-8 to the spins add up. At a plane LIGGGHTS turns a spring by (R - d/2)/(R - d)
-// times the angle: overlaps reach 2 % of R in the impact, 0.1 % in rolling, of which the moment below its limit feels
-// half.
+// precision the forces' roundings of 6e-8 add up over thousands of steps. At a plane LIGGGHTS turns a spring by (R -
+// d/2)/(R - d) times the angle: overlaps reach 2 % of R in the impact, 0.1 % in rolling, of which the moment below its
+// limit feels half.
 TEST(DemRolling, EqualsLiggghts) {
     auto pair = soft_spheres(0.1, 1e-7);
     pair.spheres = {{{0, 0, 0}, {}, {0, 30, 5}, 1e-3, true},
@@ -145,13 +145,9 @@ TEST(DemRolling, DeceleratesARollingSphere) {
         EXPECT_NEAR(expected, -5.0 / 7 * mu_r * gravity, 2e-4 * mu_r * gravity);
         // The wind-up of the spring rings in the tangential spring for a while.
         EXPECT_NEAR(acceleration(p.setup, exact, 20000, 60000) / expected, 1, 1e-4) << mu_r;
-        // A spin is a single-precision number: the same change added to it step by step is rounded alike each time, by
-        // up to half the distance to the next number.
-        const auto turn = static_cast<float>(0.05 / p.arm * p.setup.time_step);  // per step, as the engine keeps it
-        const double change = -expected / p.arm * std::pow(p.setup.time_step, 2);
-        const double rounding = 0.5 * static_cast<double>(turn - std::nextafter(turn, 0.0F)) / change;
-        EXPECT_NEAR(acceleration(p.setup, mixed, 20000, 60000) / expected, 1, 1e-4 + rounding) << mu_r;
-        EXPECT_LT(rounding, 0.03) << "the test should say something";
+        // A step changes the spin by some 1e-5 of itself: single precision would round that alike each time, by up to
+        // 3 %, if it did not carry on what it drops.
+        EXPECT_NEAR(acceleration(p.setup, mixed, 20000, 60000) / expected, 1, 1e-4) << mu_r;
     }
 }
 

@@ -324,6 +324,7 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
                 largest_skin_);
         const std::int32_t before = field_.count;
         rebuild(field_, columns_, *kernels_, room_, removed);
+        columns_.forces.clear(size());  // what waited there belonged to the old order
         if (field_.count < before) watch_.forget_balance();
         drift_.outer = 0;
         drift_.steps = 0;

@@ -6,7 +6,8 @@
 //   scatter   forces of a tile are added to both particles.
 //   advance   a particle whose pairs are all behind is integrated at once, while it is in the nearest cache:
 //             leapfrog v(t+dt/2) = v(t-dt/2) + dt f/m, x(t+dt) = x(t) + dt v(t+dt/2), the velocity Verlet whose
-//             contact law sees half-step velocities. What rounding drops is carried to the next step.
+//             contact law sees half-step velocities. What rounding drops is carried to the next step: of position and
+//             velocity beside them, of the spin in the torque that is being gathered.
 //
 // R^2 - r^2 is formed in double precision from exact differences: overlap = (R^2 - r^2)/(R + r) keeps its digits
 // however stiff the particles are. Included by the files of the instruction paths; internal linkage on purpose.
@@ -238,7 +239,6 @@ GRAINSWEEP_LANES void advance_one(const Field& f, std::int32_t i, Stepper& s) {
     Record& r = f.records[i];
     const F8 inverse_mass = broadcast8(r.inverse_mass);
     F8 change = load8(f.forces[i].force) * s.turning;
-    store8(f.forces[i].force, broadcast8(0.0f));
     if constexpr (Law::unequal) {
         const F4 inverse_radius = broadcast4(r.inverse_radius);
         change = change * join(broadcast4(1.0f), inverse_radius * inverse_radius);
@@ -250,6 +250,17 @@ GRAINSWEEP_LANES void advance_one(const Field& f, std::int32_t i, Stepper& s) {
     const F8 old = load8(r.velocity);
     const F8 now = old + change;
     const F8 lost = change - (now - old);
+    // What rounding drops of the spin waits as a torque for the next step; a rebuild forgets it.
+    F4 waiting = broadcast4(0.0f);
+    if constexpr (Law::friction) {
+        float inertia = 0.1f;  // 0.4 m R^2, diameter and mass 1
+        if constexpr (Law::unequal) {
+            const float square = r.radius_again * r.radius_again;
+            inertia = 3.2f * square * square * r.radius_again;
+        }
+        waiting = high(lost) * broadcast4(inertia);
+    }
+    store8(f.forces[i].force, join(broadcast4(0.0f), waiting));
     s.high = max(now, s.high);
     s.low = min(now, s.low);
     const F4 travel = fma(low(now), s.inverse_unit, low(residue));
