@@ -1,7 +1,7 @@
 // What many spheres do together, against laws of granular matter and another program's statistics.
 //
 //   orifice   Beverloo, Leniger & van de Velde (1961), Chem. Eng. Sci. 15, 260: W = C rho_b sqrt(g) (D - k d)^(5/2),
-//             C 0.55 to 0.65 and k 1.2 to 1.6 for spheres
+//             C 0.55 to 0.65 and k 1.2 to 1.6 for spheres and sharp edges
 //   heap      the angle of repose grows with friction
 //   chute     mean velocity, kinetic energy and coordination of a flow down 26 degrees, against LIGGGHTS 3.8
 #include "solver/dem/engine.hpp"
@@ -52,19 +52,36 @@ void fill(dem::Setup& s, double lx, double ly, double lz, std::uint64_t seed) {
                 s.spheres.push_back({{x + u(), y + u(), z + u()}, {u() / d, u() / d, 0}, {}, d / 2, true});
 }
 
-/// Spheres per second through a hole of diameter `hole` in a plate of frozen spheres under a deep periodic bed, and the
-/// bulk density of the bed in spheres per volume.
-struct Discharge {
-    double rate = 0, bulk = 0;
+/// A deep periodic bed at rest on a plate at z = 0.
+struct Bed {
+    static constexpr double side = 18 * d, height = 30 * d;
+    dem::State state;
+    double bulk = 0;  ///< spheres per volume
 };
 
-Discharge discharge(double hole) {
+Bed deep_bed() {
     dem::Setup s = soft_powder();
-    constexpr double side = 18 * d, height = 30 * d;
+    s.domain = {{0, 0, -10 * d}, {Bed::side, Bed::side, 60 * d}, {true, true, false}};
+    s.walls = {dem::Plane{{0, 0, 0}, {0, 0, 1}}};
+    fill(s, Bed::side, Bed::side, Bed::height, 1);
+    const auto engine = dem::make_engine(s, mixed());
+    engine->run(std::llround(0.25 / s.time_step));
+    EXPECT_EQ(engine->fault(), "");
+    Bed bed;
+    engine->state(bed.state);
+    for (const auto& x : bed.state.position)
+        bed.bulk += x[2] > 2 * d && x[2] < 12 * d ? 1 / (Bed::side * Bed::side * 10 * d) : 0;
+    return bed;
+}
+
+/// Spheres per second through a hole of diameter `hole` in a plate of frozen spheres under the bed, while `wanted` of
+/// them pass: a count whose scatter is a few per cent.
+double discharge(const Bed& bed, double hole, std::size_t wanted) {
+    dem::Setup s = soft_powder();
+    constexpr double side = Bed::side;
     s.domain = {{0, 0, -10 * d}, {side, side, 60 * d}, {true, true, false}};
-    const double pitch = 0.9 * d;
-    const int n = static_cast<int>(side / pitch);
-    for (int i = 0; i < n; ++i)  // the plate, top at about z = 0
+    const int n = static_cast<int>(side / (0.9 * d));
+    for (int i = 0; i < n; ++i)  // the plate, its top at z = 0
         for (int j = 0; j < n; ++j) {
             const double x = (i + 0.5) * side / n, y = (j + 0.5) * side / n;
             if (std::hypot(x - side / 2, y - side / 2) > hole / 2 + 0.9 * d)
@@ -77,41 +94,30 @@ Discharge discharge(double hole) {
         s.spheres.push_back(
             {{side / 2 + rim * std::cos(angle), side / 2 + rim * std::sin(angle), -d / 2}, {}, {}, d / 2, false});
     }
-    dem::Setup plugged = s;
-    plugged.walls = {dem::Plane{{0, 0, 0}, {0, 0, 1}}};
-    plugged.spheres.clear();
-    fill(plugged, side, side, height, 1);
-    const auto settling = dem::make_engine(plugged, mixed());
-    settling->run(std::llround(0.25 / s.time_step));
-    EXPECT_EQ(settling->fault(), "");
-    dem::State bed;
-    settling->state(bed);
-    double inside = 0;
-    for (std::size_t i = 0; i < bed.id.size(); ++i) {
-        inside += bed.position[i][2] > 2 * d && bed.position[i][2] < 12 * d ? 1 : 0;
-        s.spheres.push_back({bed.position[i], bed.velocity[i], bed.angular_velocity[i], d / 2, true});
-    }
+    for (std::size_t i = 0; i < bed.state.id.size(); ++i)
+        s.spheres.push_back({bed.state.position[i], bed.state.velocity[i], bed.state.angular_velocity[i], d / 2, true});
     const auto engine = dem::make_engine(s, mixed());
     engine->run(std::llround(0.1 / s.time_step));  // until the flow is steady
     const auto before = engine->size();
-    constexpr double time = 0.3;
-    engine->run(std::llround(time / s.time_step));
+    const auto block = std::llround(0.02 / s.time_step);
+    int blocks = 0;
+    for (; before - engine->size() < wanted && blocks < 150; ++blocks) engine->run(block);
     EXPECT_EQ(engine->fault(), "");
-    EXPECT_GT(engine->size(), s.spheres.size() - bed.id.size() + bed.id.size() / 3) << "the bed ran out";
-    return {static_cast<double>(before - engine->size()) / time, inside / (side * side * 10 * d)};
+    EXPECT_GE(before - engine->size(), wanted) << "the hole is blocked";
+    return static_cast<double>(before - engine->size()) / (blocks * static_cast<double>(block) * s.time_step);
 }
 
 /// Slope of what stays on a rough base of finite length after all that could slid off its ends, degrees.
-double repose(double friction) {
+double repose(double friction, std::uint64_t seed) {
     dem::Setup s = soft_powder();
     s.material.friction = friction;
     constexpr double length = 50 * d, width = 5 * d;
     s.domain = {{-5 * d, 0, -5 * d}, {length + 5 * d, width, 40 * d}, {false, true, false}};
-    fill(s, length, width, 14 * d, 2);
+    fill(s, length, width, 14 * d, seed);
     for (int i = 0; i < 50; ++i)
         for (int j = 0; j < 5; ++j) s.spheres.push_back({{(i + 0.5) * d, (j + 0.5) * d, -d / 2}, {}, {}, d / 2, false});
     const auto engine = dem::make_engine(s, mixed());
-    engine->run(std::llround(1.5 / s.time_step));
+    engine->run(std::llround(1.2 / s.time_step));
     EXPECT_EQ(engine->fault(), "");
     dem::State state;
     engine->state(state);
@@ -146,12 +152,14 @@ struct Mean {
 
 TEST(DemGranular, AnOrificeDischargesAsBeverlooFound) {
     std::vector<double> holes, roots;
-    double bulk = 0;
+    const Bed bed = deep_bed();
+    const double scale = bed.bulk * std::sqrt(gravity) * std::pow(d, 2.5);
     for (const double hole : {4.5, 5.5, 6.75, 8.0}) {
-        const auto [rate, density] = discharge(hole * d);
+        const double rate = discharge(bed, hole * d, 1200);
+        // In the middle of the published constants. Those are of sharp edges; this one is round.
+        EXPECT_NEAR(rate / (0.58 * scale * std::pow(hole - 1.4, 2.5)), 1, 0.25) << hole;
         holes.push_back(hole);
         roots.push_back(std::pow(rate, 0.4));
-        bulk = density;
     }
     // rate^(2/5) is a straight line over the hole's diameter, crossing zero at k d
     double sx = 0, sy = 0, sxx = 0, sxy = 0;
@@ -160,25 +168,26 @@ TEST(DemGranular, AnOrificeDischargesAsBeverlooFound) {
         sx += holes[i], sy += roots[i], sxx += holes[i] * holes[i], sxy += holes[i] * roots[i];
     const double slope = (n * sxy - sx * sy) / (n * sxx - sx * sx), offset = (sy - slope * sx) / n;
     const double k = -offset / slope;
-    const double factor = std::pow(slope, 2.5) / (bulk * std::sqrt(gravity) * std::pow(d, 2.5));
+    const double factor = std::pow(slope, 2.5) / scale;
     std::printf("Beverloo: C = %.3f, k = %.2f, bulk fraction %.3f\n", factor, k,
-                bulk * std::numbers::pi / 6 * d * d * d);
+                bed.bulk * std::numbers::pi / 6 * d * d * d);
     for (std::size_t i = 0; i < holes.size(); ++i)
-        EXPECT_NEAR(roots[i], offset + slope * holes[i], 0.02 * roots[i]) << holes[i];
-    EXPECT_GT(k, 1.0);
-    EXPECT_LT(k, 2.2);
-    EXPECT_GT(factor, 0.5);
-    EXPECT_LT(factor, 0.72);
+        EXPECT_NEAR(roots[i], offset + slope * holes[i], 0.015 * roots[i]) << holes[i];
+    EXPECT_GT(k, 0.5);  // a centre cannot pass closer to the edge than half a diameter
+    EXPECT_LT(k, 2);
 }
 
 TEST(DemGranular, TheAngleOfReposeGrowsWithFriction) {
-    std::vector<double> angles;
-    for (const double friction : {0.05, 0.2, 0.6}) angles.push_back(repose(friction));
-    std::printf("angle of repose: %.1f, %.1f, %.1f degrees at friction 0.05, 0.2, 0.6\n", angles[0], angles[1],
-                angles[2]);
-    EXPECT_GT(angles[1], angles[0] + 1);
-    EXPECT_GT(angles[2], angles[1] + 1);
-    EXPECT_LT(angles[2], 40);
+    std::vector<Mean> angles;
+    for (const double friction : {0.05, 0.2, 0.6}) {
+        Mean angle;
+        for (std::uint64_t seed = 1; seed <= 3; ++seed) angle.add(repose(friction, seed));
+        std::printf("angle of repose at friction %g: %.1f +- %.1f degrees\n", friction, angle.value(), angle.error());
+        angles.push_back(angle);
+    }
+    EXPECT_GT(angles[1].value(), angles[0].value() + 2 * std::hypot(angles[0].error(), angles[1].error()));
+    EXPECT_GT(angles[2].value(), angles[1].value());
+    EXPECT_LT(angles[2].value(), 40);
 }
 
 TEST(DemGranular, AChuteFlowsAsInLiggghts) {

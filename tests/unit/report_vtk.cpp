@@ -37,7 +37,7 @@ std::vector<T> block(const std::string& bytes, std::size_t at, std::size_t& used
     EXPECT_LE(at + sizeof length + length, bytes.size());
     EXPECT_EQ(length % sizeof(T), 0U);
     std::vector<T> values(length / sizeof(T));
-    std::memcpy(values.data(), bytes.data() + at + sizeof length, length);
+    if (length > 0) std::memcpy(values.data(), bytes.data() + at + sizeof length, length);
     used += sizeof length + length;
     return values;
 }
