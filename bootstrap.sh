@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # From a fresh Debian machine to a running campaign or a green test run.
-#   ./bootstrap.sh run CONFIG [OPTIONS]   install what is missing, build, run the campaign
+#   ./bootstrap.sh run CONFIG [OPTIONS]   install what is missing, build, run the campaign, write its report
 #   ./bootstrap.sh test                   ... build everything, run the tests
 #   ./bootstrap.sh build                  ... build build/grainsweep (Release) and stop
 #   ./bootstrap.sh bench [NAME]...        ... run the benchmarks, all or those named (JSON lines)
@@ -85,7 +85,12 @@ run)
     [ $# -ge 2 ] || usage
     shift
     build_program
-    exec "$here/build/grainsweep" run "$@"
+    said=$(mktemp) code=0
+    "$here/build/grainsweep" run "$@" | tee -i "$said" || code=$?
+    database=$(sed -n 's/^database \(.*\); next: .*/\1/p' "$said")
+    rm -f "$said"
+    [ -z "$database" ] || "$here/build/grainsweep" report "$database"
+    exit "$code"
     ;;
 build)
     build_program
