@@ -17,7 +17,7 @@ usage() {
 program_packages=(
     g++=/usr/bin/g++ cmake=/usr/bin/cmake ninja-build=/usr/bin/ninja git=/usr/bin/git
     libeigen3-dev=/usr/include/eigen3/Eigen/Core libboost-dev=/usr/include/boost/process.hpp
-    libboost-filesystem-dev=/usr/include/boost/filesystem.hpp+libboost_filesystem.so libsqlite3-dev=/usr/include/sqlite3.h
+    libboost-filesystem-dev=/usr/include/boost/filesystem.hpp:libboost_filesystem.so libsqlite3-dev=/usr/include/sqlite3.h
     nlohmann-json3-dev=/usr/include/nlohmann/json.hpp libfmt-dev=/usr/include/fmt/format.h
     libcli11-dev=/usr/include/CLI/CLI.hpp libxxhash-dev=/usr/include/xxhash.h
     libjs-chart.js=/usr/share/javascript/chart.js/chart.min.js
@@ -26,9 +26,9 @@ test_packages=(
     libgtest-dev=/usr/include/gtest/gtest.h libgmock-dev=/usr/include/gmock/gmock.h
 )
 
-present() {  # PACKAGE=FILE[+LIBRARY]
+present() {  # PACKAGE=FILE[:LIBRARY]
     local proof=${1#*=} library=''
-    case $proof in *+*) library=${proof#*+} proof=${proof%%+*} ;; esac
+    case $proof in *:*) library=${proof#*:} proof=${proof%%:*} ;; esac
     [ -e "$proof" ] || return 1
     [ -z "$library" ] || compgen -G "/usr/lib/*/$library" >/dev/null || [ -e "/usr/lib/$library" ]
 }
