@@ -1,16 +1,19 @@
 #include "solver/observables/histogram.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <map>
 
 namespace grainsweep::observables {
 
-std::vector<std::pair<double, double>> histogram(std::span<const double> values, double width) {
+std::vector<std::pair<double, double>> log_histogram(std::span<const double> values, int per_decade, double floor) {
     std::map<std::int64_t, std::int64_t> counts;
-    for (const double value : values) ++counts[static_cast<std::int64_t>(value / width)];
+    for (const double value : values)
+        ++counts[static_cast<std::int64_t>(std::floor(std::log10(std::max(value, floor)) * per_decade))];
     std::vector<std::pair<double, double>> shares;
     for (const auto& [bin, count] : counts)
-        shares.emplace_back((static_cast<double>(bin) + 0.5) * width,
+        shares.emplace_back(std::pow(10, (static_cast<double>(bin) + 0.5) / per_decade),
                             static_cast<double>(count) / static_cast<double>(values.size()));
     return shares;
 }

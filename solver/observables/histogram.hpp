@@ -1,4 +1,4 @@
-// Shares of values in bins of equal width, without a largest value to guess.
+// Shares of positive values in bins of equal width on a logarithmic axis, without a largest value to guess.
 #pragma once
 
 #include <span>
@@ -8,7 +8,9 @@
 namespace grainsweep::observables {
 
 /// (centre of bin, share of all values) of every bin that holds one, ascending. Bin k covers
-/// [k width, (k + 1) width); values >= 0, width > 0. The shares add up to 1.
-[[nodiscard]] std::vector<std::pair<double, double>> histogram(std::span<const double> values, double width);
+/// [10^(k/n), 10^((k+1)/n)), n = per_decade, its centre is the geometric one; values below `floor`, which is
+/// positive, count as `floor`. The shares add up to 1.
+[[nodiscard]] std::vector<std::pair<double, double>> log_histogram(std::span<const double> values, int per_decade,
+                                                                   double floor);
 
 }  // namespace grainsweep::observables

@@ -295,7 +295,7 @@ SceneInfo tpms_discharge_scene() {
     SceneInfo info;
     info.name = "tpms_discharge";
     info.summary = "powder leaving a cell walled by a triply periodic minimal surface under gravity";
-    info.revision = 2;
+    info.revision = 3;
     info.parameters = tpms_discharge_parameters();
     info.observables = tpms_discharge_observables();
     info.accuracy["fast"] = {{"precision", std::string("mixed")}};

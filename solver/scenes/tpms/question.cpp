@@ -147,9 +147,11 @@ std::vector<ObservableSpec> tpms_discharge_observables() {
          Shape::series},
         {"at_rest_series", "1", "those in the cell slower than 0.001 sqrt(2 g L) over those at the start",
          Shape::series},
-        {"overlap_histogram", "1", "share of contacts per 0.0005 diameters of overlap, every 0.165 sqrt(2 L/g)",
+        {"overlap_histogram", "1",
+         "share of contacts per bin of overlap, twenty bins per decade, every 0.165 sqrt(2 L/g); below 1e-6: the first",
          Shape::profile},
-        {"force_histogram", "1", "share of contacts per 10 m 9.81 m/s2 of contact force, every 0.165 sqrt(2 L/g)",
+        {"force_histogram", "1",
+         "share of contacts per bin of force, twenty bins per decade, every 0.165 sqrt(2 L/g); below 1e-3: the first",
          Shape::profile},
         {"retained_profile", "1", "retention of twenty layers along z at the end; bin: z/L", Shape::profile},
     };

@@ -14,7 +14,8 @@ namespace {
 constexpr double quiet_time = 1.5;    // t*
 constexpr double quiet_periods = 2;   // of vibration
 constexpr double quiet_share = 1e-3;  // of the powder in the cell may move faster, and leave
-constexpr double overlap_bin = 0.0005, force_bin = 10;
+constexpr int bins_per_decade = 20;
+constexpr double least_overlap = 1e-6, least_force = 1e-3;  // what is less counts as this
 
 }  // namespace
 
@@ -41,9 +42,9 @@ void TpmsRecord::add(std::span<const dem::ContactForce> contacts, std::int64_t s
         overlaps.push_back(contact.overlap / question_->diameter);
         forces.push_back(force / question_->standard_weight());
     }
-    for (const auto& [centre, share] : observables::histogram(overlaps, overlap_bin))
+    for (const auto& [centre, share] : observables::log_histogram(overlaps, bins_per_decade, least_overlap))
         overlaps_.push_back({step, centre, share});
-    for (const auto& [centre, share] : observables::histogram(forces, force_bin))
+    for (const auto& [centre, share] : observables::log_histogram(forces, bins_per_decade, least_force))
         forces_.push_back({step, centre, share});
 }
 
