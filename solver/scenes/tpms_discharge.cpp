@@ -15,10 +15,10 @@
 #include "solver/geometry/tpms_outlet.hpp"
 #include "solver/geometry/vector.hpp"
 #include "solver/observables/beverloo.hpp"
-#include "solver/observables/particle_loads.hpp"
 #include "solver/particles/bytes.hpp"
 #include "solver/particles/tpms_filling.hpp"
 #include "solver/scenes/catalogue.hpp"
+#include "solver/scenes/dem_picture.hpp"
 #include "solver/scenes/tpms/question.hpp"
 #include "solver/scenes/tpms/record.hpp"
 
@@ -260,22 +260,7 @@ void TpmsDischarge::restore(std::span<const std::byte> from) {
 
 /// As the cell sees it; wall spheres that nothing can touch are not there.
 Snapshot TpmsDischarge::snapshot() const {
-    dem::State state;
-    std::vector<dem::ContactForce> contacts;
-    engine_->state(state);
-    engine_->contacts(contacts);
-    auto loads = observables::particle_loads(state, contacts);
-    Snapshot picture;
-    picture.positions = std::move(state.position);
-    picture.scalars["id"].assign(state.id.begin(), state.id.end());
-    picture.scalars["mobile"].assign(state.mobile.begin(), state.mobile.end());
-    for (const double radius : state.radius) picture.scalars["diameter"].push_back(2 * radius);
-    picture.scalars["overlap"] = std::move(loads.overlap);
-    picture.scalars["largest_force"] = std::move(loads.largest);
-    picture.scalars["coordination"] = std::move(loads.coordination);
-    picture.vectors["velocity"] = std::move(state.velocity);
-    picture.vectors["force"] = std::move(loads.force);
-    return picture;
+    return picture_of(*engine_);
 }
 
 /// Processor seconds: particle steps of the mobile spheres on average in the box, and the packing.

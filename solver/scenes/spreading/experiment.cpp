@@ -1,7 +1,7 @@
 #include "solver/scenes/spreading/experiment.hpp"
 
-#include "solver/observables/particle_loads.hpp"
 #include "solver/particles/bytes.hpp"
+#include "solver/scenes/dem_picture.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -191,23 +191,7 @@ double Experiment::progress() const {
 }
 
 Snapshot Experiment::snapshot() const {
-    dem::State state;
-    std::vector<dem::ContactForce> contacts;
-    engine_->state(state);
-    engine_->contacts(contacts);
-    auto loads = observables::particle_loads(state, contacts);
-    Snapshot snapshot;
-    snapshot.positions = std::move(state.position);
-    snapshot.scalars["id"].assign(state.id.begin(), state.id.end());
-    snapshot.scalars["mobile"].assign(state.mobile.begin(), state.mobile.end());
-    for (const double radius : state.radius) snapshot.scalars["diameter"].push_back(2 * radius);
-    snapshot.scalars["overlap"] = std::move(loads.overlap);
-    snapshot.scalars["largest_force"] = std::move(loads.largest);
-    snapshot.scalars["coordination"] = std::move(loads.coordination);
-    snapshot.vectors["velocity"] = std::move(state.velocity);
-    snapshot.vectors["angular_velocity"] = std::move(state.angular_velocity);
-    snapshot.vectors["force"] = std::move(loads.force);
-    return snapshot;
+    return picture_of(*engine_);
 }
 
 void Experiment::save(Bytes& into) const {
