@@ -1,5 +1,6 @@
 // Published cubes, minutes each: slow_flow [--gtest_filter=...]. Figures found are printed beside the published ones.
 #include "solver/flow/flow.hpp"
+#include "tests/support/interpolation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,20 +14,6 @@ using namespace grainsweep::flow;
 namespace {
 
 constexpr std::array<Side, 2> walls{NoSlip{}, NoSlip{}};
-
-// Cubic through the four nearest points.
-double interpolate(const std::vector<double>& x, const std::vector<double>& y, double at) {
-    auto next = static_cast<std::size_t>(std::ranges::lower_bound(x, at) - x.begin());
-    next = std::clamp<std::size_t>(next, 2, x.size() - 2);
-    double sum = 0;
-    for (std::size_t a = next - 2; a < next + 2; ++a) {
-        double weight = 1;
-        for (std::size_t b = next - 2; b < next + 2; ++b)
-            if (a != b) weight *= (at - x[b]) / (x[a] - x[b]);
-        sum += weight * y[a];
-    }
-    return sum;
-}
 
 // Mean Nusselt number of the hot side of a cube, gravity along y, gradient along z.
 double heated_cube(double rayleigh, int n, double dt, double end) {
@@ -97,8 +84,8 @@ TEST(LidDrivenCube, AlbensoederKuhlmann) {
     const Lines coarse = driven_cube(32);
     const Lines fine = driven_cube(48);
     const auto extrapolated = [&](std::vector<double> Lines::*line, double at) {
-        const double f = interpolate(fine.at, fine.*line, at);
-        return f + (f - interpolate(coarse.at, coarse.*line, at)) / (48.0 * 48.0 / (32.0 * 32.0) - 1);
+        const double f = grainsweep::tests::cubic(fine.at, fine.*line, at);
+        return f + (f - grainsweep::tests::cubic(coarse.at, coarse.*line, at)) / (48.0 * 48.0 / (32.0 * 32.0) - 1);
     };
     constexpr std::array x = {-0.4531, -0.3516, -0.2344, -0.1172, 0.0, 0.0469, 0.2187, 0.3281, 0.3984, 0.4297, 0.4453};
     constexpr std::array v_published = {0.33171,  0.12183,  0.07334,  0.03905,  0.00802, -0.00612,

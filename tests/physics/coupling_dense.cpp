@@ -1,12 +1,8 @@
 // The levels whose particles take space: volume and momentum are conserved to round-off, collisions are those of the
 // law, packed cells stay packed, and where a law has nothing to do the level is the simpler one.
-#include "solver/coupling/dense_suspension.hpp"
-#include "solver/coupling/drag.hpp"
-#include "solver/coupling/projected_contacts.hpp"
-#include "solver/coupling/solids_pressure.hpp"
-#include "solver/coupling/spring_contacts.hpp"
 #include "solver/coupling/suspension.hpp"
 #include "solver/observables/flow_state.hpp"
+#include "tests/support/flow_boxes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,74 +10,10 @@
 #include <cmath>
 
 using namespace grainsweep;
-using namespace grainsweep::coupling;
-using flow::Axis;
+using namespace grainsweep::tests;
 using flow::Boussinesq;
-using flow::Flow;
-using flow::Grid;
 
 namespace {
-
-constexpr std::array<flow::Side, 2> walls{flow::NoSlip{}, flow::NoSlip{}};
-constexpr std::array<flow::Side, 2> periodic{flow::Periodic{}, flow::Periodic{}};
-const flow::Sides closed{walls, walls, walls};
-const flow::Sides endless{periodic, periodic, periodic};
-
-Grid cube(int n, double clustering = 0) {
-    const Axis axis = clustering > 0 ? Axis::clustered(n, -0.5, 0.5, clustering) : Axis::uniform(n, -0.5, 0.5);
-    return {{axis, axis, axis}};
-}
-
-Walls box(const flow::Sides& sides, double contact) {
-    const bool open = std::holds_alternative<flow::Periodic>(sides[0][0]);
-    return {{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, {open, open, open}, contact, 1};
-}
-
-Flow<flow::NoHeat> still_fluid(const Grid& grid, const flow::Sides& sides, double viscosity, double dt) {
-    return {{grid, sides, viscosity, dt}, flow::NoHeat{}};
-}
-
-template <class Interaction, class Heat = flow::NoHeat>
-using Dense = DenseSuspension<Heat, Interaction, Trilinear, SchillerNaumann>;
-
-using Ddpm = SolidsPressure<AlgebraicTemperature>;
-using DdpmKtgf = SolidsPressure<TransportedTemperature>;
-
-// Every interaction with the same arguments.
-struct Setting {
-    Grid grid;
-    flow::Sides sides;
-    Sphere sphere;
-    double dt;
-    std::size_t particles;
-    double collision = 0.8;
-    double granular_temperature = 1;
-    int smoothing = 1;
-    double friction = 0.3;
-
-    template <class Interaction>
-    [[nodiscard]] Interaction make() const {
-        const Walls around = box(sides, sphere.radius());
-        if constexpr (std::is_same_v<Interaction, SpringContacts>)
-            return {sphere, around, {SpringContacts::stiffness(sphere, 0.01, dt), collision, friction}, particles};
-        else if constexpr (std::is_same_v<Interaction, ProjectedContacts>)
-            return {sphere, around, dt};
-        else if constexpr (std::is_same_v<Interaction, NoInteraction>)
-            return {};
-        else
-            return {grid, sides, sphere, Granular::of(sphere, collision, 0.63), granular_temperature, smoothing};
-    }
-    template <class Interaction>
-    [[nodiscard]] Dense<Interaction> together(const flow::Vibration& vibration, const Cloud& cloud) const {
-        return {still_fluid(grid, sides, sphere.prandtl, dt),
-                vibration,
-                Motion<SchillerNaumann>(sphere, dt),
-                box(sides, sphere.radius()),
-                cloud,
-                make<Interaction>(),
-                smoothing};
-    }
-};
 
 template <class Together>
 double fluid_momentum(const Together& together, std::size_t d, int n) {
@@ -263,149 +195,6 @@ TEST(DenseSuspension, AnIdleLawChangesNoBit) {
     EXPECT_EQ(state(setting.make<ProjectedContacts>()), free);
     EXPECT_EQ(state(setting.make<Ddpm>()), free);
     EXPECT_EQ(state(setting.make<DdpmKtgf>()), free);
-}
-
-namespace {
-
-// Two spheres flying at each other through almost no fluid; what they do to it is not looked at.
-struct Collision {
-    Vec3 after_i{}, after_j{};
-};
-struct Nothing {
-    Vec3 spin{};
-    Surroundings operator()(std::size_t) const { return {}; }
-    [[nodiscard]] Vec3 rotation(std::size_t) const { return spin; }
-};
-
-Collision collide(double restitution, double speed, double offset, double friction) {
-    const Sphere sphere{4, 1e-4, 1e-9, 0, 1};
-    const double dt = 1e-3;
-    const Walls around = box(closed, sphere.radius());
-    const double mass = 4.5 * sphere.volume();
-    // A contact of a hundred sub-steps and five steps.
-    HystereticSpring spring{mass * 1e6, restitution, friction};
-    SpringContacts contacts(sphere, around, spring, 2);
-    Cloud cloud;
-    const double r = sphere.radius();
-    cloud.position = {{-1.2 * r, 0, 0}, {1.2 * r, offset, 0}};
-    cloud.velocity = {{speed, 0, 0}, {-speed, 0, 0}};
-    const Grid grid = cube(4);
-    SolidsVolume solids(grid, closed, sphere.volume(), 0);
-    std::vector<Vec3> handed(2);
-    const Motion<StokesDrag> motion(sphere, dt);
-    const int steps = static_cast<int>(1.6 * r / speed / dt) + 20;
-    Collision found;
-    for (int s = 0; s < steps; ++s) {
-        contacts.move(cloud, motion, around, solids, 0, Nothing{}, handed);
-    }
-    found.after_i = cloud.velocity[0];
-    found.after_j = cloud.velocity[1];
-    return found;
-}
-
-}  // namespace
-
-// Head-on in vacuum: v' = -e v, whatever the speed; momentum untouched.
-TEST(SpringContacts, ReturnTheRestitutionOfTheirLaw) {
-    for (const double e : {0.3, 0.6, 0.9, 1.0})
-        for (const double speed : {0.01, 1.0}) {
-            const auto found = collide(e, speed, 0, 0.3);
-            EXPECT_NEAR(found.after_i[0], -e * speed, 5e-3 * speed) << e << ' ' << speed;
-            EXPECT_NEAR(found.after_j[0], e * speed, 5e-3 * speed) << e << ' ' << speed;
-            EXPECT_NEAR(found.after_i[0] + found.after_j[0], 0, 1e-9 * speed);
-            EXPECT_NEAR(found.after_i[1], 0, 1e-12);
-        }
-}
-
-// A grazing collision with friction turns both spheres the same way and keeps momentum and angular momentum.
-TEST(SpringContacts, FrictionConservesAngularMomentum) {
-    const Sphere sphere{4, 1e-4, 1e-9, 0, 1};
-    const double r = sphere.radius();
-    const Walls around = box(closed, r);
-    SpringContacts contacts(sphere, around, {4.5 * sphere.volume() * 1e6, 0.7, 0.3}, 2);
-    Cloud cloud;
-    cloud.position = {{-1.2 * r, 0, 0}, {1.2 * r, r, 0}};
-    cloud.velocity = {{1, 0, 0}, {-1, 0, 0}};
-    const Grid grid = cube(4);
-    SolidsVolume solids(grid, closed, sphere.volume(), 0);
-    std::vector<Vec3> handed(2);
-    const Motion<StokesDrag> motion(sphere, 1e-3);
-    const double mass = 4.5 * sphere.volume();
-    const double inertia = 0.4 * 4 * sphere.volume() * r * r;
-    const auto angular = [&] {
-        double sum = 0;
-        for (std::size_t p = 0; p < 2; ++p)
-            sum += mass * (cloud.position[p][0] * cloud.velocity[p][1] - cloud.position[p][1] * cloud.velocity[p][0]) +
-                   inertia * contacts.spins()[p][2];
-        return sum;
-    };
-    const double before = angular();
-    const double speed_before = cloud.velocity[0][0];
-    for (int s = 0; s < 120; ++s) contacts.move(cloud, motion, around, solids, 0, Nothing{}, handed);
-    EXPECT_NE(cloud.velocity[0][0], speed_before);
-    EXPECT_GT(std::abs(contacts.spins()[0][2]), 1);
-    EXPECT_NEAR(contacts.spins()[0][2], contacts.spins()[1][2], 1e-9 * std::abs(contacts.spins()[0][2]));
-    EXPECT_NEAR(cloud.velocity[0][1] + cloud.velocity[1][1], 0, 1e-12);
-    // The contact point lies half an overlap inside both spheres, whose torques are taken at the radius: the error of
-    // soft spheres, of the size overlap/diameter.
-    EXPECT_NEAR(angular(), before, 0.02 * std::abs(before));
-}
-
-// Dense particles that vibrate against a wall rest on it with the overlap asked for, and the fluid does not feel the
-// force that the wall takes.
-TEST(SpringContacts, AParticlePressedToAWallRestsThere) {
-    const Sphere sphere{3.49, 3.1e-4, 18, 1.09e8, 1};
-    const double r = sphere.radius();
-    const Setting setting{cube(6), closed, sphere, 1e-5, 1};
-    Cloud cloud;
-    cloud.position = {{0, 0.5 - 1.02 * r, 0}};
-    cloud.velocity = {{}};
-    auto together = setting.together<SpringContacts>({}, cloud);  // a steady force towards +y
-    for (int s = 0; s < 400; ++s) together.step();
-    const double overlap = together.cloud().position[0][1] - (0.5 - r);
-    const double force = 2.49 * 1.09e8 * sphere.volume();
-    EXPECT_GT(overlap, 0.99 * force / SpringContacts::stiffness(sphere, 0.01, setting.dt));
-    EXPECT_LT(overlap, 0.0105 * 2 * r);
-    EXPECT_NEAR(together.cloud().velocity[0][1], 0, 1e-3);
-    const double fluid = observables::peak_velocity(setting.grid, together.fluid().velocity());
-    // Released in the middle it drives the fluid for as long as it falls.
-    cloud.position = {{0, -0.2, 0}};
-    auto falling = setting.together<SpringContacts>({}, cloud);
-    for (int s = 0; s < 20; ++s) falling.step();
-    EXPECT_LT(fluid, 0.05 * observables::peak_velocity(setting.grid, falling.fluid().velocity()));
-}
-
-// A cloud pressed to a wall by a steady force: springs without friction and displacement end in the same layer, and
-// neither leaves overlaps.
-TEST(ProjectedContacts, PressACloudToAWallAsSpringsDo) {
-    const Sphere sphere{3.49, 3.1e-4, 18, 1.09e6, 1};
-    const double r = sphere.radius();
-    const std::size_t particles = 60;
-    Setting setting{cube(6), closed, sphere, 2e-4, particles};
-    setting.friction = 0;
-    const auto cloud = random_cloud(particles, box(closed, r), stats::Stream(6, 1));
-    const auto pressed = [&]<class Interaction>(Interaction) {
-        auto together = setting.together<Interaction>({}, cloud);
-        for (int s = 0; s < 200; ++s) together.step();
-        auto positions = together.cloud().position;
-        double mean = 0;
-        double overlap = 0;
-        for (std::size_t p = 0; p < particles; ++p) {
-            mean += positions[p][1] / static_cast<double>(particles);
-            overlap = std::max(overlap, positions[p][1] - (0.5 - r));
-            for (std::size_t q = 0; q < p; ++q) {
-                double square = 0;
-                for (std::size_t d = 0; d < 3; ++d) square += std::pow(positions[p][d] - positions[q][d], 2);
-                overlap = std::max(overlap, 2 * r - std::sqrt(square));
-            }
-        }
-        EXPECT_LT(overlap, 0.05 * 2 * r);
-        return mean;
-    };
-    const double soft = pressed(setting.make<SpringContacts>());
-    const double hard = pressed(setting.make<ProjectedContacts>());
-    EXPECT_GT(hard, 0.5 - 3 * r);
-    EXPECT_NEAR(soft, hard, 0.3 * r);
 }
 
 // A cloud squeezed into one corner spreads until no cell is over the limit, and stays so under a force that presses.

@@ -2,34 +2,20 @@
 #include "solver/coupling/drag.hpp"
 #include "solver/coupling/suspension.hpp"
 #include "solver/observables/flow_state.hpp"
+#include "tests/support/flow_boxes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 using namespace grainsweep;
-using namespace grainsweep::coupling;
-using flow::Axis;
+using namespace grainsweep::tests;
 using flow::Boussinesq;
-using flow::Flow;
-using flow::Grid;
 
 namespace {
 
-constexpr std::array<flow::Side, 2> walls{flow::NoSlip{}, flow::NoSlip{}};
-constexpr std::array<flow::Side, 2> periodic{flow::Periodic{}, flow::Periodic{}};
-
-Grid cube(int n) {
-    const Axis axis = Axis::uniform(n, -0.5, 0.5);
-    return {{axis, axis, axis}};
-}
-
-Flow<flow::NoHeat> still_fluid(const Grid& grid, const flow::Sides& sides, double viscosity, double dt) {
-    return {{grid, sides, viscosity, dt}, flow::NoHeat{}};
-}
-
 template <class Level, class Heat = flow::NoHeat>
-using Pair = Suspension<Heat, Level, Trilinear, SchillerNaumann>;
+using Together = Suspension<Heat, Level, Trilinear, SchillerNaumann>;
 
 }  // namespace
 
@@ -44,9 +30,9 @@ TEST(TwoWay, ConservesMomentumToRoundOff) {
     const flow::Sides sides{periodic, periodic, periodic};
     const std::size_t n = 60;
     for (const int passes : {0, 2}) {
-        Pair<TwoWay<ForceForm>> pair(still_fluid(grid, sides, 18, dt), vibration, Motion<SchillerNaumann>(sphere, dt),
-                                     box, random_cloud(n, box, stats::Stream(1, 1)),
-                                     TwoWay<ForceForm>(grid, sides, sphere, n, passes));
+        Together<TwoWay<ForceForm>> pair(
+            still_fluid(grid, sides, 18, dt), vibration, Motion<SchillerNaumann>(sphere, dt), box,
+            random_cloud(n, box, stats::Stream(1, 1)), TwoWay<ForceForm>(grid, sides, sphere, n, passes));
         const auto fluid_momentum = [&](std::size_t d) {
             double sum = 0;
             for (int k = 1; k <= 8; ++k)
@@ -90,8 +76,8 @@ TEST(TwoWay, AUniformCloudMovesNothing) {
                         {(i + 0.5) / n - 0.5, (j + 0.5) / n - 0.5, squeeze < 1 ? z * squeeze - 0.2 : z});
                     cloud.velocity.push_back({});
                 }
-        Pair<TwoWay<ForceForm>> pair(still_fluid(grid, sides, 18, dt), {}, Motion<SchillerNaumann>(sphere, dt), box,
-                                     cloud, TwoWay<ForceForm>(grid, sides, sphere, cloud.size(), 2));
+        Together<TwoWay<ForceForm>> pair(still_fluid(grid, sides, 18, dt), {}, Motion<SchillerNaumann>(sphere, dt), box,
+                                         cloud, TwoWay<ForceForm>(grid, sides, sphere, cloud.size(), 2));
         for (int s = 0; s < 10; ++s) pair.step();
         return observables::peak_velocity(grid, pair.fluid().velocity());
     };
@@ -118,8 +104,8 @@ TEST(TwoWay, ACloudLayerMovesAsAHeavyFluidLayer) {
                 cloud.velocity.push_back({});
             }
     const double phi = 8 * sphere.volume() * n * n * n;
-    Pair<TwoWay<ForceForm>> pair(still_fluid(grid, sides, 18, dt), vibration, Motion<SchillerNaumann>(sphere, dt), box,
-                                 cloud, TwoWay<ForceForm>(grid, sides, sphere, cloud.size(), 0));
+    Together<TwoWay<ForceForm>> pair(still_fluid(grid, sides, 18, dt), vibration, Motion<SchillerNaumann>(sphere, dt),
+                                     box, cloud, TwoWay<ForceForm>(grid, sides, sphere, cloud.size(), 0));
     Boussinesq heat;
     heat.diffusivity = 0;
     heat.buoyancy = -1;
@@ -156,8 +142,8 @@ TEST(TwoWay, EquationNineLacksTheBuoyancyOfTheCloud) {
     const auto cloud = random_cloud(500, box, stats::Stream(5, 1));
     const auto run = [&](auto form) {
         using Form = decltype(form);
-        Pair<TwoWay<Form>> pair(still_fluid(grid, sides, 18, dt), vibration, Motion<SchillerNaumann>(sphere, dt), box,
-                                cloud, TwoWay<Form>(grid, sides, sphere, cloud.size(), 2));
+        Together<TwoWay<Form>> pair(still_fluid(grid, sides, 18, dt), vibration, Motion<SchillerNaumann>(sphere, dt),
+                                    box, cloud, TwoWay<Form>(grid, sides, sphere, cloud.size(), 2));
         for (int s = 0; s < 64; ++s) pair.step();
         return observables::kinetic_energy(grid, pair.fluid().velocity());
     };
@@ -178,13 +164,13 @@ std::vector<std::byte> state_after(int steps, int cut) {
         heat.vibration = {1e4, 0};
         Flow<Boussinesq> fluid({grid, sides, 18, dt}, heat);
         fluid.set_temperature([](double, double, double z) { return z; });
-        return Pair<Level, Boussinesq>(std::move(fluid), heat.vibration, Motion<SchillerNaumann>(sphere, dt), box,
-                                       random_cloud(50, box, stats::Stream(5, 1)), [&] {
-                                           if constexpr (Level::acts_on_fluid)
-                                               return Level(grid, sides, sphere, 50, 2);
-                                           else
-                                               return Level{};
-                                       }());
+        return Together<Level, Boussinesq>(std::move(fluid), heat.vibration, Motion<SchillerNaumann>(sphere, dt), box,
+                                           random_cloud(50, box, stats::Stream(5, 1)), [&] {
+                                               if constexpr (Level::acts_on_fluid)
+                                                   return Level(grid, sides, sphere, 50, 2);
+                                               else
+                                                   return Level{};
+                                           }());
     };
     auto first = make();
     for (int s = 0; s < cut; ++s) first.step();

@@ -2,6 +2,7 @@
 // the same numbers up to rounding.
 #include "solver/dem/engine.hpp"
 #include "tests/support/reference.hpp"
+#include "tests/support/trajectory_case.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,34 +15,6 @@ using namespace grainsweep;
 using nlohmann::json;
 
 namespace {
-
-dem::Vec3 vec(const json& a) {
-    return {a[0], a[1], a[2]};
-}
-
-dem::Setup setup_of(const json& c) {
-    dem::Setup s;
-    s.domain = {{-1, -1, -1}, {1, 1, 1}, {}};
-    s.material.youngs_modulus = c["E"];
-    s.material.poisson_ratio = c["nu"];
-    s.material.density = c["rho"];
-    s.material.restitution = c["e"];
-    s.material.friction = c["mu"];
-    if (c["coh"] != "") {
-        s.material.cohesion = c["k"];
-        s.material.cohesion_area = c["coh"] == "sjkr" ? dem::CohesionArea::sjkr : dem::CohesionArea::sjkr2;
-    }
-    s.gravity = {0, 0, c["grav"].get<bool>() ? -9.81 : 0.0};
-    s.time_step = c["dt"];
-    for (const auto& atom : c["atoms"])
-        s.spheres.push_back({vec(atom[1]), vec(atom[2]), vec(atom[3]), atom[0].get<double>() / 2, true});
-    if (!c["wall"].is_null()) s.walls.emplace_back(dem::Plane{{0, 0, 0}, {0, 0, 1}});
-    if (!c["blade"].is_null()) {
-        const auto& b = c["blade"];
-        s.walls.emplace_back(dem::Blade{b["xf"], b["th"], b["gap"], 0.15, b["v"], 0, 0, 0});
-    }
-    return s;
-}
 
 /// Largest differences over all reported steps: positions over the diameter, velocities and R w over the largest
 /// speed of the case.
@@ -103,7 +76,7 @@ TEST(DemTrajectories, EqualLiggghtsToRounding) {
     const json all = cases();
     for (const auto& [name, c] : all.items()) {
         if (!c["blade"].is_null()) continue;
-        const auto d = deviation(name, c, setup_of(c));
+        const auto d = deviation(name, c, tests::setup_of(c));
         EXPECT_LT(d.position, 1e-12) << name;
         EXPECT_LT(d.velocity, 1e-12) << name;
         EXPECT_LT(d.spin, 1e-12) << name;
@@ -119,7 +92,7 @@ TEST(DemTrajectories, EqualLiggghtsWithTheGeneralCombination) {
     const json all = cases();
     for (const auto& [name, c] : all.items()) {
         if (!c["blade"].is_null()) continue;
-        auto setup = setup_of(c);
+        auto setup = tests::setup_of(c);
         setup.spheres.push_back({{0.5, 0.5, 0.5}, {}, {}, 0.003, false});
         const auto d = deviation(name, c, setup);
         EXPECT_LT(std::max({d.position, d.velocity, d.spin}), 1e-12) << name;
@@ -133,7 +106,7 @@ TEST(DemTrajectories, BladeTouchesAtItsClosestPoint) {
     const json all = cases();
     for (const auto& [name, c] : all.items()) {
         if (c["blade"].is_null()) continue;
-        const auto d = deviation(name, c, setup_of(c));
+        const auto d = deviation(name, c, tests::setup_of(c));
         EXPECT_LT(d.before_double_contact, 1e-12) << name;
         const double whole = std::max({d.position, d.velocity, d.spin});
         if (name == "e_blade_face_gap0.6") {

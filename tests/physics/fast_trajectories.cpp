@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "solver/dem/fast/mixed_engine.hpp"
+#include "tests/support/trajectory_case.hpp"
 
 using namespace grainsweep;
 using nlohmann::json;
@@ -42,35 +43,15 @@ Rows read_rows(const std::string& name) {
     return rows;
 }
 
-dem::Vec3 vec(const json& a) {
-    return {a[0], a[1], a[2]};
-}
-
+/// In a room of some diameters, as a scene has: positions are resolved to its size over 2^31.
 dem::Setup setup_of(const json& c) {
-    dem::Setup s;
-    s.domain = {{-0.02, -0.02, -0.02}, {0.02, 0.02, 0.02}, {}};
-    s.material.youngs_modulus = c["E"];
-    s.material.poisson_ratio = c["nu"];
-    s.material.density = c["rho"];
-    s.material.restitution = c["e"];
-    s.material.friction = c["mu"];
-    if (c["coh"] != "") {
-        s.material.cohesion = c["k"];
-        s.material.cohesion_area = c["coh"] == "sjkr" ? dem::CohesionArea::sjkr : dem::CohesionArea::sjkr2;
-    }
-    s.gravity = {0, 0, c["grav"].get<bool>() ? -9.81 : 0.0};
-    s.time_step = c["dt"];
+    dem::Setup s = tests::setup_of(c);
     double largest = 0;
-    for (const auto& atom : c["atoms"]) {
-        s.spheres.push_back({vec(atom[1]), vec(atom[2]), vec(atom[3]), atom[0].get<double>() / 2, true});
-        largest = std::max(largest, s.spheres.back().radius);
-    }
-    // a room of some diameters, as a scene has: positions are resolved to its size over 2^31
+    for (const auto& sphere : s.spheres) largest = std::max(largest, sphere.radius);
     for (std::size_t a = 0; a < 3; ++a) {
         s.domain.low[a] = -40 * largest;
         s.domain.high[a] = 40 * largest;
     }
-    if (!c["wall"].is_null()) s.walls.emplace_back(dem::Plane{{0, 0, 0}, {0, 0, 1}});
     return s;
 }
 

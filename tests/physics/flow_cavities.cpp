@@ -1,5 +1,6 @@
 // Published cavities in the plane, computed by the same code as the vibrated cube: one cell and free slip across it.
 #include "solver/flow/flow.hpp"
+#include "tests/support/interpolation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -32,20 +33,6 @@ void run_to_steady(Flow<Heat>& flow, double rate, int most_steps, std::size_t co
         if (change < rate * largest * 50 * flow.time_step()) return;
     }
     FAIL() << "not steady after " << most_steps << " steps";
-}
-
-// Cubic through the four nearest points.
-double interpolate(const std::vector<double>& x, const std::vector<double>& y, double at) {
-    auto next = static_cast<std::size_t>(std::ranges::lower_bound(x, at) - x.begin());
-    next = std::clamp<std::size_t>(next, 2, x.size() - 2);
-    double sum = 0;
-    for (std::size_t a = next - 2; a < next + 2; ++a) {
-        double weight = 1;
-        for (std::size_t b = next - 2; b < next + 2; ++b)
-            if (a != b) weight *= (at - x[b]) / (x[a] - x[b]);
-        sum += weight * y[a];
-    }
-    return sum;
 }
 
 // u on the vertical centre line of the square [0, 1]^2 with its lid y = 1 moving along x.
@@ -142,7 +129,7 @@ TEST(LidDrivenSquare, GhiaGhiaShin) {
     for (const auto& reference : references) {
         const auto [at, u] = lid_driven_centre_line(reference.reynolds, 64, 1.0, reference.dt);
         for (std::size_t m = 0; m < y.size(); ++m)
-            EXPECT_NEAR(interpolate(at, u, y[m]), reference.u[m], reference.tolerance)
+            EXPECT_NEAR(grainsweep::tests::cubic(at, u, y[m]), reference.u[m], reference.tolerance)
                 << "Re " << reference.reynolds << " y " << y[m];
     }
 }
@@ -153,7 +140,7 @@ TEST(LidDrivenSquare, BotellaPeyretMinimum) {
     const auto lowest = [](int n) {
         const auto [at, u] = lid_driven_centre_line(1000, n, 1.0, 0.01);
         double least = 0;
-        for (double y = 0.1; y < 0.25; y += 1e-4) least = std::min(least, interpolate(at, u, y));
+        for (double y = 0.1; y < 0.25; y += 1e-4) least = std::min(least, grainsweep::tests::cubic(at, u, y));
         return least;
     };
     const double coarse = lowest(32);

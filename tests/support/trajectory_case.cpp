@@ -1,0 +1,39 @@
+#include "tests/support/trajectory_case.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace grainsweep::tests {
+
+namespace {
+
+dem::Vec3 vec(const nlohmann::json& a) {
+    return {a[0], a[1], a[2]};
+}
+
+}  // namespace
+
+dem::Setup setup_of(const nlohmann::json& c) {
+    dem::Setup s;
+    s.domain = {{-1, -1, -1}, {1, 1, 1}, {}};
+    s.material.youngs_modulus = c["E"];
+    s.material.poisson_ratio = c["nu"];
+    s.material.density = c["rho"];
+    s.material.restitution = c["e"];
+    s.material.friction = c["mu"];
+    if (c["coh"] != "") {
+        s.material.cohesion = c["k"];
+        s.material.cohesion_area = c["coh"] == "sjkr" ? dem::CohesionArea::sjkr : dem::CohesionArea::sjkr2;
+    }
+    s.gravity = {0, 0, c["grav"].get<bool>() ? -9.81 : 0.0};
+    s.time_step = c["dt"];
+    for (const auto& atom : c["atoms"])
+        s.spheres.push_back({vec(atom[1]), vec(atom[2]), vec(atom[3]), atom[0].get<double>() / 2, true});
+    if (!c["wall"].is_null()) s.walls.emplace_back(dem::Plane{{0, 0, 0}, {0, 0, 1}});
+    if (!c["blade"].is_null()) {
+        const auto& b = c["blade"];
+        s.walls.emplace_back(dem::Blade{b["xf"], b["th"], b["gap"], 0.15, b["v"], 0, 0, 0});
+    }
+    return s;
+}
+
+}  // namespace grainsweep::tests
