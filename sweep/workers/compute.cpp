@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
+#include <variant>
 
 namespace grainsweep::workers {
 namespace {
@@ -80,6 +83,23 @@ bool drive(Scene& scene, const Watch& watch, const Camera& camera) {
     return true;
 }
 
+/// Files that inputs name are part of the question by their contents: what no longer is what it was when the campaign
+/// was read must not be computed under its name. Empty: all is as it was.
+std::string changed_file(const Inputs& inputs) {
+    for (const auto& [name, value] : inputs) {
+        const auto* word = std::get_if<std::string>(&value);
+        const auto file = word == nullptr ? std::nullopt : file_word(*word);
+        if (!file) continue;
+        std::ifstream stream{std::string(file->path), std::ios::binary};
+        if (!stream) return fmt::format("{}: cannot read {}", name, file->path);
+        const std::string contents{std::istreambuf_iterator<char>(stream), {}};
+        if (campaign::content_hash(contents) != file->hash)
+            return fmt::format("{}: {} has changed since the campaign was read; run the campaign file again", name,
+                               file->path);
+    }
+    return {};
+}
+
 bool all_finite(const Observations& observations) {
     const auto infinite = [](double x) { return std::isinf(x); };
     for (const auto& [name, value] : observations.scalars) {
@@ -113,6 +133,8 @@ std::optional<campaign::CaseResult> compute(const campaign::Case& question, std:
         return close(campaign::Outcome::rejected,
                      fmt::format("this build has no scene '{}' of revision {}", question.scene, question.revision));
     }
+    if (std::string why = changed_file(question.inputs); !why.empty())
+        return close(campaign::Outcome::rejected, std::move(why));
     const Inputs inputs = info->on_attempt ? info->on_attempt(question.inputs, attempt) : question.inputs;
     if (auto proven = info->proven_answer(inputs)) {
         result.observations = std::move(proven->observations);
