@@ -183,6 +183,7 @@ std::optional<std::string> deck_of(const dem::Setup& s, const Peer& peer) {
     t += fmt::format("boundary {} {} {}\nnewton off\n", s.domain.periodic[0] ? 'p' : 'f',
                      s.domain.periodic[1] ? 'p' : 'f', s.domain.periodic[2] ? 'p' : 'f');
     t += liggghts ? "communicate single vel yes\n" : "comm_modify vel yes\n";
+    if (liggghts && s.material.youngs_modulus < 5e6) t += "soft_particles yes\n";
     t += fmt::format("read_data bed.data\nneighbor {:.10g} bin\nneigh_modify delay 0 every 1 check {}\n", peer.skin,
                      peer.forgetful ? "no" : "yes");
     if (liggghts) {

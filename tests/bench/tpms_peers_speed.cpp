@@ -1,0 +1,128 @@
+// Whole discharges side by side with LIGGGHTS: the same packing, wall, law and time step, user seconds, one core.
+//
+//   bench_tpms_peers [--edge N] [--case NAME]
+//
+// Schwarz-P without cohesion and jammed at k_c = 35 kJ/m3, Gyroid at 35 kJ/m3; edge 30 diameters, shell 2, gravity
+// 9.81 x 100/30 as the reference's scaling, to 6.1 t*. LIGGGHTS writes nothing on the way and is told to leave pairs
+// of wall spheres out. Three times of ours: `grainsweep solve` as a user runs it, packing read from a file, ended when
+// the powder has settled; the engine alone over all steps, with every wall sphere kept; and that one divided by the
+// particle steps. One JSON line per case.
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "solver/dem/engine.hpp"
+#include "solver/particles/tpms_filling.hpp"
+#include "tests/support/peer_programs.hpp"
+#include "tests/support/process.hpp"
+
+using namespace grainsweep;
+
+namespace {
+
+constexpr double diameter = 45e-6, time_step = 1e-6, shell_thickness = 2, end_time = 6.1;
+
+double user_seconds() {
+    rusage used{};
+    getrusage(RUSAGE_THREAD, &used);
+    return static_cast<double>(used.ru_utime.tv_sec) + 1e-6 * static_cast<double>(used.ru_utime.tv_usec);
+}
+
+/// The scene's setup without any of its skips: every wall sphere is there.
+dem::Setup cell_of(const particles::TpmsFilling& filling, double edge, double cohesion) {
+    dem::Setup s;
+    for (std::size_t k = 0; k < 3; ++k) {
+        s.domain.low[k] = -2 * diameter;
+        s.domain.high[k] = (edge + 2) * diameter;
+    }
+    s.material.youngs_modulus = 2.11e6;
+    s.material.poisson_ratio = 0.3;
+    s.material.density = 7980;
+    s.material.restitution = 0.64;
+    s.material.friction = 0.5;
+    s.material.cohesion = cohesion;
+    s.gravity = {0, 0, -9.81 * 100 / edge};
+    s.time_step = time_step;
+    for (const auto* spheres : {&filling.mobile, &filling.wall})
+        for (const auto& x : *spheres)
+            s.spheres.push_back({{x[0] * diameter, x[1] * diameter, x[2] * diameter},
+                                 {},
+                                 {},
+                                 diameter / 2,
+                                 spheres == &filling.mobile});
+    return s;
+}
+
+void compare(const std::string& name, geometry::TpmsCell cell, const char* word, double cohesion, double edge,
+             const particles::Packing& packing) {
+    const geometry::TpmsShell shell(cell, +1, edge, shell_thickness);
+    const dem::Setup setup = cell_of(particles::fill_tpms(packing, shell, 0), edge, cohesion);
+    const double gravity = 9.81 * 100 / edge;
+    const auto steps = std::llround(std::ceil(end_time * std::sqrt(2 * edge * diameter / gravity) / time_step));
+
+    const test::Folder folder;
+    std::string rows = "x,y,z\n";
+    for (const auto& x : packing.positions) rows += fmt::format("{},{},{}\n", x[0], x[1], x[2]);
+    folder.write("packing.csv", rows);
+    folder.write("cell.json", nlohmann::json{{"campaign", "side_by_side"},
+                                             {"scene", "tpms_discharge"},
+                                             {"factors", {{{"name", "cohesion"}, {"levels", {cohesion}}}}},
+                                             {"fixed",
+                                              {{"cell", word},
+                                               {"edge", edge},
+                                               {"shell", shell_thickness},
+                                               {"gravity", gravity},
+                                               {"packing", "packing.csv"},
+                                               {"end_time", end_time}}},
+                                             {"design", {{"kind", "lattice"}}}}
+                                  .dump());
+    const auto solved = test::run_timed(test::program_command({"solve", "cell.json"}), folder.path());
+    if (solved.code != 0) std::fprintf(stderr, "%s\n", solved.out.c_str());
+
+    const auto engine = dem::make_engine(setup, {.precision = dem::Method::Precision::mixed});
+    const double start = user_seconds();
+    engine->run(steps);
+    const double plain = user_seconds() - start;
+
+    test::Ran them;
+    if (test::installed("liggghts")) {
+        test::write_bed(setup, folder.path());
+        const test::Peer peer{test::Peer::Program::liggghts, 0.2 * diameter, steps, 1, false};
+        folder.write("in.cell", test::deck_of(setup, peer).value());
+        them = test::run_timed({"liggghts", "-in", "in.cell", "-log", "none"}, folder.path());
+        if (them.code != 0)
+            std::fprintf(stderr, "liggghts ended with %d:\n%s\n", them.code,
+                         them.out.substr(them.out.size() - std::min<std::size_t>(400, them.out.size())).c_str());
+    }
+    fmt::print(
+        "{{\"bench\": \"tpms_peers\", \"case\": \"{}\", \"mobile_and_wall\": {}, \"steps\": {}, \"solve_seconds\": "
+        "{:.2f}, \"no_skip_seconds\": {:.2f}, \"no_skip_ns\": {:.1f}, \"liggghts_seconds\": {:.1f}, "
+        "\"times_liggghts\": {:.1f}, \"times_without_skips\": {:.1f}}}\n",
+        name, setup.spheres.size(), steps, solved.user_seconds, plain, 1e9 * plain / engine->work().particle_steps,
+        them.user_seconds, them.user_seconds / solved.user_seconds, them.user_seconds / plain);
+    std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    double edge = 30;
+    std::string wanted;
+    for (int i = 1; i + 1 < argc; i += 2) {
+        if (std::string(argv[i]) == "--edge") edge = std::stod(argv[i + 1]);
+        if (std::string(argv[i]) == "--case") wanted = argv[i + 1];
+    }
+    const auto packing = particles::random_close_packing({.edge = edge, .fraction = 0.62, .seed = 1});
+    const auto run = [&](const std::string& name, geometry::TpmsCell cell, const char* word, double cohesion) {
+        if (wanted.empty() || wanted == name) compare(name, cell, word, cohesion, edge, packing);
+    };
+    run("schwarz_p_0", geometry::TpmsCell::schwarz_p, "schwarz_p", 0);
+    run("schwarz_p_35", geometry::TpmsCell::schwarz_p, "schwarz_p", 35e3);
+    run("gyroid_35", geometry::TpmsCell::gyroid, "gyroid", 35e3);
+    return 0;
+}
