@@ -67,6 +67,8 @@ public:
     [[nodiscard]] const Cloud& cloud() const { return cloud_; }
     [[nodiscard]] const Interaction& interaction() const { return interaction_; }
     [[nodiscard]] const SolidsVolume& solids() const { return solids_; }
+    /// Of the last step; what other particles and walls did is part of what was given.
+    [[nodiscard]] const MomentumBudget& budget() const { return budget_; }
     /// Momentum flux of the fluid alone, J - j, on face m of component d, as the last step left it.
     [[nodiscard]] double fluid_flux(std::size_t d, std::size_t m) const {
         return fluid_.velocity()[d].values()[m] - flux_before_[d].values()[m];
@@ -141,10 +143,12 @@ private:
         const auto axis = static_cast<std::size_t>(sphere.direction);
         const double drive = (sphere.density_ratio - 1) * sphere.acceleration * vibration;
         FaceDeposit::clear(source_);
+        budget_ = {0, static_cast<double>(cloud_.size()) * sphere.volume() * drive};
         for (std::size_t p = 0; p < cloud_.size(); ++p) {
             Vec3 force;
             for (std::size_t d = 0; d < 3; ++d) force[d] = sphere.volume() * handed_[p][d];
             force[axis] += sphere.volume() * drive;
+            budget_.given += force[axis];
             feet_[p].scatter(force, source_);
         }
         deposit_.spread(source_);
@@ -165,6 +169,7 @@ private:
     flow::SharedSpace space_;
     FaceDeposit deposit_;
     SolidsVolume solids_;
+    MomentumBudget budget_;
     std::vector<Vec3> handed_;  // per volume: force of other particles and walls less inertia, in the last step
     FaceVectors source_, flux_before_;
     FaceVectors velocity_, acceleration_;

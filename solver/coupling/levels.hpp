@@ -70,6 +70,14 @@ struct EquationNine {
     }
 };
 
+/// Sums over all particles along the vibration, in units of rho alpha^2: what they gave the fluid in the last step, and
+/// the vibrational buoyancy (xi - 1) gamma s N v_p. In the force form the difference is the inertia of the particles,
+/// sum xi v_p dV_p/dt.
+struct MomentumBudget {
+    double given = 0;
+    double drive = 0;
+};
+
 /// Deposits particle forces on the faces as accelerations of the fluid.
 template <class Form>
 class TwoWay {
@@ -89,8 +97,13 @@ public:
     template <class Feet>
     const flow::FaceVectors& source(const Feet& feet, double vibration) {
         FaceDeposit::clear(source_);
-        for (std::size_t p = 0; p < rate_.size(); ++p)
-            feet[p].scatter(Form::force_on_fluid(sphere_, rate_[p], vibration), source_);
+        budget_ = {0, static_cast<double>(rate_.size()) * sphere_.volume() * (sphere_.density_ratio - 1) *
+                          sphere_.acceleration * vibration};
+        for (std::size_t p = 0; p < rate_.size(); ++p) {
+            const Vec3 force = Form::force_on_fluid(sphere_, rate_[p], vibration);
+            budget_.given += force[static_cast<std::size_t>(sphere_.direction)];
+            feet[p].scatter(force, source_);
+        }
         deposit_.spread(source_);
         if constexpr (Form::per_fluid_volume) {
             FaceDeposit::clear(solid_);
@@ -107,6 +120,7 @@ public:
     /// What particle p did in this step, before any wall touched it.
     void remember(std::size_t p, const Vec3& rate) { rate_[p] = rate; }
     [[nodiscard]] const std::vector<Vec3>& rates() const { return rate_; }
+    [[nodiscard]] const MomentumBudget& budget() const { return budget_; }
 
     void save(std::vector<std::byte>& into) const { flow::append_bytes<Vec3>(into, rate_); }
     void restore(std::span<const std::byte>& from) { flow::take_bytes<Vec3>(from, rate_); }
@@ -114,6 +128,7 @@ public:
 private:
     Sphere sphere_;
     FaceDeposit deposit_;
+    MomentumBudget budget_;
     std::vector<Vec3> rate_;  // dV_p/dt of the last step
     flow::FaceVectors source_;
     flow::FaceVectors solid_;  // per_fluid_volume only

@@ -63,6 +63,8 @@ public:
     [[nodiscard]] const flow::Flow<Heat>& fluid() const { return fluid_; }
     [[nodiscard]] const Cloud& cloud() const { return cloud_; }
     [[nodiscard]] const Level& level() const { return level_; }
+    /// Of the last step.
+    [[nodiscard]] const MomentumBudget& budget() const requires(Level::acts_on_fluid) { return level_.budget(); }
 
     void save(std::vector<std::byte>& into) const {
         fluid_.save(into);

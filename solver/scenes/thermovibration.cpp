@@ -128,6 +128,15 @@ std::vector<ObservableSpec> observables() {
         {"packing_limited", "1", "share of the steps in which the packing limit moved particles (ddpm levels)",
          Shape::scalar},
         {"peak_velocity", "alpha/L", "largest velocity component in the last period", Shape::scalar},
+        {"force_on_fluid", "rho alpha^2",
+         "what all particles together give the fluid along the vibration, root mean square of the last period (levels "
+         "that act on the fluid)",
+         Shape::scalar},
+        {"vibrational_force", "rho alpha^2",
+         "vibrational buoyancy of all particles, root mean square of the last period; force_on_fluid differs from it "
+         "by "
+         "the inertia of the particles (likewise)",
+         Shape::scalar},
         {"accumulation_series", "1", "K on sampling_cells^3, always at the same phase", Shape::series},
         {"accumulation_5", "1", "K on 5^3 cells", Shape::series},
         {"accumulation_20", "1", "K on 20^3 cells", Shape::series},
@@ -226,7 +235,7 @@ SceneInfo thermovibration_scene() {
     SceneInfo info;
     info.name = "thermovibration";
     info.summary = "particles in a heated, vibrated cube of fluid: do they gather, into what, how fast";
-    info.revision = 2;
+    info.revision = 3;
     info.parameters = parameters();
     info.observables = observables();
     info.accuracy = {

@@ -87,6 +87,10 @@ void Record::observe(Observations& into) const {
         into.scalars["nusselt"] = flow_.nusselt;
         into.scalars["peak_velocity"] = flow_.peak;
     }
+    if (has_budget_) {
+        into.scalars["force_on_fluid"] = std::sqrt(budget_.given);
+        into.scalars["vibrational_force"] = std::sqrt(budget_.drive);
+    }
     if (limited_share_ >= 0) into.scalars["packing_limited"] = limited_share_;
     if (times_.empty()) return;
     const auto n = static_cast<int>(question_.sampling_cells);
@@ -108,6 +112,8 @@ void Record::observe(Observations& into) const {
 void Record::save(std::vector<std::byte>& into) const {
     flow::append_bytes(into, flow_);
     flow::append_bytes(into, static_cast<std::int64_t>(has_flow_));
+    flow::append_bytes(into, budget_);
+    flow::append_bytes(into, static_cast<std::int64_t>(has_budget_));
     flow::append_bytes(into, limited_share_);
     for (const auto* column : {&times_, &k_, &k5_, &k20_, &k_cells_}) save_column(into, *column);
     save_column(into, last_);
@@ -118,6 +124,10 @@ void Record::restore(std::span<const std::byte>& from) {
     std::int64_t has_flow = 0;
     flow::take_bytes(from, has_flow);
     has_flow_ = has_flow != 0;
+    flow::take_bytes(from, budget_);
+    std::int64_t has_budget = 0;
+    flow::take_bytes(from, has_budget);
+    has_budget_ = has_budget != 0;
     flow::take_bytes(from, limited_share_);
     for (auto* column : {&times_, &k_, &k5_, &k20_, &k_cells_}) restore_column(from, *column);
     restore_column(from, last_);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "solver/coupling/cloud.hpp"
+#include "solver/coupling/levels.hpp"
 #include "solver/flow/flow.hpp"
 #include "solver/scenes/thermovibration/question.hpp"
 
@@ -21,6 +22,17 @@ struct FlowMeans {
     void add(const flow::Flow<flow::Boussinesq>& fluid, std::int64_t window);
 };
 
+/// Root mean squares over a window of steps of the momentum the particles exchange (levels that act on the fluid).
+struct BudgetMeans {
+    double given = 0, drive = 0;  ///< mean squares so far
+
+    /// Counts one of `window` steps.
+    void add(const coupling::MomentumBudget& budget, std::int64_t window) {
+        given += budget.given * budget.given / static_cast<double>(window);
+        drive += budget.drive * budget.drive / static_cast<double>(window);
+    }
+};
+
 class Record {
 public:
     explicit Record(const Question& question);
@@ -30,6 +42,11 @@ public:
     void set_flow(const FlowMeans& means) {
         flow_ = means;
         has_flow_ = true;
+    }
+
+    void set_budget(const BudgetMeans& means) {
+        budget_ = means;
+        has_budget_ = true;
     }
 
     /// Share of the steps so far in which the packing limit moved particles.
@@ -45,6 +62,8 @@ private:
     Question question_;
     FlowMeans flow_;
     bool has_flow_ = false;
+    BudgetMeans budget_;
+    bool has_budget_ = false;
     double limited_share_ = -1;  ///< negative: the level has no packing limit
     std::vector<double> times_, k_, k5_, k20_, k_cells_;
     std::vector<coupling::Vec3> last_;  ///< positions of the last sample

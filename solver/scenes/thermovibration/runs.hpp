@@ -55,11 +55,13 @@ public:
         into.clear();
         suspension_.save(into);
         flow::append_bytes(into, means_);
+        flow::append_bytes(into, budget_);
         record_.save(into);
     }
     void restore(std::span<const std::byte> from) override {
         suspension_.restore(from);
         flow::take_bytes(from, means_);
+        flow::take_bytes(from, budget_);
         record_.restore(from);
     }
     [[nodiscard]] Snapshot snapshot() const override { return picture(suspension_.cloud()); }
@@ -79,8 +81,13 @@ private:
                 if (fault_.empty()) fault_ = fault(suspension_.solids(), fluid.grid(), time());
             if (!fault_.empty()) return;
         }
-        if (steps() > question_.total_steps() - question_.window()) means_.add(fluid, question_.window());
+        const bool counted = steps() > question_.total_steps() - question_.window();
+        if (counted) means_.add(fluid, question_.window());
         if (finished()) record_.set_flow(means_);
+        if constexpr (requires { suspension_.budget(); }) {
+            if (counted) budget_.add(suspension_.budget(), question_.window());
+            if (finished()) record_.set_budget(budget_);
+        }
         if constexpr (requires { suspension_.interaction().limited_steps(); })
             record_.set_limited_share(static_cast<double>(suspension_.interaction().limited_steps()) /
                                       static_cast<double>(steps()));
@@ -90,6 +97,7 @@ private:
     Question question_;
     Record record_;
     FlowMeans means_;  // of the last window, as far as it has come
+    BudgetMeans budget_;
     Together suspension_;
     std::string fault_;
 };
