@@ -275,7 +275,7 @@ TEST(Thermovibration, TellsWhatTheParticlesGiveTheFluid) {
         EXPECT_NEAR(given, drive, 0.02 * drive) << coupling;
     }
     const auto [given, drive] = budget("two_way", "eq9");
-    EXPECT_NEAR(drive / given, 217, 150);
+    EXPECT_NEAR(drive / given, 217, 10);
 }
 
 TEST(Thermovibration, ReportsTheGershuniNumber) {
