@@ -1,19 +1,32 @@
-// What accuracy costs: the vibrated slab, whose solution is exact, over grid, clustering, steps per period and
-// interpolation. JSON lines {program, what, cells, clustering, steps_per_period, interpolation, error_max, error_rms,
-// milliseconds}: errors over the peak of the profile; milliseconds of processor time, of the flow in a cube of as many
-// cells per period, of the interpolation for 3150 particles.   bench_flow_accuracy_reference [MOST CELLS]
+// What accuracy costs in a thermovibrated cube, over grid, wall clustering, steps per period and interpolation.
+//
+//   bench_flow_accuracy [--most CELLS] [--figure FILE.svg]
+//
+//   slab           root mean square error of the velocity of the vibrated slab, whose solution is exact, over the peak;
+//                  cost: processor time of a period of the flow in a cube of as many cells
+//   run 21, 33     kinetic energy of the cube after 0.02 L^2/alpha from rest, through the scene, against 48 cells,
+//                  clustering 1.5, 64 steps per period; cost: of a period
+//   interpolation  root mean square error of the exact profile gathered at 3150 random places; cost: of one gather
 //
 // v = Re[Vh exp(i Omega t)],  Vh(z) = -(B/Omega) [z - sinh(k z)/(2 sinh(k/2))],  k = sqrt(i Omega/Pr),
-// under the force B z sin(Omega t) between walls at z = -1/2 and 1/2; run 21 of IAC-24-A1.2.3.
+// under the force B z sin(Omega t) between walls at z = -1/2 and 1/2; run 21 of IAC-24-A1.2.3. One JSON line per
+// setting.
 #include "solver/coupling/cloud.hpp"
 #include "solver/flow/flow.hpp"
+#include "solver/scenes/scene.hpp"
+#include "tests/support/trade_off.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 using namespace grainsweep;
 using namespace grainsweep::flow;
@@ -33,10 +46,6 @@ double exact(double z, double t) {
     return (amplitude(z) * std::exp(std::complex<double>(0, frequency * t))).real();
 }
 
-struct Error {
-    double largest = 0, rms = 0;
-};
-
 Boussinesq heat_along_z(double strength) {
     Boussinesq heat;
     heat.sides[2] = {Isothermal{-0.5}, Isothermal{0.5}};
@@ -45,8 +54,8 @@ Boussinesq heat_along_z(double strength) {
     return heat;
 }
 
-// Over the last of four periods, relative to the peak of the profile.
-Error slab_error(int cells, double clustering, int steps) {
+// Root of the mean square over the last of four periods, relative to the peak of the profile.
+double slab_error(int cells, double clustering, int steps) {
     const Axis once = Axis::uniform(1, -0.5, 0.5);
     const Axis across = Axis::clustered(cells, -0.5, 0.5, clustering);
     const Sides sides{{{Periodic{}, Periodic{}}, {Periodic{}, Periodic{}}, {NoSlip{}, NoSlip{}}}};
@@ -56,20 +65,17 @@ Error slab_error(int cells, double clustering, int steps) {
     flow.set_velocity([](double, double, double z) { return std::array<double, 3>{0, exact(z, 0), 0}; });
     double peak = 0;
     for (int k = 1; k <= cells; ++k) peak = std::max(peak, std::abs(amplitude(across.centre(k))));
-    Error error;
-    double weight = 0;
+    double square = 0, weight = 0;
     for (int s = 1; s <= 4 * steps; ++s) {
         flow.step();
         if (s <= 3 * steps) continue;
         for (int k = 1; k <= cells; ++k) {
             const double off = (flow.velocity()[1](1, 1, k) - exact(across.centre(k), s * dt)) / peak;
-            error.largest = std::max(error.largest, std::abs(off));
-            error.rms += off * off * across.width(k);
+            square += off * off * across.width(k);
             weight += across.width(k);
         }
     }
-    error.rms = std::sqrt(error.rms / weight);
-    return error;
+    return std::sqrt(square / weight);
 }
 
 template <class Work>
@@ -92,13 +98,37 @@ double cube_step(int cells) {
     return milliseconds(3, [&] { flow.step(); });
 }
 
-void print(const char* what, int cells, double clustering, int steps, const char* kernel, const Error& error,
-           double cost) {
-    std::printf(R"({"program":"bench_flow_accuracy","what":"%s","cells":%d,"clustering":%g,"steps_per_period":%d,)"
-                R"("interpolation":"%s","error_max":%.3g,"error_rms":%.3g,"milliseconds":%.4g})"
-                "\n",
-                what, cells, clustering, steps, kernel, error.largest, error.rms, cost);
-    std::fflush(stdout);
+std::vector<test::Setting> settings;
+
+void add(const std::string& scene, const std::string& name, const std::string& measured, double error, double seconds,
+         bool is_reference = false) {
+    settings.push_back({scene, name, measured, seconds, error, 0, is_reference, false, false});
+}
+
+std::string name_of(int cells, double clustering, int steps) {
+    return fmt::format("{} cells, clustering {}, {} steps", cells, clustering, steps);
+}
+
+// Kinetic energy at the end of the start-up, and the processor time of a period.
+std::pair<double, double> cube(double rayleigh, double omega, int cells, double clustering, int steps) {
+    const SceneInfo& info = *find_scene("thermovibration");
+    Inputs inputs = info.defaults();
+    inputs["rayleigh"] = rayleigh;
+    inputs["frequency"] = omega;
+    inputs["particles"] = std::int64_t{0};
+    inputs["symmetry"] = std::string("mirror");
+    inputs["cells"] = std::int64_t{cells};
+    inputs["clustering"] = clustering;
+    inputs["steps_per_period"] = std::int64_t{steps};
+    inputs["end_time"] = 0.02;
+    NoArtefacts none;
+    const auto scene = info.make(inputs, 1, none);
+    const std::clock_t start = std::clock();
+    scene->advance(1);
+    const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    Observations found;
+    scene->observe(found);
+    return {found.scalars.at("kinetic_energy"), seconds / (0.02 * omega / (2 * pi))};
 }
 
 // The exact profile at a quarter period on the nodes, gathered at 3150 random places.
@@ -121,14 +151,13 @@ void interpolate(const char* name, int cells, double clustering) {
         }
     const coupling::Walls box{{-0.4, -0.4, -0.5}, {0.4, 0.4, 0.5}, {}, 0, 1};
     const auto cloud = coupling::random_cloud(3150, box, stats::Stream(1, 1));
-    Error error;
+    double square = 0;
     const double cost = milliseconds(3, [&] {
-        error = {};
+        square = 0;
         for (const auto& x : cloud.position) {
             const coupling::Footing<Kernel> foot(grid, {}, x);
             const double off = (foot.gather(field)[1] - exact(x[2], t)) / peak;
-            error.largest = std::max(error.largest, std::abs(off));
-            error.rms += off * off / 3150;
+            square += off * off / 3150;
         }
     });
     const double function = milliseconds(3, [&] {
@@ -136,24 +165,43 @@ void interpolate(const char* name, int cells, double clustering) {
         for (const auto& x : cloud.position) sum += exact(x[2], t);
         if (sum == 1) std::puts("");
     });
-    error.rms = std::sqrt(error.rms);
-    print("interpolation", cells, clustering, 0, name, error, cost - function);
+    add("interpolation", fmt::format("{}, {} cells, clustering {}", name, cells, clustering), "velocity",
+        std::sqrt(square), 1e-3 * (cost - function));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    const int most = argc > 1 ? std::atoi(argv[1]) : 80;
-    for (const int cells : {20, 32, 40, 64, 80}) {
+    int most = 48;
+    std::string figure;
+    for (int k = 1; k + 1 < argc; k += 2) {
+        if (std::string(argv[k]) == "--most") most = std::stoi(argv[k + 1]);
+        if (std::string(argv[k]) == "--figure") figure = argv[k + 1];
+    }
+    for (const auto& [run, rayleigh, omega] : {std::tuple{"run 21", 481e3, 16670.0}, {"run 33", 1770e3, 23300.0}}) {
+        const auto [exact_energy, exact_cost] = cube(rayleigh, omega, 48, 1.5, 64);
+        add(run, name_of(48, 1.5, 64), "kinetic energy", 0, exact_cost, true);
+        for (const int cells : {20, 24, 28, 32, 40})
+            for (const double clustering : {0.0, 1.5, 2.0})
+                for (const int steps : {16, 24, 32}) {
+                    const auto [energy, cost] = cube(rayleigh, omega, cells, clustering, steps);
+                    add(run, name_of(cells, clustering, steps), "kinetic energy", energy / exact_energy - 1, cost);
+                }
+    }
+    for (const int cells : {20, 24, 28, 32, 40, 48, 64, 80}) {
         if (cells > most) continue;
-        const double step = cube_step(cells);
+        const double step = 1e-3 * cube_step(cells);
         for (const double clustering : {0.0, 1.0, 1.5, 2.0})
-            for (const int steps : {8, 16, 32, 64, 128, 256})
-                print("slab", cells, clustering, steps, "", slab_error(cells, clustering, steps), steps * step);
+            for (const int steps : {8, 16, 24, 32, 64, 128})
+                add("slab", name_of(cells, clustering, steps), "velocity", slab_error(cells, clustering, steps),
+                    steps * step);
         for (const double clustering : {0.0, 1.5}) {
             interpolate<coupling::Trilinear>("trilinear", cells, clustering);
             interpolate<coupling::Solenoidal>("solenoidal", cells, clustering);
         }
     }
+    test::mark_dominated(settings);
+    for (const auto& s : settings) std::printf("%s\n", test::json_line(s).c_str());
+    if (!figure.empty()) test::draw(settings, figure);
     return 0;
 }
