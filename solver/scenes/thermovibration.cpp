@@ -97,14 +97,14 @@ std::vector<ParameterSpec> parameters() {
              {"trilinear", "solenoidal"}, {with_particles}),
         whole("smoothing", "passes of [1 2 1]/4 over the deposited force, per axis", 2, between(0, 20),
               {with_particles, felt_by_fluid}),
-        whole("cells", "cells of the flow grid per side", 40, between(4, 128)),
-        real("clustering", "1", "clustering c of the grid towards all walls, tanh(c s)/tanh(c); 0: uniform", 0,
+        whole("cells", "cells of the flow grid per side", 28, between(4, 128)),
+        real("clustering", "1", "clustering c of the grid towards all walls, tanh(c s)/tanh(c); 0: uniform", 1.5,
              between(0, 3)),
         word("symmetry",
              "the flow of one-way particles: the whole cube, or half of it as its own mirror image in x (even cells), "
              "which it starts as and stays unless a convection that breaks the symmetry sets in",
              {"none", "mirror"}, {{"coupling", Condition::is_word, {"one_way"}}}),
-        whole("steps_per_period", "time steps per period of vibration", 32, between(8, 4096), {vibrated}),
+        whole("steps_per_period", "time steps per period of vibration", 24, between(8, 4096), {vibrated}),
         real("time_step", "L^2/alpha", "time step under a steady force", 1e-4, between(1e-9, 1),
              {{"frequency", Condition::zero, {}}}),
         real("end_time", "L^2/alpha", "time the particles are followed, to whole periods", 0.98, above(0, 100)),
@@ -239,7 +239,7 @@ SceneInfo thermovibration_scene() {
     info.parameters = parameters();
     info.observables = observables();
     info.accuracy = {
-        {"fast", accuracy(32, 0, 16)}, {"balanced", accuracy(40, 0, 32)}, {"reference", accuracy(48, 1.5, 64)}};
+        {"fast", accuracy(20, 1.5, 16)}, {"balanced", accuracy(28, 1.5, 24)}, {"reference", accuracy(48, 1.5, 64)}};
     info.make = make;
     info.estimate_cost = estimate_cost;
     info.proven_answer = proven_answer;

@@ -65,6 +65,8 @@ Inputs inputs_of(const Published& run, std::int64_t steps, double end_time) {
     inputs["acceleration"] = run.acceleration;
     inputs["density_ratio"] = run.density_ratio;
     inputs["particle_start"] = std::string("periodic_flow");
+    inputs["cells"] = std::int64_t{40};  // as the other program
+    inputs["clustering"] = 0.0;
     inputs["steps_per_period"] = steps;
     inputs["end_time"] = end_time;
     return inputs;

@@ -37,6 +37,7 @@ const SceneInfo& info() {
 Inputs small(const Inputs& changes = {}) {
     Inputs inputs = info().defaults();
     inputs["cells"] = std::int64_t{8};
+    inputs["clustering"] = 0.0;
     inputs["steps_per_period"] = std::int64_t{16};
     inputs["particles"] = std::int64_t{60};
     inputs["sampling_cells"] = std::int64_t{4};

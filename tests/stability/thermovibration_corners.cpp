@@ -44,6 +44,7 @@ void expect_sound(Inputs inputs, const std::string& what) {
 Inputs tiny() {
     Inputs inputs = info().defaults();
     inputs["cells"] = std::int64_t{6};
+    inputs["clustering"] = 0.0;
     inputs["particles"] = std::int64_t{30};
     inputs["steps_per_period"] = std::int64_t{8};
     inputs["sampling_cells"] = std::int64_t{3};
@@ -89,6 +90,7 @@ Observations answer(const char* level, const Inputs& changes, double periods, st
     Inputs inputs = info().defaults();
     inputs["coupling"] = std::string(level);
     inputs["cells"] = std::int64_t{12};
+    inputs["clustering"] = 0.0;
     inputs["particles"] = std::int64_t{400};
     inputs["steps_per_period"] = std::int64_t{16};
     inputs["sampling_cells"] = std::int64_t{4};

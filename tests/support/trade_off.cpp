@@ -30,6 +30,7 @@ Axis axis_over(const std::vector<double>& values, double from, double to) {
 }
 
 constexpr double panel_width = 460, panel_height = 340;
+constexpr std::size_t most_names = 20;  // in a panel of more settings only those no other beats are named
 constexpr double left = 62, right = 14, top = 34, bottom = 46;
 
 std::string panel(const std::vector<Setting>& settings, double x0, double y0) {
@@ -62,11 +63,12 @@ std::string panel(const std::vector<Setting>& settings, double x0, double y0) {
     out += "'/>\n";
     for (const auto& s : settings) {
         if (s.is_reference || s.unstable) continue;
+        const bool named = settings.size() <= most_names || !s.dominated;
         out += fmt::format(
             "<circle cx='{0:.1f}' cy='{1:.1f}' r='4' stroke='#1663a6' fill='{2}'/>"
             "<text x='{3:.1f}' y='{4:.1f}' font-size='9' transform='rotate(-40 {3:.1f} {4:.1f})'>{5}</text>\n",
             x.at(s.cost), y.at(seen_error(s)), s.dominated ? "#fff" : "#1663a6", x.at(s.cost) + 4,
-            y.at(seen_error(s)) - 5, s.name);
+            y.at(seen_error(s)) - 5, named ? s.name : "");
     }
     return out;
 }

@@ -26,6 +26,7 @@ void mark_dominated(std::vector<Setting>& settings);
 [[nodiscard]] std::string json_line(const Setting& setting);
 
 /// One panel per scene: cost across, error up, both logarithmic; the settings no other beats filled and joined.
+/// Where a scene has more than twenty settings only those are named.
 void draw(const std::vector<Setting>& settings, const std::filesystem::path& svg);
 
 }  // namespace grainsweep::test
