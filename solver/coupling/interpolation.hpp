@@ -37,16 +37,17 @@ struct AxisWeights {
     std::array<double, Count> weight{};
 };
 
+/// `place` is where x lies on the axis, axis.locate(x), found once for both.
 struct Trilinear {
     /// Along the component's own axis: nodes are faces.
-    [[nodiscard]] static AxisWeights<2> own(const flow::Axis& axis, bool /*periodic*/, double x) {
-        const int cell = axis.locate(x).cell;
+    [[nodiscard]] static AxisWeights<2> own(const flow::Axis& axis, bool /*periodic*/, double x, flow::Place place) {
+        const int cell = place.cell;
         const double share = (x - axis.face(cell)) / axis.width(cell);
         return {cell, {1 - share, share}};
     }
     /// Across it: nodes are cell centres, ghosts included.
-    [[nodiscard]] static AxisWeights<2> across(const flow::Axis& axis, bool /*periodic*/, double x) {
-        const int cell = axis.locate(x).cell;
+    [[nodiscard]] static AxisWeights<2> across(const flow::Axis& axis, bool /*periodic*/, double x, flow::Place place) {
+        const int cell = place.cell;
         const int first = x < axis.centre(cell) ? cell - 1 : cell;
         const double share = (x - axis.centre(first)) / axis.spacing(first + 1);
         return {first, {1 - share, share}};
@@ -54,8 +55,7 @@ struct Trilinear {
 };
 
 struct Solenoidal {
-    [[nodiscard]] static AxisWeights<3> own(const flow::Axis& axis, bool periodic, double x) {
-        const flow::Place place = axis.locate(x);
+    [[nodiscard]] static AxisWeights<3> own(const flow::Axis& axis, bool periodic, double /*x*/, flow::Place place) {
         const int n = axis.cells();
         const double s = place.cell - 1 + place.offset;  // 0 ... n, face f at f - 1
         int nearest = static_cast<int>(s + 0.5);
@@ -65,8 +65,7 @@ struct Solenoidal {
         if (nearest == n) nearest = 0;  // the same face, whose neighbours are stored beside face 1
         return {nearest, {0.5 * (0.5 - d) * (0.5 - d), 0.75 - d * d, 0.5 * (0.5 + d) * (0.5 + d)}};
     }
-    [[nodiscard]] static AxisWeights<2> across(const flow::Axis& axis, bool periodic, double x) {
-        const flow::Place place = axis.locate(x);
+    [[nodiscard]] static AxisWeights<2> across(const flow::Axis& axis, bool periodic, double x, flow::Place place) {
         const int n = axis.cells();
         const int first = place.offset < 0.5 ? place.cell - 1 : place.cell;
         double share = place.offset < 0.5 ? place.offset + 0.5 : place.offset - 0.5;
@@ -84,8 +83,9 @@ public:
     Footing(const flow::Grid& grid, const std::array<bool, 3>& periodic, const Vec3& x) {
         for (int d = 0; d < 3; ++d) {
             const auto m = static_cast<std::size_t>(d);
-            own_[m] = Kernel::own(grid[d], periodic[m], x[m]);
-            across_[m] = Kernel::across(grid[d], periodic[m], x[m]);
+            const flow::Place place = grid[d].locate(x[m]);  // a logarithm where cells are clustered: once
+            own_[m] = Kernel::own(grid[d], periodic[m], x[m], place);
+            across_[m] = Kernel::across(grid[d], periodic[m], x[m], place);
         }
     }
 
@@ -136,8 +136,8 @@ private:
         return sum;
     }
 
-    std::array<decltype(Kernel::own(std::declval<flow::Axis>(), false, 0.0)), 3> own_{};
-    std::array<decltype(Kernel::across(std::declval<flow::Axis>(), false, 0.0)), 3> across_{};
+    std::array<decltype(Kernel::own(std::declval<flow::Axis>(), false, 0.0, flow::Place{})), 3> own_{};
+    std::array<decltype(Kernel::across(std::declval<flow::Axis>(), false, 0.0, flow::Place{})), 3> across_{};
 };
 
 /// The transpose of flow::fill_ghosts without its constants: adds what lies on ghosts to the values they copy, so that

@@ -36,7 +36,7 @@ SolidsVolume::SolidsVolume(const flow::Grid& grid, const flow::Sides& sides, dou
 }
 
 AxisWeights<2> SolidsVolume::weights(int d, double x) const {
-    return Trilinear::across(grid_[d], edges_[at(d)].periodic, x);
+    return Trilinear::across(grid_[d], edges_[at(d)].periodic, x, grid_[d].locate(x));
 }
 
 int SolidsVolume::inside(int d, int cell) const {
