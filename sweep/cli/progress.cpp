@@ -47,7 +47,6 @@ ProgressLine::~ProgressLine() {
 void ProgressLine::update(const schedule::Progress& progress) {
     if (quiet_) return;
     const auto now = Clock::now();
-    if (predicted_at_start_ < 0) predicted_at_start_ = progress.predicted_left;
     const bool last = progress.tally.decided == progress.tally.questions;
     const std::chrono::milliseconds interval = terminal_ ? terminal_interval : log_interval;
     if (!last && now - shown_ < interval) return;
@@ -87,11 +86,12 @@ std::string ProgressLine::describe(const schedule::Progress& progress, Clock::ti
         tally.questions == 0 ? 1 : static_cast<double>(tally.decided) / static_cast<double>(tally.questions);
     const double rate = elapsed > 0 ? static_cast<double>(progress.durable) / elapsed : 0;
 
-    // Time left by predicted cost, corrected by how the prediction fared so far; before anything is
-    // finished, the prediction as it is.
-    const double done = predicted_at_start_ - progress.predicted_left;
-    const double pace = done > 0.02 * predicted_at_start_ ? elapsed / done : 1 / static_cast<double>(workers_);
-    const double left = progress.predicted_left * pace;
+    // Time left by predicted cost, corrected by how the prediction fared so far; before enough is done to tell, the
+    // prediction as it is.
+    const double done = tally.predicted_done;
+    const bool telling = done > 0.02 * (done + tally.predicted_left);
+    const double pace = telling ? elapsed / done : 1 / static_cast<double>(workers_);
+    const double left = std::max(0.0, tally.predicted_left) * pace;
 
     const auto full = static_cast<std::size_t>(share * bar_width);
     std::string text;

@@ -29,7 +29,6 @@ private:
     std::size_t workers_;
     Clock::time_point began_ = Clock::now();
     Clock::time_point shown_{};
-    double predicted_at_start_ = -1;
     bool line_open_ = false;
     std::size_t notes_ = 0;
     std::string last_;

@@ -66,6 +66,23 @@ std::optional<Plan::Start> Plan::next() {
     return Start{{entry.question.id, entry.attempts}, &entry.question, entry.predicted};
 }
 
+void Plan::move_on(Entry& entry, double share) {
+    const double step = (share - entry.share.value_or(0)) * entry.predicted;
+    tally_.predicted_left -= step;
+    tally_.predicted_done += step;
+    entry.share = share;
+}
+
+void Plan::advanced(const campaign::Attempt& attempt, double share) {
+    const auto found = index_.find(attempt.case_id);
+    if (found == index_.end() || !(share >= 0 && share <= 1)) return;
+    Entry& entry = entries_[found->second];
+    if (!entry.running || entry.attempts != attempt.number) return;
+    const bool first = !entry.share;
+    move_on(entry, share);
+    if (first) tally_.predicted_done -= share * entry.predicted;
+}
+
 Plan::Verdict Plan::ended(const campaign::Attempt& attempt, Outcome outcome) {
     const auto found = index_.find(attempt.case_id);
     if (found == index_.end()) return Verdict::stale;
@@ -75,18 +92,18 @@ Plan::Verdict Plan::ended(const campaign::Attempt& attempt, Outcome outcome) {
     --running_;
     if (settles(outcome)) {
         ++(good(outcome) ? tally_.settled_now : tally_.failed_now);
-        tally_.predicted_left -= entry.predicted;
+        move_on(entry, 1);
         decide(entry, outcome);
         return Verdict::settled;
     }
     if (outcome != Outcome::abandoned) ++entry.failures;
     if (entry.failures >= rules_.attempts) {
         ++tally_.failed_now;
-        tally_.predicted_left -= entry.predicted;
+        move_on(entry, 1);
         decide(entry, outcome);
         return Verdict::gave_up;
     }
-    queue_.push_front(found->second);
+    put_back(found->second);
     return Verdict::again;
 }
 
@@ -97,7 +114,14 @@ void Plan::returned(const campaign::Attempt& attempt) {
     if (!entry.running || entry.attempts != attempt.number) return;
     entry.running = false;
     --running_;
-    queue_.push_front(found->second);
+    put_back(found->second);
+}
+
+void Plan::put_back(std::size_t index) {
+    Entry& entry = entries_[index];
+    tally_.predicted_left += entry.share.value_or(0) * entry.predicted;  // until the next attempt says what it found
+    entry.share.reset();
+    queue_.push_front(index);
 }
 
 void Plan::never_begun(const campaign::Attempt& attempt) {

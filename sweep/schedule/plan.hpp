@@ -49,6 +49,10 @@ public:
     /// Predicted seconds of what next() would return; nothing when there is nothing.
     [[nodiscard]] std::optional<double> next_predicted() const;
 
+    /// A running attempt has come so far, 0 to 1. What it had done when first heard of, from a checkpoint, was not done
+    /// in this run.
+    void advanced(const campaign::Attempt& attempt, double share);
+
     enum class Verdict { settled, again, gave_up, stale };
     /// A running attempt ended so.
     Verdict ended(const campaign::Attempt& attempt, campaign::Outcome outcome);
@@ -76,7 +80,8 @@ public:
         std::size_t settled_now = 0;  ///< completed or skipped in this run
         std::size_t failed_now = 0;   ///< given up, unstable or rejected in this run
         std::size_t failed = 0;       ///< given up or settled as unstable or rejected, all told
-        double predicted_left = 0;    ///< seconds
+        double predicted_left = 0;    ///< seconds, less what running cases have done
+        double predicted_done = 0;    ///< seconds, in this run
     };
     [[nodiscard]] const Tally& tally() const { return tally_; }
 
@@ -86,7 +91,10 @@ private:
         std::int64_t attempts = 0, failures = 0;
         double predicted = 0;
         bool decided = false, running = false;
+        std::optional<double> share = {};  ///< done by the running attempt, as last heard
     };
+    void move_on(Entry& entry, double share);
+    void put_back(std::size_t index);
     void decide(Entry& entry, campaign::Outcome outcome);
 
     std::vector<Entry> entries_;

@@ -58,24 +58,24 @@ void Scheduler::hand_out() {
 }
 
 void Scheduler::handle(workers::PoolEvent event) {
-    std::visit(
-        Overloaded{[&](workers::Finished& finished) { handle_finished(finished); }, [&](const workers::Heartbeat&) {},
-                   [&](const workers::Lost& lost) {
-                       if (lost.running) handle_failure(*lost.running, Outcome::crashed, lost.reason);
-                       take_back(lost.queued);
-                   },
-                   [&](const workers::TimedOut& late) {
-                       handle_failure(late.running, Outcome::timed_out, late.reason);
-                       take_back(late.queued);
-                   },
-                   [&](const workers::GivenBack& back) { park(back.attempt); },
-                   [&](const workers::Interrupted& stop) {
-                       plan_.close();
-                       early_ = Ending::interrupted;
-                       crew_.retire();
-                       at_once_ = stop.at_once;
-                   }},
-        event);
+    std::visit(Overloaded{[&](workers::Finished& finished) { handle_finished(finished); },
+                          [&](const workers::Heartbeat& beat) { plan_.advanced(beat.attempt, beat.progress); },
+                          [&](const workers::Lost& lost) {
+                              if (lost.running) handle_failure(*lost.running, Outcome::crashed, lost.reason);
+                              take_back(lost.queued);
+                          },
+                          [&](const workers::TimedOut& late) {
+                              handle_failure(late.running, Outcome::timed_out, late.reason);
+                              take_back(late.queued);
+                          },
+                          [&](const workers::GivenBack& back) { park(back.attempt); },
+                          [&](const workers::Interrupted& stop) {
+                              plan_.close();
+                              early_ = Ending::interrupted;
+                              crew_.retire();
+                              at_once_ = stop.at_once;
+                          }},
+               event);
 }
 
 void Scheduler::handle_finished(workers::Finished& finished) {
@@ -147,7 +147,6 @@ void Scheduler::show() {
     }
     progress_.tally = plan_.tally();
     progress_.running = in_flight_;
-    progress_.predicted_left = plan_.tally().predicted_left;
     watchers_.progress(progress_);
 }
 

@@ -27,7 +27,6 @@ struct Progress {
     Plan::Tally tally;
     std::size_t durable = 0;  ///< results of this run on disk
     std::size_t running = 0;
-    double predicted_left = 0;
     std::string judgement;  ///< last verdict on convergence in one line
 };
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <numeric>
 
 using namespace grainsweep;
@@ -46,6 +47,29 @@ TEST(Plan, LongCasesOfAWindowGoFirst) {
     EXPECT_EQ(plan.next()->question->id, "case1");
     EXPECT_EQ(plan.next()->question->id, "case2");
     EXPECT_EQ(plan.next()->question->id, "case0");
+}
+
+TEST(Plan, CountsWhatRunningCasesHaveDone) {
+    Plan plan = make_plan(2, {.attempts = 3}, {}, {100.0, 10.0});
+    const auto first = plan.next();
+    plan.advanced(first->attempt, 0.1);  // from a checkpoint of an earlier run
+    EXPECT_DOUBLE_EQ(plan.tally().predicted_left, 100);
+    EXPECT_DOUBLE_EQ(plan.tally().predicted_done, 0);
+    plan.advanced(first->attempt, 0.4);
+    EXPECT_DOUBLE_EQ(plan.tally().predicted_left, 70);
+    EXPECT_DOUBLE_EQ(plan.tally().predicted_done, 30);
+    plan.advanced(first->attempt, std::numeric_limits<double>::quiet_NaN());
+    plan.advanced({"unknown", 1}, 0.5);
+    EXPECT_DOUBLE_EQ(plan.tally().predicted_left, 70);
+    EXPECT_EQ(plan.ended(first->attempt, Outcome::crashed), Plan::Verdict::again);
+    EXPECT_DOUBLE_EQ(plan.tally().predicted_left, 110);
+    const auto second = plan.next();
+    plan.advanced(first->attempt, 0.9);  // a late word of the attempt that crashed
+    EXPECT_DOUBLE_EQ(plan.tally().predicted_left, 110);
+    plan.advanced(second->attempt, 0.5);
+    EXPECT_EQ(plan.ended(second->attempt, Outcome::completed), Plan::Verdict::settled);
+    EXPECT_DOUBLE_EQ(plan.tally().predicted_left, 10);
+    EXPECT_DOUBLE_EQ(plan.tally().predicted_done, 80);
 }
 
 TEST(Plan, TriesACrashAgainWithGrowingNumbersUpToTheLimit) {
