@@ -22,10 +22,12 @@ void MixedEngine::pass(Self& self, Archive& archive) {
     archive.value(self.mobile_);
     archive.value(self.work_.steps);
     archive.value(self.work_.particle_steps);
+    archive.value(self.work_.resting_steps);
     archive.value(self.work_.pair_visits);
     archive.value(self.work_.rebuilds);
     archive.text(self.fault_);
     archive.list(self.walls_);
+    if (self.resting_.wanted()) Resting::pass(self.resting_, archive);
     auto& c = self.columns_;
     const auto particles = static_cast<std::size_t>(self.field_.count) + 3 + self.walls_.size();
     archive.column(c.records, particles);
@@ -53,7 +55,7 @@ void MixedEngine::pass(Self& self, Archive& archive) {
 Seal MixedEngine::seal() const {
     Constants constants = field_.constants;
     for (std::size_t a = 0; a < 3; ++a) constants.gravity[a] = gravity_in_steps(gravity_[a], room_.scale);
-    return make_seal(constants, *kernels_, needs_, shaking_);
+    return make_seal(constants, *kernels_, needs_, shaking_, rest_speed_);
 }
 
 void MixedEngine::save(std::vector<std::byte>& into) const {
@@ -75,6 +77,7 @@ void MixedEngine::restore(std::span<const std::byte> from) {
     columns_.hold_pairs(static_cast<std::size_t>(std::max(field_.outer_count, field_.inner_count)) + spare);
     columns_.hold_wall_contacts(size());
     columns_.bind(field_);
+    resting_.bind(field_);
     place_walls(field_, walls_, room_, wall_time());
     if (shaken_) shake();
 }

@@ -17,17 +17,19 @@ constexpr std::size_t many_particles = 40000;
 
 }  // namespace
 
-MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin)
+MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, double rest_speed)
     : room_{setup.domain, make_scale(setup), 0.3F},
       material_(setup.material),
       gravity_(setup.gravity),
       shaking_(setup.shaking),
       shaken_(!is_still(setup.shaking)),
-      needs_(make_needs(setup)),
+      needs_(make_needs(setup, rest_speed > 0)),
+      rest_speed_(rest_speed),
       kernels_(&kernels_of(path, needs_)),
       walls_(setup.walls),
       sound_(sound_overlaps(setup)),
       watch_(setup, room_.scale),
+      resting_(setup, room_.scale, rest_speed),
       adapts_skin_(!(skin > 0)) {
     check_walls(walls_);
     for (std::size_t a = 0; a < 3; ++a)  // a pair must not meet across both ends of a period
@@ -50,11 +52,12 @@ void MixedEngine::load(const Setup& setup) {
     columns_.hold_pairs(8 * n);
     columns_.hold_wall_contacts(n);
     columns_.bind(field_);
+    resting_.bind(field_);
     field_.count = static_cast<std::int32_t>(n);
     field_.read_ahead = n > many_particles ? 1 : 0;
     const Scale& s = room_.scale;
     const bool all_periodic = setup.domain.periodic[0] && setup.domain.periodic[1] && setup.domain.periodic[2];
-    box_includes_rest_ = !all_periodic || needs_.frozen;
+    box_includes_rest_ = !all_periodic || needs_.frozen || needs_.resting;
     for (std::size_t i = 0; i < n; ++i) {
         const Sphere& sphere = setup.spheres[i];
         Record& r = columns_.records[i];
@@ -103,10 +106,10 @@ void MixedEngine::check_walls(const std::vector<Wall>& walls) const {
     }
 }
 
-std::unique_ptr<Engine> make_mixed_engine(const Setup& setup, Method::Path path, double skin) {
+std::unique_ptr<Engine> make_mixed_engine(const Setup& setup, Method::Path path, double skin, double rest_speed) {
     if (path == Method::Path::best) path = best_path();
     if (!supports(path)) throw std::invalid_argument("this processor lacks the instructions of the path asked for");
-    return std::make_unique<MixedEngine>(setup, path, skin);
+    return std::make_unique<MixedEngine>(setup, path, skin, rest_speed);
 }
 
 }  // namespace grainsweep::dem::fast

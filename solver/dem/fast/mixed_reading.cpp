@@ -59,14 +59,14 @@ std::vector<Motion> MixedEngine::motions() const {
 
 void MixedEngine::contacts(std::vector<ContactForce>& into) const {
     const std::vector<Motion> now = motions();
-    const ContactReader reader(material_, room_, field_, columns_.id.data(), now, kernels_->width);
+    const ContactReader reader(material_, room_, field_, columns_.id.data(), now, kernels_->width, resting_.parked());
     into.clear();
     reader.pairs(into);
     for (std::size_t w = 0; w < walls_.size(); ++w) reader.wall(walls_[w], w, wall_time(), into);
 }
 
 Moment MixedEngine::moment(std::span<const Motion> motions) const {
-    const ContactReader reader(material_, room_, field_, columns_.id.data(), {}, kernels_->width);
+    const ContactReader reader(material_, room_, field_, columns_.id.data(), {}, kernels_->width, resting_.parked());
     return {field_, room_, columns_.id.data(), motions, reader.stored(walls_, wall_time())};
 }
 

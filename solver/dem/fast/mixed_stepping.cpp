@@ -33,6 +33,7 @@ void MixedEngine::run(std::int64_t steps) {
         ++wall_steps_;
         if (shaken_) shake();
         work_.particle_steps += static_cast<double>(mobile_);
+        work_.resting_steps += static_cast<double>(resting_.sleepers());
         account_travel();
         if (!fault_.empty()) return;
         place_walls(field_, walls_, room_, wall_time());
@@ -44,7 +45,7 @@ void MixedEngine::run(std::int64_t steps) {
         watch_.book_push(tally_.wall_work);
         kernels_->sweep(field_, advanced, tally_);
         columns_.swap_histories(field_);
-        peak_overlap_ = std::max(peak_overlap_, tally_.overlap);
+        peak_overlap_ = std::max(peak_overlap_, overlap());
         work_.pair_visits += field_.inner_count;
         if (too_deep()) fault_ = describe_overlap(sight(), tally_);
         if (look && fault_.empty()) check_energy();
@@ -54,7 +55,8 @@ void MixedEngine::run(std::int64_t steps) {
 /// Rebuilds or refreshes the lists where displacements since demand it. A pair outside the outer list had a gap
 /// above its skin and has lost at most the drift since; likewise the inner list.
 void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
-    const bool rebuilt = !(drift_.outer < static_cast<double>(room_.skin));
+    const bool rebuilt =
+        !(drift_.outer < static_cast<double>(room_.skin)) || (needs_.resting && drift_.steps >= rest_interval);
     if (!rebuilt && drift_.inner < static_cast<double>(inner_skin_)) return;
     if (rebuilt) {
         const double per_step = drift_.steps > 0 ? drift_.outer / static_cast<double>(drift_.steps) : 0.003;
@@ -63,7 +65,7 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
                 static_cast<float>(std::clamp(std::sqrt(outer_balance * per_step), outer_skin_least, outer_skin_most)),
                 largest_skin_);
         const std::int32_t before = field_.count;
-        rebuild(field_, columns_, *kernels_, room_, removed);
+        rebuild(field_, columns_, *kernels_, room_, removed, needs_.resting ? &resting_ : nullptr, drift_.steps);
         columns_.forces.clear(size());  // what waited there belonged to the old order
         if (field_.count < before) watch_.forget_balance();
         drift_.outer = 0;
@@ -128,12 +130,13 @@ void MixedEngine::shake() {
 /// Change of velocity over half a step by the forces at hand, engine's units.
 double MixedEngine::half_change(std::int32_t i, int a) const {
     const Record& r = field_.records[i];
-    if (!(r.inverse_mass > 0)) return 0;
+    if (!(r.inverse_mass > 0) || is_asleep(i)) return 0;
     return 0.5 * (static_cast<double>(field_.forces[i].force[a]) * static_cast<double>(r.inverse_mass) +
                   static_cast<double>(field_.constants.gravity[a]));
 }
 
 double MixedEngine::half_spin_change(std::int32_t i, int a) const {
+    if (is_asleep(i)) return 0;
     const Record& r = field_.records[i];
     const double inertia = 0.4 * static_cast<double>(r.radius) * static_cast<double>(r.radius);
     return 0.5 * static_cast<double>(field_.forces[i].torque[a]) * static_cast<double>(r.inverse_mass) / inertia;
@@ -167,7 +170,7 @@ void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
     kernels_->walls(field_, tally_);
     kernels_->sweep(field_, false, tally_);
     field_.history_step = 1;
-    peak_overlap_ = std::max(peak_overlap_, tally_.overlap);
+    peak_overlap_ = std::max(peak_overlap_, overlap());
     for (std::int32_t i = 0; i < field_.count; ++i) {
         Record& r = field_.records[i];
         Residual& residual = field_.residuals[i];
@@ -186,6 +189,7 @@ void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
 void MixedEngine::set_walls(std::vector<Wall> walls) {
     check_walls(walls);
     full_step_velocities();
+    if (needs_.resting) resting_.wake_all(field_);
     walls_ = std::move(walls);
     wall_steps_ = 0;
     columns_.hold_particles(size(), walls_.size());

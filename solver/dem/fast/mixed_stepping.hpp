@@ -8,6 +8,7 @@
 // Elsewhere know it as an Engine only (mixed_engine.hpp).
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -22,6 +23,7 @@
 #include "solver/dem/fast/faults.hpp"
 #include "solver/dem/fast/layout.hpp"
 #include "solver/dem/fast/rebuild.hpp"
+#include "solver/dem/fast/resting.hpp"
 #include "solver/dem/fast/scale.hpp"
 #include "solver/dem/fast/watch.hpp"
 
@@ -38,7 +40,7 @@ struct Drift {
 /// One case with its laws, its instruction path and all that changes.
 class MixedEngine final : public Engine {
 public:
-    MixedEngine(const Setup& setup, Method::Path path, double skin);
+    MixedEngine(const Setup& setup, Method::Path path, double skin, double rest_speed);
 
     void run(std::int64_t steps) override;
     void set_walls(std::vector<Wall> walls) override;
@@ -46,7 +48,7 @@ public:
     [[nodiscard]] std::size_t size() const override { return static_cast<std::size_t>(field_.count); }
     [[nodiscard]] double wall_time() const override { return static_cast<double>(wall_steps_) * room_.scale.time; }
     void state(State& into) const override;
-    [[nodiscard]] double largest_overlap() const override { return static_cast<double>(tally_.overlap); }
+    [[nodiscard]] double largest_overlap() const override { return static_cast<double>(overlap()); }
     [[nodiscard]] double peak_overlap() const override { return static_cast<double>(peak_overlap_); }
     void forget_peak_overlap() override { peak_overlap_ = 0; }
     void contacts(std::vector<ContactForce>& into) const override;
@@ -74,6 +76,11 @@ private:
     [[nodiscard]] Sight sight() const {
         return {field_, columns_.id.data(), room_.scale, smallest_diameter_, sound_, work_.steps};
     }
+    /// Of all pairs, over the smaller diameter; those that wait keep theirs.
+    [[nodiscard]] float overlap() const { return std::max(tally_.overlap, resting_.overlap()); }
+    [[nodiscard]] bool is_asleep(std::int32_t particle) const {
+        return needs_.resting && resting_.holds(particle) && field_.records[particle].inverse_mass > 0;
+    }
     [[nodiscard]] bool too_deep() const { return tally_.overlap > sound_.pair || tally_.wall_overlap > sound_.wall; }
     template <class Self, class Archive>
     static void pass(Self& self, Archive& archive);
@@ -84,6 +91,7 @@ private:
     Shaking shaking_;
     bool shaken_;
     Needs needs_;
+    double rest_speed_;
     const Kernels* kernels_;
     std::vector<Wall> walls_;
     float smallest_diameter_ = 1;
@@ -92,9 +100,10 @@ private:
 
     Watch watch_;
     Columns columns_;
+    Resting resting_;
     Field field_{};
     Tally tally_{};
-    float peak_overlap_ = 0;  ///< largest of tally_.overlap so far
+    float peak_overlap_ = 0;  ///< largest of overlap() so far
     Drift drift_;
     float inner_skin_ = 0;
     float largest_skin_ = std::numeric_limits<float>::infinity();
