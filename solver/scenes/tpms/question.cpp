@@ -123,7 +123,8 @@ std::vector<ParameterSpec> tpms_discharge_parameters() {
     parameters.push_back(number(
         "rest_speed", "sqrt(2 g L)",
         "powder slower than this for 256 time steps, with nothing faster near and no net force of half its weight, "
-        "is not advanced; 0: all is. Not in a cell that vibrates, which never rests",
+        "is not advanced; 0: all is. At 0.001 the retention errs by less than 0.005, a jammed cell costs 1/1.4. "
+        "Not in a cell that vibrates, which never rests",
         0, {0, 0.01}, {{"precision", Relevance::Condition::is_word, {"mixed"}}}));
     return parameters;
 }
