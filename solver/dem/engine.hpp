@@ -104,6 +104,10 @@ struct Method {
     Precision precision = Precision::double_precision;
     Path path = Path::best;
     double skin = 0;  ///< m; neighbour-list skin, 0: the engine's own choice
+    /// m/s; mixed precision: powder slower than this for a while and touched by nothing faster is not advanced, until
+    /// something faster comes near or half its weight pushes it (solver/dem/fast/resting.hpp); 0: all is advanced.
+    /// Not with a vessel that is shaken or blades, nor without gravity.
+    double rest_speed = 0;
 };
 
 /// State of the particles still present, in order of id.
@@ -131,6 +135,7 @@ struct ContactForce {
 struct Work {
     std::int64_t steps = 0;
     double particle_steps = 0;  ///< mobile particles times steps
+    double resting_steps = 0;   ///< of these, of particles asleep (Method::rest_speed)
     double pair_visits = 0;     ///< list entries evaluated
     std::int64_t rebuilds = 0;
     std::map<std::string, double, std::less<>> seconds;  ///< by phase, where measured

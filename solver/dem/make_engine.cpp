@@ -1,6 +1,7 @@
 #include "solver/dem/clear/make.hpp"
 #include "solver/dem/engine.hpp"
 #include "solver/dem/fast/mixed_engine.hpp"
+#include "solver/dem/shaking.hpp"
 #include "solver/geometry/vector.hpp"
 #include "solver/particles/neighbour_list.hpp"
 
@@ -78,6 +79,13 @@ std::unique_ptr<Engine> make_engine(const Setup& setup, const Method& method) {
             "the amplitude and frequency of shaking must be finite");
     require(setup.shaking.frequency * setup.time_step <= 0.05, "a period of shaking must last at least twenty steps");
     require(not_negative(method.skin), "the skin must not be negative");
+    require(not_negative(method.rest_speed), "the rest speed must not be negative");
+    if (method.rest_speed > 0) {
+        require(is_still(setup.shaking), "powder in a vessel that is shaken never rests: no rest speed");
+        require(geometry::norm(setup.gravity) > 0, "a rest speed needs gravity: weight is what tells who is pushed");
+        for (const Wall& wall : setup.walls)
+            require(std::holds_alternative<Plane>(wall), "powder among blades has no rest speed");
+    }
     for (const Wall& wall : setup.walls) std::visit([](const auto& w) { check(w); }, wall);
     if (method.skin > 0) {
         double largest = 0;
@@ -89,8 +97,9 @@ std::unique_ptr<Engine> make_engine(const Setup& setup, const Method& method) {
     }
 
     // One line per precision: where an engine joins.
-    return method.precision == Method::Precision::mixed ? fast::make_mixed_engine(setup, method.path, method.skin)
-                                                        : clear::make_clear_engine(setup, method);
+    return method.precision == Method::Precision::mixed
+               ? fast::make_mixed_engine(setup, method.path, method.skin, method.rest_speed)
+               : clear::make_clear_engine(setup, method);
 }
 
 }  // namespace grainsweep::dem

@@ -137,6 +137,7 @@ TpmsDischarge::TpmsDischarge(const TpmsQuestion& question, const particles::Tpms
     last_step_ = std::max<std::int64_t>(1, std::llround(std::ceil(question.end_time * steps_per_t_star)));
     dem::Method method;
     method.precision = question.precision;
+    method.rest_speed = question.rest_speed * question.free_fall_speed();
     engine_ = dem::make_engine(setup, method);
     sample();
 }

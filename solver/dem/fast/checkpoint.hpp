@@ -92,14 +92,16 @@ private:
 
 /// What must agree between the engine that wrote and the one that reads.
 struct Seal {
-    std::uint64_t format = 0x67737765657033;  // changes with the layout of what follows
+    std::uint64_t format = 0x67737765657034;  // changes with the layout of what follows
     std::int32_t width = 0;
     Needs needs{};
     Constants constants{};
     Shaking shaking{};
+    double rest_speed = 0;
 };
 
-[[nodiscard]] inline Seal make_seal(const Constants& c, const Kernels& k, const Needs& n, const Shaking& shaking) {
+[[nodiscard]] inline Seal make_seal(const Constants& c, const Kernels& k, const Needs& n, const Shaking& shaking,
+                                    double rest_speed) {
     Seal s;
     std::memset(static_cast<void*>(&s), 0, sizeof s);  // padding too: seals are compared by their bytes
     s.format = Seal{}.format;
@@ -107,7 +109,9 @@ struct Seal {
     s.needs.unequal = n.unequal, s.needs.frozen = n.frozen, s.needs.friction = n.friction,
     s.needs.cohesion = n.cohesion, s.needs.rolling = n.rolling;
     std::memcpy(static_cast<void*>(&s.constants), &c, sizeof c);
+    s.needs.resting = n.resting;
     s.shaking = shaking;
+    s.rest_speed = rest_speed;
     return s;
 }
 

@@ -15,6 +15,12 @@ constexpr Kernels compiled{width, sweep<Law>, advance<Law>, walls<Law>, search<L
 
 inline const Kernels& choose(const Needs& n) {
     using enum Needs::Cohesion;
+    if (n.resting) {
+        if (n.rolling) return compiled<Law<true, true, true, general, true, true>>;
+        if (n.friction && n.cohesion == none && !n.unequal) return compiled<Law<false, true, true, none, false, true>>;
+        if (n.friction && n.cohesion == lens && !n.unequal) return compiled<Law<false, true, true, lens, false, true>>;
+        return compiled<Law<true, true, true, general, false, true>>;
+    }
     if (n.rolling) return compiled<Law<true, true, true, general, true>>;
     if (n.friction && n.cohesion == none) {
         if (n.unequal) return compiled<Law<true, true, true, none>>;

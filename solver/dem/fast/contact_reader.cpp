@@ -1,5 +1,6 @@
 #include "solver/dem/fast/contact_reader.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -19,8 +20,14 @@ ContactReader::Laws ContactReader::laws_of(const Material& m) {
 }
 
 ContactReader::ContactReader(const Material& material, const Room& room, const Field& field, const std::int32_t* id,
-                             std::span<const Motion> motions, std::int32_t width)
-    : room_(room), field_(field), id_(id), motions_(motions), width_(width), laws_(laws_of(material)) {}
+                             std::span<const Motion> motions, std::int32_t width, std::span<const ParkedContact> parked)
+    : room_(room),
+      field_(field),
+      id_(id),
+      motions_(motions),
+      width_(width),
+      parked_(parked),
+      laws_(laws_of(material)) {}
 
 double ContactReader::radius(std::int32_t i) const {
     return static_cast<double>(field_.records[i].radius) * room_.scale.length;
@@ -89,13 +96,52 @@ void ContactReader::for_each_pair(Visit&& visit) const {
         Touch<Partner::particle> t;
         if (touches(i, j, t)) visit(i, j, t, remembered ? memory(field_.history, at) : Memory{});
     }
+    for (const ParkedContact& p : parked_) {
+        Touch<Partner::particle> t;
+        if (touches(p.first, p.second, t)) visit(p.first, p.second, t, memory(p));
+    }
+}
+
+ContactReader::Memory ContactReader::memory(const ParkedContact& contact) const {
+    const float* column[histories_at_most];
+    for (int a = 0; a < histories_at_most; ++a) column[a] = contact.history + a;
+    return memory(column, 0);
+}
+
+/// Adds what depends on the masses.
+void ContactReader::complete(std::int32_t i, std::int32_t j, Touch<Partner::particle>& t) const {
+    t.reduced_mass = 1 / (1 / mass(i) + 1 / mass(j));
+    t.rolling_inertia =
+        inertia_about_contact / (1 / (mass(i) * t.radius_i * t.radius_i) + 1 / (mass(j) * t.radius_j * t.radius_j));
+}
+
+void ContactReader::stand_still(ParkedContact& contact) const {
+    Touch<Partner::particle> t;
+    contact.overlap = 0;
+    std::fill_n(contact.force, 3, 0.0F);
+    std::fill_n(contact.torque[0], 6, 0.0F);
+    if (!touches(contact.first, contact.second, t)) return;
+    complete(contact.first, contact.second, t);
+    std::vector<ContactForce> one;
+    add(t, contact.first, contact.second, {}, {}, {}, memory(contact), one);
+    const ContactForce& c = one.front();
+    const Scale& s = room_.scale;
+    const double unit = s.mass * s.length / (s.time * s.time);
+    const Vec3 force = c.normal_force * c.normal + c.tangential_force;
+    const Vec3 turn = cross(c.tangential_force, c.normal);  // n x (-F_t)
+    for (std::size_t a = 0; a < 3; ++a) {
+        contact.force[a] = static_cast<float>(force[a] / unit);
+        contact.torque[0][a] =
+            static_cast<float>(((t.radius_i - t.overlap / 2) * turn[a] + c.rolling_moment[a]) / (unit * s.length));
+        contact.torque[1][a] =
+            static_cast<float>(((t.radius_j - t.overlap / 2) * turn[a] - c.rolling_moment[a]) / (unit * s.length));
+    }
+    contact.overlap = static_cast<float>(t.overlap / (2 * std::min(t.radius_i, t.radius_j)));
 }
 
 void ContactReader::pairs(std::vector<ContactForce>& into) const {
     for_each_pair([&](std::int32_t i, std::int32_t j, Touch<Partner::particle>& t, const Memory& memory) {
-        t.reduced_mass = 1 / (1 / mass(i) + 1 / mass(j));
-        t.rolling_inertia =
-            inertia_about_contact / (1 / (mass(i) * t.radius_i * t.radius_i) + 1 / (mass(j) * t.radius_j * t.radius_j));
+        complete(i, j, t);
         const Motion &of_i = motions_[static_cast<std::size_t>(i)], &of_j = motions_[static_cast<std::size_t>(j)];
         const Vec3 turn = (t.radius_i - t.overlap / 2) * of_i.spin + (t.radius_j - t.overlap / 2) * of_j.spin;
         add(t, i, id_[j], of_i.velocity - of_j.velocity, turn, of_i.spin - of_j.spin, memory, into);

@@ -34,9 +34,11 @@ class ContactReader {
 public:
     /// All views must outlive the reader; `motions` in the order of the records, empty where only energy is asked.
     ContactReader(const Material& material, const Room& room, const Field& field, const std::int32_t* id,
-                  std::span<const Motion> motions, std::int32_t width);
+                  std::span<const Motion> motions, std::int32_t width, std::span<const ParkedContact> parked = {});
 
-    /// Appends the touching pairs, in list order.
+    /// Gives a contact of two particles at rest its overlap, force and torques.
+    void stand_still(ParkedContact& contact) const;
+    /// Appends the touching pairs, in list order, then those that wait.
     void pairs(std::vector<ContactForce>& into) const;
     /// Appends the particles that touch wall number w at time t since the walls were set.
     void wall(const Wall& wall, std::size_t w, double time, std::vector<ContactForce>& into) const;
@@ -59,6 +61,8 @@ private:
     /// Calls visit(i, touch, memory) for the particles that touch the wall.
     template <class Visit>
     void for_each_at_wall(const Wall& wall, std::size_t w, double time, Visit&& visit) const;
+    void complete(std::int32_t i, std::int32_t j, Touch<Partner::particle>& t) const;
+    [[nodiscard]] Memory memory(const ParkedContact& contact) const;
     template <Partner partner>
     void add(Touch<partner> t, std::int32_t i, std::int32_t second, const Vec3& velocity, const Vec3& turn,
              const Vec3& turning, Memory memory, std::vector<ContactForce>& into) const;
@@ -68,6 +72,7 @@ private:
     const std::int32_t* id_;
     std::span<const Motion> motions_;
     std::int32_t width_;
+    std::span<const ParkedContact> parked_;
     Laws laws_;
 };
 

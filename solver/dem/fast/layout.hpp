@@ -52,6 +52,15 @@ struct alignas(32) Force {
 /// Numbers a contact remembers: tangential displacement, and with rolling resistance the rolling moment.
 constexpr std::int32_t histories_at_most = 6;
 
+/// A contact of two particles neither of which is advanced, with what it says while both stand still.
+struct ParkedContact {
+    std::int32_t first, second;  ///< indices of the records
+    float history[histories_at_most];
+    float force[3];      ///< on the first
+    float torque[2][3];  ///< on the first, on the second
+    float overlap;       ///< over the smaller diameter
+};
+
 /// Constants of the contact law, in the engine's units.
 struct Constants {
     double unit[3];  ///< length of one position unit
@@ -120,6 +129,10 @@ struct Field {
     Record* records;
     Residual* residuals;
     Force* forces;
+    /// Particles that are advanced, in order, and how many of them come before each; on the others, frozen or asleep,
+    /// what acts adds up. Null, and never read, where nobody may rest.
+    const std::int32_t* awake;
+    const std::int32_t* awake_before;  ///< count+1
 
     // Inner list: pairs that may touch before the next refresh, sorted by the first particle.
     Place* inner_first;
@@ -184,6 +197,7 @@ struct Needs {
     bool friction;
     enum class Cohesion : std::int32_t { none, lens, general } cohesion;  ///< lens: sjkr, friction blind to it
     bool rolling;
+    bool resting;  ///< particles at rest may fall asleep
 };
 
 [[nodiscard]] const Kernels& baseline_kernels(const Needs&);

@@ -12,6 +12,7 @@
 #include <memory>
 
 #include "solver/dem/engine.hpp"
+#include "solver/dem/fast/instruction_path.hpp"
 
 namespace grainsweep::dem::fast {
 
@@ -20,17 +21,11 @@ inline constexpr double overlap_limit = 0.3;
 /// Displacement per step, per axis, over the smallest diameter, beyond which a state is not trusted.
 inline constexpr double travel_limit = 0.25;
 
-/// Whether this processor can run a path; `best` always.
-[[nodiscard]] bool supports(Method::Path path);
-/// What `best` means in this process: the widest path the processor has, unless prefer said otherwise.
-[[nodiscard]] Method::Path best_path();
-/// From now on `best` means this path, which must be supported. For tests and benchmarks of the narrower ones; engines
-/// that exist keep theirs.
-void prefer(Method::Path path);
-
 /// Precision: positions are multiples of a period over 2^32, or of about an open extent over 2^31; forces are rounded
-/// to 1e-7. `skin` (m): of the outer neighbour list, 0: chosen from the motion.
+/// to 1e-7. `skin` (m): of the outer neighbour list, 0: chosen from the motion; `rest_speed`:
+/// that of Method.
 /// Throws std::invalid_argument with one sentence on an impossible setup or a path this processor lacks.
-[[nodiscard]] std::unique_ptr<Engine> make_mixed_engine(const Setup& setup, Method::Path path, double skin = 0);
+[[nodiscard]] std::unique_ptr<Engine> make_mixed_engine(const Setup& setup, Method::Path path, double skin = 0,
+                                                        double rest_speed = 0);
 
 }  // namespace grainsweep::dem::fast

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <numbers>
 
+#include "solver/dem/fast/resting.hpp"
+
 namespace grainsweep::dem::fast {
 
 namespace {
@@ -148,6 +150,15 @@ void sort_particles(Field& f, Columns& c, const Room& room, std::int32_t kept) {
     c.bind(f);
 }
 
+void pad_pairs(const Field& f, Columns& c) {
+    for (std::size_t k = 0; k < static_cast<std::size_t>(spare); ++k) {
+        const std::size_t at = static_cast<std::size_t>(f.outer_count) + k;
+        c.outer_first[at] = place_of(f.count);
+        c.outer_second[at] = place_of(f.count + 1);
+        c.outer_reach[at] = 0;
+    }
+}
+
 void find_pairs(Field& f, Columns& c, const Kernels& kernels, const Room& room) {
     for (;;) {
         f.outer_capacity = static_cast<std::int32_t>(c.outer_first.capacity()) - spare;
@@ -159,12 +170,7 @@ void find_pairs(Field& f, Columns& c, const Kernels& kernels, const Room& room) 
         c.hold_pairs(static_cast<std::size_t>(found) + 3 * spare);
         c.bind(f);
     }
-    for (std::size_t k = 0; k < static_cast<std::size_t>(spare); ++k) {
-        const std::size_t at = static_cast<std::size_t>(f.outer_count) + k;
-        c.outer_first[at] = place_of(f.count);
-        c.outer_second[at] = place_of(f.count + 1);
-        c.outer_reach[at] = 0;
-    }
+    pad_pairs(f, c);
 }
 
 /// Calls visit(first, second, stream index, inner index) for every contact of the last step, in order.
@@ -178,23 +184,47 @@ void for_each_contact(const Field& f, std::int32_t width, Visit visit) {
         }
 }
 
-/// Finds every old contact in the new outer list and moves its history; what saw its particles change places changes
-/// its sign.
+/// Gives old contact number `contact` of the particles i and j, by their old indices, its pair in the new outer list.
+void claim(const Field& f, Columns& c, std::int32_t i, std::int32_t j, std::int32_t contact) {
+    std::int32_t a = c.place[static_cast<std::size_t>(i)], b = c.place[static_cast<std::size_t>(j)];
+    if (a < 0 || b < 0) return;
+    const bool swapped = a > b;
+    if (swapped) std::swap(a, b);
+    for (std::int32_t o = f.row[a]; o < f.row[a + 1]; ++o)
+        if (f.outer_second[o] == place_of(b)) {
+            c.owner[static_cast<std::size_t>(o)] = swapped ? -(contact + 1) : contact + 1;
+            return;
+        }
+}
+
+/// Finds every old contact in the new outer list; returns how many there were.
+std::int32_t find_owners(const Field& f, Columns& c, const Kernels& kernels) {
+    c.owner.clear(static_cast<std::size_t>(f.outer_count));
+    std::int32_t contacts = 0;
+    for_each_contact(f, kernels.width, [&](std::int32_t i, std::int32_t j, std::int32_t stream, std::int32_t) {
+        claim(f, c, i, j, stream);
+        contacts = stream + 1;
+    });
+    return contacts;
+}
+
+/// Puts the contacts that wait behind the others, for some will be needed, and lets Resting choose.
+void choose_sleepers(Field& f, Columns& c, const Room& room, Resting& resting, std::int32_t contacts) {
+    auto at = static_cast<std::size_t>(contacts);
+    for (int a = 0; a < c.histories; ++a) c.history[a].hold(at + resting.parked().size() + spare);
+    for (const ParkedContact& p : resting.parked()) {
+        for (int a = 0; a < c.histories; ++a) c.history[a][at] = p.history[a];
+        claim(f, c, p.first, p.second, static_cast<std::int32_t>(at++));
+    }
+    resting.follow(f, c);
+    resting.choose(f, c, room, contacts);
+    pad_pairs(f, c);
+}
+
+/// Moves the histories of owned pairs into their new order; what saw its particles change places changes its sign.
 void carry_histories(Field& f, Columns& c, const Kernels& kernels) {
     const auto outer = static_cast<std::size_t>(f.outer_count);
-    c.owner.clear(outer);
     c.outer_touching.clear(outer / static_cast<std::size_t>(kernels.width) + 2);
-    for_each_contact(f, kernels.width, [&](std::int32_t i, std::int32_t j, std::int32_t stream, std::int32_t) {
-        std::int32_t a = c.place[static_cast<std::size_t>(i)], b = c.place[static_cast<std::size_t>(j)];
-        if (a < 0 || b < 0) return;
-        const bool swapped = a > b;
-        if (swapped) std::swap(a, b);
-        for (std::int32_t o = f.row[a]; o < f.row[a + 1]; ++o)
-            if (f.outer_second[o] == place_of(b)) {
-                c.owner[static_cast<std::size_t>(o)] = swapped ? -(stream + 1) : stream + 1;
-                break;
-            }
-    });
     std::size_t to = 0;
     for (std::size_t o = 0; o < outer; ++o) {
         const std::int32_t owner = c.owner[o];
@@ -325,7 +355,9 @@ void refresh(Field& f, Columns& c, const Kernels& kernels, float skin, bool mark
     f.inner_count = kernels.refresh(f, skin);
 }
 
-void rebuild(Field& f, Columns& c, const Kernels& kernels, const Room& room, std::span<const std::int32_t> ids) {
+void rebuild(Field& f, Columns& c, const Kernels& kernels, const Room& room, std::span<const std::int32_t> ids,
+             Resting* resting, std::int64_t steps) {
+    if (resting != nullptr) resting->weigh(f, steps);
     const std::int32_t kept = take_out(f, c, room, ids);
     std::vector<Record> wall_records(f.records + f.count + 3, f.records + f.count + 3 + f.wall_count);
     sort_particles(f, c, room, kept);
@@ -335,6 +367,8 @@ void rebuild(Field& f, Columns& c, const Kernels& kernels, const Room& room, std
         f.records[f.walls[w].record] = wall_records[static_cast<std::size_t>(w)];
     }
     find_pairs(f, c, kernels, room);
+    const std::int32_t contacts = find_owners(f, c, kernels);
+    if (resting != nullptr) choose_sleepers(f, c, room, *resting, contacts);
     carry_histories(f, c, kernels);
     list_wall_contacts(f, c, kernels, room, true);
 }

@@ -10,6 +10,8 @@
 
 namespace grainsweep::dem::fast {
 
+class Resting;
+
 /// Fixed facts a rebuild needs.
 struct Room {
     Domain domain;
@@ -18,9 +20,10 @@ struct Room {
 };
 
 /// Removes particles beyond open faces and those listed in `ids`, sorts the rest by cell, makes the outer list and
-/// the wall lists and carries all histories over. Forces must be zero. The inner list is left to refresh.
+/// the wall lists and carries all histories over. The inner list is left to refresh.
+/// `resting`: chooses anew who sleeps, after `steps` steps since the last rebuild; null where nobody may.
 void rebuild(Field& field, Columns& columns, const Kernels& kernels, const Room& room,
-             std::span<const std::int32_t> ids);
+             std::span<const std::int32_t> ids, Resting* resting, std::int64_t steps);
 
 /// Makes the inner list from the outer one; histories stay as they are, in the same order.
 /// `marked`: outer_touching already says which outer pairs touch.

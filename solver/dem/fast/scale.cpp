@@ -140,8 +140,9 @@ Constants make_constants(const Setup& setup, const Scale& scale) {
     return c;
 }
 
-Needs make_needs(const Setup& setup) {
+Needs make_needs(const Setup& setup, bool resting) {
     Needs n{};
+    n.resting = resting;
     for (const Sphere& s : setup.spheres) {
         n.unequal = n.unequal || s.radius != setup.spheres.front().radius;
         n.frozen = n.frozen || !s.mobile;

@@ -24,6 +24,6 @@ struct Scale {
 /// An acceleration, m/s2, as change of velocity per step.
 [[nodiscard]] float gravity_in_steps(double acceleration, const Scale& scale);
 [[nodiscard]] Constants make_constants(const Setup& setup, const Scale& scale);
-[[nodiscard]] Needs make_needs(const Setup& setup);
+[[nodiscard]] Needs make_needs(const Setup& setup, bool resting = false);
 
 }  // namespace grainsweep::dem::fast

@@ -280,9 +280,17 @@ GRAINSWEEP_LANES void advance_one(const Field& f, std::int32_t i, Stepper& s) {
 template <class Law>
 GRAINSWEEP_PHASE void advance_range(const Field& f, std::int32_t from, std::int32_t to, Tally& t) {
     Stepper s = stepper(f.constants, t);
-    for (std::int32_t i = from; i < to; ++i) {
-        if (f.read_ahead != 0) prefetch(f.residuals + i + 64);
-        advance_one<Law>(f, i, s);
+    if constexpr (Law::resting) {
+        for (std::int32_t k = f.awake_before[from]; k < f.awake_before[to]; ++k) {
+            const std::int32_t i = f.awake[k];
+            if (f.read_ahead != 0) prefetch(f.residuals + i + 64);
+            advance_one<Law>(f, i, s);
+        }
+    } else {
+        for (std::int32_t i = from; i < to; ++i) {
+            if (f.read_ahead != 0) prefetch(f.residuals + i + 64);
+            advance_one<Law>(f, i, s);
+        }
     }
     store8(t.velocity_high, s.high);
     store8(t.velocity_low, s.low);

@@ -1,6 +1,7 @@
 #include "solver/scenes/tpms/question.hpp"
 
 #include "solver/dem/material.hpp"
+#include "solver/dem/shaking.hpp"
 #include "solver/dem/time_step.hpp"
 
 #include <cmath>
@@ -119,6 +120,12 @@ std::vector<ParameterSpec> tpms_discharge_parameters() {
              {"quiet", "none"}));
     parameters.push_back(number("time_step", "s", "time step", 1e-6, {0, unbounded, true, true}));
     parameters.push_back(word("precision", "arithmetic of the contact forces", {"mixed", "double"}));
+    parameters.push_back(number(
+        "rest_speed", "sqrt(2 g L)",
+        "powder slower than this for 256 time steps, with nothing faster near and no net force of half its weight, "
+        "is not advanced; 0: all is. At 0.001 the retention errs by less than 0.005, a jammed cell costs 1/1.4. "
+        "Not in a cell that vibrates, which never rests",
+        0, {0, 0.01}, {{"precision", Relevance::Condition::is_word, {"mixed"}}}));
     return parameters;
 }
 
@@ -171,6 +178,7 @@ TpmsQuestion::TpmsQuestion(const Inputs& inputs, std::uint64_t seed)
       end_time(real(inputs, "end_time")),
       stop_when_quiet(text(inputs, "settle_rule") == "quiet"),
       time_step(real(inputs, "time_step")),
+      rest_speed(real(inputs, "rest_speed")),
       precision(text(inputs, "precision") == "double" ? dem::Method::Precision::double_precision
                                                       : dem::Method::Precision::mixed) {
     if (side == 0) side = geometry::traits(cell).kept_side;
@@ -189,6 +197,8 @@ TpmsQuestion::TpmsQuestion(const Inputs& inputs, std::uint64_t seed)
                       shaking.frequency, time_step);
         throw std::invalid_argument(sentence);
     }
+    if (rest_speed > 0 && !dem::is_still(shaking))
+        throw std::invalid_argument("powder in a cell that vibrates never rests: rest_speed must be 0");
     const double rayleigh = dem::rayleigh_time(material, diameter / 2);
     if (time_step > rayleigh) {
         char sentence[160];

@@ -32,6 +32,7 @@ struct TpmsQuestion {
     double end_time = 10;  ///< in units of free_fall_time()
     bool stop_when_quiet = true;
     double time_step = 1e-6;  ///< s
+    double rest_speed = 0;    ///< in units of free_fall_speed()
     dem::Method::Precision precision = dem::Method::Precision::mixed;
 
     /// Complete inputs and the case's seed. Throws std::invalid_argument where they are impossible together.

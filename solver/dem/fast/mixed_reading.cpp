@@ -1,0 +1,85 @@
+#include <algorithm>
+
+#include "solver/dem/fast/mixed_stepping.hpp"
+
+namespace grainsweep::dem::fast {
+
+void MixedEngine::state(State& into) const {
+    const auto n = size();
+    into.id.resize(n);
+    into.position.resize(n), into.velocity.resize(n), into.angular_velocity.resize(n);
+    into.radius.resize(n), into.mobile.resize(n);
+    std::vector<std::int32_t> order(n);
+    for (std::size_t i = 0; i < n; ++i) order[i] = static_cast<std::int32_t>(i);
+    std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+        return columns_.id[static_cast<std::size_t>(a)] < columns_.id[static_cast<std::size_t>(b)];
+    });
+    const Scale& s = room_.scale;
+    for (std::size_t k = 0; k < n; ++k) {
+        const std::int32_t i = order[k];
+        const Record& r = field_.records[i];
+        const Residual& residual = field_.residuals[i];
+        into.id[k] = columns_.id[static_cast<std::size_t>(i)];
+        into.radius[k] = static_cast<double>(r.radius) * s.length;
+        into.mobile[k] = r.inverse_mass > 0 ? 1 : 0;
+        for (int a = 0; a < 3; ++a) {
+            const auto axis = static_cast<std::size_t>(a);
+            double x = s.centre[axis] + (r.position[a] + static_cast<double>(residual.position[a])) * s.unit[axis];
+            if (room_.domain.periodic[axis]) {
+                const double low = room_.domain.low[axis], period = room_.domain.high[axis] - low;
+                if (x < low) x += period;
+                if (x >= room_.domain.high[axis]) x -= period;
+            }
+            into.position[k][axis] = x;
+            into.velocity[k][axis] =
+                (static_cast<double>(r.velocity[a]) + static_cast<double>(residual.velocity[a]) + half_change(i, a)) *
+                s.speed();
+            into.angular_velocity[k][axis] = (static_cast<double>(r.spin[a]) + half_spin_change(i, a)) / s.time;
+        }
+    }
+}
+
+/// Velocities of the full step, in the order of the records.
+std::vector<Motion> MixedEngine::motions() const {
+    std::vector<Motion> all(size());
+    for (std::int32_t i = 0; i < field_.count; ++i) {
+        const Record& r = field_.records[i];
+        const Residual& residual = field_.residuals[i];
+        Motion& m = all[static_cast<std::size_t>(i)];
+        for (int a = 0; a < 3; ++a) {
+            const auto axis = static_cast<std::size_t>(a);
+            m.velocity[axis] =
+                (static_cast<double>(r.velocity[a]) + static_cast<double>(residual.velocity[a]) + half_change(i, a)) *
+                room_.scale.speed();
+            m.spin[axis] = (static_cast<double>(r.spin[a]) + half_spin_change(i, a)) / room_.scale.time;
+        }
+    }
+    return all;
+}
+
+void MixedEngine::contacts(std::vector<ContactForce>& into) const {
+    const std::vector<Motion> now = motions();
+    const ContactReader reader(material_, room_, field_, columns_.id.data(), now, kernels_->width, resting_.parked());
+    into.clear();
+    reader.pairs(into);
+    for (std::size_t w = 0; w < walls_.size(); ++w) reader.wall(walls_[w], w, wall_time(), into);
+}
+
+Moment MixedEngine::moment(std::span<const Motion> motions) const {
+    const ContactReader reader(material_, room_, field_, columns_.id.data(), {}, kernels_->width, resting_.parked());
+    return {field_, room_, columns_.id.data(), motions, reader.stored(walls_, wall_time())};
+}
+
+void MixedEngine::learn_limits() {
+    const std::vector<Motion> now = motions();
+    watch_.learn(moment(now), walls_);
+}
+
+void MixedEngine::check_energy() {
+    const std::vector<Motion> now = motions();
+    std::int32_t particle = 0;
+    const std::string what = watch_.look(moment(now), particle);
+    if (!what.empty()) fault_ = describe(sight(), what, particle);
+}
+
+}  // namespace grainsweep::dem::fast

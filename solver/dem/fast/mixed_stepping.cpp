@@ -1,0 +1,207 @@
+#include "solver/dem/fast/mixed_stepping.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "solver/dem/fast/mixed_engine.hpp"
+#include "solver/dem/shaking.hpp"
+
+namespace grainsweep::dem::fast {
+
+namespace {
+
+// The skins that make lists cheapest. A pair listed in vain costs about 1.5 ns a step and there are about ten per
+// diameter of inner skin and particle; a refresh costs about 10 ns per particle, plus 1.5 ns per pair of the outer
+// list; a rebuild about 100 ns. With drift d per step the sums of cost per step, 15 s + 10 d/s and (refreshing every
+// five steps or so) 3 s + 100 d/s, are least at s = sqrt(0.67 d) and s = sqrt(33 d).
+constexpr double inner_balance = 0.45;
+constexpr double outer_balance = 40;
+constexpr double inner_skin_least = 0.004;
+constexpr double outer_skin_least = 0.2, outer_skin_most = 0.7;
+
+}  // namespace
+
+void MixedEngine::run(std::int64_t steps) {
+    bool advanced = false;  // the sweep before has moved the particles on
+    for (std::int64_t s = 0; s < steps && fault_.empty(); ++s) {
+        if (!advanced) {
+            begin_tally();
+            kernels_->advance(field_, tally_);
+        }
+        ++work_.steps;
+        ++wall_steps_;
+        if (shaken_) shake();
+        work_.particle_steps += static_cast<double>(mobile_);
+        work_.resting_steps += static_cast<double>(resting_.sleepers());
+        account_travel();
+        if (!fault_.empty()) return;
+        place_walls(field_, walls_, room_, wall_time());
+        make_lists();
+        const bool look = watch_.due(work_.steps);  // at a state of the full step, so nobody moves on before
+        advanced = s + 1 < steps && !look;
+        begin_tally();
+        kernels_->walls(field_, tally_);
+        watch_.book_push(tally_.wall_work);
+        kernels_->sweep(field_, advanced, tally_);
+        columns_.swap_histories(field_);
+        peak_overlap_ = std::max(peak_overlap_, overlap());
+        work_.pair_visits += field_.inner_count;
+        if (too_deep()) fault_ = describe_overlap(sight(), tally_);
+        if (look && fault_.empty()) check_energy();
+    }
+}
+
+/// Rebuilds or refreshes the lists where displacements since demand it. A pair outside the outer list had a gap
+/// above its skin and has lost at most the drift since; likewise the inner list.
+void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
+    const bool rebuilt =
+        !(drift_.outer < static_cast<double>(room_.skin)) || (needs_.resting && drift_.steps >= rest_interval);
+    if (!rebuilt && drift_.inner < static_cast<double>(inner_skin_)) return;
+    if (rebuilt) {
+        const double per_step = drift_.steps > 0 ? drift_.outer / static_cast<double>(drift_.steps) : 0.003;
+        if (adapts_skin_)
+            room_.skin = std::min(
+                static_cast<float>(std::clamp(std::sqrt(outer_balance * per_step), outer_skin_least, outer_skin_most)),
+                largest_skin_);
+        const std::int32_t before = field_.count;
+        rebuild(field_, columns_, *kernels_, room_, removed, needs_.resting ? &resting_ : nullptr, drift_.steps);
+        columns_.forces.clear(size());  // what waited there belonged to the old order
+        if (field_.count < before) watch_.forget_balance();
+        drift_.outer = 0;
+        drift_.steps = 0;
+        mobile_ = 0;
+        for (std::int32_t i = 0; i < field_.count; ++i) mobile_ += field_.records[i].inverse_mass > 0 ? 1 : 0;
+        ++work_.rebuilds;
+    }
+    inner_skin_ = static_cast<float>(
+        std::clamp(std::sqrt(inner_balance * drift_.last_step), inner_skin_least, static_cast<double>(room_.skin)));
+    refresh(field_, columns_, *kernels_, inner_skin_, rebuilt);
+    drift_.inner = 0;
+}
+
+/// Books the displacement of the step just made.
+void MixedEngine::account_travel() {
+    double square = 0;
+    float fastest = 0;
+    bool finite = true;
+    for (int a = 0; a < 3; ++a) {
+        const float high = tally_.velocity_high[a], low = tally_.velocity_low[a];
+        const double spread = field_.count > 0 ? static_cast<double>(high) - static_cast<double>(low) : 0;
+        square += spread * spread;
+        fastest = std::max({fastest, std::abs(high), std::abs(low)});
+        finite = finite && std::isfinite(spread);
+    }
+    drift_.last_step = std::sqrt(square) * (1 + 1e-6);
+    ++drift_.steps;
+    drift_.outer += drift_.last_step;
+    drift_.inner += drift_.last_step;
+    if (field_.count > 0 && (!finite || !(fastest < static_cast<float>(travel_limit) * smallest_diameter_)))
+        fault_ = describe_fast_particle(sight());
+    else if (watch_.too_fast(static_cast<double>(fastest)))
+        fault_ = describe_faster_than(sight(), watch_.speed_limit());
+    watch_.book_travel(static_cast<double>(fastest));
+}
+
+/// The velocities whose spread bounds relative displacements: particles', walls', and rest where something rests.
+void MixedEngine::begin_tally() {
+    const bool rest = box_includes_rest_ || !walls_.empty();
+    for (int a = 0; a < 8; ++a) {
+        tally_.velocity_high[a] = rest ? 0 : -std::numeric_limits<float>::infinity();
+        tally_.velocity_low[a] = rest ? 0 : std::numeric_limits<float>::infinity();
+    }
+    for (std::int32_t w = 0; w < field_.wall_count; ++w)
+        for (int a = 0; a < 3; ++a) {
+            const float v = field_.records[field_.walls[w].record].velocity[a];
+            tally_.velocity_high[a] = std::max(tally_.velocity_high[a], v);
+            tally_.velocity_low[a] = std::min(tally_.velocity_low[a], v);
+        }
+    tally_.overlap = tally_.wall_overlap = 0;
+    tally_.wall_work = 0;
+    tally_.contacts = 0;
+}
+
+/// Gives the constants the acceleration of the present step: gravity and the body force of shaking.
+void MixedEngine::shake() {
+    const Vec3 b = shaking_acceleration(shaking_, room_.scale.time, work_.steps);
+    for (std::size_t a = 0; a < 3; ++a) field_.constants.gravity[a] = gravity_in_steps(gravity_[a] + b[a], room_.scale);
+}
+
+/// Change of velocity over half a step by the forces at hand, engine's units.
+double MixedEngine::half_change(std::int32_t i, int a) const {
+    const Record& r = field_.records[i];
+    if (!(r.inverse_mass > 0) || is_asleep(i)) return 0;
+    return 0.5 * (static_cast<double>(field_.forces[i].force[a]) * static_cast<double>(r.inverse_mass) +
+                  static_cast<double>(field_.constants.gravity[a]));
+}
+
+double MixedEngine::half_spin_change(std::int32_t i, int a) const {
+    if (is_asleep(i)) return 0;
+    const Record& r = field_.records[i];
+    const double inertia = 0.4 * static_cast<double>(r.radius) * static_cast<double>(r.radius);
+    return 0.5 * static_cast<double>(field_.forces[i].torque[a]) * static_cast<double>(r.inverse_mass) / inertia;
+}
+
+/// Moves the stored half-step velocities to the full step, and forgets the forces.
+void MixedEngine::full_step_velocities() {
+    for (std::int32_t i = 0; i < field_.count; ++i) {
+        Record& r = field_.records[i];
+        Residual& residual = field_.residuals[i];
+        for (int a = 0; a < 3; ++a) {
+            const double v =
+                static_cast<double>(r.velocity[a]) + static_cast<double>(residual.velocity[a]) + half_change(i, a);
+            r.velocity[a] = static_cast<float>(v);
+            residual.velocity[a] = static_cast<float>(v - static_cast<double>(r.velocity[a]));
+            r.spin[a] = static_cast<float>(static_cast<double>(r.spin[a]) + half_spin_change(i, a));
+            r.surface[a] = r.spin[a] * r.radius;
+        }
+        field_.forces[i] = Force{};
+    }
+}
+
+/// Lists anew, forces at the present full-step velocities without touching histories, velocities then set back by
+/// half a step: a leapfrog whose first kick is a half one.
+void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
+    place_walls(field_, walls_, room_, wall_time());
+    drift_ = Drift{};
+    make_lists(removed);
+    begin_tally();
+    field_.history_step = 0;
+    kernels_->walls(field_, tally_);
+    kernels_->sweep(field_, false, tally_);
+    field_.history_step = 1;
+    peak_overlap_ = std::max(peak_overlap_, overlap());
+    for (std::int32_t i = 0; i < field_.count; ++i) {
+        Record& r = field_.records[i];
+        Residual& residual = field_.residuals[i];
+        for (int a = 0; a < 3; ++a) {
+            const double v =
+                static_cast<double>(r.velocity[a]) + static_cast<double>(residual.velocity[a]) - half_change(i, a);
+            r.velocity[a] = static_cast<float>(v);
+            residual.velocity[a] = static_cast<float>(v - static_cast<double>(r.velocity[a]));
+            r.spin[a] = static_cast<float>(static_cast<double>(r.spin[a]) - half_spin_change(i, a));
+            r.surface[a] = r.spin[a] * r.radius;
+        }
+    }
+    if (too_deep()) fault_ = describe_overlap(sight(), tally_);
+}
+
+void MixedEngine::set_walls(std::vector<Wall> walls) {
+    check_walls(walls);
+    full_step_velocities();
+    if (needs_.resting) resting_.wake_all(field_);
+    walls_ = std::move(walls);
+    wall_steps_ = 0;
+    columns_.hold_particles(size(), walls_.size());
+    columns_.bind(field_);
+    for (std::size_t w = 0; w < walls_.size(); ++w) columns_.segments[w] = {0, 0};
+    restart_forces();
+    learn_limits();
+}
+
+void MixedEngine::remove(std::span<const std::int32_t> ids) {
+    full_step_velocities();
+    restart_forces(ids);
+}
+
+}  // namespace grainsweep::dem::fast

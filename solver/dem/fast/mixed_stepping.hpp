@@ -1,0 +1,117 @@
+// The mixed-precision engine's parts, and what each of its files does with them:
+//
+//   mixed_engine.cpp      the start: spheres and walls in the engine's units
+//   mixed_stepping.cpp    time steps, and when the lists are made anew
+//   mixed_reading.cpp     what is told of a state, in SI: particles, contacts, energy
+//   mixed_checkpoint.cpp  a state to bytes and back
+//
+// Elsewhere know it as an Engine only (mixed_engine.hpp).
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "solver/dem/engine.hpp"
+#include "solver/dem/fast/checkpoint.hpp"
+#include "solver/dem/fast/columns.hpp"
+#include "solver/dem/fast/contact_reader.hpp"
+#include "solver/dem/fast/faults.hpp"
+#include "solver/dem/fast/layout.hpp"
+#include "solver/dem/fast/rebuild.hpp"
+#include "solver/dem/fast/resting.hpp"
+#include "solver/dem/fast/scale.hpp"
+#include "solver/dem/fast/watch.hpp"
+
+namespace grainsweep::dem::fast {
+
+/// Relative displacements since the lists were made, and how often; in largest diameters.
+struct Drift {
+    double outer = std::numeric_limits<double>::infinity();
+    double inner = std::numeric_limits<double>::infinity();
+    double last_step = 0;
+    std::int64_t steps = 0;  ///< since the outer list was made
+};
+
+/// One case with its laws, its instruction path and all that changes.
+class MixedEngine final : public Engine {
+public:
+    MixedEngine(const Setup& setup, Method::Path path, double skin, double rest_speed);
+
+    void run(std::int64_t steps) override;
+    void set_walls(std::vector<Wall> walls) override;
+    void remove(std::span<const std::int32_t> ids) override;
+    [[nodiscard]] std::size_t size() const override { return static_cast<std::size_t>(field_.count); }
+    [[nodiscard]] double wall_time() const override { return static_cast<double>(wall_steps_) * room_.scale.time; }
+    void state(State& into) const override;
+    [[nodiscard]] double largest_overlap() const override { return static_cast<double>(overlap()); }
+    [[nodiscard]] double peak_overlap() const override { return static_cast<double>(peak_overlap_); }
+    void forget_peak_overlap() override { peak_overlap_ = 0; }
+    void contacts(std::vector<ContactForce>& into) const override;
+    [[nodiscard]] const std::string& fault() const override { return fault_; }
+    [[nodiscard]] Work work() const override { return work_; }
+    void save(std::vector<std::byte>& into) const override;
+    void restore(std::span<const std::byte> from) override;
+
+private:
+    void load(const Setup& setup);
+    void check_walls(const std::vector<Wall>& walls) const;
+    void begin_tally();
+    [[nodiscard]] std::vector<Motion> motions() const;
+    [[nodiscard]] Moment moment(std::span<const Motion> motions) const;
+    void learn_limits();
+    void check_energy();
+    void account_travel();
+    void make_lists(std::span<const std::int32_t> removed = {});
+    void full_step_velocities();
+    void restart_forces(std::span<const std::int32_t> removed = {});
+    void shake();
+    [[nodiscard]] Seal seal() const;
+    [[nodiscard]] double half_change(std::int32_t particle, int axis) const;
+    [[nodiscard]] double half_spin_change(std::int32_t particle, int axis) const;
+    [[nodiscard]] Sight sight() const {
+        return {field_, columns_.id.data(), room_.scale, smallest_diameter_, sound_, work_.steps};
+    }
+    /// Of all pairs, over the smaller diameter; those that wait keep theirs.
+    [[nodiscard]] float overlap() const { return std::max(tally_.overlap, resting_.overlap()); }
+    [[nodiscard]] bool is_asleep(std::int32_t particle) const {
+        return needs_.resting && resting_.holds(particle) && field_.records[particle].inverse_mass > 0;
+    }
+    [[nodiscard]] bool too_deep() const { return tally_.overlap > sound_.pair || tally_.wall_overlap > sound_.wall; }
+    template <class Self, class Archive>
+    static void pass(Self& self, Archive& archive);
+
+    Room room_;
+    Material material_;
+    Vec3 gravity_;
+    Shaking shaking_;
+    bool shaken_;
+    Needs needs_;
+    double rest_speed_;
+    const Kernels* kernels_;
+    std::vector<Wall> walls_;
+    float smallest_diameter_ = 1;
+    SoundOverlaps sound_;
+    bool box_includes_rest_ = true;  ///< something at rest, or a face, bounds displacements besides the particles
+
+    Watch watch_;
+    Columns columns_;
+    Resting resting_;
+    Field field_{};
+    Tally tally_{};
+    float peak_overlap_ = 0;  ///< largest of overlap() so far
+    Drift drift_;
+    float inner_skin_ = 0;
+    float largest_skin_ = std::numeric_limits<float>::infinity();
+    bool adapts_skin_;
+    std::int64_t wall_steps_ = 0;
+    std::int64_t mobile_ = 0;
+    Work work_;
+    std::string fault_;
+};
+
+}  // namespace grainsweep::dem::fast

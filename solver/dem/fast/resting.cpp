@@ -1,0 +1,220 @@
+#include "solver/dem/fast/resting.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "solver/geometry/vector.hpp"
+
+namespace grainsweep::dem::fast {
+
+namespace {
+
+/// Steps of quiet before sleep: a steady net force would have been noticed if it made this much of them faster than the
+/// rest speed.
+constexpr std::int64_t quiet_time = 256;
+/// Net force, of the weight, that wakes.
+constexpr double imbalance = 0.5;
+/// What is faster than the rest speed by this factor deals blows, felt through so many layers behind those in reach.
+constexpr double blow = 30;
+constexpr int layers = 2;
+
+double square(const float* v) {
+    double sum = 0;
+    for (int a = 0; a < 3; ++a) sum += static_cast<double>(v[a]) * static_cast<double>(v[a]);
+    return sum;
+}
+
+bool is_mobile(const Field& f, std::size_t i) {
+    return f.records[i].inverse_mass > 0;
+}
+
+void stop(Record& r, Residual& residual) {
+    for (int a = 0; a < 3; ++a) r.velocity[a] = r.spin[a] = r.surface[a] = residual.velocity[a] = 0;
+}
+
+/// The same contact seen from its other particle.
+void turn_round(ParkedContact& p) {
+    for (float& s : p.history) s = -s;
+    for (float& force : p.force) force = -force;
+    for (int a = 0; a < 3; ++a) std::swap(p.torque[0][a], p.torque[1][a]);
+}
+
+std::pair<std::size_t, std::size_t> pair_at(const Columns& c, std::size_t o) {
+    return {c.outer_first[o] / places_per_index, c.outer_second[o] / places_per_index};
+}
+
+}  // namespace
+
+Resting::Resting(const Setup& setup, const Scale& scale, double rest_speed)
+    : material_(setup.material),
+      speed_(rest_speed / scale.speed()),
+      gravity_(geometry::norm(setup.gravity) * scale.time * scale.time / scale.length) {
+    if (!wanted()) return;
+    for (const Sphere& sphere : setup.spheres) held_.push_back(sphere.mobile ? 0 : 1);
+    quiet_.resize(held_.size());
+}
+
+void Resting::wake_all(const Field& f) {
+    for (std::size_t i = 0; i < held_.size(); ++i) held_[i] = is_mobile(f, i) ? 0 : 1;
+    std::ranges::fill(quiet_, std::uint16_t{0});
+}
+
+void Resting::bind(Field& f) const {
+    f.awake = awake_.data();
+    f.awake_before = awake_before_.data();
+}
+
+void Resting::weigh(const Field& f, std::int64_t steps) {
+    steps_ = steps;
+    const auto n = static_cast<std::size_t>(f.count);
+    pushed_.assign(n, 0);
+    if (steps == 0 || sleepers_ == 0) return;
+    std::vector<std::array<double, 6>> sum(n);  // force and torque
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t a = 0; a < 3; ++a) {
+            sum[i][a] = static_cast<double>(f.forces[i].force[a]) / static_cast<double>(steps);
+            sum[i][3 + a] = static_cast<double>(f.forces[i].torque[a]) / static_cast<double>(steps);
+        }
+    for (const ParkedContact& p : parked_)
+        for (std::size_t a = 0; a < 3; ++a) {
+            auto &first = sum[static_cast<std::size_t>(p.first)], &second = sum[static_cast<std::size_t>(p.second)];
+            first[a] += static_cast<double>(p.force[a]);
+            second[a] -= static_cast<double>(p.force[a]);
+            first[3 + a] += static_cast<double>(p.torque[0][a]);
+            second[3 + a] += static_cast<double>(p.torque[1][a]);
+        }
+    const double most = imbalance * imbalance * gravity_ * gravity_;
+    for (std::size_t i = 0; i < n; ++i) {
+        if (held_[i] == 0 || !is_mobile(f, i)) continue;
+        const auto inverse_mass = static_cast<double>(f.records[i].inverse_mass);
+        const double arm = static_cast<double>(f.records[i].radius);
+        double push = 0, turn = 0;
+        for (std::size_t a = 0; a < 3; ++a) {
+            push += std::pow(sum[i][a] * inverse_mass + static_cast<double>(f.constants.gravity[a]), 2);
+            turn += std::pow(sum[i][3 + a] * inverse_mass / arm, 2);
+        }
+        pushed_[i] = push > most || turn > most ? 1 : 0;
+    }
+}
+
+void Resting::follow(const Field& f, const Columns& c) {
+    const auto held = held_, pushed = pushed_;
+    const auto quiet = quiet_;
+    const auto n = static_cast<std::size_t>(f.count);
+    held_.resize(n), pushed_.resize(n), quiet_.resize(n);
+    for (std::size_t i = 0; i < held.size(); ++i) {
+        if (c.place[i] < 0) continue;
+        const auto to = static_cast<std::size_t>(c.place[i]);
+        held_[to] = held[i], pushed_[to] = pushed[i], quiet_[to] = quiet[i];
+    }
+}
+
+/// Who moves, and for how long the others have not.
+void Resting::observe(const Field& f) {
+    const double slow = speed_ * speed_, fast = blow * blow * slow;
+    stirs_.assign(held_.size(), 0);
+    for (std::size_t i = 0; i < held_.size(); ++i) {
+        if (held_[i] != 0) continue;
+        const Record& r = f.records[i];
+        const auto radius = static_cast<double>(r.radius);
+        const double speed = std::max(square(r.velocity), radius * radius * square(r.spin));
+        if (speed > slow) stirs_[i] = speed > fast ? 1 + layers : 1;
+        const std::int64_t quiet = speed > slow ? 0 : std::min(quiet_[i] + steps_, quiet_time);
+        quiet_[i] = static_cast<std::uint16_t>(quiet);
+    }
+}
+
+/// Whom that keeps awake: all in reach, and layer by layer what touches them.
+void Resting::spread(const Field& f, const Columns& c) {
+    const auto pairs = static_cast<std::size_t>(f.outer_count);
+    stirred_.assign(held_.size(), 0);
+    for (std::size_t o = 0; o < pairs; ++o) {
+        const auto [i, j] = pair_at(c, o);
+        stirred_[i] = std::max(stirred_[i], stirs_[j]);
+        stirred_[j] = std::max(stirred_[j], stirs_[i]);
+    }
+    for (int layer = layers; layer > 0; --layer)
+        for (std::size_t o = 0; o < pairs; ++o) {
+            if (c.owner[o] == 0) continue;
+            const auto [i, j] = pair_at(c, o);
+            if (stirred_[i] == layer + 1 && stirred_[j] < layer && is_mobile(f, i))
+                stirred_[j] = static_cast<std::uint8_t>(layer);
+            if (stirred_[j] == layer + 1 && stirred_[i] < layer && is_mobile(f, j))
+                stirred_[i] = static_cast<std::uint8_t>(layer);
+        }
+}
+
+void Resting::decide(Field& f) {
+    sleepers_ = 0;
+    for (std::size_t i = 0; i < held_.size(); ++i) {
+        if (!is_mobile(f, i)) continue;
+        if (held_[i] != 0 && (pushed_[i] != 0 || stirred_[i] != 0)) {
+            held_[i] = 0;
+            quiet_[i] = 0;
+        } else if (held_[i] == 0 && quiet_[i] >= quiet_time && stirred_[i] == 0) {
+            held_[i] = 1;
+            stop(f.records[i], f.residuals[i]);
+        }
+        sleepers_ += held_[i];
+    }
+}
+
+/// Lists who is advanced.
+void Resting::number(const Field& f) {
+    awake_.clear();
+    awake_before_.clear();
+    for (std::int32_t i = 0; i < f.count; ++i) {
+        awake_before_.push_back(static_cast<std::int32_t>(awake_.size()));
+        if (!holds(i)) awake_.push_back(i);
+    }
+    awake_before_.push_back(static_cast<std::int32_t>(awake_.size()));
+}
+
+/// The contact that owns an outer pair.
+ParkedContact Resting::parked_from(const Columns& c, const ContactReader& reader, std::size_t pair,
+                                   std::int32_t live) const {
+    const std::int32_t owner = c.owner[pair], from = std::abs(owner) - 1;
+    ParkedContact p{};
+    if (from >= live)
+        p = before_[static_cast<std::size_t>(from - live)];
+    else
+        for (int a = 0; a < c.histories; ++a) p.history[a] = c.history[a][static_cast<std::size_t>(from)];
+    if (owner < 0) turn_round(p);
+    const auto [i, j] = pair_at(c, pair);
+    p.first = static_cast<std::int32_t>(i);
+    p.second = static_cast<std::int32_t>(j);
+    if (from < live) reader.stand_still(p);
+    return p;
+}
+
+void Resting::choose(Field& f, Columns& c, const Room& room, std::int32_t live) {
+    observe(f);
+    spread(f, c);
+    decide(f);
+    number(f);
+    bind(f);
+    const ContactReader reader(material_, room, f, c.id.data(), {}, 1);
+    before_.swap(parked_);
+    parked_.clear();
+    overlap_ = 0;
+    std::size_t to = 0;
+    for (std::size_t o = 0; o < static_cast<std::size_t>(f.outer_count); ++o) {
+        const auto [i, j] = pair_at(c, o);
+        if (held_[i] != 0 && held_[j] != 0) {
+            if (c.owner[o] == 0) continue;
+            parked_.push_back(parked_from(c, reader, o, live));
+            overlap_ = std::max(overlap_, parked_.back().overlap);
+            continue;
+        }
+        c.outer_first[to] = c.outer_first[o];
+        c.outer_second[to] = c.outer_second[o];
+        c.outer_reach[to] = c.outer_reach[o];
+        c.owner[to] = c.owner[o];
+        ++to;
+    }
+    f.outer_count = static_cast<std::int32_t>(to);
+}
+
+}  // namespace grainsweep::dem::fast

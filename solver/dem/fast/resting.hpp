@@ -1,0 +1,98 @@
+// Powder at rest: who falls asleep, who wakes, and the contacts between sleepers that wait meanwhile.
+//
+// A sleeper is not advanced, and pairs of two that are not advanced are not listed: they cost nothing but their part
+// of a rebuild. For everybody else a sleeper is the partner it was, of the same mass. Decided at every rebuild:
+//
+//   sleeps   who has been slower than the rest speed, v and |w| R, for 256 steps, with nobody faster in reach of the
+//            outer list: nothing that moves can touch a sleeper before the next rebuild. Around what is 30 times
+//            faster two more layers of contacts stay awake, to take up its blows
+//   wakes    when somebody faster comes into that reach, or when the net force on it, or the net torque over R,
+//            averaged since the last rebuild, exceeds half its weight
+//
+// Neglected are thus a net force below half the weight, creep slower than the rest speed, and what a blow does to the
+// fourth layer: the rebound from a pile asleep differs by 1 % (with the two layers fewer: by 17 %).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "solver/dem/engine.hpp"
+#include "solver/dem/fast/columns.hpp"
+#include "solver/dem/fast/contact_reader.hpp"
+#include "solver/dem/fast/rebuild.hpp"
+#include "solver/dem/fast/scale.hpp"
+
+namespace grainsweep::dem::fast {
+
+/// Steps after which lists are made anew though nothing else asks for it, so that sleepers are looked at.
+inline constexpr std::int64_t rest_interval = 128;
+
+class Resting {
+public:
+    /// rest_speed: m/s; 0: nobody ever sleeps.
+    Resting(const Setup& setup, const Scale& scale, double rest_speed);
+
+    [[nodiscard]] bool wanted() const { return speed_ > 0; }
+    [[nodiscard]] bool holds(std::int32_t particle) const { return held_[static_cast<std::size_t>(particle)] != 0; }
+    /// Nobody sleeps from the next rebuild on.
+    void wake_all(const Field& f);
+    /// Points the field at the particles that are advanced.
+    void bind(Field& f) const;
+
+    /// The contacts that wait, by index of the records.
+    [[nodiscard]] std::span<const ParkedContact> parked() const { return parked_; }
+    [[nodiscard]] std::int64_t sleepers() const { return sleepers_; }
+    /// Largest overlap among them, over the smaller diameter.
+    [[nodiscard]] float overlap() const { return overlap_; }
+
+    // The parts of a rebuild, in this order.
+    /// Before particles are sorted: whom the forces of the last `steps` steps have pushed.
+    void weigh(const Field& f, std::int64_t steps);
+    /// After they are sorted: everything here follows columns.place.
+    void follow(const Field& f, const Columns& c);
+    /// After contacts have found their pairs in the outer list (columns.owner; waiting ones number from `live` on):
+    /// who sleeps from now on. Pairs nobody of whom is advanced leave the list, their contacts wait.
+    void choose(Field& f, Columns& c, const Room& room, std::int32_t live);
+
+    /// Everything that changes.
+    template <class Archive>
+    static void pass(auto& self, Archive& archive) {
+        archive.list(self.held_);
+        archive.list(self.quiet_);
+        archive.list(self.awake_);
+        archive.list(self.awake_before_);
+        archive.list(self.parked_);
+        archive.value(self.sleepers_);
+        archive.value(self.overlap_);
+    }
+
+private:
+    void observe(const Field& f);
+    void spread(const Field& f, const Columns& c);
+    void decide(Field& f);
+    void number(const Field& f);
+    [[nodiscard]] ParkedContact parked_from(const Columns& c, const ContactReader& reader, std::size_t pair,
+                                            std::int32_t live) const;
+
+    Material material_;
+    double speed_ = 0;    ///< engine's units
+    double gravity_ = 0;  ///< change of velocity per step
+
+    std::vector<std::uint8_t> held_;    ///< 1: frozen or asleep
+    std::vector<std::uint16_t> quiet_;  ///< steps for which a particle has been slow
+    std::vector<std::int32_t> awake_, awake_before_;
+    std::vector<ParkedContact> parked_;
+    std::int64_t sleepers_ = 0;
+    float overlap_ = 0;
+
+    // Of one rebuild.
+    std::int64_t steps_ = 0;
+    std::vector<std::uint8_t> pushed_;
+    std::vector<std::uint8_t> stirs_;    ///< layers that a particle keeps awake: none, those in reach, more
+    std::vector<std::uint8_t> stirred_;  ///< layers left when the motion of others arrives
+    std::vector<ParkedContact> before_;
+};
+
+}  // namespace grainsweep::dem::fast
