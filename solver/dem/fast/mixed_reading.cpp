@@ -1,19 +1,32 @@
 #include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 #include "solver/dem/fast/mixed_stepping.hpp"
 
 namespace grainsweep::dem::fast {
+
+namespace {
+
+/// Indices in order of id. Ids are dense but for those of particles gone, so that counting beats sorting.
+std::vector<std::int32_t> by_id(std::span<const std::int32_t> ids) {
+    constexpr std::int32_t none = -1;
+    const auto last = std::ranges::max_element(ids);
+    std::vector<std::int32_t> index(last == ids.end() ? 0 : static_cast<std::size_t>(*last) + 1, none);
+    for (std::size_t i = 0; i < ids.size(); ++i) index[static_cast<std::size_t>(ids[i])] = static_cast<std::int32_t>(i);
+    std::erase(index, none);
+    return index;
+}
+
+}  // namespace
 
 void MixedEngine::state(State& into) const {
     const auto n = size();
     into.id.resize(n);
     into.position.resize(n), into.velocity.resize(n), into.angular_velocity.resize(n);
     into.radius.resize(n), into.mobile.resize(n);
-    std::vector<std::int32_t> order(n);
-    for (std::size_t i = 0; i < n; ++i) order[i] = static_cast<std::int32_t>(i);
-    std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-        return columns_.id[static_cast<std::size_t>(a)] < columns_.id[static_cast<std::size_t>(b)];
-    });
+    const std::vector<std::int32_t> order = by_id({columns_.id.data(), n});
     const Scale& s = room_.scale;
     for (std::size_t k = 0; k < n; ++k) {
         const std::int32_t i = order[k];
