@@ -20,12 +20,13 @@
 #include "solver/particles/tpms_filling.hpp"
 #include "tests/support/peer_programs.hpp"
 #include "tests/support/process.hpp"
+#include "tests/support/tpms_cells.hpp"
 
 using namespace grainsweep;
 
 namespace {
 
-constexpr double diameter = 45e-6, time_step = 1e-6, shell_thickness = 2, end_time = 6.1;
+constexpr double diameter = test::cell_diameter, time_step = 1e-6, shell_thickness = 2, end_time = 6.1;
 
 double user_seconds() {
     rusage used{};
@@ -33,35 +34,11 @@ double user_seconds() {
     return static_cast<double>(used.ru_utime.tv_sec) + 1e-6 * static_cast<double>(used.ru_utime.tv_usec);
 }
 
-/// The scene's setup without any of its skips: every wall sphere is there.
-dem::Setup cell_of(const particles::TpmsFilling& filling, double edge, double cohesion) {
-    dem::Setup s;
-    for (std::size_t k = 0; k < 3; ++k) {
-        s.domain.low[k] = -2 * diameter;
-        s.domain.high[k] = (edge + 2) * diameter;
-    }
-    s.material.youngs_modulus = 2.11e6;
-    s.material.poisson_ratio = 0.3;
-    s.material.density = 7980;
-    s.material.restitution = 0.64;
-    s.material.friction = 0.5;
-    s.material.cohesion = cohesion;
-    s.gravity = {0, 0, -9.81 * 100 / edge};
-    s.time_step = time_step;
-    for (const auto* spheres : {&filling.mobile, &filling.wall})
-        for (const auto& x : *spheres)
-            s.spheres.push_back({{x[0] * diameter, x[1] * diameter, x[2] * diameter},
-                                 {},
-                                 {},
-                                 diameter / 2,
-                                 spheres == &filling.mobile});
-    return s;
-}
-
 void compare(const std::string& name, geometry::TpmsCell cell, const char* word, double cohesion, double edge,
              const particles::Packing& packing) {
     const geometry::TpmsShell shell(cell, +1, edge, shell_thickness);
-    const dem::Setup setup = cell_of(particles::fill_tpms(packing, shell, 0), edge, cohesion);
+    // every wall sphere is there
+    const dem::Setup setup = test::cell_of(particles::fill_tpms(packing, shell, 0), edge, cohesion, 0);
     const double gravity = 9.81 * 100 / edge;
     const auto steps = std::llround(std::ceil(end_time * std::sqrt(2 * edge * diameter / gravity) / time_step));
 

@@ -24,6 +24,7 @@
 #include "solver/particles/near_pairs.hpp"
 #include "solver/particles/tpms_filling.hpp"
 #include "solver/scenes/scene.hpp"
+#include "tests/support/tpms_cells.hpp"
 #include "tests/support/trade_off.hpp"
 
 using namespace grainsweep;
@@ -31,35 +32,13 @@ using dem::Method;
 
 namespace {
 
-constexpr double diameter = 45e-6;
+using test::cell_of;
+constexpr double diameter = test::cell_diameter;
 
 double processor_seconds() {
     timespec t{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
     return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-/// A P cell with the column stress of the full one. floor: how far below it the domain goes on, in edges.
-dem::Setup cell_of(const particles::TpmsFilling& filling, double edge, double cohesion, double floor) {
-    dem::Setup s;
-    for (std::size_t k = 0; k < 3; ++k) {
-        s.domain.low[k] = -(2 + (k == 2 ? floor * edge : 0)) * diameter;
-        s.domain.high[k] = (edge + 2) * diameter;
-    }
-    s.material.youngs_modulus = 2.11e6;
-    s.material.restitution = 0.64;
-    s.material.friction = 0.5;
-    s.material.cohesion = cohesion;
-    s.gravity = {0, 0, -9.81 * 100 / edge};
-    s.time_step = 1e-6;
-    for (const auto* spheres : {&filling.mobile, &filling.wall})
-        for (const auto& x : *spheres)
-            s.spheres.push_back({{x[0] * diameter, x[1] * diameter, x[2] * diameter},
-                                 {},
-                                 {},
-                                 diameter / 2,
-                                 spheres == &filling.mobile});
-    return s;
 }
 
 struct Run {

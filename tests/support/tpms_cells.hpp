@@ -1,0 +1,15 @@
+// The powder of Gupta, Ness & Haeri in a cell, as a setup of the engine without the scene around it.
+#pragma once
+
+#include "solver/dem/engine.hpp"
+#include "solver/particles/tpms_filling.hpp"
+
+namespace grainsweep::test {
+
+inline constexpr double cell_diameter = 45e-6;  ///< m
+
+/// Mobile and frozen spheres of `filling` in a cell of `edge` diameters with the column stress of the full one, gravity
+/// 9.81 x 100/edge, step 1 us; cohesion in J/m3. floor: how far below the cell the domain goes on, in edges.
+[[nodiscard]] dem::Setup cell_of(const particles::TpmsFilling& filling, double edge, double cohesion, double floor);
+
+}  // namespace grainsweep::test
