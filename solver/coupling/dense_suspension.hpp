@@ -40,8 +40,9 @@ public:
           flux_before_(source_),
           velocity_(source_),
           acceleration_(source_) {
-        solids_.place(cloud_.position);
+        solids_.start(cloud_.position);
         interaction_.settle(cloud_, walls_, solids_);
+        solids_.start(cloud_.position);
     }
 
     void step() {
@@ -55,11 +56,10 @@ public:
         const FaceVectors& flux = solids_.flux();
         space_.interstitial(velocity_, flux, solids_.fraction(), between_);
         flux_before_ = flux;
-        before_ = cloud_.position;
         interaction_.move(cloud_, motion_, walls_, solids_, feet_, Around{*this, s}, handed_);
         solids_.place(cloud_.position);
         interaction_.settle(cloud_, walls_, solids_);
-        solids_.carry(before_, cloud_.position, dt);
+        solids_.carry(dt);
     }
 
     /// Its velocity is the volume flux of fluid and particles together.
@@ -95,7 +95,7 @@ public:
             flow::take_bytes<double>(from, flux_before_[d].values());
         }
         interaction_.restore(from);
-        solids_.place(cloud_.position);
+        solids_.start(cloud_.position);
     }
 
 private:
@@ -175,7 +175,6 @@ private:
     FaceVectors velocity_, acceleration_;
     FaceVectors between_ = flow::face_vectors(fluid_.grid());  // velocity of the fluid between the particles
     std::vector<Footing<Kernel>> feet_;
-    std::vector<Vec3> before_;
 };
 
 }  // namespace grainsweep::coupling

@@ -49,8 +49,8 @@ std::array<flow::Edges, 3> frictionless_edges(flow::Sides sides) {
 }
 
 void smooth(flow::Field& field, const flow::Grid& grid, const flow::Edges& edges, int passes, AtWalls at_walls) {
-    // Row by row; along x the row is the line itself, else a line of rows is swept with the old values of the row
-    // before kept aside.
+    // Row by row; along x a copy of the row is read, else a line of rows is swept with the old values of the row before
+    // kept aside: no value waits for the one before it.
     const auto length = static_cast<std::size_t>(grid.cells(0)) + 2;
     std::vector<double> before(length);
     std::vector<double> beyond(length);
@@ -67,13 +67,11 @@ void smooth(flow::Field& field, const flow::Grid& grid, const flow::Edges& edges
             if (d == 0) {
                 each_line(field, grid, 0, [&](std::ptrdiff_t line) {
                     double* const v = field.data() + line;
-                    double previous = v[low_end];
-                    const double next_beyond = v[high_end];
-                    for (int m = first; m <= n; ++m) {
-                        const double here = v[m];
-                        v[m] = 0.25 * (previous + (m < n ? v[m + 1] : next_beyond)) + 0.5 * here;
-                        previous = here;
-                    }
+                    const double* const old = before.data();
+                    std::copy_n(v, length, before.begin());
+                    before[static_cast<std::size_t>(first - 1)] = v[low_end];
+                    before[static_cast<std::size_t>(n + 1)] = v[high_end];
+                    for (int m = first; m <= n; ++m) v[m] = 0.25 * (old[m - 1] + old[m + 1]) + 0.5 * old[m];
                 });
                 continue;
             }

@@ -97,7 +97,7 @@ private:
             temperature_.rest(solids);
             return;
         }
-        solids.mean(cloud.position, cloud.velocity, mean_velocity_);
+        solids.mean(cloud.velocity, mean_velocity_);
         straining_.measure(grid_, solids.fraction(), mean_velocity_, thinnest_);
         temperature_.advance(solids, straining_, dt);
         const flow::Field& fraction = solids.fraction();

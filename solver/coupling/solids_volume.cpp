@@ -35,23 +35,27 @@ SolidsVolume::SolidsVolume(const flow::Grid& grid, const flow::Sides& sides, dou
     });
 }
 
-AxisWeights<2> SolidsVolume::weights(int d, double x) const {
-    return Trilinear::across(grid_[d], edges_[at(d)].periodic, x, grid_[d].locate(x));
-}
-
 int SolidsVolume::inside(int d, int cell) const {
     const int n = grid_.cells(d);
     if (cell >= 1 && cell <= n) return cell;
     return edges_[at(d)].periodic ? (cell - 1 + 4 * n) % n + 1 : std::clamp(cell, 1, n);
 }
 
+void SolidsVolume::start(std::span<const Vec3> positions) {
+    place(positions);
+    stood_ = stand_;
+}
+
 void SolidsVolume::place(std::span<const Vec3> positions) {
+    stand_.position.assign(positions.begin(), positions.end());
+    stand_.weights.clear();
     std::fill(fraction_.values().begin(), fraction_.values().end(), 0.0);
     for (const Vec3& x : positions) {
-        std::array<AxisWeights<2>, 3> w;
+        std::array<AxisWeights<2>, 3>& w = stand_.weights.emplace_back();
         std::array<std::array<std::ptrdiff_t, 2>, 3> cell{};  // offsets
         for (int d = 0; d < 3; ++d) {
-            w[at(d)] = weights(d, x[at(d)]);
+            const double along = x[at(d)];
+            w[at(d)] = Trilinear::across(grid_[d], edges_[at(d)].periodic, along, grid_[d].locate(along));
             for (int a = 0; a < 2; ++a) cell[at(d)][at(a)] = inside(d, w[at(d)].first + a) * fraction_.stride(d);
         }
         double* const fraction = fraction_.data();
@@ -66,20 +70,19 @@ void SolidsVolume::place(std::span<const Vec3> positions) {
     fill_ghosts(fraction_, grid_, edges_);
 }
 
-void SolidsVolume::mean(std::span<const Vec3> positions, std::span<const Vec3> property,
-                        std::array<flow::Field, 3>& into) {
+void SolidsVolume::mean(std::span<const Vec3> property, std::array<flow::Field, 3>& into) {
     for (auto& field : into) std::fill(field.values().begin(), field.values().end(), 0.0);
-    for (std::size_t p = 0; p < positions.size(); ++p) {
-        std::array<AxisWeights<2>, 3> w;
-        for (int d = 0; d < 3; ++d) w[at(d)] = weights(d, positions[p][at(d)]);
-        for (int c = 0; c < 2; ++c)
-            for (int b = 0; b < 2; ++b)
-                for (int a = 0; a < 2; ++a) {
-                    const double share =
-                        particle_volume_ * (w[2].weight[at(c)] * w[1].weight[at(b)] * w[0].weight[at(a)]);
-                    const auto cell = fraction_.index(inside(0, w[0].first + a), inside(1, w[1].first + b),
-                                                      inside(2, w[2].first + c));
-                    for (std::size_t d = 0; d < 3; ++d) into[d].data()[cell] += share * property[p][d];
+    for (std::size_t p = 0; p < property.size(); ++p) {
+        const std::array<AxisWeights<2>, 3>& w = stand_.weights[p];
+        std::array<std::array<std::ptrdiff_t, 2>, 3> cell{};  // offsets
+        for (int d = 0; d < 3; ++d)
+            for (int a = 0; a < 2; ++a) cell[at(d)][at(a)] = inside(d, w[at(d)].first + a) * fraction_.stride(d);
+        for (std::size_t c = 0; c < 2; ++c)
+            for (std::size_t b = 0; b < 2; ++b)
+                for (std::size_t a = 0; a < 2; ++a) {
+                    const double share = particle_volume_ * (w[2].weight[c] * w[1].weight[b] * w[0].weight[a]);
+                    const auto to = cell[0][a] + cell[1][b] + cell[2][c];
+                    for (std::size_t d = 0; d < 3; ++d) into[d].data()[to] += share * property[p][d];
                 }
     }
     for (auto& field : into) {
@@ -93,14 +96,16 @@ void SolidsVolume::mean(std::span<const Vec3> positions, std::span<const Vec3> p
     }
 }
 
-void SolidsVolume::fill(int d, double before, double after, Shares& shares) const {
+void SolidsVolume::fill(int d, std::size_t p, Shares& shares) const {
+    const double before = stood_.position[p][at(d)];
+    const double after = stand_.position[p][at(d)];
     const bool periodic = edges_[at(d)].periodic;
     int periods = 0;
     if (periodic) {  // the image of `after` nearest to `before`
         periods = static_cast<int>(std::round((before - after) / grid_[d].length()));
     }
-    AxisWeights<2> from = weights(d, before);
-    AxisWeights<2> to = weights(d, after);
+    AxisWeights<2> from = stood_.weights[p][at(d)];
+    AxisWeights<2> to = stand_.weights[p][at(d)];
     if (!periodic) {  // all of a share beyond a wall belongs to the cell at the wall
         const int n = grid_.cells(d);
         for (AxisWeights<2>* w : {&from, &to}) {
@@ -147,16 +152,17 @@ void SolidsVolume::carry_along(const std::array<Shares, 3>& shares, double scale
         }
 }
 
-void SolidsVolume::carry(std::span<const Vec3> before, std::span<const Vec3> after, double dt) {
+void SolidsVolume::carry(double dt) {
     FaceDeposit::clear(flux_);
     std::array<Shares, 3> shares;
-    for (std::size_t p = 0; p < before.size(); ++p) {
-        for (int d = 0; d < 3; ++d) fill(d, before[p][at(d)], after[p][at(d)], shares[at(d)]);
+    for (std::size_t p = 0; p < stand_.position.size(); ++p) {
+        for (int d = 0; d < 3; ++d) fill(d, p, shares[at(d)]);
         const double scale = particle_volume_ / dt;
         carry_along<0>(shares, scale);
         carry_along<1>(shares, scale);
         carry_along<2>(shares, scale);
     }
+    stood_ = stand_;
     for (int d = 0; d < 3; ++d) {
         flow::Field& field = flux_[at(d)];
         smooth(field, grid_, face_edges_[at(d)], passes_, AtWalls::taken);

@@ -18,13 +18,16 @@ class SolidsVolume {
 public:
     SolidsVolume(const flow::Grid& grid, const flow::Sides& sides, double particle_volume, int passes);
 
-    /// phi_p of particles standing at `positions`, ghosts filled.
+    /// phi_p of particles that start from `positions` (inside the box), ghosts filled.
+    void start(std::span<const Vec3> positions);
+    /// phi_p of the same particles now standing at `positions`; the last word before `carry` counts.
     void place(std::span<const Vec3> positions);
-    /// j of particles that went from `before` to `after` (inside the box; shortest way along periodic axes) in dt.
-    void carry(std::span<const Vec3> before, std::span<const Vec3> after, double dt);
+    /// j of the particles that went in dt from where they started or were last carried to, to where they stand
+    /// (the shortest way along periodic axes).
+    void carry(double dt);
     /// Mean of a particle property over the particles of a cell, weighted like phi_p: sum v_p w q / sum v_p w;
     /// 0 where there are none. Ghosts filled with zero gradient.
-    void mean(std::span<const Vec3> positions, std::span<const Vec3> property, std::array<flow::Field, 3>& into);
+    void mean(std::span<const Vec3> property, std::array<flow::Field, 3>& into);
 
     [[nodiscard]] const flow::Field& fraction() const { return fraction_; }
     [[nodiscard]] const flow::FaceVectors& flux() const { return flux_; }
@@ -34,15 +37,19 @@ public:
     [[nodiscard]] double largest_fraction() const;
 
 private:
-    /// Shares of one particle among the cells of one axis, from index `first`.
+    // Where particles stand. Weights of two neighbouring cells per axis, `first` and the one after, the first in
+    // 0 ... n+1 (folded later): found once, though three readers ask.
+    struct Standing {
+        std::vector<Vec3> position;
+        std::vector<std::array<AxisWeights<2>, 3>> weights;
+    };
+    // Shares of one particle among the cells of one axis, from index `first`.
     struct Shares {
         int first = 0;
         std::vector<double> before, change;
     };
-    // Weights of two neighbouring cells, `first` and the one after, the first in 0 ... n+1 (folded later).
-    [[nodiscard]] AxisWeights<2> weights(int d, double x) const;
     [[nodiscard]] int inside(int d, int cell) const;  // folded at walls, wrapped along periodic axes
-    void fill(int d, double before, double after, Shares& shares) const;
+    void fill(int d, std::size_t p, Shares& shares) const;
     template <int D>
     void carry_along(const std::array<Shares, 3>& shares, double scale);
 
@@ -51,6 +58,7 @@ private:
     std::array<flow::Edges, 3> face_edges_;
     double particle_volume_;
     int passes_;
+    Standing stood_, stand_;  // when last carried; now
     flow::Field fraction_, inverse_volume_;
     std::vector<double> inverse_width_x_;
     flow::FaceVectors flux_;

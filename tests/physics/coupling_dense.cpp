@@ -53,10 +53,10 @@ TEST(SolidsVolume, IsConservedInEveryCellToRoundOff) {
                 after.push_back(y);
             }
             const double dt = 1e-3;
-            solids.place(before);
+            solids.start(before);
             const flow::Field old = solids.fraction();
-            solids.carry(before, after, dt);
             solids.place(after);
+            solids.carry(dt);
             flow::FaceVectors flux = solids.flux();
             for (int d = 0; d < 3; ++d)
                 fill_ghosts(flux[static_cast<std::size_t>(d)], grid, flow::velocity_edges(sides, d));
@@ -210,7 +210,7 @@ TEST(SolidsPressure, KeepsThePackingLimit) {
         cloud.velocity.push_back({});
     }
     SolidsVolume crowded(setting.grid, closed, sphere.volume(), 1);
-    crowded.place(cloud.position);
+    crowded.start(cloud.position);
     ASSERT_GT(crowded.largest_fraction(), 2);
     auto together = setting.together<Ddpm>({}, cloud);
     for (int s = 0; s < 60; ++s) {
