@@ -1,11 +1,11 @@
 #include "solver/particles/reach.hpp"
 
 #include <algorithm>
-#include <bitset>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <utility>
 
 namespace grainsweep::particles {
 namespace {
@@ -15,6 +15,40 @@ using Cube = std::array<std::int32_t, 3>;  // coordinates in cubes of edge h
 
 constexpr std::int32_t per_diameter = 8;
 constexpr double half_diagonal = 0.5 * std::numbers::sqrt3 / per_diameter;
+
+/// 8 x 8 x 8 cubes: a word for each z, a byte of it for each y, a bit for each x.
+using Cubes = std::array<std::uint64_t, 8>;
+
+constexpr std::uint64_t low_x = 0x0101010101010101, high_x = low_x << 7U;
+constexpr std::uint64_t low_y = 0xff, high_y = low_y << 56U;
+
+/// The cubes on one face of a block. A face is an axis and a side, -1 or +1.
+Cubes face(std::size_t axis, std::int32_t side) {
+    Cubes cubes{};
+    if (axis == 2) {
+        cubes[side > 0 ? 7 : 0] = ~std::uint64_t{0};
+    } else {
+        const std::uint64_t low = axis == 0 ? low_x : low_y, high = axis == 0 ? high_x : high_y;
+        cubes.fill(side > 0 ? high : low);
+    }
+    return cubes;
+}
+
+/// The water on that face, where it stands in the block beyond.
+Cubes across(const Cubes& water, std::size_t axis, std::int32_t side) {
+    Cubes beyond{};
+    if (axis == 2) {
+        beyond[side > 0 ? 0 : 7] = water[side > 0 ? 7 : 0];
+        return beyond;
+    }
+    const unsigned step = axis == 0 ? 7 : 56;
+    const auto edge = face(axis, side);
+    for (std::size_t z = 0; z < 8; ++z) {
+        const std::uint64_t at_edge = water[z] & edge[z];
+        beyond[z] = side > 0 ? at_edge >> step : at_edge << step;
+    }
+    return beyond;
+}
 
 /// Cubes in blocks of one diameter; only blocks next to frozen spheres are stored, the rest is open.
 class OpenSpace {
@@ -26,18 +60,26 @@ public:
 
 private:
     struct Block {
-        std::bitset<512> shut, flooded;
+        Cube at;  ///< coordinates in blocks
+        Cubes shut{}, flooded{};
+        bool waits = false;  ///< is in front_
     };
 
     [[nodiscard]] Cube cube_of(const Point& x) const;
     [[nodiscard]] std::int64_t block_number(const Cube& c) const;  // negative: outside the box
-    [[nodiscard]] static std::size_t place(const Cube& c) {
-        return static_cast<std::size_t>(((c[2] & 7) * 8 + (c[1] & 7)) * 8 + (c[0] & 7));
+    [[nodiscard]] static std::size_t word(const Cube& c) { return static_cast<std::size_t>(c[2] & 7); }
+    [[nodiscard]] static std::uint64_t bit(const Cube& c) {
+        return std::uint64_t{1} << static_cast<unsigned>((c[1] & 7) * 8 + (c[0] & 7));
     }
     [[nodiscard]] const Block* block(const Cube& c) const;
+    [[nodiscard]] Block* block(const Cube& c) { return const_cast<Block*>(std::as_const(*this).block(c)); }
     void store_blocks_around(const Point& centre);
     void shut_cubes_within(const Point& centre, double distance);
-    void flood_from(const Cube& c);
+    void seed_faces(Block& home);
+    static void spread_inside(Block& home);
+    void spread_beyond(const Block& home);
+    /// Floods what of `water` is not shut; the block waits for its turn if that was new.
+    void wet(Block& home, const Cubes& water);
     /// Calls visit(cube) for the cubes whose centre is nearer than distance, until it returns true.
     template <class Visit>
     bool any_cube_within(const Point& centre, double distance, Visit&& visit) const;
@@ -46,7 +88,7 @@ private:
     Cube blocks_{};
     std::vector<std::int32_t> stored_;  // block -> its place in store_, or -1
     std::vector<Block> store_;
-    std::vector<Cube> front_;
+    std::vector<std::int32_t> front_;  // blocks whose water may spread
 };
 
 OpenSpace::OpenSpace(std::span<const Point> frozen, double closest) {
@@ -97,7 +139,7 @@ void OpenSpace::store_blocks_around(const Point& centre) {
                 const std::int64_t number = block_number({middle[0] + dx, middle[1] + dy, middle[2] + dz});
                 if (number < 0 || stored_[static_cast<std::size_t>(number)] >= 0) continue;
                 stored_[static_cast<std::size_t>(number)] = static_cast<std::int32_t>(store_.size());
-                store_.emplace_back();
+                store_.push_back({.at = {(middle[0] + dx) >> 3, (middle[1] + dy) >> 3, (middle[2] + dz) >> 3}});
             }
 }
 
@@ -118,63 +160,80 @@ bool OpenSpace::any_cube_within(const Point& centre, double distance, Visit&& vi
 
 void OpenSpace::shut_cubes_within(const Point& centre, double distance) {
     any_cube_within(centre, distance, [this](const Cube& c) {
-        const auto number = static_cast<std::size_t>(block_number(c));  // stored: nearer than a block's edge
-        store_[static_cast<std::size_t>(stored_[number])].shut.set(place(c));
+        block(c)->shut[word(c)] |= bit(c);  // stored: nearer than a block's edge
         return false;
     });
 }
 
-void OpenSpace::flood_from(const Cube& c) {
-    const std::int64_t number = block_number(c);
-    if (number < 0 || stored_[static_cast<std::size_t>(number)] < 0) return;
-    Block& home = store_[static_cast<std::size_t>(stored_[static_cast<std::size_t>(number)])];
-    const std::size_t here = place(c);
-    if (home.shut.test(here) || home.flooded.test(here)) return;
-    home.flooded.set(here);
-    front_.push_back(c);
+void OpenSpace::wet(Block& home, const Cubes& water) {
+    std::uint64_t fresh = 0;
+    for (std::size_t z = 0; z < 8; ++z) {
+        const std::uint64_t here = water[z] & ~home.shut[z] & ~home.flooded[z];
+        home.flooded[z] |= here;
+        fresh |= here;
+    }
+    if (fresh == 0 || home.waits) return;
+    home.waits = true;
+    front_.push_back(static_cast<std::int32_t>(&home - store_.data()));
+}
+
+/// All that a block's water reaches without leaving it, a plane of cubes at a time.
+void OpenSpace::spread_inside(Block& home) {
+    Cubes& water = home.flooded;
+    for (bool rises = true; rises;) {
+        rises = false;
+        for (std::size_t z = 0; z < 8; ++z) {
+            const std::uint64_t w = water[z];
+            std::uint64_t next = w | ((w & ~high_x) << 1U) | ((w & ~low_x) >> 1U) | (w << 8U) | (w >> 8U);
+            if (z > 0) next |= water[z - 1];
+            if (z < 7) next |= water[z + 1];
+            next &= ~home.shut[z];
+            rises = rises || next != w;
+            water[z] = next;
+        }
+    }
+}
+
+void OpenSpace::spread_beyond(const Block& home) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        for (const std::int32_t side : {-1, 1}) {
+            Cube corner{8 * home.at[0], 8 * home.at[1], 8 * home.at[2]};
+            corner[axis] += side * 8;
+            if (Block* next = block(corner)) wet(*next, across(home.flooded, axis, side));
+        }
+}
+
+/// Where a block borders on one not stored, water comes in.
+void OpenSpace::seed_faces(Block& home) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        for (const std::int32_t side : {-1, 1}) {
+            Cube beyond{8 * home.at[0], 8 * home.at[1], 8 * home.at[2]};
+            beyond[axis] += side * 8;
+            if (block(beyond) == nullptr) wet(home, face(axis, side));
+        }
 }
 
 void OpenSpace::flood(std::span<const Point> mobile) {
-    for (const Point& x : mobile) flood_from(cube_of(x));
-    // Every cube of a stored block that borders on one not stored.
-    const auto seed = [this](Cube corner, std::size_t axis, std::int32_t side) {
-        Cube beyond = corner;
-        beyond[axis] += side * 8;
-        if (block(beyond) != nullptr) return;
-        corner[axis] += side > 0 ? 7 : 0;
-        const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
-        for (std::int32_t i = 0; i < 8; ++i)
-            for (std::int32_t j = 0; j < 8; ++j) {
-                Cube c = corner;
-                c[u] += i;
-                c[v] += j;
-                flood_from(c);
-            }
-    };
-    for (std::int32_t z = 0; z < blocks_[2]; ++z)
-        for (std::int32_t y = 0; y < blocks_[1]; ++y)
-            for (std::int32_t x = 0; x < blocks_[0]; ++x) {
-                const Cube corner = {8 * x, 8 * y, 8 * z};
-                if (block(corner) == nullptr) continue;
-                for (std::size_t axis = 0; axis < 3; ++axis)
-                    for (const std::int32_t side : {-1, 1}) seed(corner, axis, side);
-            }
+    for (const Point& x : mobile) {
+        const Cube c = cube_of(x);
+        Cubes drop{};
+        drop[word(c)] = bit(c);
+        if (Block* home = block(c)) wet(*home, drop);
+    }
+    for (Block& home : store_) seed_faces(home);
     while (!front_.empty()) {
-        const Cube c = front_.back();
+        Block& home = store_[static_cast<std::size_t>(front_.back())];
         front_.pop_back();
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            for (const std::int32_t side : {-1, 1}) {
-                Cube next = c;
-                next[axis] += side;
-                flood_from(next);
-            }
+        home.waits = false;
+        spread_inside(home);
+        spread_beyond(home);
     }
 }
 
 bool OpenSpace::floods_within(const Point& centre, double distance) const {
     return any_cube_within(centre, distance + half_diagonal, [this](const Cube& c) {
         const Block* home = block(c);
-        return home == nullptr || home->flooded.test(place(c));
+        return home == nullptr || (home->flooded[word(c)] & bit(c)) != 0;
     });
 }
 

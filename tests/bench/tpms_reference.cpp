@@ -1,6 +1,6 @@
 // Retention of a TPMS cell against a curve of another program from the same packing (the tpms reference).
 //
-//   bench_tpms_reference PACKING.csv CURVE.csv EDGE COHESION [CELL] [PRECISION] [SEED]
+//   bench_tpms_reference PACKING.csv CURVE.csv EDGE COHESION [CELL] [PRECISION] [SEED] [STEP]
 //
 // PACKING: x,y,z in diameters (numpy.load("packings/pack_n20_s1.npz")["x"] written as text, all digits), or
 // "generated" with a seed. CURVE: curves/TAG.csv. Gravity is 9.81 x 100/EDGE (the reference's scaling S2), the
@@ -33,7 +33,8 @@ double at(const std::vector<Sample>& series, double t) {
 
 int main(int argc, char** argv) {
     if (argc < 5) {
-        std::fprintf(stderr, "bench_tpms_reference PACKING.csv CURVE.csv EDGE COHESION [CELL] [PRECISION] [SEED]\n");
+        std::fprintf(stderr,
+                     "bench_tpms_reference PACKING.csv CURVE.csv EDGE COHESION [CELL] [PRECISION] [SEED] [STEP]\n");
         return 2;
     }
     const std::string packing = argv[1];
@@ -54,6 +55,7 @@ int main(int argc, char** argv) {
     if (argc > 5) inputs["cell"] = std::string(argv[5]);
     inputs["precision"] = std::string(argc > 6 ? argv[6] : "double");
     if (argc > 7) inputs["packing_seed"] = std::int64_t{std::stoll(argv[7])};
+    if (argc > 8) inputs["time_step"] = std::stod(argv[8]);
     inputs["end_time"] = times.back();
     inputs["settle_rule"] = std::string("none");
 

@@ -92,7 +92,7 @@ private:
 
 /// What must agree between the engine that wrote and the one that reads.
 struct Seal {
-    std::uint64_t format = 0x67737765657034;  // changes with the layout of what follows
+    std::uint64_t format = 0x67737765657035;  // changes with the layout of what follows
     std::int32_t width = 0;
     Needs needs{};
     Constants constants{};

@@ -15,17 +15,17 @@ constexpr Kernels compiled{width, sweep<Law>, advance<Law>, walls<Law>, search<L
 
 inline const Kernels& choose(const Needs& n) {
     using enum Needs::Cohesion;
+    if (n.holds() && n.friction && !n.unequal) {
+        if (n.cohesion == none) return compiled<Law<false, true, true, none, false, true>>;
+        if (n.cohesion == lens) return compiled<Law<false, true, true, lens, false, true>>;
+    }
     if (n.resting) {
         if (n.rolling) return compiled<Law<true, true, true, general, true, true>>;
-        if (n.friction && n.cohesion == none && !n.unequal) return compiled<Law<false, true, true, none, false, true>>;
-        if (n.friction && n.cohesion == lens && !n.unequal) return compiled<Law<false, true, true, lens, false, true>>;
         return compiled<Law<true, true, true, general, false, true>>;
     }
     if (n.rolling) return compiled<Law<true, true, true, general, true>>;
-    if (n.friction && n.cohesion == none) {
-        if (n.unequal) return compiled<Law<true, true, true, none>>;
-        return n.frozen ? compiled<Law<false, true, true, none>> : compiled<Law<false, false, true, none>>;
-    }
+    if (n.friction && n.cohesion == none)
+        return n.unequal ? compiled<Law<true, true, true, none>> : compiled<Law<false, false, true, none>>;
     if (n.friction && n.cohesion == lens && !n.unequal) return compiled<Law<false, true, true, lens>>;
     if (!n.friction && n.cohesion == none && !n.unequal) return compiled<Law<false, true, false, none>>;
     return compiled<Law<true, true, true, general>>;

@@ -18,7 +18,7 @@ namespace {
 using Cohesion = Needs::Cohesion;
 
 /// Which laws a compiled kernel contains.
-template <bool Unequal, bool Frozen, bool Friction, Cohesion Neck, bool Rolling = false, bool Resting = false>
+template <bool Unequal, bool Frozen, bool Friction, Cohesion Neck, bool Rolling = false, bool Held = false>
 struct Law {
     static constexpr bool unequal = Unequal;
     static constexpr bool frozen = Frozen;
@@ -26,7 +26,7 @@ struct Law {
     static constexpr Cohesion neck = Neck;
     static constexpr bool cohesive = Neck != Cohesion::none;
     static constexpr bool rolling = Rolling;
-    static constexpr bool resting = Resting;  ///< some particles are held (Field)
+    static constexpr bool held = Held;  ///< some particles are not advanced: Field::awake lists the others
     static constexpr int histories = Rolling ? 6 : 3;
     static_assert(!Rolling || (Unequal && Friction), "rolling resistance is part of the general kernel only");
 };

@@ -130,7 +130,7 @@ struct Field {
     Residual* residuals;
     Force* forces;
     /// Particles that are advanced, in order, and how many of them come before each; on the others, frozen or asleep,
-    /// what acts adds up. Null, and never read, where nobody may rest.
+    /// what acts adds up. Null, and never read, where nobody is held.
     const std::int32_t* awake;
     const std::int32_t* awake_before;  ///< count+1
 
@@ -198,6 +198,8 @@ struct Needs {
     enum class Cohesion : std::int32_t { none, lens, general } cohesion;  ///< lens: sjkr, friction blind to it
     bool rolling;
     bool resting;  ///< particles at rest may fall asleep
+    /// Whether some particles are not advanced.
+    [[nodiscard]] constexpr bool holds() const { return frozen || resting; }
 };
 
 [[nodiscard]] const Kernels& baseline_kernels(const Needs&);

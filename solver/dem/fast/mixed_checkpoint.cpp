@@ -77,7 +77,7 @@ void MixedEngine::restore(std::span<const std::byte> from) {
     columns_.hold_pairs(static_cast<std::size_t>(std::max(field_.outer_count, field_.inner_count)) + spare);
     columns_.hold_wall_contacts(size());
     columns_.bind(field_);
-    resting_.bind(field_);
+    list_awake();
     place_walls(field_, walls_, room_, wall_time());
     if (shaken_) shake();
 }

@@ -68,6 +68,7 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
         rebuild(field_, columns_, *kernels_, room_, removed, needs_.resting ? &resting_ : nullptr, drift_.steps);
         columns_.forces.clear(size());  // what waited there belonged to the old order
         if (field_.count < before) watch_.forget_balance();
+        list_awake();
         drift_.outer = 0;
         drift_.steps = 0;
         mobile_ = 0;
@@ -78,6 +79,10 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
         std::clamp(std::sqrt(inner_balance * drift_.last_step), inner_skin_least, static_cast<double>(room_.skin)));
     refresh(field_, columns_, *kernels_, inner_skin_, rebuilt);
     drift_.inner = 0;
+}
+
+void MixedEngine::list_awake() {
+    if (needs_.holds()) columns_.list_awake(field_, [this](std::int32_t i) { return is_frozen(i) || is_asleep(i); });
 }
 
 /// Books the displacement of the step just made.

@@ -67,6 +67,7 @@ private:
     void check_energy();
     void account_travel();
     void make_lists(std::span<const std::int32_t> removed = {});
+    void list_awake();
     void full_step_velocities();
     void restart_forces(std::span<const std::int32_t> removed = {});
     void shake();
@@ -78,8 +79,9 @@ private:
     }
     /// Of all pairs, over the smaller diameter; those that wait keep theirs.
     [[nodiscard]] float overlap() const { return std::max(tally_.overlap, resting_.overlap()); }
+    [[nodiscard]] bool is_frozen(std::int32_t particle) const { return !(field_.records[particle].inverse_mass > 0); }
     [[nodiscard]] bool is_asleep(std::int32_t particle) const {
-        return needs_.resting && resting_.holds(particle) && field_.records[particle].inverse_mass > 0;
+        return needs_.resting && resting_.holds(particle) && !is_frozen(particle);
     }
     [[nodiscard]] bool too_deep() const { return tally_.overlap > sound_.pair || tally_.wall_overlap > sound_.wall; }
     template <class Self, class Archive>

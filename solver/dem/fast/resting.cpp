@@ -61,11 +61,6 @@ void Resting::wake_all(const Field& f) {
     std::ranges::fill(quiet_, std::uint16_t{0});
 }
 
-void Resting::bind(Field& f) const {
-    f.awake = awake_.data();
-    f.awake_before = awake_before_.data();
-}
-
 void Resting::weigh(const Field& f, std::int64_t steps) {
     steps_ = steps;
     const auto n = static_cast<std::size_t>(f.count);
@@ -161,17 +156,6 @@ void Resting::decide(Field& f) {
     }
 }
 
-/// Lists who is advanced.
-void Resting::number(const Field& f) {
-    awake_.clear();
-    awake_before_.clear();
-    for (std::int32_t i = 0; i < f.count; ++i) {
-        awake_before_.push_back(static_cast<std::int32_t>(awake_.size()));
-        if (!holds(i)) awake_.push_back(i);
-    }
-    awake_before_.push_back(static_cast<std::int32_t>(awake_.size()));
-}
-
 /// The contact that owns an outer pair.
 ParkedContact Resting::parked_from(const Columns& c, const ContactReader& reader, std::size_t pair,
                                    std::int32_t live) const {
@@ -193,8 +177,6 @@ void Resting::choose(Field& f, Columns& c, const Room& room, std::int32_t live) 
     observe(f);
     spread(f, c);
     decide(f);
-    number(f);
-    bind(f);
     const ContactReader reader(material_, room, f, c.id.data(), {}, 1);
     before_.swap(parked_);
     parked_.clear();

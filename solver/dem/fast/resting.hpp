@@ -38,9 +38,6 @@ public:
     [[nodiscard]] bool holds(std::int32_t particle) const { return held_[static_cast<std::size_t>(particle)] != 0; }
     /// Nobody sleeps from the next rebuild on.
     void wake_all(const Field& f);
-    /// Points the field at the particles that are advanced.
-    void bind(Field& f) const;
-
     /// The contacts that wait, by index of the records.
     [[nodiscard]] std::span<const ParkedContact> parked() const { return parked_; }
     [[nodiscard]] std::int64_t sleepers() const { return sleepers_; }
@@ -61,8 +58,6 @@ public:
     static void pass(auto& self, Archive& archive) {
         archive.list(self.held_);
         archive.list(self.quiet_);
-        archive.list(self.awake_);
-        archive.list(self.awake_before_);
         archive.list(self.parked_);
         archive.value(self.sleepers_);
         archive.value(self.overlap_);
@@ -72,7 +67,6 @@ private:
     void observe(const Field& f);
     void spread(const Field& f, const Columns& c);
     void decide(Field& f);
-    void number(const Field& f);
     [[nodiscard]] ParkedContact parked_from(const Columns& c, const ContactReader& reader, std::size_t pair,
                                             std::int32_t live) const;
 
@@ -82,7 +76,6 @@ private:
 
     std::vector<std::uint8_t> held_;    ///< 1: frozen or asleep
     std::vector<std::uint16_t> quiet_;  ///< steps for which a particle has been slow
-    std::vector<std::int32_t> awake_, awake_before_;
     std::vector<ParkedContact> parked_;
     std::int64_t sleepers_ = 0;
     float overlap_ = 0;

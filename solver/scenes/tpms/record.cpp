@@ -36,7 +36,8 @@ void TpmsRecord::add(const Moment& now) {
 void TpmsRecord::add(std::span<const dem::ContactForce> contacts, std::int64_t step, bool histograms) {
     std::vector<double> overlaps, forces;
     for (const auto& contact : contacts) {
-        const double force = std::hypot(contact.normal_force, geometry::norm(contact.tangential_force));
+        const double force = std::sqrt(contact.normal_force * contact.normal_force +
+                                       geometry::dot(contact.tangential_force, contact.tangential_force));
         max_force_ = std::max(max_force_, force / question_->standard_weight());
         if (!histograms) continue;
         overlaps.push_back(contact.overlap / question_->diameter);
