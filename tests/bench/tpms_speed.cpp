@@ -6,9 +6,9 @@
 //              names the work with and without the skip, and how far the answers differ (tests prove the first three
 //              to the last bit; powder at rest is skipped here with a rest speed of 0.001, by default it is not)
 //   skin       cost of the neighbour skins, mixed precision; a list misses no contact whatever its skin
-//   accuracy   retention of a P cell at 1 t*, over packings: steps, precisions, settle rule, against a step a quarter
-//              of the study's in double precision from the same packings; the standard error of the difference beside
-//              it
+//   accuracy   a P cell over packings: retention at 1 t* of steps and precisions, and, jammed by cohesion, share of the
+//              powder at rest and retention at 3 t*; against a step a quarter of the study's in double precision
+//              (jammed: mixed) from the same packings, the standard error of the difference beside it
 //
 // Cost is processor time of this thread. One JSON line per figure.
 #include <ctime>
@@ -147,32 +147,39 @@ void skins(double edge) {
     }
 }
 
-double retention_at(const Observations& answer, double t) {
-    return std::ranges::lower_bound(answer.series.at("retention_series"), t - 0.009, {}, &Sample::time)->value;
+double sample_at(const Observations& answer, const char* series, double t) {
+    return std::ranges::lower_bound(answer.series.at(series), t - 0.009, {}, &Sample::time)->value;
 }
 
-void accuracy(double edge, int seeds) {
-    struct Numerics {
-        const char* name;
-        double step;
-        const char* precision;
-    };
-    const std::vector<Numerics> all = {{"reference", 2.5e-7, "double"},      {"step 0.25 us", 2.5e-7, "mixed"},
-                                       {"step 0.5 us", 5e-7, "mixed"},       {"step 1 us", 1e-6, "mixed"},
-                                       {"step 1 us double", 1e-6, "double"}, {"step 2 us", 2e-6, "mixed"},
-                                       {"step 3 us", 3e-6, "mixed"},         {"step 4 us", 4e-6, "mixed"}};
-    std::vector<std::vector<double>> retention(all.size());
+struct Numerics {
+    const char* name;
+    double step;
+    const char* precision;
+};
+
+/// A series of the answer at a time, over the settings, the first of which is the reference.
+struct Measured {
+    const char* name;
+    const char* series;
+    double t_star;
+    double cohesion;
+};
+
+void accuracy(double edge, int seeds, const Measured& measured, const std::vector<Numerics>& all) {
+    std::vector<std::vector<double>> found(all.size());
     std::vector<test::Setting> settings;
     for (std::size_t k = 0; k < all.size(); ++k) {
         test::Setting s;
         s.scene = "tpms_discharge";
         s.name = all[k].name;
-        s.measured = "retention at 1 t*";
+        s.measured = measured.name;
         s.is_reference = k == 0;
         for (int seed = 1; seed <= seeds; ++seed) {
             Inputs inputs = cell_inputs(edge);
             inputs["packing_seed"] = std::int64_t{seed};
-            inputs["end_time"] = 1.05;
+            inputs["end_time"] = measured.t_star + 0.05;
+            inputs["settle_rule"] = std::string("none");
+            inputs["cohesion"] = measured.cohesion;
             inputs["time_step"] = all[k].step;
             inputs["precision"] = std::string(all[k].precision);
             double seconds = 0, steps = 0;
@@ -180,14 +187,14 @@ void accuracy(double edge, int seeds) {
             const auto answer = answer_of(inputs, seconds, steps, fault);
             s.cost += seconds / seeds;
             s.unstable = s.unstable || !fault.empty();
-            if (fault.empty()) retention[k].push_back(retention_at(answer, 1));
+            if (fault.empty()) found[k].push_back(sample_at(answer, measured.series, measured.t_star));
         }
         if (k > 0 && !s.unstable) {
             double sum = 0, square = 0, reference = 0;
             const double n = seeds;
-            for (std::size_t i = 0; i < retention[k].size(); ++i) {
-                const double difference = retention[k][i] - retention[0][i];
-                sum += difference, square += difference * difference, reference += retention[0][i];
+            for (std::size_t i = 0; i < found[k].size(); ++i) {
+                const double difference = found[k][i] - found[0][i];
+                sum += difference, square += difference * difference, reference += found[0][i];
             }
             s.error = sum / reference;
             s.uncertainty = std::sqrt(std::max(0.0, square - sum * sum / n) / (n - 1) / n) / (reference / n);
@@ -196,6 +203,26 @@ void accuracy(double edge, int seeds) {
     }
     test::mark_dominated(settings);
     for (const auto& s : settings) std::printf("%s\n", test::json_line(s).c_str());
+    std::fflush(stdout);
+}
+
+void accuracy(double edge, int seeds) {
+    accuracy(edge, seeds, {"retention at 1 t*", "retention_series", 1, 0},
+             {{"reference", 2.5e-7, "double"},
+              {"step 0.25 us", 2.5e-7, "mixed"},
+              {"step 0.5 us", 5e-7, "mixed"},
+              {"step 1 us", 1e-6, "mixed"},
+              {"step 1 us double", 1e-6, "double"},
+              {"step 2 us", 2e-6, "mixed"},
+              {"step 3 us", 3e-6, "mixed"},
+              {"step 4 us", 4e-6, "mixed"}});
+    const std::vector<Numerics> steps = {{"reference", 2.5e-7, "mixed"},
+                                         {"step 0.5 us", 5e-7, "mixed"},
+                                         {"step 1 us", 1e-6, "mixed"},
+                                         {"step 2 us", 2e-6, "mixed"},
+                                         {"step 3 us", 3e-6, "mixed"}};
+    accuracy(edge, seeds, {"jammed: share at rest at 3 t*", "at_rest_series", 3, 35e3}, steps);
+    accuracy(edge, seeds, {"jammed: retention at 3 t*", "retention_series", 3, 35e3}, steps);
 }
 
 }  // namespace
