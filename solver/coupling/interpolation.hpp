@@ -37,24 +37,24 @@ struct AxisWeights {
     std::array<double, Count> weight{};
 };
 
-/// `place` is where x lies on the axis, axis.locate(x), found once for both.
+/// `place` is where x lies on the axis, find(axis, x), found once for both.
 struct Trilinear {
+    [[nodiscard]] static int find(const flow::Axis& axis, double x) { return axis.cell_at(x); }
     /// Along the component's own axis: nodes are faces.
-    [[nodiscard]] static AxisWeights<2> own(const flow::Axis& axis, bool /*periodic*/, double x, flow::Place place) {
-        const int cell = place.cell;
-        const double share = (x - axis.face(cell)) / axis.width(cell);
+    [[nodiscard]] static AxisWeights<2> own(const flow::Axis& axis, bool /*periodic*/, double x, int cell) {
+        const double share = (x - axis.face(cell)) * axis.per_width(cell);
         return {cell, {1 - share, share}};
     }
     /// Across it: nodes are cell centres, ghosts included.
-    [[nodiscard]] static AxisWeights<2> across(const flow::Axis& axis, bool /*periodic*/, double x, flow::Place place) {
-        const int cell = place.cell;
+    [[nodiscard]] static AxisWeights<2> across(const flow::Axis& axis, bool /*periodic*/, double x, int cell) {
         const int first = x < axis.centre(cell) ? cell - 1 : cell;
-        const double share = (x - axis.centre(first)) / axis.spacing(first + 1);
+        const double share = (x - axis.centre(first)) * axis.per_spacing(first + 1);
         return {first, {1 - share, share}};
     }
 };
 
 struct Solenoidal {
+    [[nodiscard]] static flow::Place find(const flow::Axis& axis, double x) { return axis.locate(x); }
     [[nodiscard]] static AxisWeights<3> own(const flow::Axis& axis, bool periodic, double /*x*/, flow::Place place) {
         const int n = axis.cells();
         const double s = place.cell - 1 + place.offset;  // 0 ... n, face f at f - 1
@@ -83,7 +83,7 @@ public:
     Footing(const flow::Grid& grid, const std::array<bool, 3>& periodic, const Vec3& x) {
         for (int d = 0; d < 3; ++d) {
             const auto m = static_cast<std::size_t>(d);
-            const flow::Place place = grid[d].locate(x[m]);  // a logarithm where cells are clustered: once
+            const auto place = Kernel::find(grid[d], x[m]);
             own_[m] = Kernel::own(grid[d], periodic[m], x[m], place);
             across_[m] = Kernel::across(grid[d], periodic[m], x[m], place);
         }
@@ -136,8 +136,13 @@ private:
         return sum;
     }
 
-    std::array<decltype(Kernel::own(std::declval<flow::Axis>(), false, 0.0, flow::Place{})), 3> own_{};
-    std::array<decltype(Kernel::across(std::declval<flow::Axis>(), false, 0.0, flow::Place{})), 3> across_{};
+    std::array<
+        decltype(Kernel::own(std::declval<flow::Axis>(), false, 0.0, Kernel::find(std::declval<flow::Axis>(), 0))), 3>
+        own_{};
+    std::array<decltype(Kernel::across(std::declval<flow::Axis>(), false, 0.0,
+                                       Kernel::find(std::declval<flow::Axis>(), 0))),
+               3>
+        across_{};
 };
 
 /// The transpose of flow::fill_ghosts without its constants: adds what lies on ghosts to the values they copy, so that

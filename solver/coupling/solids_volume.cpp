@@ -55,7 +55,7 @@ void SolidsVolume::place(std::span<const Vec3> positions) {
         std::array<std::array<std::ptrdiff_t, 2>, 3> cell{};  // offsets
         for (int d = 0; d < 3; ++d) {
             const double along = x[at(d)];
-            w[at(d)] = Trilinear::across(grid_[d], edges_[at(d)].periodic, along, grid_[d].locate(along));
+            w[at(d)] = Trilinear::across(grid_[d], edges_[at(d)].periodic, along, Trilinear::find(grid_[d], along));
             for (int a = 0; a < 2; ++a) cell[at(d)][at(a)] = inside(d, w[at(d)].first + a) * fraction_.stride(d);
         }
         double* const fraction = fraction_.data();

@@ -31,7 +31,7 @@ private:
             std::uint64_t key = 0;
             for (int d = 2; d >= 0; --d)
                 key = key * (static_cast<std::uint64_t>(grid.cells(d)) + 1) +
-                      static_cast<std::uint64_t>(grid[d].locate(cloud.position[p][static_cast<std::size_t>(d)]).cell);
+                      static_cast<std::uint64_t>(grid[d].cell_at(cloud.position[p][static_cast<std::size_t>(d)]));
             keys_.emplace_back(key, p);
         }
         std::sort(keys_.begin(), keys_.end());

@@ -1,5 +1,6 @@
 #include "solver/flow/axis.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -33,6 +34,25 @@ Axis::Axis(int cells, double low, double high, double clustering)
         centres_.push_back(0.5 * (faces_[i] + faces_[i + 1]));
         widths_.push_back(faces_[i + 1] - faces_[i]);
     }
+    measure();
+}
+
+/// What follows from the cells.
+void Axis::measure() {
+    per_width_.clear();
+    per_spacing_.assign(1, 0);
+    for (const double width : widths_) per_width_.push_back(1 / width);
+    for (int f = 1; f <= cells_ + 1; ++f) per_spacing_.push_back(1 / spacing(f));
+    const double smallest = *std::min_element(widths_.begin(), widths_.end());
+    const double bins = std::ceil(length() / smallest);
+    bins_per_length_ = bins / length();
+    first_cell_.clear();
+    for (double bin = 0; bin < bins; ++bin) {
+        const double from = low_ + bin / bins_per_length_ - 1e-9 * smallest;  // whatever rounding does to a position
+        int cell = first_cell_.empty() ? 1 : first_cell_.back();
+        while (cell < cells_ && from >= face(cell + 1)) ++cell;
+        first_cell_.push_back(cell);
+    }
 }
 
 Axis Axis::uniform(int cells, double low, double high) {
@@ -52,6 +72,7 @@ Axis Axis::lower_half() const {
     half.faces_.resize(n + 3);
     half.centres_.resize(n + 2);
     half.widths_.resize(n + 2);
+    half.measure();
     return half;
 }
 

@@ -44,6 +44,19 @@ public:
     /// Distance of the two cell centres beside face f, f = 1 ... n+1.
     [[nodiscard]] double spacing(int f) const { return centre(f) - centre(f - 1); }
 
+    /// The reciprocals of both, kept for those who interpolate.
+    [[nodiscard]] double per_width(int i) const { return per_width_[static_cast<std::size_t>(i)]; }
+    [[nodiscard]] double per_spacing(int f) const { return per_spacing_[static_cast<std::size_t>(f)]; }
+
+    /// Cell of a position; positions outside, and what is no number, go to a cell at an end. A table and no logarithm:
+    /// bins finer than the smallest cell know the first cell they may lie in.
+    [[nodiscard]] int cell_at(double x) const {
+        const double bin = (x - low_) * bins_per_length_;
+        const auto last = static_cast<double>(first_cell_.size() - 1);
+        int cell = first_cell_[bin > 0 ? static_cast<std::size_t>(bin < last ? bin : last) : 0];
+        while (cell < cells_ && x >= face(cell + 1)) ++cell;
+        return cell;
+    }
     /// Cell and smooth offset s of a position in [low, high]; positions outside go to the nearest end.
     [[nodiscard]] Place locate(double x) const {
         const double t = std::clamp((x - middle_) / half_, -1.0, 1.0);
@@ -62,6 +75,7 @@ public:
 
 private:
     Axis(int cells, double low, double high, double clustering);
+    void measure();
 
     // artanh(t tanh c)/c, the inverse of the clustering.
     [[nodiscard]] double unclustered(double t) const {
@@ -73,7 +87,9 @@ private:
     int mapped_;  // cells of the map between low and high: twice as many on a half axis
     double low_, high_, clustering_;
     double middle_, half_, tanh_;
-    std::vector<double> faces_, centres_, widths_;
+    std::vector<double> faces_, centres_, widths_, per_width_, per_spacing_;
+    double bins_per_length_ = 0;
+    std::vector<int> first_cell_;  // of each bin
 };
 
 }  // namespace grainsweep::flow

@@ -9,6 +9,7 @@
 #include <Eigen/Dense>
 
 #include <cmath>
+#include <limits>
 
 using namespace grainsweep::flow;
 using grainsweep::stats::Stream;
@@ -63,6 +64,32 @@ TEST(Axis, LocatesItsOwnFacesAndCentresOfTheMap) {
         const auto s = [&](double at) { return axis.locate(at).cell + axis.locate(at).offset; };
         EXPECT_NEAR(axis.stretch(x), 2 * step / (s(x + step) - s(x - step)), 1e-7);
     }
+}
+
+TEST(Axis, TheTableOfCellsAgreesWithTheMap) {
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    for (const double clustering : {0.0, 0.4, 1.5, 3.0})
+        for (const int cells : {1, 2, 7, 28, 80}) {
+            std::vector<Axis> axes = {Axis::clustered(cells, -0.5, 0.7, clustering)};
+            if (cells % 2 == 0) axes.push_back(axes.front().lower_half());
+            for (const Axis& axis : axes) {
+                for (int k = 0; k <= 5000; ++k) {
+                    const double x = axis.low() + axis.length() * k / 5000;
+                    const int cell = axis.cell_at(x);
+                    ASSERT_TRUE(axis.face(cell) <= x && (x < axis.face(cell + 1) || cell == axis.cells())) << x;
+                    ASSERT_NEAR(axis.locate(x).cell + axis.locate(x).offset, cell, 1 + 1e-9) << x;
+                }
+                for (int f = 1; f <= axis.cells(); ++f) EXPECT_EQ(axis.cell_at(axis.face(f)), f);
+                EXPECT_EQ(axis.cell_at(-99), 1);
+                EXPECT_EQ(axis.cell_at(99), axis.cells());
+                EXPECT_EQ(axis.cell_at(1e300), axis.cells());
+                EXPECT_EQ(axis.cell_at(none), 1);
+                for (int i = 1; i <= axis.cells(); ++i) {
+                    EXPECT_DOUBLE_EQ(axis.per_width(i) * axis.width(i), 1);
+                    EXPECT_DOUBLE_EQ(axis.per_spacing(i) * axis.spacing(i), 1);
+                }
+            }
+        }
 }
 
 TEST(Axis, RefusesTheImpossible) {
