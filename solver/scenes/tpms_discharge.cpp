@@ -284,9 +284,8 @@ SceneInfo tpms_discharge_scene() {
     info.revision = 3;
     info.parameters = tpms_discharge_parameters();
     info.observables = tpms_discharge_observables();
-    // Twice the study's step, for 0.6 of the cost: retention at 1 t* differs by -0.1 +- 0.07 %. But a jammed cell takes
-    // about twice as long to come to rest and loses 0.02 +- 0.01 more of its powder meanwhile (at 3 us it never rests),
-    // while 0.25, 0.5 and 1 us differ by their scatter.
+    // Twice the study's step, for 0.6 of the cost: retention at 1 t* differs by -0.1 +- 0.07 %, of a jammed cell at 3
+    // t* by -0.5 +- 1.4 %; but that comes to rest later, and at 3 us it never does (solver/dem/README.md).
     info.accuracy["fast"] = {{"precision", std::string("mixed")}, {"time_step", 2e-6}};
     info.accuracy["balanced"] = {{"precision", std::string("mixed")}};
     info.accuracy["reference"] = {{"precision", std::string("double")}};
