@@ -1,5 +1,6 @@
 #include "solver/flow/flow.hpp"
 
+#include "solver/flow/rows.hpp"
 #include "solver/flow/state_bytes.hpp"
 #include "solver/flow/vector_clones.hpp"
 
@@ -8,17 +9,6 @@
 
 namespace grainsweep::flow {
 namespace {
-
-std::size_t at(int i) {
-    return static_cast<std::size_t>(i);
-}
-
-// Calls body(start of the row, j, k) with i = 0 for every row of unknowns.
-template <class Body>
-void each_row(const Field& shape, const std::array<int, 3>& first, const std::array<int, 3>& cells, Body body) {
-    for (int k = first[2]; k <= cells[2]; ++k)
-        for (int j = first[1]; j <= cells[1]; ++j) body(shape.index(0, j, k), j, k);
-}
 
 // r = dt (3/2 C - 1/2 C' + D + r - grad p): r comes in as the acceleration by forces.
 struct AssembleRow {
@@ -82,30 +72,6 @@ void midpoint_values(std::size_t size, const double* __restrict now, const doubl
     }
 }
 
-// out += strength (lower a[i - s] + (1 - lower) a[i])
-GRAINSWEEP_VECTOR_CLONES
-void add_interpolated_row(double* __restrict out, const double* __restrict a, std::ptrdiff_t s,
-                          const double* __restrict lower_x, double lower, double strength, int first, int last) {
-    if (lower_x != nullptr) {
-        for (int i = first; i <= last; ++i) out[i] += strength * (lower_x[i] * a[i - 1] + (1 - lower_x[i]) * a[i]);
-    } else {
-        const double upper = 1 - lower;
-        for (int i = first; i <= last; ++i) out[i] += strength * (lower * a[i - s] + upper * a[i]);
-    }
-}
-
-std::array<int, 3> cell_counts(const Grid& grid) {
-    return {grid.cells(0), grid.cells(1), grid.cells(2)};
-}
-
-struct StepWeights {
-    double now, before;
-};
-// Adams-Bashforth of second order; the first step has no past and takes Euler.
-StepWeights convection_weights(bool first) {
-    return first ? StepWeights{1.0, 0.0} : StepWeights{1.5, -0.5};
-}
-
 void check(const FlowSetup& setup) {
     if (!(setup.time_step > 0)) throw std::invalid_argument("the time step of the flow must be positive");
     if (!(setup.viscosity >= 0)) throw std::invalid_argument("the viscosity of the flow must not be negative");
@@ -120,100 +86,6 @@ void check(const FlowSetup& setup) {
 
 }  // namespace
 
-HeatState<Boussinesq>::HeatState(const FlowSetup& setup, const Boussinesq& heat)
-    : cells_(cell_counts(setup.grid)),
-      time_step_(setup.time_step),
-      heat_(heat),
-      edges_(temperature_edges(setup.sides, heat.sides)),
-      grid_(setup.grid),
-      weights_(setup.grid, edges_),
-      diffusion_(setup.grid, edges_, 0.5 * setup.time_step * heat.diffusivity),
-      temperature_(setup.grid),
-      middle_(setup.grid),
-      convection_{Field(setup.grid), Field(setup.grid)},
-      right_(setup.grid),
-      change_(setup.grid) {
-    for (int d = 0; d < 3; ++d)
-        for (int f = 0; f <= cells_[at(d)] + 1; ++f) {
-            const double below = f > 0 ? setup.grid[d].width(f - 1) : 1;
-            const double above = setup.grid[d].width(f);
-            face_lower_[at(d)].push_back(above / (below + above));
-        }
-    fill_ghosts(temperature_, setup.grid, edges_);
-}
-
-void HeatState<Boussinesq>::set(const Grid& grid, const ScalarFunction& temperature) {
-    for (int k = 1; k <= cells_[2]; ++k)
-        for (int j = 1; j <= cells_[1]; ++j)
-            for (int i = 1; i <= cells_[0]; ++i)
-                temperature_(i, j, k) = temperature(grid[0].centre(i), grid[1].centre(j), grid[2].centre(k));
-    fill_ghosts(temperature_, grid, edges_);
-}
-
-void HeatState<Boussinesq>::start() {
-    middle_ = temperature_;
-}
-
-void HeatState<Boussinesq>::step(const FaceVectors& velocity, bool first) {
-    std::swap(convection_[0], convection_[1]);
-    scalar_transport(velocity, temperature_, weights_, cells_, heat_.diffusivity, convection_[0], right_);
-    const auto [now, before] = convection_weights(first);
-    const double dt = time_step_;
-    each_row(right_, {1, 1, 1}, cells_, [&](std::ptrdiff_t row, int, int) {
-        double* const r = right_.data() + row;
-        const double* const c = convection_[0].data() + row;
-        const double* const old = convection_[1].data() + row;
-        for (int i = 1; i <= cells_[0]; ++i) r[i] = dt * (now * c[i] + before * old[i] + r[i]);
-    });
-    diffusion_.solve(right_, change_);
-    each_row(right_, {1, 1, 1}, cells_, [&](std::ptrdiff_t row, int, int) {
-        double* const theta = temperature_.data() + row;
-        double* const middle = middle_.data() + row;
-        const double* const change = change_.data() + row;
-        for (int i = 1; i <= cells_[0]; ++i) {
-            middle[i] = theta[i] + 0.5 * change[i];
-            theta[i] += change[i];
-        }
-    });
-    fill_ghosts(temperature_, grid_, edges_);
-    fill_ghosts(middle_, grid_, edges_);
-}
-
-void HeatState<Boussinesq>::add_force(int d, double time, Field& acceleration) const {
-    if (d != heat_.direction) return;
-    const double strength = heat_.buoyancy * heat_.vibration.at(time);
-    const auto& lower = face_lower_[at(d)];
-    each_row(acceleration, {1, 1, 1}, cells_, [&](std::ptrdiff_t row, int j, int k) {
-        add_interpolated_row(acceleration.data() + row, middle_.data() + row, middle_.stride(d),
-                             d == 0 ? lower.data() : nullptr, d == 1 ? lower[at(j)] : lower[at(k)], strength, 1,
-                             cells_[0]);
-    });
-}
-
-void HeatState<Boussinesq>::add_missing(const Field& occupied, double time, FaceVectors& acceleration) const {
-    const int d = heat_.direction;
-    const double strength = heat_.buoyancy * heat_.vibration.at(time);
-    Field& out = acceleration[at(d)];
-    const auto s = out.stride(d);
-    each_row(out, {1, 1, 1}, cells_, [&](std::ptrdiff_t row, int, int) {
-        const double* const share = occupied.data() + row;
-        const double* const theta = temperature_.data() + row;
-        double* const a = out.data() + row;
-        for (int i = 1; i <= cells_[0]; ++i)
-            a[i] -= strength * (0.5 * (share[i - s] + share[i])) * (0.5 * (theta[i - s] + theta[i]));
-    });
-}
-
-void HeatState<Boussinesq>::save(std::vector<std::byte>& into) const {
-    append_bytes<double>(into, temperature_.values());
-    append_bytes<double>(into, convection_[0].values());
-}
-
-void HeatState<Boussinesq>::restore(std::span<const std::byte>& from) {
-    take_bytes<double>(from, temperature_.values());
-    take_bytes<double>(from, convection_[0].values());
-}
-
 template <class Heat>
 Flow<Heat>::Flow(const FlowSetup& setup, const Heat& heat)
     : setup_((check(setup), setup)),
@@ -223,7 +95,7 @@ Flow<Heat>::Flow(const FlowSetup& setup, const Heat& heat)
       weights_{Weights(setup.grid, edges_[0]), Weights(setup.grid, edges_[1]), Weights(setup.grid, edges_[2])},
       cell_weights_(setup.grid, pressure_edges_),
       poisson_(setup.grid, setup.sides),
-      heat_(setup, heat),
+      heat_(setup.grid, setup.sides, setup.time_step, heat),
       velocity_(face_vectors(setup.grid)),
       previous_(face_vectors(setup.grid)),
       convection_{face_vectors(setup.grid), face_vectors(setup.grid)},

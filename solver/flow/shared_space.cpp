@@ -1,5 +1,6 @@
 #include "solver/flow/shared_space.hpp"
 
+#include "solver/flow/rows.hpp"
 #include "solver/flow/vector_clones.hpp"
 
 #include <algorithm>
@@ -8,10 +9,6 @@
 
 namespace grainsweep::flow {
 namespace {
-
-std::size_t at(int i) {
-    return static_cast<std::size_t>(i);
-}
 
 // The fields of one component's row at i = 0.
 struct Row {

@@ -1,13 +1,10 @@
 #include "solver/flow/transport.hpp"
 
+#include "solver/flow/rows.hpp"
 #include "solver/flow/vector_clones.hpp"
 
 namespace grainsweep::flow {
 namespace {
-
-std::size_t at(int i) {
-    return static_cast<std::size_t>(i);
-}
 
 // A row of constant weights along y and z, a vector of them along x.
 struct RowWeights {
