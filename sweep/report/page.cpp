@@ -3,6 +3,7 @@
 #include "solver/scenes/scene.hpp"
 #include "stats/random.hpp"
 #include "sweep/campaign/json_text.hpp"
+#include "sweep/report/curves.hpp"
 #include "sweep/report/effects.hpp"
 #include "sweep/report/history.hpp"
 #include "sweep/report/influence.hpp"
@@ -160,7 +161,8 @@ Json factors_of(const Responses& responses, const std::vector<std::size_t>& draw
 }
 
 bool failed(const std::optional<campaign::Outcome>& outcome) {
-    return outcome && *outcome != campaign::Outcome::completed && *outcome != campaign::Outcome::skipped;
+    using enum campaign::Outcome;  // an abandoned case was given back and goes on with the next run
+    return outcome && *outcome != completed && *outcome != skipped && *outcome != abandoned;
 }
 
 Json failures_of(const store::Store& store, const Responses& responses) {
@@ -174,6 +176,19 @@ Json failures_of(const store::Store& store, const Responses& responses) {
         one["attempts"] = attempts.size();
         one["reason"] = attempts.empty() ? "" : attempts.back().message;
         value["listed"].push_back(std::move(one));
+    }
+    return value;
+}
+
+Json json_of(const Curves& curves) {
+    Json value = {{"completed", curves.completed}, {"drawn", curves.drawn}, {"families", Json::array()}};
+    for (const auto& family : curves.families) {
+        Json one = {{"name", family.name},         {"unit", family.unit},
+                    {"meaning", family.meaning},   {"over", family.over_bins ? "bin" : "time"},
+                    {"at", drawn(family.at_time)}, {"curves", Json::array()}};
+        for (const auto& curve : family.curves)
+            one["curves"].push_back({{"label", curve.label}, {"x", drawn(curve.x)}, {"y", drawn(curve.y)}});
+        value["families"].push_back(std::move(one));
     }
     return value;
 }
@@ -233,6 +248,7 @@ Json campaign_of(const store::Store& store, const store::CampaignRecord& record)
         if (&response == main) value["main"] = value["observables"].size();
         value["observables"].push_back(json_of(responses, response, drawn_rows));
     }
+    value["curves"] = json_of(read_curves(store, responses));
     value["failures"] = failures_of(store, responses);
     value["runs"] = runs_of(store, record.name);
     return value;

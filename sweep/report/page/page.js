@@ -233,6 +233,30 @@
     return c.node;
   }
 
+  // One line per case; cases of one label, repeats, share a colour and a line of the legend.
+  function curves(family) {
+    const labels = [...new Set(family.curves.map((curve) => curve.label))];
+    const tone = (label) => `hsl(${(212 + 137.508 * labels.indexOf(label)) % 360}, 62%, 48%)`;
+    const over = family.over === "bin" ? "bin" : "time";
+    const c = card(titled(family), family.meaning + (family.at === null ? "" : `; at time ${show(family.at)}`), true);
+    const xs = family.curves.flatMap((curve) => curve.x);
+    const low = Math.min(...xs), high = Math.max(...xs);
+    const log = family.over === "bin" && low > 0 && high > 30 * low;
+    const last = (item) => labels.indexOf(item.text) >= 0 && family.curves.findIndex((curve) => curve.label === item.text) === item.datasetIndex;
+    draw(c.canvas, {
+      type: "line",
+      data: { datasets: family.curves.map((curve) => ({ label: curve.label, data: curve.x.map((x, i) => ({ x, y: curve.y[i] })),
+        borderColor: tone(curve.label), backgroundColor: tone(curve.label), borderWidth: 1.6, pointRadius: curve.x.length < 2 ? 3 : 0, pointHitRadius: 6 })) },
+      options: {
+        scales: { x: axis(over, { type: log ? "logarithmic" : "linear", min: low, max: high }), y: axis("") },
+        plugins: {
+          legend: { display: labels.length <= 12, position: "bottom", labels: { filter: last, boxWidth: 14, color: colour("ink") } },
+          tooltip: { callbacks: { title: (items) => `${over} ${show(items[0].parsed.x)}`, label: (item) => `${item.dataset.label}: ${show(item.parsed.y)}` } } },
+      },
+    });
+    return c.node;
+  }
+
   function influenceFigure(influence) {
     const key = influence.method === "morris" ? "mu_star" : influence.method === "saltelli" ? "total" : "first";
     const factors = [...influence.factors].sort((a, b) => (b[key] || 0) - (a[key] || 0));
@@ -264,9 +288,9 @@
 
   function heading(campaign) {
     const tile = (number, label, bad) => el("div", { class: bad ? "tile bad" : "tile" }, el("b", {}, number), el("span", {}, label));
-    const good = ["completed", "skipped", "not yet"];
+    const good = ["completed", "skipped", "abandoned", "not yet"];
     const tiles = campaign.outcomes.filter(([, count]) => count > 0)
-      .map(([outcome, count]) => tile(count, outcome.replace("_", " "), !good.includes(outcome)));
+      .map(([outcome, count]) => tile(count, outcome === "abandoned" ? "to be continued" : outcome.replace("_", " "), !good.includes(outcome)));
     const parts = [`${campaign.scene}, revision ${campaign.revision}`,
       `${campaign.design} design` + (campaign.sequences > 1 ? ` of ${campaign.sequences} independent sequences` : ""),
       plural(campaign.factors.length, "factor"),
@@ -335,6 +359,13 @@
       el("div", { class: "grid" }, campaign.factors.map((factor, j) => scatter(factor, response.effects[j], response))));
   }
 
+  function curvesSection(campaign) {
+    const { completed, drawn, families } = campaign.curves;
+    if (families.length === 0) return null;
+    const says = drawn < completed ? `${drawn} of ${completed} completed cases, chosen at random.` : "Every completed case, a line each.";
+    return section("Curves", says, el("div", { class: "grid wide" }, families.map(curves)));
+  }
+
   function extremesSection(campaign, response) {
     const n = "number";
     const columns = [["point", n]].concat(campaign.replicates > 1 ? [["repeat", n]] : [],
@@ -372,8 +403,9 @@
     const sections = response && response.history.count > 0
       ? [distributionSection(response, campaign.sample), momentsSection(campaign, response), effectsSection(campaign, response),
         influenceSection(response), scatterSection(campaign, response), extremesSection(campaign, response)]
-      : [el("p", {}, "No case has an answer yet.")];
-    page.append(...sections.concat([failuresSection(campaign), provenanceSection(campaign)]).filter(Boolean));
+      : [el("p", {}, campaign.curves.completed === 0 ? "No case has an answer yet."
+        : `${plural(campaign.curves.completed, "case")} of ${campaign.rows} have an answer, but not all repeats of the first point: statistics are over the gapless beginning of the design.`)];
+    page.append(...sections.concat([curvesSection(campaign), failuresSection(campaign), provenanceSection(campaign)]).filter(Boolean));
     undrawn.forEach((start) => start());
   }
 
