@@ -1,14 +1,12 @@
 #include "sweep/report/curves.hpp"
 
 #include "solver/scenes/scene.hpp"
-#include "stats/random.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <span>
 #include <utility>
 
@@ -79,16 +77,6 @@ void add(CurveFamily& family, std::size_t row, const std::string& label, std::sp
     family.curves.push_back(std::move(curve));
 }
 
-/// Completed cases to draw, in the order of the design.
-std::vector<std::size_t> rows_to_draw(std::vector<std::size_t> rows, std::size_t most) {
-    if (rows.size() <= most) return rows;
-    const auto draw = [](std::size_t row) { return stats::bits_at(0, 0, row); };
-    std::ranges::nth_element(rows, rows.begin() + static_cast<std::ptrdiff_t>(most), {}, draw);
-    rows.resize(most);
-    std::ranges::sort(rows);
-    return rows;
-}
-
 std::string label_of(const Responses& responses, std::size_t row) {
     std::string label;
     for (const auto& factor : responses.factors) label += (label.empty() ? "" : ", ") + factor_text(factor, row);
@@ -113,7 +101,7 @@ Curves read_curves(const store::Store& store, const Responses& responses, const 
         if (responses.outcomes[row] == campaign::Outcome::completed) completed.push_back(row);
     curves.completed = completed.size();
     if (curves.families.empty()) return curves;
-    const auto rows = rows_to_draw(std::move(completed), choice.most_curves);
+    const auto rows = random_rows(std::move(completed), choice.most_curves);
     curves.drawn = rows.size();
     for (const auto row : rows) {
         const Series series = series_of(store, responses.campaign.name, responses.case_ids[row]);

@@ -1,7 +1,6 @@
 #include "sweep/report/page.hpp"
 
 #include "solver/scenes/scene.hpp"
-#include "stats/random.hpp"
 #include "sweep/campaign/json_text.hpp"
 #include "sweep/report/curves.hpp"
 #include "sweep/report/effects.hpp"
@@ -39,17 +38,10 @@ Json drawn(const std::vector<double>& values) {
     return list;
 }
 
-/// Rows to draw: all, or a random subset in the order of the design. (Every k-th point of a low-discrepancy
-/// sequence would show a pattern that the sequence has not.)
 std::vector<std::size_t> rows_to_draw(std::size_t rows) {
-    std::vector<std::size_t> chosen(rows);
-    std::iota(chosen.begin(), chosen.end(), std::size_t{0});
-    if (rows <= most_drawn_cases) return chosen;
-    const auto draw = [](std::size_t row) { return stats::bits_at(0, 0, row); };
-    std::ranges::nth_element(chosen, chosen.begin() + most_drawn_cases, {}, draw);
-    chosen.resize(most_drawn_cases);
-    std::ranges::sort(chosen);
-    return chosen;
+    std::vector<std::size_t> all(rows);
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    return random_rows(std::move(all), most_drawn_cases);
 }
 
 Json json_of(const History& history) {

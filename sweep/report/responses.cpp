@@ -1,6 +1,7 @@
 #include "sweep/report/responses.hpp"
 
 #include "solver/scenes/scene.hpp"
+#include "stats/random.hpp"
 #include "sweep/campaign/json_text.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/schedule/judge.hpp"
@@ -251,6 +252,15 @@ std::vector<std::size_t> extreme_rows(std::span<const double> values, std::size_
     const auto kept = std::min(count, rows.size());
     std::ranges::partial_sort(rows, rows.begin() + static_cast<std::ptrdiff_t>(kept), before);
     rows.resize(kept);
+    return rows;
+}
+
+std::vector<std::size_t> random_rows(std::vector<std::size_t> rows, std::size_t most) {
+    if (rows.size() <= most) return rows;
+    const auto draw = [](std::size_t row) { return stats::bits_at(0, 0, row); };
+    std::ranges::nth_element(rows, rows.begin() + static_cast<std::ptrdiff_t>(most), {}, draw);
+    rows.resize(most);
+    std::ranges::sort(rows);
     return rows;
 }
 

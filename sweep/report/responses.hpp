@@ -74,6 +74,9 @@ struct Responses {
 /// Number of rows with each outcome, in the order of campaign::outcomes; the last entry counts rows not there yet.
 [[nodiscard]] std::vector<std::pair<std::string, std::int64_t>> count_outcomes(const Responses& responses);
 
+/// All rows, or so many of them at random (the same every time), in their order. Every k-th point of a low-discrepancy
+/// sequence would show a pattern that the sequence has not.
+[[nodiscard]] std::vector<std::size_t> random_rows(std::vector<std::size_t> rows, std::size_t most);
 /// The `count` rows with the largest (or smallest) finite values, best first; equal values by row.
 [[nodiscard]] std::vector<std::size_t> extreme_rows(std::span<const double> values, std::size_t count, bool largest);
 

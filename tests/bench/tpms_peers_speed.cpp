@@ -4,9 +4,10 @@
 //
 // Schwarz-P without cohesion and jammed at k_c = 35 kJ/m3, Gyroid at 35 kJ/m3; edge 30 diameters, shell 2, gravity
 // 9.81 x 100/30 as the reference's scaling, to 6.1 t*. LIGGGHTS writes nothing on the way and is told to leave pairs
-// of wall spheres out. Three times of ours: `grainsweep solve` as a user runs it, packing read from a file, ended when
-// the powder has settled; the engine alone over all steps, with every wall sphere kept; and that one divided by the
-// particle steps. One JSON line per case.
+// of wall spheres out. Ours: `grainsweep solve` as a user runs it, packing read from a file, ended when the powder has
+// settled; the same with powder at rest left alone (rest_speed 0.001, which is not the default), and with the time step
+// of "fast"; the engine alone over all steps, with every wall sphere kept; and that one divided by the particle steps.
+// One JSON line per case.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -46,20 +47,29 @@ void compare(const std::string& name, geometry::TpmsCell cell, const char* word,
     std::string rows = "x,y,z\n";
     for (const auto& x : packing.positions) rows += fmt::format("{},{},{}\n", x[0], x[1], x[2]);
     folder.write("packing.csv", rows);
-    folder.write("cell.json", nlohmann::json{{"campaign", "side_by_side"},
-                                             {"scene", "tpms_discharge"},
-                                             {"factors", {{{"name", "cohesion"}, {"levels", {cohesion}}}}},
-                                             {"fixed",
-                                              {{"cell", word},
-                                               {"edge", edge},
-                                               {"shell", shell_thickness},
-                                               {"gravity", gravity},
-                                               {"packing", "packing.csv"},
-                                               {"end_time", end_time}}},
-                                             {"design", {{"kind", "lattice"}}}}
-                                  .dump());
-    const auto solved = test::run_timed(test::program_command({"solve", "cell.json"}), folder.path());
-    if (solved.code != 0) std::fprintf(stderr, "%s\n", solved.out.c_str());
+    nlohmann::json config{{"campaign", "side_by_side"},
+                          {"scene", "tpms_discharge"},
+                          {"factors", {{{"name", "cohesion"}, {"levels", {cohesion}}}}},
+                          {"fixed",
+                           {{"cell", word},
+                            {"edge", edge},
+                            {"shell", shell_thickness},
+                            {"gravity", gravity},
+                            {"packing", "packing.csv"},
+                            {"end_time", end_time}}},
+                          {"design", {{"kind", "lattice"}}}};
+    const auto solve = [&] {
+        folder.write("cell.json", config.dump());
+        const auto ran = test::run_timed(test::program_command({"solve", "cell.json"}), folder.path());
+        if (ran.code != 0) std::fprintf(stderr, "%s\n", ran.out.c_str());
+        return ran.user_seconds;
+    };
+    const double solved = solve();
+    config["fixed"]["rest_speed"] = 0.001;
+    const double resting = solve();
+    config["fixed"].erase("rest_speed");
+    config["accuracy"] = "fast";
+    const double fast = solve();
 
     const auto engine = dem::make_engine(setup, {.precision = dem::Method::Precision::mixed});
     const double start = user_seconds();
@@ -78,10 +88,13 @@ void compare(const std::string& name, geometry::TpmsCell cell, const char* word,
     }
     fmt::print(
         "{{\"bench\": \"tpms_peers\", \"case\": \"{}\", \"mobile_and_wall\": {}, \"steps\": {}, \"solve_seconds\": "
-        "{:.2f}, \"no_skip_seconds\": {:.2f}, \"no_skip_ns\": {:.1f}, \"liggghts_seconds\": {:.1f}, "
-        "\"times_liggghts\": {:.1f}, \"times_without_skips\": {:.1f}}}\n",
-        name, setup.spheres.size(), steps, solved.user_seconds, plain, 1e9 * plain / engine->work().particle_steps,
-        them.user_seconds, them.user_seconds / solved.user_seconds, them.user_seconds / plain);
+        "{:.2f}, \"resting_seconds\": {:.2f}, \"fast_seconds\": {:.2f}, \"no_skip_seconds\": {:.2f}, \"no_skip_ns\": "
+        "{:.1f}, \"liggghts_seconds\": {:.1f}, "
+        "\"times_liggghts\": {:.1f}, \"times_resting\": {:.1f}, \"times_fast\": {:.1f}, \"times_without_skips\": "
+        "{:.1f}}}\n",
+        name, setup.spheres.size(), steps, solved, resting, fast, plain, 1e9 * plain / engine->work().particle_steps,
+        them.user_seconds, them.user_seconds / solved, them.user_seconds / resting, them.user_seconds / fast,
+        them.user_seconds / plain);
     std::fflush(stdout);
 }
 
