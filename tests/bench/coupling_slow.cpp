@@ -112,9 +112,8 @@ void shelve_unsettled_flow(const Published& run, std::int64_t steps) {
 
 // Trilinear, but in the half cell beside a wall the values across are those of the first centres.
 struct ConstantAtWalls : coupling::Trilinear {
-    [[nodiscard]] static coupling::AxisWeights<2> across(const flow::Axis& axis, bool periodic, double x,
-                                                         flow::Place place) {
-        auto weights = coupling::Trilinear::across(axis, periodic, x, place);
+    [[nodiscard]] static coupling::AxisWeights<2> across(const flow::Axis& axis, bool periodic, double x, int cell) {
+        auto weights = coupling::Trilinear::across(axis, periodic, x, cell);
         if (!periodic && weights.first == 0) weights.weight = {0, 1};
         if (!periodic && weights.first == axis.cells()) weights.weight = {1, 0};
         return weights;
