@@ -32,7 +32,7 @@ using namespace std::chrono_literals;
 /// case. When the boss is gone nobody can use an answer: the process ends at once.
 class Ear {
 public:
-    explicit Ear(double lease_seconds) : lease_(lease_seconds), heard_(Clock::now()) {
+    explicit Ear(double lease_seconds) : lease_(lease_seconds) {
         std::thread([this] { listen(); }).detach();
         std::thread([this] { mind_the_lease(); }).detach();
     }
@@ -58,7 +58,7 @@ private:
     void listen() {
         std::string line;
         while (std::getline(std::cin, line)) {
-            heard_ = Clock::now();
+            silence_ = 0;
             ToWorker message = decode_to_worker(line);
             const std::lock_guard lock(mutex_);
             if (auto* run = std::get_if<Run>(&message)) questions_.push_back(std::move(*run));
@@ -68,15 +68,17 @@ private:
         std::_Exit(3);
     }
 
+    // Counts its own seconds and looks at no clock: a process that is stopped (Ctrl-Z, a suspended machine) was not
+    // awake to hear its boss, who was stopped with it.
     void mind_the_lease() {
         while (true) {
             std::this_thread::sleep_for(1s);
-            if (std::chrono::duration<double>(Clock::now() - heard_.load()).count() > lease_) std::_Exit(3);
+            if (++silence_ > lease_) std::_Exit(3);
         }
     }
 
     double lease_;
-    std::atomic<Clock::time_point> heard_;
+    std::atomic<int> silence_ = 0;  // seconds
     std::atomic<bool> stop_ = false;
     std::mutex mutex_;
     std::condition_variable changed_;
