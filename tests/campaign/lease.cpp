@@ -49,8 +49,10 @@ TEST(Lease, TimeSpentStoppedDoesNotCountSilenceDoes) {
     std::this_thread::sleep_for(500ms);
     for (const pid_t pid : pair) ::kill(pid, SIGSTOP);
     std::this_thread::sleep_for(4s);
-    for (const pid_t pid : pair) ::kill(pid, SIGCONT);
-    std::this_thread::sleep_for(1500ms);
+    ::kill(*told, SIGCONT);
+    std::this_thread::sleep_for(300ms);  // a boss speaks every ten seconds, not at once
+    ::kill(*boss, SIGCONT);
+    std::this_thread::sleep_for(1200ms);
     EXPECT_TRUE(alive());
 
     ::kill(*boss, SIGSTOP);
