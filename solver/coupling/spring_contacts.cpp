@@ -24,11 +24,12 @@ Vec3 cross_product(const Vec3& a, const Vec3& b) {
 }  // namespace
 
 SpringContacts::SpringContacts(const Sphere& sphere, const Walls& walls, const HystereticSpring& spring,
-                               std::size_t particles)
+                               std::size_t particles, double steps_per_contact)
     : sphere_(sphere),
       walls_(walls),
       spring_(spring),
       near_(walls),
+      steps_per_contact_(steps_per_contact),
       mass_((sphere.density_ratio + 0.5) * sphere.volume()),
       inertia_(0.4 * sphere.density_ratio * sphere.volume() * sphere.radius() * sphere.radius()),
       rotation_drag_(8 * std::numbers::pi * sphere.prandtl * std::pow(sphere.radius(), 3)),
@@ -49,7 +50,7 @@ double SpringContacts::stiffness(const Sphere& sphere, double overlap, double ti
 
 std::int64_t SpringContacts::substeps(double time_step) const {
     const double shortest = std::numbers::pi * std::sqrt(0.5 * mass_ / spring_.unloading());
-    return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(20 * time_step / shortest)));
+    return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(steps_per_contact_ * time_step / shortest)));
 }
 
 void SpringContacts::begin(const Cloud& cloud) {

@@ -32,8 +32,10 @@ constexpr std::size_t queue_of_short_cases = 4;
 constexpr std::size_t kept_log_bytes = 4096;
 constexpr auto lease_every = 10s;
 constexpr auto grace_before_kill = 2s;
-// So many workers in a row that end before they are ready: the launcher is wrong, not the case.
+// So many workers in a row that end before they are ready: the launcher is wrong, not the case. One that somebody
+// killed says less about the launcher.
 constexpr int unready_limit = 3;
+constexpr int killed_unready_limit = 10;
 
 /// Our ends of a pipe must not live on in other workers, or nobody would ever see an end of file.
 void close_on_exec(bp::async_pipe& pipe) {
@@ -44,6 +46,10 @@ std::string joined(const std::vector<std::string>& words) {
     std::string text;
     for (const auto& word : words) text += (text.empty() ? "" : " ") + word;
     return text;
+}
+
+bool was_killed(int status) {
+    return WIFSIGNALED(status) && (WTERMSIG(status) == SIGKILL || WTERMSIG(status) == SIGTERM);
 }
 
 std::string describe_end(int status) {
@@ -161,7 +167,9 @@ struct Pool::Impl {
         std::string reason =
             worker->complaint.empty() ? describe_end(worker->process.native_exit_code()) : worker->complaint;
         if (!worker->log.empty()) reason += "; it wrote: " + worker->log;
-        if (!worker->ready && ++unready_in_a_row >= unready_limit) {
+        const bool killed = worker->complaint.empty() && was_killed(worker->process.native_exit_code());
+        const int limit = killed ? killed_unready_limit : unready_limit;
+        if (!worker->ready && ++unready_in_a_row >= limit) {
             broken = "cannot start workers with '" + joined(options.command) + "': " + reason;
         }
         if (worker->timed_out && running) {
