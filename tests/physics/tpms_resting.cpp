@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "solver/scenes/scene.hpp"
+#include "tests/support/tpms_cells.hpp"
 
 using namespace grainsweep;
 
@@ -51,18 +52,8 @@ TEST(TpmsResting, SlicesAndCheckpointsDoNotChangeTheAnswer) {
     const Inputs inputs = jammed_cell(1e-3);
     const auto whole = make(inputs);
     whole->advance(1e9);
-    auto scene = make(inputs);
-    Bytes bytes;
-    double until = 0;
-    for (int slice = 0; !scene->finished(); ++slice) {
-        until += 1e-6 * (37 + 211 * (slice % 3));
-        scene->advance(until);
-        if (slice % 4 != 3) continue;
-        bytes.clear();
-        scene->save(bytes);
-        scene = make(inputs);
-        scene->restore(bytes);
-    }
+    Bytes checkpoint;
+    const auto scene = test::run_in_slices([&] { return make(inputs); }, checkpoint);
     const Observations a = answer_of(*whole), b = answer_of(*scene);
     for (const char* name : {"retention", "peak_velocity", "max_overlap", "max_force"})
         EXPECT_EQ(a.scalars.at(name), b.scalars.at(name)) << name;

@@ -12,6 +12,7 @@
 #include "solver/geometry/tpms.hpp"
 #include "solver/particles/packing.hpp"
 #include "solver/scenes/scene.hpp"
+#include "tests/support/tpms_cells.hpp"
 
 using namespace grainsweep;
 
@@ -239,19 +240,8 @@ TEST_P(TpmsPrecision, SlicesAndCheckpointsDoNotChangeTheAnswer) {
     inputs["cell"] = std::string("gyroid");
     const Observations whole = run(inputs);
 
-    auto scene = make(inputs);
     Bytes bytes;
-    double until = 0;
-    for (int slice = 0; !scene->finished(); ++slice) {
-        until += 1e-6 * (37 + 211 * (slice % 3));
-        scene->advance(until);
-        EXPECT_GE(scene->time() * (1 + 1e-12), std::min(until, scene->time()));
-        if (slice % 4 != 3) continue;
-        bytes.clear();
-        scene->save(bytes);
-        scene = make(inputs);
-        scene->restore(bytes);
-    }
+    const auto scene = test::run_in_slices([&] { return make(inputs); }, bytes);
     Observations sliced;
     scene->observe(sliced);
     expect_same(whole, sliced);

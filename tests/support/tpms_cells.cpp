@@ -27,4 +27,19 @@ dem::Setup cell_of(const particles::TpmsFilling& filling, double edge, double co
     return s;
 }
 
+std::unique_ptr<Scene> run_in_slices(const std::function<std::unique_ptr<Scene>()>& make, Bytes& checkpoint) {
+    auto scene = make();
+    double until = 0;
+    for (int slice = 0; !scene->finished(); ++slice) {
+        until += 1e-6 * (37 + 211 * (slice % 3));
+        scene->advance(until);
+        if (slice % 4 != 3) continue;
+        checkpoint.clear();
+        scene->save(checkpoint);
+        scene = make();
+        scene->restore(checkpoint);
+    }
+    return scene;
+}
+
 }  // namespace grainsweep::test
