@@ -25,7 +25,7 @@ template <class Heat, class Interaction, class Kernel, class Drag>
 class DenseSuspension {
 public:
     DenseSuspension(flow::Flow<Heat> fluid, const flow::Vibration& vibration, const Motion<Drag>& motion,
-                    const Walls& walls, Cloud cloud, Interaction interaction, int smoothing)
+                    const Walls& walls, Cloud cloud, Interaction interaction, double kernel_width)
         : fluid_(std::move(fluid)),
           vibration_(vibration),
           motion_(motion),
@@ -33,8 +33,8 @@ public:
           cloud_(std::move(cloud)),
           interaction_(std::move(interaction)),
           space_(fluid_.grid(), fluid_.sides(), fluid_.viscosity()),
-          deposit_(fluid_.grid(), fluid_.sides(), smoothing),
-          solids_(fluid_.grid(), fluid_.sides(), motion.sphere().volume(), smoothing),
+          deposit_(fluid_.grid(), fluid_.sides(), kernel_width),
+          solids_(fluid_.grid(), fluid_.sides(), motion.sphere().volume(), kernel_width),
           handed_(cloud_.size(), Vec3{}),
           source_(flow::face_vectors(fluid_.grid())),
           flux_before_(source_),

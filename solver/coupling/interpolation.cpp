@@ -48,56 +48,18 @@ std::array<flow::Edges, 3> frictionless_edges(flow::Sides sides) {
     return {flow::velocity_edges(sides, 0), flow::velocity_edges(sides, 1), flow::velocity_edges(sides, 2)};
 }
 
-void smooth(flow::Field& field, const flow::Grid& grid, const flow::Edges& edges, int passes, AtWalls at_walls) {
-    // Row by row; along x a copy of the row is read, else a line of rows is swept with the old values of the row before
-    // kept aside: no value waits for the one before it.
-    const auto length = static_cast<std::size_t>(grid.cells(0)) + 2;
-    std::vector<double> before(length);
-    std::vector<double> beyond(length);
-    for (int pass = 0; pass < passes; ++pass) {
-        for (int d = 0; d < 3; ++d) {
-            const flow::Edge& edge = edges[static_cast<std::size_t>(d)];
-            const int first = flow::first_unknown(edge);
-            const int n = grid.cells(d);
-            if (n - first < 1) continue;
-            const auto stride = field.stride(d);
-            const int beyond_wall = edge.on_faces && at_walls == AtWalls::taken ? 1 : 0;
-            const int low_end = edge.periodic ? n : first - beyond_wall;
-            const int high_end = edge.periodic ? first : n + beyond_wall;
-            if (d == 0) {
-                each_line(field, grid, 0, [&](std::ptrdiff_t line) {
-                    double* const v = field.data() + line;
-                    const double* const old = before.data();
-                    std::copy_n(v, length, before.begin());
-                    before[static_cast<std::size_t>(first - 1)] = v[low_end];
-                    before[static_cast<std::size_t>(n + 1)] = v[high_end];
-                    for (int m = first; m <= n; ++m) v[m] = 0.25 * (old[m - 1] + old[m + 1]) + 0.5 * old[m];
-                });
-                continue;
-            }
-            const int across = d == 1 ? 2 : 1;
-            for (int q = 0; q <= grid.cells(across) + 1; ++q) {
-                double* const line = field.data() + q * field.stride(across);
-                std::copy_n(line + low_end * stride, length, before.begin());
-                std::copy_n(line + high_end * stride, length, beyond.begin());
-                for (int m = first; m <= n; ++m) {
-                    double* const row = line + m * stride;
-                    const double* const after = m < n ? row + stride : beyond.data();
-                    for (std::size_t i = 0; i < length; ++i) {
-                        const double here = row[i];
-                        row[i] = 0.25 * (before[i] + after[i]) + 0.5 * here;
-                        before[i] = here;
-                    }
-                }
-            }
-        }
-    }
+std::array<bool, 3> periodic_axes(const flow::Sides& sides) {
+    std::array<bool, 3> axes{};
+    for (std::size_t d = 0; d < 3; ++d) axes[d] = std::holds_alternative<flow::Periodic>(sides[d][0]);
+    return axes;
 }
 
-FaceDeposit::FaceDeposit(const flow::Grid& grid, const flow::Sides& sides, int passes) : grid_(grid), passes_(passes) {
+FaceDeposit::FaceDeposit(const flow::Grid& grid, const flow::Sides& sides, double width) : grid_(grid) {
     for (int d = 0; d < 3; ++d) {
+        std::array<Nodes, 3> nodes{Nodes::cells, Nodes::cells, Nodes::cells};
+        nodes[static_cast<std::size_t>(d)] = Nodes::faces;
         edges_.push_back(flow::velocity_edges(sides, d));
-        weights_.emplace_back(grid, edges_.back());
+        spreading_.emplace_back(grid, periodic_axes(sides), nodes, width);
     }
 }
 
@@ -105,24 +67,16 @@ void FaceDeposit::clear(flow::FaceVectors& faces) {
     for (auto& field : faces) std::fill(field.values().begin(), field.values().end(), 0.0);
 }
 
-void FaceDeposit::spread(flow::FaceVectors& faces) const {
+void FaceDeposit::spread(flow::FaceVectors& faces) {
     for (std::size_t d = 0; d < 3; ++d) {
-        flow::Field& field = faces[d];
-        fold_ghosts(field, grid_, edges_[d]);
-        smooth(field, grid_, edges_[d], passes_);
-        const auto& width = weights_[d].inverse_width;
-        for (int k = 1; k <= grid_.cells(2); ++k)
-            for (int j = 1; j <= grid_.cells(1); ++j) {
-                const double yz = width[1][static_cast<std::size_t>(j)] * width[2][static_cast<std::size_t>(k)];
-                double* const row = field.data() + field.index(0, j, k);
-                for (int i = 1; i <= grid_.cells(0); ++i) row[i] *= yz * width[0][static_cast<std::size_t>(i)];
-            }
+        fold_ghosts(faces[d], grid_, edges_[d]);
+        spreading_[d].densities(faces[d]);
     }
 }
 
-void FaceDeposit::smooth_transposed(flow::FaceVectors& faces) const {
+void FaceDeposit::spread_transposed(flow::FaceVectors& faces) {
     for (std::size_t d = 0; d < 3; ++d) {
-        smooth(faces[d], grid_, edges_[d], passes_);
+        spreading_[d].spread(faces[d]);
         flow::Edges edges = edges_[d];
         for (flow::Edge& edge : edges)
             for (flow::Ghost& ghost : edge.ghost) ghost.constant = 0;

@@ -18,6 +18,7 @@
 // keeps shear and volume within h/2, lies between (0.259, six clouds).
 #pragma once
 
+#include "solver/coupling/spreading.hpp"
 #include "solver/flow/transport.hpp"
 
 #include <array>
@@ -152,32 +153,26 @@ void fold_ghosts(flow::Field& field, const flow::Grid& grid, const flow::Edges& 
 /// Edges of the three components of a field that passes no wall and does not change along a wall's normal.
 [[nodiscard]] std::array<flow::Edges, 3> frictionless_edges(flow::Sides sides);
 
-/// What smoothing does with a component normal to a wall: `kept` reflects it, so that nothing is lost; `taken` holds
-/// it at zero on the wall, so that the divergence of a smoothed flux is the smoothed divergence.
-enum class AtWalls { kept, taken };
-
-/// Widens the deposit: `passes` times [1 2 1]/4 along each axis of the extensive quantity, reflected at the sides, so
-/// nothing is lost; symmetric, hence its own transpose. One pass adds half a squared cell to the variance.
-void smooth(flow::Field& field, const flow::Grid& grid, const flow::Edges& edges, int passes,
-            AtWalls at_walls = AtWalls::kept);
-
-/// Turns smoothed deposits on the faces into values per volume.
+/// Turns deposits on the faces into values per volume, spread over the width of the kernel.
 class FaceDeposit {
 public:
-    FaceDeposit(const flow::Grid& grid, const flow::Sides& sides, int passes);
+    /// width: see spreading.hpp.
+    FaceDeposit(const flow::Grid& grid, const flow::Sides& sides, double width);
 
     static void clear(flow::FaceVectors& faces);
     /// Extensive deposit, ghosts included -> per volume of each face's control volume.
-    void spread(flow::FaceVectors& faces) const;
-    /// A field on the faces smoothed as deposits are, ghosts filled as its transpose folds them: what particles gather
+    void spread(flow::FaceVectors& faces);
+    /// A field on the faces spread as deposits are, ghosts filled as its transpose folds them: what particles gather
     /// from it is what they would have deposited on it.
-    void smooth_transposed(flow::FaceVectors& faces) const;
+    void spread_transposed(flow::FaceVectors& faces);
 
 private:
     flow::Grid grid_;
-    int passes_;
     std::vector<flow::Edges> edges_;
-    std::vector<flow::Weights> weights_;
+    std::vector<Spreading> spreading_;
 };
+
+/// The axes along which a box is periodic.
+[[nodiscard]] std::array<bool, 3> periodic_axes(const flow::Sides& sides);
 
 }  // namespace grainsweep::coupling

@@ -87,9 +87,13 @@ public:
     /// Least share of a cell that is fluid: random close packing leaves 1 - 0.63.
     static constexpr double least_fluid = 0.37;
 
-    /// `passes`: of the smoothing of the deposit, see smooth().
-    TwoWay(const flow::Grid& grid, const flow::Sides& sides, const Sphere& sphere, std::size_t particles, int passes)
-        : sphere_(sphere), deposit_(grid, sides, passes), rate_(particles, Vec3{}), source_(flow::face_vectors(grid)) {
+    /// kernel_width: see spreading.hpp.
+    TwoWay(const flow::Grid& grid, const flow::Sides& sides, const Sphere& sphere, std::size_t particles,
+           double kernel_width)
+        : sphere_(sphere),
+          deposit_(grid, sides, kernel_width),
+          rate_(particles, Vec3{}),
+          source_(flow::face_vectors(grid)) {
         if constexpr (Form::per_fluid_volume) solid_ = flow::face_vectors(grid);
     }
 

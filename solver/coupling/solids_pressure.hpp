@@ -3,9 +3,9 @@
 // Force per volume of a sphere, besides what the fluid does:
 //   a = -(1/phi_p) grad p_s,   p_s = xi phi_p Theta (1 + 2 (1 + e) phi_p g0)                 (granular.hpp)
 // (Popoff & Braun 2007, "A Lagrangian approach to dense particulate flows", ICMF), and no cell over the packing limit
-// (packing_limit.hpp). The type of Theta is the one choice: granular_temperature.hpp. Cells thinner than half of what
-// one particle per cell would fill have no collisions and no stress. The displacement by the stress in one step is
-// held below a tenth of a cell.
+// (packing_limit.hpp). The type of Theta is the one choice: granular_temperature.hpp. Where the
+// fraction is below that of two particles at one place there are no collisions and no stress. The displacement by the
+// stress in one step is held below a tenth of a cell.
 #pragma once
 
 #include "solver/coupling/granular_temperature.hpp"
@@ -33,12 +33,12 @@ template <class Temperature>
 class SolidsPressure {
 public:
     SolidsPressure(const flow::Grid& grid, const flow::Sides& sides, const Sphere& sphere, const Granular& grains,
-                   double least_temperature, int smoothing)
+                   double least_temperature, double kernel_width)
         : grid_(grid),
           grains_(grains),
-          thinnest_(0.5 * sphere.volume() * static_cast<double>(grid.total_cells())),
+          thinnest_(2 * lone_fraction(grid, sphere.volume(), kernel_width)),
           volume_(sphere.volume()),
-          deposit_(grid, sides, smoothing),
+          deposit_(grid, sides, kernel_width),
           mobility_(sphere.stokes / sphere.prandtl),
           limit_(grid, sides, grains.packing_limit),
           temperature_(grid, grains, {least_temperature, 1e12, thinnest_}),
@@ -88,7 +88,7 @@ public:
     }
 
 private:
-    // The stress is divided by the fraction that the particles themselves have on a face, and smoothed and gathered as
+    // The stress is divided by the fraction that the particles themselves have on a face, and spread and gathered as
     // that was deposited: the sum over the particles is that of -grad p_s over the faces, which no one loses.
     template <class Feet>
     void find_stress(const Cloud& cloud, SolidsVolume& solids, const Feet& feet, double dt) {
@@ -121,7 +121,7 @@ private:
                         value = difference == 0 || !(value > 0) ? 0 : -difference / (grid_[d].spacing(face) * value);
                     }
         }
-        deposit_.smooth_transposed(stress_);
+        deposit_.spread_transposed(stress_);
     }
 
     flow::Grid grid_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace grainsweep::coupling {
 namespace {
@@ -19,20 +20,26 @@ void each_cell(const flow::Grid& grid, Body body) {
 
 }  // namespace
 
-SolidsVolume::SolidsVolume(const flow::Grid& grid, const flow::Sides& sides, double particle_volume, int passes)
+double lone_fraction(const flow::Grid& grid, double particle_volume, double kernel_width) {
+    const double box = grid[0].length() * grid[1].length() * grid[2].length();
+    const double cell = std::cbrt(box / static_cast<double>(grid.total_cells()));
+    const double variance = std::max(kernel_width * kernel_width, cell * cell / 6);
+    return particle_volume / std::pow(2 * std::numbers::pi * variance, 1.5);
+}
+
+SolidsVolume::SolidsVolume(const flow::Grid& grid, const flow::Sides& sides, double particle_volume,
+                           double kernel_width)
     : grid_(grid),
       edges_(flow::pressure_edges(sides)),
-      face_edges_{flow::velocity_edges(sides, 0), flow::velocity_edges(sides, 1), flow::velocity_edges(sides, 2)},
       particle_volume_(particle_volume),
-      passes_(passes),
+      over_cells_(grid, periodic_axes(sides), {Nodes::cells, Nodes::cells, Nodes::cells}, kernel_width),
       fraction_(grid),
-      inverse_volume_(grid),
       flux_(flow::face_vectors(grid)) {
-    inverse_width_x_.push_back(0);
-    for (int i = 1; i <= grid.cells(0); ++i) inverse_width_x_.push_back(1 / grid[0].width(i));
-    each_cell(grid_, [&](int i, int j, int k) {
-        inverse_volume_(i, j, k) = 1 / (grid_[0].width(i) * grid_[1].width(j) * grid_[2].width(k));
-    });
+    for (std::size_t d = 0; d < 3; ++d) {
+        std::array<Nodes, 3> nodes{Nodes::cells, Nodes::cells, Nodes::cells};
+        nodes[d] = Nodes::flux;
+        over_faces_.emplace_back(grid, periodic_axes(sides), nodes, kernel_width);
+    }
 }
 
 int SolidsVolume::inside(int d, int cell) const {
@@ -65,8 +72,7 @@ void SolidsVolume::place(std::span<const Vec3> positions) {
                     fraction[cell[0][a] + cell[1][b] + cell[2][c]] +=
                         particle_volume_ * (w[2].weight[c] * w[1].weight[b] * w[0].weight[a]);
     }
-    smooth(fraction_, grid_, edges_, passes_);
-    for (std::size_t m = 0; m < fraction_.size(); ++m) fraction_.values()[m] *= inverse_volume_.values()[m];
+    over_cells_.densities(fraction_);
     fill_ghosts(fraction_, grid_, edges_);
 }
 
@@ -86,11 +92,11 @@ void SolidsVolume::mean(std::span<const Vec3> property, std::array<flow::Field, 
                 }
     }
     for (auto& field : into) {
-        smooth(field, grid_, edges_, passes_);
+        over_cells_.densities(field);
         each_cell(grid_, [&](int i, int j, int k) {
             const double phi = fraction_(i, j, k);
             double& value = field(i, j, k);
-            value = phi > 0 ? value * inverse_volume_(i, j, k) / phi : 0;
+            value = phi > 0 ? value / phi : 0;
         });
         fill_ghosts(field, grid_, edges_);
     }
@@ -163,16 +169,7 @@ void SolidsVolume::carry(double dt) {
         carry_along<2>(shares, scale);
     }
     stood_ = stand_;
-    for (int d = 0; d < 3; ++d) {
-        flow::Field& field = flux_[at(d)];
-        smooth(field, grid_, face_edges_[at(d)], passes_, AtWalls::taken);
-        for (int k = 1; k <= grid_.cells(2); ++k)
-            for (int j = 1; j <= grid_.cells(1); ++j) {
-                const double yz = (d == 1 ? 1 : 1 / grid_[1].width(j)) * (d == 2 ? 1 : 1 / grid_[2].width(k));
-                double* const row = field.data() + field.index(0, j, k);
-                for (int i = 1; i <= grid_.cells(0); ++i) row[i] *= d == 0 ? yz : yz * inverse_width_x_[at(i)];
-            }
-    }
+    for (int d = 0; d < 3; ++d) over_faces_[at(d)].densities(flux_[at(d)]);
 }
 
 double SolidsVolume::largest_fraction() const {

@@ -1,10 +1,10 @@
 // The volume of the particles on the grid: fraction phi_p of each cell and flux j through each face.
 //
-// A particle's volume is shared among the cell centres around it by trilinear weights, then widened by passes of
-// [1 2 1]/4 (interpolation.hpp). The flux is the one that carries each particle's shares from its old to its new
+// A particle's volume is shared among the cell centres around it by trilinear weights, then spread over the width of
+// the kernel (spreading.hpp). The flux is the one that carries each particle's shares from its old to its new
 // place: the density decomposition of Esirkepov 2001 (doi 10.1016/S0010-4655(00)00228-9, eq. 23), so that
 //   phi_p(new) = phi_p(old) - dt div j
-// holds in every cell to round-off, however the particles moved, on any tensor-product grid; smoothing both keeps it.
+// holds in every cell to round-off, however the particles moved, on any tensor-product grid; spreading both keeps it.
 #pragma once
 
 #include "solver/coupling/interpolation.hpp"
@@ -14,9 +14,14 @@
 
 namespace grainsweep::coupling {
 
+/// The fraction that a particle alone makes where it stands, far from walls: v_p/(2 pi w^2)^(3/2), with the width of a
+/// linear deposit in a mean cell where that is wider.
+[[nodiscard]] double lone_fraction(const flow::Grid& grid, double particle_volume, double kernel_width);
+
 class SolidsVolume {
 public:
-    SolidsVolume(const flow::Grid& grid, const flow::Sides& sides, double particle_volume, int passes);
+    /// kernel_width: see spreading.hpp.
+    SolidsVolume(const flow::Grid& grid, const flow::Sides& sides, double particle_volume, double kernel_width);
 
     /// phi_p of particles that start from `positions` (inside the box), ghosts filled.
     void start(std::span<const Vec3> positions);
@@ -55,12 +60,11 @@ private:
 
     flow::Grid grid_;
     flow::Edges edges_;
-    std::array<flow::Edges, 3> face_edges_;
     double particle_volume_;
-    int passes_;
+    Spreading over_cells_;
+    std::vector<Spreading> over_faces_;
     Standing stood_, stand_;  // when last carried; now
-    flow::Field fraction_, inverse_volume_;
-    std::vector<double> inverse_width_x_;
+    flow::Field fraction_;
     flow::FaceVectors flux_;
 };
 

@@ -1,12 +1,11 @@
 #include "solver/flow/implicit_diffusion.hpp"
 
-#include "solver/flow/dense_product.hpp"
 #include "solver/flow/second_difference.hpp"
 #include "solver/flow/vector_clones.hpp"
 
 #include <Eigen/LU>
 
-#include <algorithm>
+#include <utility>
 
 namespace grainsweep::flow {
 namespace {
@@ -34,9 +33,8 @@ ImplicitDiffusion::ImplicitDiffusion(const Grid& grid, const Edges& edges, doubl
         const int n = n_[at];
         const Eigen::MatrixXd factor = Eigen::MatrixXd::Identity(n, n) - a * second_difference_matrix(grid[d], edge);
         if (by_matrix_[at]) {
-            const Eigen::MatrixXd inverse = factor.inverse();
-            for (int r = 0; r < n; ++r)
-                for (int c = 0; c < n; ++c) inverse_[at].push_back(d == 0 ? inverse(c, r) : inverse(r, c));
+            inverse_[at] = AxisProduct(grid, d, factor.inverse());
+            if (d != 0) scratch_ = Field(grid);
             continue;
         }
         Sweep& sweep = sweeps_[at];
@@ -54,7 +52,6 @@ ImplicitDiffusion::ImplicitDiffusion(const Grid& grid, const Edges& edges, doubl
             sweep.high_over_pivot[m] = high * sweep.inverse_pivot[m];
         }
     }
-    scratch_.resize(static_cast<std::size_t>(n_[0]) * static_cast<std::size_t>(std::max(n_[1], n_[2])));
 }
 
 void ImplicitDiffusion::sweep_y(Field& field) const {
@@ -87,31 +84,18 @@ void ImplicitDiffusion::sweep_z(Field& field) const {
     }
 }
 
-void ImplicitDiffusion::multiply(Field& field, int direction) {
-    const auto along = static_cast<std::size_t>(direction);
-    const int across = direction == 1 ? 2 : 1;  // the axis of the outer loop
-    const int n = n_[along];
-    for (int q = 1; q <= n_[static_cast<std::size_t>(across)]; ++q) {
-        double* const lines = field.data() + 1 + field.stride(direction) + q * field.stride(across);
-        dense_product(n, n_[0], n, inverse_[along].data(), n, lines, field.stride(direction), scratch_.data(), n_[0]);
-        for (int m = 0; m < n; ++m)
-            std::copy_n(scratch_.data() + static_cast<std::ptrdiff_t>(m) * n_[0], n_[0],
-                        lines + m * field.stride(direction));
-    }
-}
-
 void ImplicitDiffusion::solve(Field& right, Field& solution) {
-    if (by_matrix_[1])
-        multiply(right, 1);
-    else
-        sweep_y(right);
-    if (by_matrix_[2])
-        multiply(right, 2);
-    else
-        sweep_z(right);
-    for (int k = 1; k <= n_[2]; ++k)
-        dense_product(n_[1], n_[0], n_[0], right.data() + right.index(1, 1, k), right.stride(1), inverse_[0].data(),
-                      n_[0], solution.data() + solution.index(1, 1, k), solution.stride(1));
+    for (const int d : {1, 2}) {
+        if (by_matrix_[static_cast<std::size_t>(d)]) {
+            inverse_[static_cast<std::size_t>(d)].apply(right, scratch_);
+            std::swap(right, scratch_);
+        } else if (d == 1) {
+            sweep_y(right);
+        } else {
+            sweep_z(right);
+        }
+    }
+    inverse_[0].apply(right, solution);
 }
 
 }  // namespace grainsweep::flow

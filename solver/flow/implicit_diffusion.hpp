@@ -5,6 +5,7 @@
 // row at once; along x, and along periodic axes, the inverse of the n x n factor is applied as a matrix.
 #pragma once
 
+#include "solver/flow/axis_product.hpp"
 #include "solver/flow/boundary.hpp"
 
 #include <vector>
@@ -26,13 +27,12 @@ private:
     };
     void sweep_y(Field& field) const;
     void sweep_z(Field& field) const;
-    void multiply(Field& field, int direction);
 
     std::array<int, 3> n_;
     std::array<bool, 3> by_matrix_{};
     std::array<Sweep, 3> sweeps_;
-    std::array<std::vector<double>, 3> inverse_;  // row-major; along x transposed
-    std::vector<double> scratch_;
+    std::array<AxisProduct, 3> inverse_;
+    Field scratch_;
 };
 
 }  // namespace grainsweep::flow

@@ -95,8 +95,10 @@ std::vector<ParameterSpec> parameters() {
              {"with_flow", "periodic_flow"}, {with_particles, vibrated, {"coupling", Condition::is_word, {"one_way"}}}),
         word("interpolation", "of the fluid velocity at a particle: linear, or quadratic and exactly divergence-free",
              {"trilinear", "solenoidal"}, {with_particles}),
-        whole("smoothing", "passes of [1 2 1]/4 over the deposited force, per axis", 2, between(0, 20),
-              {with_particles, felt_by_fluid}),
+        real("kernel_width", "diameters",
+             "standard deviation of the Gaussian over which a particle's force and volume are spread; no narrower than "
+             "the cells of the grid",
+             4, between(0, 20), {with_particles, felt_by_fluid}),
         whole("cells", "cells of the flow grid per side", 28, between(4, 128)),
         real("clustering", "1", "clustering c of the grid towards all walls, tanh(c s)/tanh(c); 0: uniform", 1.5,
              between(0, 3)),
@@ -154,7 +156,6 @@ std::unique_ptr<Scene> make_with(const Question& question, std::uint64_t seed, A
     const auto grid = question.grid();
     const auto sides = Question::sides();
     const auto particles = static_cast<std::size_t>(question.particles);
-    const int smoothing = static_cast<int>(question.smoothing);
     const auto dilute = [&]<class Level>(Level level) -> std::unique_ptr<Scene> {
         using Together = coupling::Suspension<flow::Boussinesq, Level, Kernel, Drag>;
         return std::make_unique<Live<Together>>(
@@ -165,11 +166,11 @@ std::unique_ptr<Scene> make_with(const Question& question, std::uint64_t seed, A
         using Together = coupling::DenseSuspension<flow::Boussinesq, Interaction, Kernel, Drag>;
         return std::make_unique<Live<Together>>(
             question, Together(question.fluid(), question.vibration(), motion, question.walls(), question.cloud(seed),
-                               std::move(interaction), smoothing));
+                               std::move(interaction), question.kernel()));
     };
     const auto granular = [&]<class Temperature>(std::type_identity<Temperature>) {
         return dense(coupling::SolidsPressure<Temperature>(grid, sides, question.sphere(), question.grains(),
-                                                           question.granular_temperature, smoothing));
+                                                           question.granular_temperature, question.kernel()));
     };
     const bool carried =
         question.particles > 0 && question.particle_start == "periodic_flow" && !question.steady_force();
@@ -181,7 +182,7 @@ std::unique_ptr<Scene> make_with(const Question& question, std::uint64_t seed, A
     if (question.particles == 0 || question.coupling == "one_way") return one_way(coupling::OneWay{});
     if (question.coupling == "two_way") {
         const auto form = [&]<class Form>(Form) {
-            return dilute(coupling::TwoWay<Form>(grid, sides, question.sphere(), particles, smoothing));
+            return dilute(coupling::TwoWay<Form>(grid, sides, question.sphere(), particles, question.kernel()));
         };
         return question.source_form == "force" ? form(coupling::ForceForm{}) : form(coupling::EquationNine{});
     }
@@ -235,7 +236,7 @@ SceneInfo thermovibration_scene() {
     SceneInfo info;
     info.name = "thermovibration";
     info.summary = "particles in a heated, vibrated cube of fluid: do they gather, into what, how fast";
-    info.revision = 3;
+    info.revision = 4;
     info.parameters = parameters();
     info.observables = observables();
     info.accuracy = {

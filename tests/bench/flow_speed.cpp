@@ -108,18 +108,18 @@ int main(int argc, char** argv) {
     auto solenoidal = suspension(coupling::Solenoidal{}, coupling::OneWay{});
     measure("one_way_solenoidal", [&] { solenoidal.step(); });
     auto two_way =
-        suspension(coupling::Trilinear{}, coupling::TwoWay<coupling::ForceForm>(grid, walls, sphere, particles, 2));
+        suspension(coupling::Trilinear{}, coupling::TwoWay<coupling::ForceForm>(grid, walls, sphere, particles, 0.03));
     measure("two_way_force", [&] { two_way.step(); });
 
     const auto dense = [&]<class Interaction>(const char* what, Interaction interaction) {
         coupling::DenseSuspension<Boussinesq, Interaction, coupling::Trilinear, coupling::SchillerNaumann> together(
-            flow, heat.vibration, motion, box, cloud, std::move(interaction), 2);
+            flow, heat.vibration, motion, box, cloud, std::move(interaction), 0.03);
         measure(what, [&] { together.step(); });
     };
     const auto grains = coupling::Granular::of(sphere, 0.9, 0.63);
-    dense("ddpm", coupling::SolidsPressure<coupling::AlgebraicTemperature>(grid, walls, sphere, grains, 1e-3, 2));
+    dense("ddpm", coupling::SolidsPressure<coupling::AlgebraicTemperature>(grid, walls, sphere, grains, 1e-3, 0.03));
     dense("ddpm_ktgf",
-          coupling::SolidsPressure<coupling::TransportedTemperature>(grid, walls, sphere, grains, 1e-3, 2));
+          coupling::SolidsPressure<coupling::TransportedTemperature>(grid, walls, sphere, grains, 1e-3, 0.03));
     const double stiffness = coupling::SpringContacts::stiffness(sphere, 0.01, setup.time_step);
     dense("cfd_dem_spring", coupling::SpringContacts(sphere, box, {stiffness, 0.9, 0.3}, particles));
     dense("cfd_dem_projection", coupling::ProjectedContacts(sphere, box, setup.time_step));

@@ -28,14 +28,14 @@ double fluid_momentum(const Together& together, std::size_t d, int n) {
 }  // namespace
 
 // phi_p(new) - phi_p(old) = -dt div j in every cell, whatever the particles do: across cells, along walls, over
-// periodic sides, on clustered grids, smoothed or not; and the total is the particles' volume.
+// periodic sides, on clustered grids, spread or not; and the total is the particles' volume.
 TEST(SolidsVolume, IsConservedInEveryCellToRoundOff) {
     const stats::Stream random(4, 4);
     for (const bool open : {false, true})
-        for (const int passes : {0, 2}) {
+        for (const double kernel_width : {0.0, 0.15}) {
             const Grid grid = cube(6, open ? 0 : 1.4);
             const flow::Sides& sides = open ? endless : closed;
-            SolidsVolume solids(grid, sides, 1e-3, passes);
+            SolidsVolume solids(grid, sides, 1e-3, kernel_width);
             std::vector<Vec3> before;
             std::vector<Vec3> after;
             for (std::uint64_t p = 0; p < 200; ++p) {
@@ -137,15 +137,14 @@ TEST(DenseSuspension, BecomesTwoWayWhenItsVolumeVanishes) {
     const auto distance = [&](double stokes, double xi) {
         const Sphere sphere{xi, stokes, 18, 5e7 / xi, 1};
         const std::size_t particles = 300;
-        Setting setting{cube(n), closed, sphere, 2e-5, particles};
+        const Setting setting{cube(n), closed, sphere, 2e-5, particles};
         const flow::Vibration vibration{1e4, 0};
         const Walls around = box(closed, sphere.radius());
         const auto cloud = random_cloud(particles, around, stats::Stream(2, 1));
-        setting.smoothing = 2;
         auto dense = setting.together<NoInteraction>(vibration, cloud);
         Suspension<flow::NoHeat, TwoWay<ForceForm>, Trilinear, SchillerNaumann> two_way(
             still_fluid(setting.grid, closed, 18, setting.dt), vibration, Motion<SchillerNaumann>(sphere, setting.dt),
-            around, cloud, TwoWay<ForceForm>(setting.grid, closed, sphere, particles, 2));
+            around, cloud, TwoWay<ForceForm>(setting.grid, closed, sphere, particles, setting.kernel_width));
         double far = 0;
         double size = 0;
         for (int s = 0; s < 40; ++s) {
@@ -184,7 +183,8 @@ TEST(DenseSuspension, AnIdleLawChangesNoBit) {
                 cloud.position.push_back({0.2 * i - 0.3, 0.2 * j - 0.3, 0.2 * k - 0.3});
                 cloud.velocity.push_back({});
             }
-    const Setting setting{cube(8), closed, sphere, 1e-5, particles};
+    Setting setting{cube(8), closed, sphere, 1e-5, particles};
+    setting.kernel_width = 0.06;
     const auto state = [&]<class Interaction>(Interaction) {
         auto together = setting.together<Interaction>(vibration, cloud);
         for (int s = 0; s < 20; ++s) together.step();
@@ -209,7 +209,7 @@ TEST(SolidsPressure, KeepsThePackingLimit) {
                                   0.2 + 0.25 * random.uniform(3 * p + 2)});
         cloud.velocity.push_back({});
     }
-    SolidsVolume crowded(setting.grid, closed, sphere.volume(), 1);
+    SolidsVolume crowded(setting.grid, closed, sphere.volume(), setting.kernel_width);
     crowded.start(cloud.position);
     ASSERT_GT(crowded.largest_fraction(), 2);
     auto together = setting.together<Ddpm>({}, cloud);
@@ -260,7 +260,7 @@ std::vector<std::byte> dense_state_after(int steps, int cut) {
         const Walls around = box(closed, sphere.radius());
         return Dense<Interaction, Boussinesq>(
             std::move(fluid), heat.vibration, Motion<SchillerNaumann>(sphere, setting.dt), around,
-            random_cloud(particles, around, stats::Stream(5, 1)), setting.make<Interaction>(), 1);
+            random_cloud(particles, around, stats::Stream(5, 1)), setting.make<Interaction>(), setting.kernel_width);
     };
     auto first = make();
     for (int s = 0; s < cut; ++s) first.step();

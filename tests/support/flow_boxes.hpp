@@ -53,7 +53,7 @@ struct Setting {
     std::size_t particles;
     double collision = 0.8;
     double granular_temperature = 1;
-    int smoothing = 1;
+    double kernel_width = 0.1;
     double friction = 0.3;
 
     template <class Interaction>
@@ -66,7 +66,7 @@ struct Setting {
         else if constexpr (std::is_same_v<Interaction, NoInteraction>)
             return {};
         else
-            return {grid, sides, sphere, Granular::of(sphere, collision, 0.63), granular_temperature, smoothing};
+            return {grid, sides, sphere, Granular::of(sphere, collision, 0.63), granular_temperature, kernel_width};
     }
     template <class Interaction>
     [[nodiscard]] Dense<Interaction> together(const flow::Vibration& vibration, const Cloud& cloud) const {
@@ -76,7 +76,7 @@ struct Setting {
                 box(sides, sphere.radius()),
                 cloud,
                 make<Interaction>(),
-                smoothing};
+                kernel_width};
     }
 };
 

@@ -97,7 +97,7 @@ TEST(GranularTemperature, CoolsByHaffsLaw) {
     const int n = 4;
     const auto grid = cube(n);
     const double fraction = 0.1;
-    SolidsVolume solids(grid, everywhere, fraction / (n * n * n), 1);
+    SolidsVolume solids(grid, everywhere, fraction / (n * n * n), 0.2);
     solids.start(lattice(n));
     const Straining still(grid);
     const double start = 100;
@@ -122,7 +122,7 @@ TEST(GranularTemperature, TransportedReachesTheBalanceInSteadyShear) {
     const int n = 4;
     const auto grid = cube(n);
     const double fraction = 0.15;
-    SolidsVolume solids(grid, everywhere, fraction / (n * n * n), 1);
+    SolidsVolume solids(grid, everywhere, fraction / (n * n * n), 0.2);
     solids.start(lattice(n));
     Straining sheared(grid);
     for (double& s : sheared.shear.values()) s = 0.5 * 30 * 30;  // dv_y/dz = 30
@@ -140,7 +140,7 @@ TEST(GranularTemperature, TransportedReachesTheBalanceInSteadyShear) {
 TEST(GranularTemperature, StaysUniformInAMovingCloud) {
     const auto grid = cube(8);
     const double v = 2e-4;
-    SolidsVolume solids(grid, everywhere, v, 1);
+    SolidsVolume solids(grid, everywhere, v, 0.1);
     const stats::Stream random(3, 3);
     std::vector<Vec3> positions;
     for (std::uint64_t p = 0; p < 800; ++p)

@@ -58,7 +58,7 @@ Question::Question(const Inputs& inputs)
       cells(count(inputs, "cells")),
       clustering(number(inputs, "clustering")),
       steps_per_period(count(inputs, "steps_per_period")),
-      smoothing(count(inputs, "smoothing")),
+      kernel_width(number(inputs, "kernel_width")),
       time_step(number(inputs, "time_step")),
       end_time(number(inputs, "end_time")),
       sampling_cells(count(inputs, "sampling_cells")) {

@@ -22,7 +22,8 @@ struct Question {
     double restitution, collision_restitution, friction, overlap, packing_limit, granular_temperature;
     std::int64_t cells;
     double clustering;
-    std::int64_t steps_per_period, smoothing;
+    std::int64_t steps_per_period;
+    double kernel_width;
     double time_step, end_time;
     std::int64_t sampling_cells;
 
@@ -44,6 +45,8 @@ struct Question {
     [[nodiscard]] flow::Grid flow_grid() const;
     [[nodiscard]] flow::Flow<flow::Boussinesq> fluid() const;
     [[nodiscard]] coupling::Sphere sphere() const { return {density_ratio, stokes, prandtl, acceleration, 1}; }
+    /// Standard deviation of the kernel over which particles are spread (coupling/spreading.hpp).
+    [[nodiscard]] double kernel() const { return kernel_width * 2 * sphere().radius(); }
     [[nodiscard]] coupling::Walls walls() const;
     /// Random; without overlaps where contacts are resolved. Throws std::invalid_argument where there is no room.
     [[nodiscard]] coupling::Cloud cloud(std::uint64_t seed) const;

@@ -1,0 +1,95 @@
+#include "solver/coupling/spreading.hpp"
+
+#include <unsupported/Eigen/MatrixFunctions>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace grainsweep::coupling {
+namespace {
+
+// Half of the variance that a linear deposit over h lacks.
+double lacking(double width, double h) {
+    return std::max(0.0, (width * width - h * h / 6) / 2);
+}
+
+}  // namespace
+
+Eigen::VectorXd node_lengths(const flow::Axis& axis, bool periodic, Nodes nodes) {
+    Eigen::VectorXd lengths = Eigen::VectorXd::Ones(axis.cells());
+    for (int i = 1; i <= axis.cells(); ++i) {
+        if (nodes == Nodes::cells) lengths(i - 1) = axis.width(i);
+        if (nodes == Nodes::faces) lengths(i - 1) = i > 1 || periodic ? axis.spacing(i) : 0;
+    }
+    return lengths;
+}
+
+Eigen::MatrixXd spreading_matrix(const flow::Axis& axis, bool periodic, Nodes nodes, double width) {
+    const int n = axis.cells();
+    Eigen::MatrixXd rate = Eigen::MatrixXd::Zero(n, n);
+    const auto wrapped = [n](int i) { return (i - 1 + n) % n; };  // row or column of index i
+    // What diffuses between a and b, out of the first into the second.
+    const auto pair = [&](int a, int b, double into_a, double into_b) {
+        rate(wrapped(a), wrapped(a)) -= into_a;
+        rate(wrapped(a), wrapped(b)) += into_a;
+        rate(wrapped(b), wrapped(b)) -= into_b;
+        rate(wrapped(b), wrapped(a)) += into_b;
+    };
+    if (n == 1) return Eigen::MatrixXd::Identity(1, 1);
+    if (nodes == Nodes::cells) {
+        for (int f = periodic ? 1 : 2; f <= n; ++f) {
+            const double h = axis.spacing(f);
+            const double s = lacking(width, h) / h;
+            const int below = f > 1 ? f - 1 : n;
+            pair(below, f, s / axis.width(below), s / axis.width(f));
+        }
+    } else if (nodes == Nodes::faces) {
+        for (int i = periodic ? 1 : 2; i <= (periodic ? n : n - 1); ++i) {
+            const double h = axis.width(i);
+            const double s = lacking(width, h) / h;
+            const int above = i < n ? i + 1 : 1;
+            pair(i, above, s / axis.spacing(i), s / axis.spacing(above));
+        }
+    } else {
+        for (int f = periodic ? 1 : 2; f <= n; ++f) {
+            const double s = lacking(width, axis.spacing(f)) / axis.spacing(f);
+            const auto gradient = [&](int cell, int other) {  // of the flux in a cell beside the face
+                rate(wrapped(f), wrapped(f)) -= s / axis.width(cell);
+                if (periodic || (other > 1 && other <= n)) rate(wrapped(f), wrapped(other)) += s / axis.width(cell);
+            };
+            gradient(f, f + 1);
+            gradient(f > 1 ? f - 1 : n, f - 1);
+        }
+    }
+    return rate.exp();
+}
+
+Spreading::Spreading(const flow::Grid& grid, const std::array<bool, 3>& periodic, const std::array<Nodes, 3>& nodes,
+                     double width)
+    : scratch_{flow::Field(grid), flow::Field(grid)} {
+    for (int d = 0; d < 3; ++d) {
+        const auto at = static_cast<std::size_t>(d);
+        const Eigen::MatrixXd kernel = spreading_matrix(grid[d], periodic[at], nodes[at], width);
+        const Eigen::VectorXd lengths = node_lengths(grid[d], periodic[at], nodes[at]);
+        const Eigen::VectorXd inverse = (lengths.array() > 0).select(lengths.cwiseInverse(), 0);
+        from_densities_[at] =
+            flow::AxisProduct(grid, d, kernel * (lengths.array() > 0).cast<double>().matrix().asDiagonal());
+        from_deposits_[at] = flow::AxisProduct(grid, d, kernel * inverse.asDiagonal());
+    }
+}
+
+void Spreading::densities(flow::Field& field) {
+    apply(from_deposits_, field);
+}
+
+void Spreading::spread(flow::Field& field) {
+    apply(from_densities_, field);
+}
+
+void Spreading::apply(const std::array<flow::AxisProduct, 3>& kernels, flow::Field& field) {
+    kernels[0].apply(field, scratch_[0]);
+    kernels[1].apply(scratch_[0], scratch_[1]);
+    kernels[2].apply(scratch_[1], field);
+}
+
+}  // namespace grainsweep::coupling
