@@ -14,6 +14,7 @@
 // for dt >> tau, where V is then the velocity of the middle of the step.
 #pragma once
 
+#include "solver/coupling/drag.hpp"
 #include "solver/coupling/interpolation.hpp"
 
 #include <algorithm>
@@ -44,51 +45,93 @@ struct Surroundings {
     Vec3 other{};          ///< a
 };
 
+/// Many spheres side by side, one a lane, in the same vibration: [axis][lane].
+struct Lanes {
+    static constexpr std::size_t size = 64;
+    using Row = std::array<double, size>;
+    alignas(64) std::array<Row, 3> position, velocity;
+    alignas(64) std::array<Row, 3> fluid_velocity, fluid_acceleration;
+};
+
+/// What does not change from step to step.
+struct MotionConstants {
+    double dt, mass, free_tau, reynolds;  ///< step, xi + 1/2, tau of Stokes' drag, Re_p of slip 1
+};
+
+/// tau at the slip of a sphere of velocity v in a fluid of velocity u.
+template <class Drag>
+[[nodiscard, gnu::always_inline]] inline double relaxation(const MotionConstants& c, const Vec3& u, const Vec3& v) {
+    const double slip =
+        std::sqrt((u[0] - v[0]) * (u[0] - v[0]) + (u[1] - v[1]) * (u[1] - v[1]) + (u[2] - v[2]) * (u[2] - v[2]));
+    return c.free_tau / Drag::factor(c.reynolds * slip);
+}
+
+/// (x, v) after one step in a fluid of velocity u; q: the acceleration by all but the drag.
+template <class Drag>
+[[gnu::always_inline]] inline void advance_one(const MotionConstants& c, Vec3& x, Vec3& v, const Vec3& u,
+                                               const Vec3& q) {
+    double tau = relaxation<Drag>(c, u, v);
+    const double half = exponential(-0.5 * c.dt / tau).value();
+    Vec3 middle;
+    for (std::size_t d = 0; d < 3; ++d) {
+        const double limit = u[d] + tau * q[d];
+        middle[d] = limit + (v[d] - limit) * half;
+    }
+    tau = relaxation<Drag>(c, u, middle);
+    const double decayed = -exponential(-c.dt / tau).less_one();  // 1 - E, accurate for dt << tau
+    for (std::size_t d = 0; d < 3; ++d) {
+        const double limit = u[d] + tau * q[d];
+        const double excess = v[d] - limit;
+        x[d] += limit * c.dt + excess * tau * decayed;
+        v[d] -= excess * decayed;
+    }
+}
+
+/// advance_one on the first `count` lanes; push: the acceleration of vibration (motion.cpp).
+void advance_lanes(StokesDrag law, const MotionConstants& constants, const Vec3& push, Lanes& lanes, std::size_t count);
+void advance_lanes(SchillerNaumann law, const MotionConstants& constants, const Vec3& push, Lanes& lanes,
+                   std::size_t count);
+
 template <class Drag>
 class Motion {
 public:
     Motion(const Sphere& sphere, double time_step)
         : sphere_(sphere),
-          dt_(time_step),
-          mass_(sphere.density_ratio + 0.5),
-          free_tau_(mass_ * sphere.stokes / sphere.prandtl),
-          reynolds_(2 * sphere.radius() / sphere.prandtl) {}
+          constants_{time_step, sphere.density_ratio + 0.5,
+                     (sphere.density_ratio + 0.5) * sphere.stokes / sphere.prandtl,
+                     2 * sphere.radius() / sphere.prandtl} {}
 
     void advance(Vec3& x, Vec3& v, const Surroundings& around) const {
-        Vec3 pull;
-        for (std::size_t d = 0; d < 3; ++d) pull[d] = (1.5 * around.acceleration[d] + around.other[d]) / mass_;
-        pull[static_cast<std::size_t>(sphere_.direction)] +=
-            (sphere_.density_ratio - 1) * sphere_.acceleration * around.vibration / mass_;
-        double tau = relaxation(around.velocity, v);
-        const double half = std::exp(-0.5 * dt_ / tau);
-        Vec3 middle;
-        for (std::size_t d = 0; d < 3; ++d) {
-            const double limit = around.velocity[d] + tau * pull[d];
-            middle[d] = limit + (v[d] - limit) * half;
-        }
-        tau = relaxation(around.velocity, middle);
-        const double decayed = -std::expm1(-dt_ / tau);  // 1 - E, accurate for dt << tau
-        for (std::size_t d = 0; d < 3; ++d) {
-            const double limit = around.velocity[d] + tau * pull[d];
-            const double excess = v[d] - limit;
-            x[d] += limit * dt_ + excess * tau * decayed;
-            v[d] -= excess * decayed;
-        }
+        const Vec3 push = vibrated(around.vibration);
+        Vec3 q;
+        for (std::size_t d = 0; d < 3; ++d)
+            q[d] = (1.5 * around.acceleration[d] + around.other[d]) / constants_.mass + push[d];
+        advance_one<Drag>(constants_, x, v, around.velocity, q);
+    }
+
+    /// The same for many, in vectors: the same bits as one by one without `other`.
+    void advance(Lanes& lanes, std::size_t count, double vibration) const {
+        advance_lanes(Drag{}, constants_, vibrated(vibration), lanes, count);
     }
 
     /// tau = (xi + 1/2) St/(f Pr) at the slip of a sphere of velocity v in a fluid of velocity u.
     [[nodiscard]] double relaxation(const Vec3& u, const Vec3& v) const {
-        const double slip =
-            std::sqrt((u[0] - v[0]) * (u[0] - v[0]) + (u[1] - v[1]) * (u[1] - v[1]) + (u[2] - v[2]) * (u[2] - v[2]));
-        return free_tau_ / Drag::factor(reynolds_ * slip);
+        return coupling::relaxation<Drag>(constants_, u, v);
     }
 
     [[nodiscard]] const Sphere& sphere() const { return sphere_; }
-    [[nodiscard]] double time_step() const { return dt_; }
+    [[nodiscard]] double time_step() const { return constants_.dt; }
 
 private:
+    [[nodiscard]] Vec3 vibrated(double vibration) const {
+        Vec3 push{};
+        push[static_cast<std::size_t>(sphere_.direction)] =
+            (sphere_.density_ratio - 1) * sphere_.acceleration * vibration / constants_.mass;
+        return push;
+    }
+
     Sphere sphere_;
-    double dt_, mass_, free_tau_, reynolds_;
+    MotionConstants constants_;
 };
 
 }  // namespace grainsweep::coupling

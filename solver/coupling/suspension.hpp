@@ -6,6 +6,7 @@
 #pragma once
 
 #include "solver/coupling/levels.hpp"
+#include "solver/coupling/march.hpp"
 #include "solver/coupling/visit_order.hpp"
 #include "solver/flow/flow.hpp"
 
@@ -40,23 +41,33 @@ public:
         }
         if (cloud_.size() == 0) return;
         fluid_.midpoint(velocity_, acceleration_);
-        for (const std::size_t p : order_.of(cloud_, fluid_.grid())) {
-            Vec3& x = cloud_.position[p];
-            Vec3& v = cloud_.velocity[p];
-            if constexpr (Level::mirrored) {
-                const Vec3 middle = predicted(p);
-                const Footing<Kernel> at(fluid_.grid(), walls_.periodic, Level::below(middle));
-                Surroundings around{at.gather(velocity_), at.gather(acceleration_), s, {}};
-                Level::turn(middle, around);
-                motion_.advance(x, v, around);
-            } else if constexpr (Level::acts_on_fluid) {
-                const Vec3 before = v;
-                move(x, v, feet_[p], s);
-                level_.remember(p, {(v[0] - before[0]) / dt, (v[1] - before[1]) / dt, (v[2] - before[2]) / dt});
-            } else {
-                move(x, v, foot(p), s);
-            }
-            walls_.apply(x, v);
+        const auto& order = order_.of(cloud_, fluid_.grid());
+        const auto gathered = [&](std::size_t /*p*/, const Footing<Kernel>& at) {
+            return Surroundings{at.gather(velocity_), at.gather(acceleration_), s, {}};
+        };
+        const auto unheeded = [](std::size_t, const Vec3&) {};
+        if constexpr (Level::acts_on_fluid) {
+            march(
+                cloud_, motion_, walls_, s, order, [&](std::size_t p) { return feet_[p]; }, gathered,
+                [&](std::size_t p, const Vec3& before) {
+                    const Vec3& v = cloud_.velocity[p];
+                    level_.remember(p, {(v[0] - before[0]) / dt, (v[1] - before[1]) / dt, (v[2] - before[2]) / dt});
+                });
+        } else if constexpr (Level::mirrored) {
+            march(
+                cloud_, motion_, walls_, s, order,
+                [&](std::size_t p) {
+                    return Footing<Kernel>(fluid_.grid(), walls_.periodic, Level::below(predicted(p)));
+                },
+                [&](std::size_t p, const Footing<Kernel>& at) {
+                    Surroundings around = gathered(p, at);
+                    Level::turn(predicted(p), around);
+                    return around;
+                },
+                unheeded);
+        } else {
+            march(
+                cloud_, motion_, walls_, s, order, [&](std::size_t p) { return foot(p); }, gathered, unheeded);
         }
     }
 
@@ -88,10 +99,6 @@ private:
         return walls_.clipped(x);
     }
     [[nodiscard]] Footing<Kernel> foot(std::size_t p) const { return {fluid_.grid(), walls_.periodic, predicted(p)}; }
-
-    void move(Vec3& x, Vec3& v, const Footing<Kernel>& at, double vibration) const {
-        motion_.advance(x, v, {at.gather(velocity_), at.gather(acceleration_), vibration, {}});
-    }
 
     flow::Flow<Heat> fluid_;
     flow::Vibration vibration_;

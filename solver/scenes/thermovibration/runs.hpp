@@ -5,7 +5,7 @@
 // harmonics (an artefact shared by all cases of the same fluid) and always read back from that representation.
 #pragma once
 
-#include "solver/coupling/drag.hpp"
+#include "solver/coupling/march.hpp"
 #include "solver/coupling/periodic_flow.hpp"
 #include "solver/coupling/solids_volume.hpp"
 #include "solver/coupling/suspension.hpp"
@@ -240,23 +240,26 @@ private:
         const double s = std::sin(phase);
         const std::array<double, coupling::PeriodicFlow::terms> basis{1, c, s, c * c - s * s, 2 * s * c};
         const double vibration = question_.vibration().at(in_period * dt);
-        for (const std::size_t p : order_.of(cloud_, grid_)) {
-            coupling::Vec3& x = cloud_.position[p];
-            coupling::Vec3& v = cloud_.velocity[p];
-            coupling::Vec3 middle = x;
-            for (std::size_t d = 0; d < 3; ++d) middle[d] += 0.5 * dt * v[d];
-            middle = walls_.clipped(middle);
-            coupling::Surroundings around;
-            if constexpr (Level::mirrored) {
-                around = flow_.at(coupling::Footing<Kernel>(grid_, walls_.periodic, Level::below(middle)), basis);
-                Level::turn(middle, around);
-            } else {
-                around = flow_.at(coupling::Footing<Kernel>(grid_, walls_.periodic, middle), basis);
-            }
-            around.vibration = vibration;
-            motion_.advance(x, v, around);
-            walls_.apply(x, v);
-        }
+        const auto middle = [&](std::size_t p) {
+            coupling::Vec3 x = cloud_.position[p];
+            for (std::size_t d = 0; d < 3; ++d) x[d] += 0.5 * dt * cloud_.velocity[p][d];
+            return walls_.clipped(x);
+        };
+        using Foot = coupling::Footing<Kernel>;
+        coupling::march(
+            cloud_, motion_, walls_, vibration, order_.of(cloud_, grid_),
+            [&](std::size_t p) {
+                if constexpr (Level::mirrored)
+                    return Foot(grid_, walls_.periodic, Level::below(middle(p)));
+                else
+                    return Foot(grid_, walls_.periodic, middle(p));
+            },
+            [&](std::size_t p, const Foot& foot) {
+                coupling::Surroundings around = flow_.at(foot, basis);
+                if constexpr (Level::mirrored) Level::turn(middle(p), around);
+                return around;
+            },
+            [](std::size_t, const coupling::Vec3&) {});
         ++steps_;
         const double now = static_cast<double>(steps_) * dt;
         if (steps_ % watch_steps == 0 || finished())

@@ -1,0 +1,52 @@
+// A cloud moved through one time step, a block of particles at a time: where each stands is found first, then what it
+// feels is gathered, and the equation of motion is solved for the block in vectors (motion.hpp). No particle knows of
+// the blocks: the same bits one by one.
+#pragma once
+
+#include "solver/coupling/cloud.hpp"
+#include "solver/coupling/motion.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace grainsweep::coupling {
+
+/// `order` names the particles; stand(p) -> its Footing in the middle of the step;
+/// feel(p, footing) -> Surroundings without `other`; moved(p, velocity before) follows the step of particle p, before
+/// walls turn it back. vibration: s(t) in the middle of the step.
+template <class Drag, class Order, class Stand, class Feel, class Moved>
+void march(Cloud& cloud, const Motion<Drag>& motion, const Walls& walls, double vibration, const Order& order,
+           Stand stand, Feel feel, Moved moved) {
+    Lanes lanes;
+    std::vector<decltype(stand(order[0]))> feet;
+    feet.reserve(Lanes::size);
+    for (std::size_t start = 0; start < order.size(); start += Lanes::size) {
+        const std::size_t count = std::min(Lanes::size, order.size() - start);
+        feet.clear();
+        for (std::size_t i = 0; i < count; ++i) feet.push_back(stand(order[start + i]));
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t p = order[start + i];
+            const Surroundings around = feel(p, feet[i]);
+            for (std::size_t d = 0; d < 3; ++d) {
+                lanes.position[d][i] = cloud.position[p][d];
+                lanes.velocity[d][i] = cloud.velocity[p][d];
+                lanes.fluid_velocity[d][i] = around.velocity[d];
+                lanes.fluid_acceleration[d][i] = around.acceleration[d];
+            }
+        }
+        motion.advance(lanes, count, vibration);
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t p = order[start + i];
+            const Vec3 before = cloud.velocity[p];
+            for (std::size_t d = 0; d < 3; ++d) {
+                cloud.position[p][d] = lanes.position[d][i];
+                cloud.velocity[p][d] = lanes.velocity[d][i];
+            }
+            moved(p, before);
+            walls.apply(cloud.position[p], cloud.velocity[p]);
+        }
+    }
+}
+
+}  // namespace grainsweep::coupling
