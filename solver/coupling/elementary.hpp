@@ -31,7 +31,7 @@ struct Exponential {
     [[nodiscard, gnu::always_inline]] double less_one() const { return scale * rest + (scale - 1); }
 };
 
-/// For x <= 0.4; below -700 it is e^-700. What is no number stays none.
+/// For x < 700; below -700 it is e^-700. What is no number stays none.
 [[gnu::always_inline]] inline Exponential exponential(double x) {
     constexpr double to_integer = 0x1.8p52;  // added, it leaves the nearest integer in the low bits
     x = x < -700 ? -700 : x;

@@ -3,8 +3,9 @@
 // Units: L, L^2/alpha, density of the fluid; Theta in (alpha/L)^2. a = phi_p, xi density ratio, d diameter, e
 // restitution, a_max random close packing.
 //   radial distribution  g0 = 1/(1 - (a/a_max)^(1/3))                        (Ogawa, Umemura & Oshima 1980)
-//   solids pressure      p_s = xi a Theta (1 + 2 (1 + e) a g0)                (Lun et al. 1984,
-//   doi 10.1017/S0022112084000586) shear viscosity      mu = 4/5 xi a^2 d g0 (1 + e) sqrt(Theta/pi)
+//   solids pressure      p_s = xi a Theta (1 + 2 (1 + e) a g0)
+//                                                             (Lun et al. 1984, doi 10.1017/S0022112084000586)
+//   shear viscosity      mu = 4/5 xi a^2 d g0 (1 + e) sqrt(Theta/pi)
 //                           + xi a d sqrt(pi Theta)/(6 (3 - e)) (1 + 2/5 (1 + e)(3 e - 1) a g0)
 //                                                                 (Syamlal, Rogers & O'Brien 1993, DOE/METC-94/1004)
 //   conductivity         k = 15 xi a d sqrt(pi Theta)/(4 (41 - 33 h))

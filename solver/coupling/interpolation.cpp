@@ -54,11 +54,11 @@ std::array<bool, 3> periodic_axes(const flow::Sides& sides) {
     return axes;
 }
 
-FaceDeposit::FaceDeposit(const flow::Grid& grid, const flow::Sides& sides, double width) : grid_(grid) {
+FaceDeposit::FaceDeposit(const flow::Grid& grid, const flow::Sides& sides, double width)
+    : grid_(grid), edges_(frictionless_edges(sides)), scratch_{flow::Field(grid), flow::Field(grid)} {
     for (int d = 0; d < 3; ++d) {
         std::array<Nodes, 3> nodes{Nodes::cells, Nodes::cells, Nodes::cells};
         nodes[static_cast<std::size_t>(d)] = Nodes::faces;
-        edges_.push_back(flow::velocity_edges(sides, d));
         spreading_.emplace_back(grid, periodic_axes(sides), nodes, width);
     }
 }
@@ -70,17 +70,14 @@ void FaceDeposit::clear(flow::FaceVectors& faces) {
 void FaceDeposit::spread(flow::FaceVectors& faces) {
     for (std::size_t d = 0; d < 3; ++d) {
         fold_ghosts(faces[d], grid_, edges_[d]);
-        spreading_[d].densities(faces[d]);
+        spreading_[d].densities(faces[d], scratch_);
     }
 }
 
 void FaceDeposit::spread_transposed(flow::FaceVectors& faces) {
     for (std::size_t d = 0; d < 3; ++d) {
-        spreading_[d].spread(faces[d]);
-        flow::Edges edges = edges_[d];
-        for (flow::Edge& edge : edges)
-            for (flow::Ghost& ghost : edge.ghost) ghost.constant = 0;
-        fill_ghosts(faces[d], grid_, edges);
+        spreading_[d].spread(faces[d], scratch_);
+        fill_ghosts(faces[d], grid_, edges_[d]);
     }
 }
 

@@ -153,7 +153,9 @@ void fold_ghosts(flow::Field& field, const flow::Grid& grid, const flow::Edges& 
 /// Edges of the three components of a field that passes no wall and does not change along a wall's normal.
 [[nodiscard]] std::array<flow::Edges, 3> frictionless_edges(flow::Sides sides);
 
-/// Turns deposits on the faces into values per volume, spread over the width of the kernel.
+/// Turns deposits on the faces into values per volume, spread over the width of the kernel. Walls reflect what is
+/// tangential to them, as they do the particles' volume: a uniform cloud is a uniform force, which the pressure
+/// carries.
 class FaceDeposit {
 public:
     /// width: see spreading.hpp.
@@ -168,8 +170,9 @@ public:
 
 private:
     flow::Grid grid_;
-    std::vector<flow::Edges> edges_;
+    std::array<flow::Edges, 3> edges_;
     std::vector<Spreading> spreading_;
+    Spreading::Scratch scratch_;
 };
 
 /// The axes along which a box is periodic.

@@ -5,13 +5,13 @@
 // Two-way, force form: each particle acts on the fluid with the opposite of what the fluid does to it beyond the
 // hydrostatic pressure. With F the sum of drag, added mass and pressure-gradient force, the particle's own equation
 // of motion gives F = v_p [xi dV/dt - (xi - 1) gamma s e], so
-//     s_m = -(1/cell) sum v_p [ xi dV_p/dt - (xi - 1) gamma s(t) e ]
+//     s_m = -sum k v_p [ xi dV_p/dt - (xi - 1) gamma s(t) e ]
 // (point-force coupling, Crowe, Sharma & Stock 1977, doi 10.1115/1.3448756, for a Boussinesq fluid: the vibrational
-// buoyancy of the cloud is part of it and dominates). Written through the balance instead of the drag law it has no
-// stiffness: the large term is known exactly, dV_p/dt is that of the step before.
+// buoyancy of the cloud is part of it and dominates; k is the kernel of spreading.hpp). Written through the balance
+// instead of the drag law it has no stiffness: the large term is known exactly, dV_p/dt is that of the step before.
 //
 // Two-way, equation 9 of Manayil Santhosh, Anwar & Lappa 2024 (IAC-24-A1.2.3) as printed:
-//     s_m = -(1/fluid part of the cell) sum v_p xi dV_p/dt.
+//     s_m = -(1/fluid fraction) sum k v_p xi dV_p/dt.
 // Right for particles without body force; here it leaves out the reaction to the vibrational buoyancy.
 #pragma once
 

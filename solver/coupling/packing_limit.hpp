@@ -1,4 +1,7 @@
-// No cell holds more particle volume than random close packing.
+// Nowhere more particle volume than random close packing.
+//
+// phi_p is here that of a kernel one diameter wide, or of the cells where they are wider: over the four diameters of
+// the fluid's kernel a thousand particles could share one place and be taken for dilute.
 //
 // Where phi_p exceeds the limit the excess e = max(phi_p - limit, 0) diffuses away and takes the particles along:
 // each sweep moves the particles at a face by

@@ -4,8 +4,8 @@
 //   a = -(1/phi_p) grad p_s,   p_s = xi phi_p Theta (1 + 2 (1 + e) phi_p g0)                 (granular.hpp)
 // (Popoff & Braun 2007, "A Lagrangian approach to dense particulate flows", ICMF), and no cell over the packing limit
 // (packing_limit.hpp). The type of Theta is the one choice: granular_temperature.hpp. Where the
-// fraction is below that of two particles at one place there are no collisions and no stress. The displacement by the
-// stress in one step is held below a tenth of a cell.
+// fraction is below that of two particles at one place far from walls there are no collisions and no stress. The
+// displacement by the stress in one step is held below a tenth of a cell.
 #pragma once
 
 #include "solver/coupling/granular_temperature.hpp"
@@ -41,6 +41,7 @@ public:
           deposit_(grid, sides, kernel_width),
           mobility_(sphere.stokes / sphere.prandtl),
           limit_(grid, sides, grains.packing_limit),
+          packed_(grid, sides, sphere.volume(), 2 * sphere.radius()),
           temperature_(grid, grains, {least_temperature, 1e12, thinnest_}),
           straining_(grid),
           mean_velocity_{flow::Field(grid), flow::Field(grid), flow::Field(grid)},
@@ -56,6 +57,7 @@ public:
     template <class Motion, class Feet, class Around>
     void move(Cloud& cloud, const Motion& motion, const Walls& walls, SolidsVolume& solids, const Feet& feet,
               const Around& around, std::vector<Vec3>& handed) {
+        stepped_ = true;
         find_stress(cloud, solids, feet, motion.time_step());
         const double most = 0.1 * smallest_ / (mobility_ * motion.time_step());
         for (std::size_t p = 0; p < cloud.size(); ++p) {
@@ -70,8 +72,10 @@ public:
 
     /// After walls: the packing limit. `solids` is left at the final positions.
     void settle(Cloud& cloud, const Walls& walls, SolidsVolume& solids) {
-        const int sweeps = limit_.restore(cloud.position, walls, solids);
-        if (sweeps > 0) ++limited_;
+        packed_.place(cloud.position);
+        if (limit_.restore(cloud.position, walls, packed_) == 0) return;
+        solids.place(cloud.position);
+        if (stepped_) ++limited_;
     }
 
     [[nodiscard]] const flow::Field& temperature() const { return temperature_.values(); }
@@ -132,12 +136,14 @@ private:
     double mobility_;
     double smallest_ = 1;
     PackingLimit limit_;
+    SolidsVolume packed_;  // for the limit alone
     Temperature temperature_;
     Straining straining_;
     std::array<flow::Field, 3> mean_velocity_;
     flow::Field pressure_;
     flow::FaceVectors stress_;
     bool stressed_ = false;
+    bool stepped_ = false;  // what the start took is no step
     std::int64_t limited_ = 0;
 };
 

@@ -24,7 +24,7 @@ double lone_fraction(const flow::Grid& grid, double particle_volume, double kern
     const double box = grid[0].length() * grid[1].length() * grid[2].length();
     const double cell = std::cbrt(box / static_cast<double>(grid.total_cells()));
     const double variance = std::max(kernel_width * kernel_width, cell * cell / 6);
-    return particle_volume / std::pow(2 * std::numbers::pi * variance, 1.5);
+    return std::max(particle_volume / std::pow(2 * std::numbers::pi * variance, 1.5), particle_volume / box);
 }
 
 SolidsVolume::SolidsVolume(const flow::Grid& grid, const flow::Sides& sides, double particle_volume,
@@ -33,6 +33,7 @@ SolidsVolume::SolidsVolume(const flow::Grid& grid, const flow::Sides& sides, dou
       edges_(flow::pressure_edges(sides)),
       particle_volume_(particle_volume),
       over_cells_(grid, periodic_axes(sides), {Nodes::cells, Nodes::cells, Nodes::cells}, kernel_width),
+      scratch_{flow::Field(grid), flow::Field(grid)},
       fraction_(grid),
       flux_(flow::face_vectors(grid)) {
     for (std::size_t d = 0; d < 3; ++d) {
@@ -72,7 +73,7 @@ void SolidsVolume::place(std::span<const Vec3> positions) {
                     fraction[cell[0][a] + cell[1][b] + cell[2][c]] +=
                         particle_volume_ * (w[2].weight[c] * w[1].weight[b] * w[0].weight[a]);
     }
-    over_cells_.densities(fraction_);
+    over_cells_.densities(fraction_, scratch_);
     fill_ghosts(fraction_, grid_, edges_);
 }
 
@@ -92,7 +93,7 @@ void SolidsVolume::mean(std::span<const Vec3> property, std::array<flow::Field, 
                 }
     }
     for (auto& field : into) {
-        over_cells_.densities(field);
+        over_cells_.densities(field, scratch_);
         each_cell(grid_, [&](int i, int j, int k) {
             const double phi = fraction_(i, j, k);
             double& value = field(i, j, k);
@@ -169,7 +170,7 @@ void SolidsVolume::carry(double dt) {
         carry_along<2>(shares, scale);
     }
     stood_ = stand_;
-    for (int d = 0; d < 3; ++d) over_faces_[at(d)].densities(flux_[at(d)]);
+    for (int d = 0; d < 3; ++d) over_faces_[at(d)].densities(flux_[at(d)], scratch_);
 }
 
 double SolidsVolume::largest_fraction() const {

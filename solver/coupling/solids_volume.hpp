@@ -15,7 +15,7 @@
 namespace grainsweep::coupling {
 
 /// The fraction that a particle alone makes where it stands, far from walls: v_p/(2 pi w^2)^(3/2), with the width of a
-/// linear deposit in a mean cell where that is wider.
+/// linear deposit in a mean cell where that is wider; no less than spread over the whole box.
 [[nodiscard]] double lone_fraction(const flow::Grid& grid, double particle_volume, double kernel_width);
 
 class SolidsVolume {
@@ -63,6 +63,7 @@ private:
     double particle_volume_;
     Spreading over_cells_;
     std::vector<Spreading> over_faces_;
+    Spreading::Scratch scratch_;
     Standing stood_, stand_;  // when last carried; now
     flow::Field fraction_;
     flow::FaceVectors flux_;

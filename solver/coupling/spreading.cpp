@@ -65,8 +65,7 @@ Eigen::MatrixXd spreading_matrix(const flow::Axis& axis, bool periodic, Nodes no
 }
 
 Spreading::Spreading(const flow::Grid& grid, const std::array<bool, 3>& periodic, const std::array<Nodes, 3>& nodes,
-                     double width)
-    : scratch_{flow::Field(grid), flow::Field(grid)} {
+                     double width) {
     for (int d = 0; d < 3; ++d) {
         const auto at = static_cast<std::size_t>(d);
         const Eigen::MatrixXd kernel = spreading_matrix(grid[d], periodic[at], nodes[at], width);
@@ -78,18 +77,18 @@ Spreading::Spreading(const flow::Grid& grid, const std::array<bool, 3>& periodic
     }
 }
 
-void Spreading::densities(flow::Field& field) {
-    apply(from_deposits_, field);
+void Spreading::densities(flow::Field& field, Scratch& scratch) const {
+    apply(from_deposits_, field, scratch);
 }
 
-void Spreading::spread(flow::Field& field) {
-    apply(from_densities_, field);
+void Spreading::spread(flow::Field& field, Scratch& scratch) const {
+    apply(from_densities_, field, scratch);
 }
 
-void Spreading::apply(const std::array<flow::AxisProduct, 3>& kernels, flow::Field& field) {
-    kernels[0].apply(field, scratch_[0]);
-    kernels[1].apply(scratch_[0], scratch_[1]);
-    kernels[2].apply(scratch_[1], field);
+void Spreading::apply(const std::array<flow::AxisProduct, 3>& kernels, flow::Field& field, Scratch& scratch) {
+    kernels[0].apply(field, scratch[0]);
+    kernels[1].apply(scratch[0], scratch[1]);
+    kernels[2].apply(scratch[1], field);
 }
 
 }  // namespace grainsweep::coupling

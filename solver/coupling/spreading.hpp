@@ -4,9 +4,10 @@
 // thin, it is spread by the heat equation along each axis, whose kernel is the Gaussian of standard deviation w:
 //     d phi/dt = d/dx ( s d phi/dx ),  t = 0 ... 1,   s = (w^2 - h^2/6)/2 >= 0,   no flux through walls,
 // exactly in t by the matrix exponential of the second difference (diffusion-based averaging: Sun & Xiao 2015, doi
-// 10.1016/j.ijmultiphaseflow.2014.11.014; along x, y and z at once because a Gaussian is a product). h^2/6 is what the
-// linear deposit has already, h the local cell: the variance is w^2 where h < 2.4 w and that of the cell beyond.
-// Conservative, positive, and its own transpose between deposits and densities.
+// 10.1016/j.ijmultiphaseflow.2014.11.014, whose bandwidth b is sqrt(2) w; axis by axis because a Gaussian is a
+// product). h^2/6 is what the linear deposit has already, h the local cell: the variance is w^2 where h < 2.4 w and
+// that of the cell beyond. Conservative, positive, and its own transpose between deposits and densities, to the
+// round-off of the exponential: 1e-15 at w of a cell, 1e-10 where w is hundred thin cells.
 #pragma once
 
 #include "solver/flow/axis_product.hpp"
@@ -33,21 +34,23 @@ enum class Nodes {
 /// The kernel of a field on the grid.
 class Spreading {
 public:
+    /// Two fields of the grid to work in.
+    using Scratch = std::array<flow::Field, 2>;
+
     /// width: standard deviation, 0 for none beyond the deposit's own.
     Spreading(const flow::Grid& grid, const std::array<bool, 3>& periodic, const std::array<Nodes, 3>& nodes,
               double width);
 
     /// Extensive deposits, none on ghosts -> densities. Ghosts are left alone, here and below.
-    void densities(flow::Field& field);
+    void densities(flow::Field& field, Scratch& scratch) const;
     /// Densities -> densities, the transpose of `densities` against deposits: sum of deposit . spread(u) is that of
     /// densities(deposit) . u over the volume.
-    void spread(flow::Field& field);
+    void spread(flow::Field& field, Scratch& scratch) const;
 
 private:
-    void apply(const std::array<flow::AxisProduct, 3>& kernels, flow::Field& field);
+    static void apply(const std::array<flow::AxisProduct, 3>& kernels, flow::Field& field, Scratch& scratch);
 
     std::array<flow::AxisProduct, 3> from_deposits_, from_densities_;
-    std::array<flow::Field, 2> scratch_;
 };
 
 }  // namespace grainsweep::coupling

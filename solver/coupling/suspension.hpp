@@ -48,7 +48,8 @@ public:
         const auto unheeded = [](std::size_t, const Vec3&) {};
         if constexpr (Level::acts_on_fluid) {
             march(
-                cloud_, motion_, walls_, s, order, [&](std::size_t p) { return feet_[p]; }, gathered,
+                cloud_, motion_, walls_, s, order, [](std::size_t p) { return p; },
+                [&](std::size_t p, std::size_t /*itself*/) { return gathered(p, feet_[p]); },
                 [&](std::size_t p, const Vec3& before) {
                     const Vec3& v = cloud_.velocity[p];
                     level_.remember(p, {(v[0] - before[0]) / dt, (v[1] - before[1]) / dt, (v[2] - before[2]) / dt});

@@ -236,7 +236,7 @@ SceneInfo thermovibration_scene() {
     SceneInfo info;
     info.name = "thermovibration";
     info.summary = "particles in a heated, vibrated cube of fluid: do they gather, into what, how fast";
-    info.revision = 4;
+    info.revision = 5;
     info.parameters = parameters();
     info.observables = observables();
     info.accuracy = {

@@ -209,33 +209,42 @@ TYPED_TEST(EveryKernel, ConvergesWithSecondOrder) {
 
 // <scatter(F), V> = F . gather(V) for every F and V, spread or not: the pair exchanges power exactly.
 TYPED_TEST(EveryKernel, ScatterIsTheTransposeOfGather) {
-    for (const flow::Sides& sides : {flow::Sides{walls, walls, walls}, flow::Sides{periodic, slip, walls}})
-        for (const double width : {0.0, 0.15}) {
-            const Grid& grid = uniform;
-            const auto fluid = projected(grid, sides);
-            FaceDeposit deposit(grid, sides, width);
-            flow::FaceVectors spread = fluid.velocity();
-            deposit.spread_transposed(spread);
-            for (std::uint64_t p = 0; p < 200; ++p) {
-                const Footing<TypeParam> foot(grid, periodic_axes(sides), random_place(grid, p));
-                const Vec3 force{1.3, -0.7, 2.1};
-                flow::FaceVectors onto = flow::face_vectors(grid);
-                foot.scatter(force, onto);
-                deposit.spread(onto);
-                double power = 0;
-                for (int d = 0; d < 3; ++d) {
-                    const auto m = static_cast<std::size_t>(d);
-                    for (int k = 1; k <= grid.cells(2); ++k)
-                        for (int j = 1; j <= grid.cells(1); ++j)
-                            for (int i = 1; i <= grid.cells(0); ++i) {
-                                const double volume = grid[0].width(i) * grid[1].width(j) * grid[2].width(k);
-                                power += onto[m](i, j, k) * volume * fluid.velocity()[m](i, j, k);
-                            }
-                }
-                const Vec3 v = foot.gather(spread);
-                EXPECT_NEAR(power, force[0] * v[0] + force[1] * v[1] + force[2] * v[2], 1e-13);
+    const flow::Sides box{walls, walls, walls};
+    struct Case {
+        Grid grid;
+        flow::Sides sides;
+        double width;
+    };
+    for (const auto& [grid, sides, width] :
+         {Case{uniform, box, 0}, Case{uniform, box, 0.15}, Case{clustered, box, 0.1},
+          Case{uniform, {periodic, slip, walls}, 0}, Case{uniform, {periodic, slip, walls}, 0.15}}) {
+        const auto fluid = projected(grid, sides);
+        FaceDeposit deposit(grid, sides, width);
+        flow::FaceVectors spread = fluid.velocity();
+        deposit.spread_transposed(spread);
+        for (std::uint64_t p = 0; p < 200; ++p) {
+            const Footing<TypeParam> foot(grid, periodic_axes(sides), random_place(grid, p));
+            const Vec3 force{1.3, -0.7, 2.1};
+            flow::FaceVectors onto = flow::face_vectors(grid);
+            foot.scatter(force, onto);
+            deposit.spread(onto);
+            double power = 0;
+            for (int d = 0; d < 3; ++d) {
+                const auto m = static_cast<std::size_t>(d);
+                for (int k = 1; k <= grid.cells(2); ++k)
+                    for (int j = 1; j <= grid.cells(1); ++j)
+                        for (int i = 1; i <= grid.cells(0); ++i) {
+                            const auto length = [&](int e, int at) {
+                                return e == d ? grid[e].spacing(at) : grid[e].width(at);
+                            };
+                            const double volume = length(0, i) * length(1, j) * length(2, k);
+                            power += onto[m](i, j, k) * volume * fluid.velocity()[m](i, j, k);
+                        }
             }
+            const Vec3 v = foot.gather(spread);
+            EXPECT_NEAR(power, force[0] * v[0] + force[1] * v[1] + force[2] * v[2], 1e-13);
         }
+    }
 }
 
 TEST(RandomCloud, StandsWhereCentresMayBe) {

@@ -20,7 +20,8 @@ TEST(Elementary, ExponentialIsThatOfTheLibrary) {
     const Stream random(1, 1);
     for (std::uint64_t n = 0; n < 20000; ++n) {
         const double size = std::pow(10, 4 * random.uniform(2 * n) - 2);
-        for (const double x : {-size * random.uniform(2 * n + 1), -std::pow(10, -20 * random.uniform(2 * n + 1))}) {
+        for (const double x : {-size * random.uniform(2 * n + 1), -std::pow(10, -20 * random.uniform(2 * n + 1)),
+                               7 * random.uniform(2 * n + 1)}) {
             const Exponential e = exponential(x);
             EXPECT_NEAR(e.value(), std::exp(x), 2 * ulp * std::exp(x)) << x;
             EXPECT_NEAR(e.less_one(), std::expm1(x), 2 * ulp * std::abs(std::expm1(x))) << x;
