@@ -1,14 +1,13 @@
 #include "sweep/report/vtk_series.hpp"
 
+#include "sweep/store/aside_file.hpp"
 #include "sweep/store/broken_world.hpp"
 
 #include <fmt/format.h>
 
 #include <array>
 #include <bit>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
+#include <cstddef>
 #include <limits>
 #include <span>
 #include <stdexcept>
@@ -74,10 +73,9 @@ std::string all_in_one_cell(Appended& appended, std::size_t particles) {
 }
 
 void write(const std::filesystem::path& path, const std::string& bytes) {
-    std::ofstream stream(path, std::ios::binary | std::ios::trunc);
-    stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    stream.close();
-    if (!stream) throw store::BrokenWorld(fmt::format("cannot write {}: {}", path.string(), std::strerror(errno)));
+    store::AsideFile file(path);
+    file.write(std::as_bytes(std::span(bytes)));
+    file.take_place();
 }
 
 }  // namespace
@@ -116,17 +114,16 @@ std::string vtp(const Snapshot& snapshot, double time) {
 }
 
 VtkSeries::VtkSeries(std::filesystem::path folder, std::string name)
-    : folder_(std::move(folder)), name_(std::move(name)) {
-    std::error_code error;
-    std::filesystem::create_directories(folder_, error);
-    if (error) throw store::BrokenWorld(fmt::format("cannot make {}: {}", folder_.string(), error.message()));
-}
+    : folder_(std::move(folder)), name_(std::move(name)) {}
 
 std::string VtkSeries::file_of(std::size_t k) const {
     return fmt::format("{}_{:04}.vtp", name_, k);
 }
 
 void VtkSeries::add(const Snapshot& snapshot, double time) {
+    std::error_code error;
+    std::filesystem::create_directories(folder_, error);
+    if (error) throw store::BrokenWorld(fmt::format("cannot make {}: {}", folder_.string(), error.message()));
     write(folder_ / file_of(times_.size()), vtp(snapshot, time));
     times_.push_back(time);
     std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n";

@@ -2,6 +2,7 @@
 #include "sweep/store/artefacts.hpp"
 
 #include "sweep/campaign/case.hpp"
+#include "sweep/store/aside_file.hpp"
 #include "sweep/store/broken_world.hpp"
 
 #include <fcntl.h>
@@ -11,7 +12,6 @@
 #include <xxhash.h>
 
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstdint>
@@ -51,41 +51,6 @@ std::array<std::uint64_t, 2> checksum_of(std::string_view key, std::span<const s
     throw BrokenWorld(fmt::format("'{}': cannot be {}: {}", file.string(), what, std::strerror(errno)));
 }
 
-/// A file being written aside: gone unless renamed into place.
-class AsideFile {
-public:
-    explicit AsideFile(std::filesystem::path file) : file_(std::move(file)) {
-        descriptor_ = open(file_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (descriptor_ < 0) broken(file_, "made");
-    }
-    AsideFile(const AsideFile&) = delete;
-    AsideFile& operator=(const AsideFile&) = delete;
-    ~AsideFile() {
-        if (descriptor_ >= 0) close(descriptor_);
-        if (!file_.empty()) unlink(file_.c_str());
-    }
-
-    void write(std::span<const std::byte> bytes) {
-        while (!bytes.empty()) {
-            const auto written = ::write(descriptor_, bytes.data(), bytes.size());
-            if (written < 0 && errno == EINTR) continue;
-            if (written < 0) broken(file_, "written");
-            bytes = bytes.subspan(static_cast<std::size_t>(written));
-        }
-    }
-
-    void become(const std::filesystem::path& target) {
-        if (fsync(descriptor_) != 0) broken(file_, "synced");
-        if (close(std::exchange(descriptor_, -1)) != 0) broken(file_, "closed");
-        if (rename(file_.c_str(), target.c_str()) != 0) broken(target, "put in place");
-        file_.clear();
-    }
-
-private:
-    std::filesystem::path file_;
-    int descriptor_ = -1;
-};
-
 void sync_folder(const std::filesystem::path& folder) {
     const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (descriptor < 0) broken(folder, "opened");
@@ -98,21 +63,12 @@ std::filesystem::path file_of(const std::filesystem::path& folder, std::string_v
     return folder / (campaign::content_hash(key) + ".artefact");
 }
 
-/// Of this process, thread and moment alone.
-std::filesystem::path aside_of(const std::filesystem::path& file) {
-    static std::atomic<unsigned> count = 0;
-    std::array<char, 65> host{};
-    gethostname(host.data(), host.size() - 1);
-    auto aside = file;
-    return aside += fmt::format(".{}.{}.{}.aside", host.data(), getpid(), count++);
-}
-
 /// What killed processes left half written: nobody writes one file for a day.
 void sweep_leftovers(const std::filesystem::path& folder) {
     const auto yesterday = std::filesystem::file_time_type::clock::now() - std::chrono::hours(24);
     std::error_code ignored;
     for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
-        if (entry.path().extension() != ".aside") continue;
+        if (entry.path().extension() != AsideFile::extension) continue;
         const auto written = entry.last_write_time(ignored);
         if (!ignored && written < yesterday) std::filesystem::remove(entry.path(), ignored);
     }
@@ -151,13 +107,12 @@ void ArtefactFolder::put(std::string_view key, std::span<const std::byte> conten
         sync_folder(parent);
     }
     if (!std::exchange(swept_, true)) sweep_leftovers(folder_);
-    const auto file = file_of(folder_, key);
     const Header header{magic, key.size(), contents.size(), checksum_of(key, contents)};
-    AsideFile aside(aside_of(file));
+    AsideFile aside(file_of(folder_, key));
     aside.write(std::as_bytes(std::span(&header, 1)));
     aside.write(std::as_bytes(std::span(key)));
     aside.write(contents);
-    aside.become(file);
+    aside.take_place();
     sync_folder(folder_);
 }
 

@@ -137,5 +137,8 @@ TEST(VtkSeries, NamesEveryMomentInTheCollection) {
 TEST(VtkSeries, AFolderThatCannotBeMadeIsSaid) {
     const test::Folder folder;
     folder.write("file", "in the way");
-    EXPECT_THROW(report::VtkSeries(folder / "file/inside", "cell"), store::BrokenWorld);
+    report::VtkSeries series(folder / "file/inside", "cell");
+    EXPECT_THROW(series.add(three_particles(), 0), store::BrokenWorld);
+    report::VtkSeries empty(folder / "other", "cell");  // a series without a picture leaves no folder
+    EXPECT_FALSE(std::filesystem::exists(folder / "other"));
 }

@@ -1,0 +1,59 @@
+#include "sweep/store/aside_file.hpp"
+
+#include "sweep/store/broken_world.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <utility>
+
+namespace grainsweep::store {
+namespace {
+
+[[noreturn]] void broken(const std::filesystem::path& file, std::string_view what) {
+    throw BrokenWorld(fmt::format("'{}': cannot be {}: {}", file.string(), what, std::strerror(errno)));
+}
+
+/// In the target's folder; the name does not grow with the target's.
+std::filesystem::path aside_of(const std::filesystem::path& target) {
+    static std::atomic<unsigned> count = 0;
+    std::array<char, 65> host{};
+    gethostname(host.data(), host.size() - 1);
+    return target.parent_path() / fmt::format(".{}.{}.{}{}", host.data(), getpid(), count++, AsideFile::extension);
+}
+
+}  // namespace
+
+AsideFile::AsideFile(std::filesystem::path target) : target_(std::move(target)), file_(aside_of(target_)) {
+    descriptor_ = open(file_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) broken(target_, "made");
+}
+
+AsideFile::~AsideFile() {
+    if (descriptor_ >= 0) close(descriptor_);
+    if (!file_.empty()) unlink(file_.c_str());
+}
+
+void AsideFile::write(std::span<const std::byte> bytes) {
+    while (!bytes.empty()) {
+        const auto written = ::write(descriptor_, bytes.data(), bytes.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) broken(target_, "written");
+        bytes = bytes.subspan(static_cast<std::size_t>(written));
+    }
+}
+
+void AsideFile::take_place() {
+    if (fsync(descriptor_) != 0) broken(target_, "synced");
+    if (close(std::exchange(descriptor_, -1)) != 0) broken(target_, "closed");
+    if (rename(file_.c_str(), target_.c_str()) != 0) broken(target_, "put in place");
+    file_.clear();
+}
+
+}  // namespace grainsweep::store

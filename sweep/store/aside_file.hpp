@@ -1,0 +1,31 @@
+// A file written beside its final place and put there whole: readers see the old one or the new one, never a part.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+namespace grainsweep::store {
+
+/// A file being written aside: gone unless it becomes what it was meant for. Errors are BrokenWorld.
+class AsideFile {
+public:
+    /// Beside `target`, hidden, with a name of this process, thread and moment alone that ends in `extension`.
+    explicit AsideFile(std::filesystem::path target);
+    AsideFile(const AsideFile&) = delete;
+    AsideFile& operator=(const AsideFile&) = delete;
+    ~AsideFile();
+
+    void write(std::span<const std::byte> bytes);
+    /// Syncs the file and renames it to the target, over what is there.
+    void take_place();
+
+    static constexpr std::string_view extension = ".aside";
+
+private:
+    std::filesystem::path target_, file_;
+    int descriptor_ = -1;
+};
+
+}  // namespace grainsweep::store
