@@ -1,10 +1,25 @@
 #include "sweep/campaign/forecast.hpp"
 
+#include "sweep/campaign/wrong_question.hpp"
+
 #include <algorithm>
+#include <stdexcept>
 #include <string_view>
 #include <unordered_set>
+#include <utility>
 
 namespace grainsweep::campaign {
+
+Prediction predict(const SceneInfo& scene, const Inputs& inputs) {
+    Prediction prediction;
+    try {
+        prediction.proven = scene.proven_answer && scene.proven_answer(inputs);
+        if (!prediction.proven && scene.estimate_cost) prediction.seconds = scene.estimate_cost(inputs);
+    } catch (const std::invalid_argument& error) {  // one case among many: its outcome will be `rejected`
+        prediction.impossible = error.what();
+    }
+    return prediction;
+}
 
 Forecast forecast(const SceneInfo& scene, std::span<const PlacedCase> cases) {
     Forecast total;
@@ -13,14 +28,17 @@ Forecast forecast(const SceneInfo& scene, std::span<const PlacedCase> cases) {
         ++total.places;
         if (!seen.insert(placed.question.id).second) continue;
         ++total.questions;
-        if (scene.proven_answer && scene.proven_answer(placed.question.inputs)) {
-            ++total.proven;
-            continue;
+        Prediction one = predict(scene, placed.question.inputs);
+        if (!one.impossible.empty() && total.impossible++ == 0) {
+            total.first_reason = std::move(one.impossible);
+            total.first_point = placed.point;
         }
-        const double seconds = scene.estimate_cost ? scene.estimate_cost(placed.question.inputs) : 0;
-        total.total_seconds += seconds;
-        total.longest_seconds = std::max(total.longest_seconds, seconds);
+        if (one.proven) ++total.proven;
+        total.total_seconds += one.seconds;
+        total.longest_seconds = std::max(total.longest_seconds, one.seconds);
     }
+    if (total.impossible == total.questions)
+        throw wrong_question("$", "", "no case of this campaign can be computed: " + total.first_reason);
     return total;
 }
 

@@ -5,18 +5,31 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 
 namespace grainsweep::campaign {
 
 struct Forecast {
-    std::int64_t places = 0;     ///< cases as placed in the design
-    std::int64_t questions = 0;  ///< of those different from each other
-    std::int64_t proven = 0;     ///< questions whose answer is known without simulation
+    std::int64_t places = 0;      ///< cases as placed in the design
+    std::int64_t questions = 0;   ///< of those different from each other
+    std::int64_t proven = 0;      ///< questions whose answer is known without simulation
+    std::int64_t impossible = 0;  ///< questions whose inputs do not go together: they will be rejected
+    std::string first_reason;     ///< of the first of those
+    std::int64_t first_point = 0;
     double total_seconds = 0;    ///< of one plain core
     double longest_seconds = 0;  ///< the most expensive question
 };
 
-/// Adds the scene's own estimates over different questions without a proven answer.
+/// What is known of a case before it is computed.
+struct Prediction {
+    bool proven = false;     ///< its answer is known without simulation
+    double seconds = 0;      ///< of a plain core; 0 where it is proven or impossible
+    std::string impossible;  ///< why its inputs do not go together; empty: they do
+};
+[[nodiscard]] Prediction predict(const SceneInfo& scene, const Inputs& inputs);
+
+/// Adds the scene's own estimates over different questions without a proven answer. Throws WrongQuestion where all
+/// questions are impossible.
 [[nodiscard]] Forecast forecast(const SceneInfo& scene, std::span<const PlacedCase> cases);
 
 }  // namespace grainsweep::campaign

@@ -96,6 +96,7 @@ Json json_of(const Campaign& campaign, std::span<const PlacedCase> cases, const 
     object["cases"] = cost.places;
     object["questions"] = cost.questions;
     object["proven"] = cost.proven;
+    object["impossible"] = cost.impossible;
     object["predicted_seconds"] = cost.total_seconds;
     object["longest_seconds"] = cost.longest_seconds;
     object["factors"] = report::to_json(factors_of(campaign));
@@ -123,6 +124,9 @@ void show_text(const Campaign& campaign, std::span<const PlacedCase> cases, cons
                              cost.places);
     if (cost.questions != cost.places) std::cout << fmt::format(", {} different", cost.questions);
     if (cost.proven > 0) std::cout << fmt::format(", {} of them answered without simulation", cost.proven);
+    if (cost.impossible > 0)
+        std::cout << fmt::format("\nimpossible {} of them, which will be rejected; point {}: {}", cost.impossible,
+                                 cost.first_point, cost.first_reason);
     std::cout << fmt::format("\npredicted  {} on one core; the longest case {}\n", seconds_text(cost.total_seconds),
                              seconds_text(cost.longest_seconds));
     if (const auto& convergence = campaign.convergence) {

@@ -1,5 +1,6 @@
 #include "sweep/cli/run_campaign.hpp"
 
+#include "sweep/campaign/forecast.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/progress.hpp"
@@ -55,7 +56,7 @@ Questions collect(const campaign::Campaign& campaign, const std::vector<PlacedCa
         if (!fresh) continue;
         questions.cases.push_back(placed[i].question);
         questions.histories.push_back({states[i].attempts, states[i].failures, states[i].outcome});
-        questions.predicted.push_back(campaign.scene().estimate_cost(placed[i].question.inputs));
+        questions.predicted.push_back(campaign::predict(campaign.scene(), placed[i].question.inputs).seconds);
     }
     return questions;
 }
@@ -123,6 +124,9 @@ RunReport run_campaign(const RunRequest& request) {
     const auto filter = store::make_filter(campaign.where, campaign::filter_names(campaign));
     const std::vector<PlacedCase> placed = campaign::unfold(campaign, filter);
 
+    (void)campaign::forecast(campaign.scene(),
+                             placed);  // refuses a campaign of impossible cases before anything is made
+
     const fs::path database = request.database.empty() ? fs::path(campaign.name + ".db") : request.database;
     fs::path artefacts = fs::absolute(database);
     artefacts.replace_extension(".artefacts");
@@ -157,7 +161,8 @@ RunReport run_campaign(const RunRequest& request) {
         schedule::Scheduler scheduler(campaign.name, plan, pool, recorder, judge.get(), watchers);
         ending = scheduler.run();
     }
-    return {exit_code(ending, plan.tally()), campaign.name, database, describe(ending, plan.tally(), judge.get())};
+    const auto tally = plan.tally();
+    return {exit_code(ending, tally), campaign.name, database, describe(ending, tally, judge.get())};
 }
 
 }  // namespace grainsweep::cli

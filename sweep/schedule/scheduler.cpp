@@ -42,8 +42,9 @@ Ending Scheduler::run() {
     }
     recorder_.drain();
     show();
-    if (early_) return *early_;
-    if (plan_.tally().decided == plan_.tally().questions) return Ending::finished;
+    const bool all = plan_.tally().decided == plan_.tally().questions;
+    if (early_ && !(all && early_ == Ending::interrupted)) return *early_;
+    if (all) return Ending::finished;  // an interrupt that comes when nothing is left is none
     return plan_.too_many_failures() ? Ending::too_many_failures : Ending::limited;
 }
 
@@ -71,7 +72,7 @@ void Scheduler::handle(workers::PoolEvent event) {
                           [&](const workers::GivenBack& back) { park(back.attempt); },
                           [&](const workers::Interrupted& stop) {
                               plan_.close();
-                              early_ = Ending::interrupted;
+                              if (!early_) early_ = Ending::interrupted;
                               crew_.retire();
                               at_once_ = stop.at_once;
                           }},
@@ -131,7 +132,8 @@ void Scheduler::judge_prefix() {
     if (judge_ == nullptr || (judge_->converged_at() && judge_->stops())) return;
     for (auto& row : judge_->judge(plan_.settled_prefix())) recorder_.write(store::Recorder::Checked{campaign_, row});
     progress_.judgement = judge_->verdict();
-    if (judge_->converged_at() && judge_->stops() && !early_) {
+    // Also when interrupted: where the campaign stops must not depend on when somebody looked.
+    if (judge_->converged_at() && judge_->stops()) {
         plan_.close();
         early_ = Ending::converged;
         recorder_.write(store::Recorder::Stopped{campaign_, *judge_->converged_at()});

@@ -136,11 +136,11 @@ std::optional<campaign::CaseResult> compute(const campaign::Case& question, std:
     if (std::string why = changed_file(question.inputs); !why.empty())
         return close(campaign::Outcome::rejected, std::move(why));
     const Inputs inputs = info->on_attempt ? info->on_attempt(question.inputs, attempt) : question.inputs;
-    if (auto proven = info->proven_answer(inputs)) {
-        result.observations = std::move(proven->observations);
-        return close(campaign::Outcome::skipped, proven->reason);
-    }
     try {
+        if (auto proven = info->proven_answer(inputs)) {
+            result.observations = std::move(proven->observations);
+            return close(campaign::Outcome::skipped, proven->reason);
+        }
         auto scene = info->make(inputs, question.seed, artefacts);
         if (resume) {
             try {

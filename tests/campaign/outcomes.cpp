@@ -100,6 +100,25 @@ TEST(Outcomes, AHugeAnswerArrivesWhole) {
     EXPECT_EQ(query(folder, "SELECT count(*) AS n FROM series")[0]["n"], 4 * 20000);
 }
 
+// Inputs that are each within bounds and impossible together are one case's outcome, not the campaign's end.
+TEST(Outcomes, AnImpossibleCaseIsRejectedAndTheRestIsComputed) {
+    const Folder folder;
+    folder.write("c.json", R"({"campaign": "trouble", "scene": "thermovibration",
+      "factors": [{"name": "cells", "levels": [7, 8]}],
+      "fixed": {"coupling": "one_way", "particles": 10, "symmetry": "mirror", "end_time": 1e-3},
+      "design": {"kind": "lattice"}})");
+    const auto plan = run_program({"plan", "c.json", "--format", "json"}, folder.path());
+    EXPECT_EQ(plan.code, 0) << plan.err;
+    EXPECT_EQ(nlohmann::json::parse(plan.out)["impossible"], 1);
+    const auto told = run_program({"plan", "c.json"}, folder.path()).out;
+    EXPECT_NE(told.find("cells = 7"), std::string::npos) << told;
+    const auto run = run_program({"run", "c.json", "--quiet"}, folder.path());
+    EXPECT_EQ(run.code, 1) << run.err;
+    const auto rows = query(folder, "SELECT outcome, cells FROM trouble ORDER BY cells");
+    EXPECT_EQ(rows[0]["outcome"], "rejected");
+    EXPECT_EQ(rows[1]["outcome"], "completed");
+}
+
 TEST(Outcomes, FailuresCanEndTheRun) {
     const Folder folder;
     folder.write("c.json", config("\"unstable\""));

@@ -44,12 +44,18 @@ std::vector<Wrong> wrongs() {
         {"unknown_word", good_with("\"sum\"", "\"som\""), {"$.fixed.response", "som", "sum"}},
         {"no_factors", good_with("[{\"name\": \"x1\", \"between\": [0, 1]}]", "[]"), {"$.factors"}},
         {"table_name", good_with("\"c\"", "\"series\""), {"$.campaign", "series"}},
+        {"table_name_parameter", good_with("\"c\"", "\"Parameter\""), {"$.campaign", "Parameter"}},
+        {"view_name_inputs", good_with("\"c\"", "\"inputs\""), {"$.campaign", "inputs"}},
         {"bad_where", good_with("\"fixed\"", "\"where\": \"x1 >\", \"fixed\""), {"$.where"}},
         {"where_leaves_nothing", good_with("\"fixed\"", "\"where\": \"x1 > 2\", \"fixed\""), {"where"}},
         {"duplicate_key", good_with("\"fixed\"", "\"scene\": \"rehearsal\", \"fixed\""), {"scene"}},
         {"not_json", "campaign: c\n", {"line 1"}},
         {"empty_file", "", {}},
         {"deep_nesting", std::string(100000, '['), {}},
+        {"all_impossible",
+         R"({"campaign": "c", "scene": "thermovibration", "factors": [{"name": "cells", "levels": [7, 9]}],
+             "fixed": {"particles": 10, "symmetry": "mirror"}, "design": {"kind": "lattice"}})",
+         {"cells = 7"}},
         {"without_effect", good_with("\"response\": \"sum\"", "\"behave_attempts\": 2"), {"behave_attempts"}},
     };
 }

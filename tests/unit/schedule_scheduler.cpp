@@ -3,13 +3,17 @@
 
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/campaign.hpp"
+#include "sweep/schedule/judge.hpp"
 #include "tests/support/process.hpp"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <deque>
 #include <functional>
 #include <numeric>
+#include <utility>
+#include <vector>
 
 using namespace grainsweep;
 using namespace grainsweep::schedule;
@@ -69,7 +73,7 @@ protected:
         }
     }
 
-    Ending run(ScriptedCrew& crew, Rules rules = {}, Watchers watchers = {}) {
+    Ending run(ScriptedCrew& crew, Rules rules = {}, Watchers watchers = {}, Judge* judge = nullptr) {
         const auto states = store.enrol(campaign, placed, {});
         std::vector<campaign::Case> questions;
         std::vector<History> histories;
@@ -81,7 +85,7 @@ protected:
         std::iota(places.begin(), places.end(), std::size_t{0});
         Plan plan(questions, histories, std::vector<double>(placed.size(), 1.0), places, rules);
         store::Recorder recorder(store);
-        Scheduler scheduler("loop", plan, crew, recorder, nullptr, std::move(watchers));
+        Scheduler scheduler("loop", plan, crew, recorder, judge, std::move(watchers));
         return scheduler.run();
     }
 
@@ -141,6 +145,44 @@ TEST_F(SchedulerLoop, ASecondInterruptEndsAtOnceAndTheNextRunGoesOn) {
     EXPECT_EQ(second.started.size(), 7U);
     EXPECT_EQ(stored("completed"), 10);
     EXPECT_EQ(second.started.front().number, 2);  // the attempt that was under way is not counted twice
+}
+
+TEST_F(SchedulerLoop, AnInterruptThatLeavesNothingIsNone) {
+    bool interrupted = false;
+    ScriptedCrew crew([&](const auto& attempt) -> workers::PoolEvent {
+        if (attempt.case_id == placed[9].question.id && !std::exchange(interrupted, true))
+            return workers::Interrupted{};
+        return completed(attempt);
+    });
+    EXPECT_EQ(run(crew), Ending::finished);
+    EXPECT_EQ(stored("completed"), 10);
+}
+
+// The last answers come after the interrupt and complete the block on which the rule stops.
+TEST_F(SchedulerLoop, ConvergenceFoundWhileStoppingIsStored) {
+    campaign.convergence = {"y", "all_change", {"mean"}, 0.01, 3, true};
+    const auto judge = [&] {
+        return Judge(*campaign.convergence, placed, 1, std::vector<double>(placed.size(), std::nan("")), 10);
+    };
+    Judge undisturbed = judge();
+    ScriptedCrew calm([](const auto& attempt) { return completed(attempt); }, 2);
+    EXPECT_EQ(run(calm, {}, {}, &undisturbed), Ending::converged);
+    const auto stopped = store.campaigns().at(0).stopped_at;
+    ASSERT_TRUE(stopped && *stopped < 10);
+
+    store = store::Store(folder / "other.db", store::Store::Mode::create);
+    bool interrupted = false;
+    const auto last_but_one = placed[static_cast<std::size_t>(*stopped) - 2].question.id;
+    ScriptedCrew crew(
+        [&](const auto& attempt) -> workers::PoolEvent {
+            if (attempt.case_id == last_but_one && !std::exchange(interrupted, true)) return workers::Interrupted{};
+            return completed(attempt);
+        },
+        2);
+    Judge disturbed = judge();
+    EXPECT_EQ(run(crew, {}, {}, &disturbed), Ending::converged);
+    EXPECT_TRUE(interrupted);
+    EXPECT_EQ(store.campaigns().at(0).stopped_at, stopped);
 }
 
 TEST_F(SchedulerLoop, ParkedCasesAreAbandonedAndAskedAgain) {
