@@ -164,9 +164,9 @@ std::vector<Key> design_keys(const designs::DesignInfo& design) {
 }
 
 std::span<const std::string> reserved_names() {
-    static const std::vector<std::string> names = {"campaign",   "sim_case",   "case_input",         "campaign_case",
-                                                   "attempt",    "observable", "observation",        "convergence",
-                                                   "provenance", "series",     "convergence_history"};
+    static const std::vector<std::string> names = {
+        "campaign",    "sim_case",   "case_input", "campaign_case",       "attempt",   "observable", "observation",
+        "convergence", "provenance", "series",     "convergence_history", "parameter", "inputs"};
     return names;
 }
 

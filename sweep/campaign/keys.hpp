@@ -5,6 +5,7 @@
 #include "solver/scenes/values.hpp"
 #include "sweep/designs/design.hpp"
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
@@ -33,6 +34,9 @@ inline constexpr std::string_view notes_key = "notes";
 [[nodiscard]] std::span<const Key> execution_keys();
 /// "kind", the design's options and, where it takes rows, "file".
 [[nodiscard]] std::vector<Key> design_keys(const designs::DesignInfo& design);
+
+/// Letters of a campaign's name: NAME.db must be a file name.
+inline constexpr std::size_t longest_campaign_name = 128;
 
 /// Names a campaign cannot have: the tables and views of the database are called so.
 [[nodiscard]] std::span<const std::string> reserved_names();

@@ -17,8 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t largest_text = 64ULL << 20U;
-constexpr std::size_t longest_name = 128;  // NAME.db must be a file name
-
 std::string lower(std::string_view word) {
     std::string folded(word);
     std::ranges::transform(folded, folded.begin(),
@@ -30,9 +28,10 @@ std::string read_name(const Cursor& place) {
     const auto name = place.text();
     const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
     const auto allowed = [&](char c) { return letter(c) || (c >= '0' && c <= '9'); };
-    if (!letter(name.front()) || !std::ranges::all_of(name, allowed) || name.size() > longest_name) {
-        place.refuse(fmt::format(
-            "a name is letters, digits and _, not a digit first, at most {}: it names a view in SQL", longest_name));
+    if (!letter(name.front()) || !std::ranges::all_of(name, allowed) || name.size() > longest_campaign_name) {
+        place.refuse(
+            fmt::format("a name is letters, digits and _, not a digit first, at most {}: it names a view in SQL",
+                        longest_campaign_name));
     }
     // SQL folds the case of names, so do we.
     const std::string folded = lower(name);

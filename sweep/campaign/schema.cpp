@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <string>
+#include <string_view>
 
 namespace grainsweep::campaign {
 
@@ -168,6 +170,19 @@ Json design_schema(const designs::DesignInfo& design) {
     return schema;
 }
 
+/// Matches what the reader refuses: SQL folds the case of names.
+std::string pattern_of_reserved_names() {
+    const auto folded = [](std::string_view word) {
+        std::string pattern;
+        for (const char c : word)
+            pattern += c == '_' ? std::string("_") : fmt::format("[{}{}]", static_cast<char>(c - 'a' + 'A'), c);
+        return pattern;
+    };
+    std::string pattern = fmt::format("^(?:{}.*", folded("sqlite_"));
+    for (const auto& name : reserved_names()) pattern += "|" + folded(name);
+    return pattern + ")$";
+}
+
 }  // namespace
 
 std::string campaign_schema() {
@@ -177,8 +192,8 @@ std::string campaign_schema() {
     schema.update(section(campaign_keys()));
     auto& properties = schema["properties"];
     properties["campaign"]["pattern"] = "^[A-Za-z_][A-Za-z0-9_]*$";
-    properties["campaign"]["not"] = {
-        {"enum", std::vector<std::string>(reserved_names().begin(), reserved_names().end())}};
+    properties["campaign"]["maxLength"] = longest_campaign_name;
+    properties["campaign"]["not"]["pattern"] = pattern_of_reserved_names();
     properties["factors"]["minItems"] = 1;
     properties["convergence"].update(section(convergence_keys()));
     properties["limits"].update(section(limits_keys()));

@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
 #include <string>
 
@@ -71,6 +72,22 @@ TEST(Schema, HasTheKeysOfTheReader) {
     ASSERT_EQ(properties["design"]["oneOf"].size(), designs.size());
     for (std::size_t k = 0; k < designs.size(); ++k) {
         EXPECT_EQ(keys_of(properties["design"]["oneOf"][k]["properties"]), names_of(design_keys(designs[k])));
+    }
+}
+
+TEST(Schema, RefusesTheNamesTheReaderRefuses) {
+    const std::regex forbidden(schema()["properties"]["campaign"]["not"]["pattern"].get<std::string>());
+    const std::regex allowed(schema()["properties"]["campaign"]["pattern"].get<std::string>());
+    std::vector<std::string> names = {"trial",   "seriess", "my_series", "SQLite_x",
+                                      "sqlitex", "2nd",     "a-b",       "Case_Input"};
+    for (const auto& name : reserved_names()) {
+        names.push_back(name);
+        names.push_back(static_cast<char>(name.front() - 'a' + 'A') + name.substr(1));
+    }
+    for (const auto& name : names) {
+        json named = sound;
+        named["campaign"] = name;
+        EXPECT_EQ(reads(named), std::regex_search(name, allowed) && !std::regex_search(name, forbidden)) << name;
     }
 }
 
