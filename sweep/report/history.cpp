@@ -49,6 +49,7 @@ stats::Checkpoint check_of_all(const Responses& responses, const ResponseColumn&
                                                  responses.settled_points);
     if (checks.empty()) return {};
     stats::Checkpoint all = checks.front();
+    all.points = responses.counted_points();
     if (!responses.ordered_sample()) {
         for (auto& estimate : all.estimates)
             estimate.error = estimate.measure = std::numeric_limits<double>::quiet_NaN();
@@ -87,8 +88,9 @@ void warn(History& history, const Responses& responses, const ResponseColumn& re
                                                history.all.excluded + history.all.count));
     }
     if (!record.stopped_at && responses.settled < responses.rows()) {
-        history.warnings.push_back(fmt::format("{} of {} cases are not settled, or lie behind one that is not",
-                                               responses.rows() - responses.settled, responses.rows()));
+        history.warnings.push_back(fmt::format("{} of {} cases are not settled{}", responses.rows() - responses.settled,
+                                               responses.rows(),
+                                               responses.ordered_sample() ? ", or lie behind one that is not" : ""));
     }
 }
 
@@ -168,7 +170,7 @@ std::vector<LatticeStep> lattice_family(const store::Store& store, const Respons
         if (sibling.settled < sibling.rows()) continue;  // half a lattice is no lattice
         LatticeStep step;
         step.campaign = record.name;
-        step.points = sibling.settled_points;
+        step.points = sibling.counted_points();
         step.summary = stats::summarise(sibling.judged(sibling.observable(response.name)));
         steps.push_back(std::move(step));
     }

@@ -223,7 +223,7 @@ Json campaign_of(const store::Store& store, const store::CampaignRecord& record)
                   {"replicates", record.replicates},
                   {"rows", responses.rows()},
                   {"settled", responses.settled},
-                  {"settled_points", responses.settled_points},
+                  {"settled_points", responses.counted_points()},
                   {"drawn_rows", drawn_rows.size()},
                   {"sample", responses.ordered_sample()},
                   {"text", record.text}};

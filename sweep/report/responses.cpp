@@ -14,6 +14,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <set>
 #include <utility>
 
 namespace grainsweep::report {
@@ -113,6 +114,32 @@ bool has_last_word(const std::optional<campaign::Outcome>& outcome) {
     return outcome && *outcome != campaign::Outcome::abandoned;
 }
 
+std::optional<campaign::Outcome> outcome_of(const std::vector<Cell>& row) {
+    const auto* outcome = std::get_if<std::string>(&row[outcome_column]);
+    return outcome == nullptr ? std::nullopt : campaign::outcome_named(*outcome);
+}
+
+template <class T>
+void reorder(std::vector<T>& column, std::span<const std::size_t> rows) {
+    std::vector<T> moved;
+    moved.reserve(column.size());
+    for (const std::size_t row : rows) moved.push_back(std::move(column[row]));
+    column = std::move(moved);
+}
+
+/// Rows that have their last word before the others, each part in its old order.
+void bring_settled_forward(Responses& responses) {
+    std::vector<std::size_t> rows(responses.rows());
+    std::iota(rows.begin(), rows.end(), std::size_t{0});
+    std::ranges::stable_partition(rows, [&](std::size_t row) { return has_last_word(responses.outcomes[row]); });
+    reorder(responses.points, rows);
+    reorder(responses.replicates, rows);
+    reorder(responses.case_ids, rows);
+    reorder(responses.outcomes, rows);
+    for (auto& factor : responses.factors) reorder(factor.values, rows);
+    for (auto& response : responses.observables) reorder(response.values, rows);
+}
+
 void find_settled(Responses& responses) {
     const auto& record = responses.campaign;
     if (record.stopped_at) {
@@ -123,6 +150,10 @@ void find_settled(Responses& responses) {
     }
     const auto open = std::ranges::find_if_not(responses.outcomes, has_last_word);
     responses.settled = static_cast<std::size_t>(open - responses.outcomes.begin());
+    if (!responses.ordered_sample()) {
+        responses.settled_points = responses.settled == 0 ? 0 : responses.points[responses.settled - 1] + 1;
+        return;
+    }
     responses.settled_points =
         open == responses.outcomes.end() ? responses.candidates : responses.points[responses.settled];
     // A point counts when all its repeats are there.
@@ -136,6 +167,12 @@ double FactorColumn::coordinate(std::size_t row) const {
     const double value = values[row];
     if (!continuous()) return levels.size() < 2 ? 0 : value / static_cast<double>(levels.size() - 1);
     return log ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
+}
+
+std::int64_t Responses::counted_points() const {
+    if (ordered_sample()) return settled_points;
+    const auto judged = std::span(points).first(settled);
+    return static_cast<std::int64_t>(std::set<std::int64_t>(judged.begin(), judged.end()).size());
 }
 
 const ResponseColumn* Responses::main_observable() const {
@@ -189,8 +226,7 @@ Responses read_responses(const store::Store& store, const store::CampaignRecord&
         responses.points.push_back(integer(row[point_column]));
         responses.replicates.push_back(integer(row[replicate_column]));
         responses.case_ids.push_back(std::get<std::string>(row[case_column]));
-        const auto* outcome = std::get_if<std::string>(&row[outcome_column]);
-        responses.outcomes.push_back(outcome == nullptr ? std::nullopt : campaign::outcome_named(*outcome));
+        responses.outcomes.push_back(outcome_of(row));
     }
 
     const Json text = campaign::parse_json(record.text);
@@ -214,6 +250,7 @@ Responses read_responses(const store::Store& store, const store::CampaignRecord&
     if (design.contains("points")) {
         responses.candidates = std::max(responses.candidates, design.at("points").get<std::int64_t>());
     }
+    if (!responses.ordered_sample() && !record.stopped_at) bring_settled_forward(responses);
     find_settled(responses);
     return responses;
 }

@@ -32,7 +32,8 @@ struct ResponseColumn {
     std::vector<double> values;
 };
 
-/// One row per placed case, ordered by (point, replicate).
+/// One row per placed case, ordered by (point, replicate). A lattice or a list, whose order means nothing, has first
+/// the rows with their last word, then the others.
 struct Responses {
     store::CampaignRecord campaign;
     std::vector<std::int64_t> points, replicates;
@@ -41,11 +42,14 @@ struct Responses {
     std::vector<FactorColumn> factors;
     std::vector<ResponseColumn> observables;
     std::int64_t candidates = 0;  ///< points the design numbers, those filtered out by `where` included
-    /// Rows of the gapless beginning that has its last word, cut where the campaign converged and stopped: what
-    /// statistics are over. A case that crashed counts as having its last word.
+    /// Rows of the gapless beginning (a lattice, a list: all those) that has its last word, cut where the campaign
+    /// converged and stopped: what statistics are over. A case that crashed counts as having its last word.
     std::size_t settled = 0;
-    std::int64_t settled_points = 0;  ///< design points in that beginning
+    std::int64_t settled_points = 0;  ///< end of the design points in that beginning
 
+    /// What statistics are over: of a design with an order the candidates before `settled_points`, else the points
+    /// that have settled rows.
+    [[nodiscard]] std::int64_t counted_points() const;
     [[nodiscard]] std::size_t rows() const { return points.size(); }
     /// The first `settled` values of a response.
     [[nodiscard]] std::span<const double> judged(const ResponseColumn& response) const {

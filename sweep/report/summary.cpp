@@ -115,7 +115,7 @@ std::string closing_summary(const store::Store& store, const std::string& campai
         const auto history = history_of(responses, *main);
         if (history.has_rule) text << fmt::format("{}: {}\n", main->name, history.verdict);
         for (const auto& warning : history.warnings) text << "note: " << warning << '\n';
-        text << fmt::format("\nmoments over {} points, 95 % errors\n", responses.settled_points);
+        text << fmt::format("\nmoments over {} points, 95 % errors\n", responses.counted_points());
         write(text, moments_table(responses), Format::text);
         text << '\n';
         write(text, extremes_table(responses, *main, shown_extremes), Format::text);

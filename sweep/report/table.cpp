@@ -82,7 +82,7 @@ void write_text(std::ostream& out, const store::Table& table) {
 void write_csv(std::ostream& out, const store::Table& table) {
     const auto write_line = [&out](const auto& cells) {
         for (std::size_t j = 0; j < cells.size(); ++j) out << (j > 0 ? "," : "") << in_csv(cells[j]);
-        out << "\r\n";
+        out << '\n';
     };
     write_line(table.columns);
     for (const auto& row : table.rows) write_line(row);
@@ -116,10 +116,17 @@ Json to_json(const Cell& cell) {
 }
 
 Json to_json(const store::Table& table) {
+    // A name can be there twice (SELECT a.mfr, b.mfr); an object's cannot.
+    std::vector<std::string> names;
+    for (const auto& column : table.columns) {
+        std::string name = column;
+        for (int k = 2; std::ranges::find(names, name) != names.end(); ++k) name = fmt::format("{}_{}", column, k);
+        names.push_back(std::move(name));
+    }
     Json rows = Json::array();
     for (const auto& row : table.rows) {
         Json object = Json::object();
-        for (std::size_t j = 0; j < row.size(); ++j) object[table.columns[j]] = to_json(row[j]);
+        for (std::size_t j = 0; j < row.size(); ++j) object[names[j]] = to_json(row[j]);
         rows.push_back(std::move(object));
     }
     return rows;

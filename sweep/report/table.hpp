@@ -1,8 +1,9 @@
 // Rows for people and programs: one renderer for every command.
 //
 //   text  columns aligned, numbers to 6 digits; for reading
-//   csv   RFC 4180: CRLF, a cell quoted where it must be; an absent value is empty, an empty text is ""
-//   json  a list of objects, keys in column order; an absent value, NaN and infinity are null
+//   csv   cells quoted as in RFC 4180, lines ending in LF as shells want; an absent value is empty, an empty text is ""
+//   json  a list of objects, keys in column order, a name that is there again with _2; an absent value, NaN and
+//         infinity are null
 //
 // Numbers in csv and json are the shortest that read back as the same double.
 #pragma once

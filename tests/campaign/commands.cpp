@@ -42,7 +42,7 @@ TEST(Commands, PlanShowsEveryCaseAndTheCost) {
     EXPECT_NEAR(whole["predicted_seconds"], 4e-4, 1e-12);
     const auto csv = in_folder(folder, {"plan", "c.json", "--format", "csv"}).out;
     EXPECT_EQ(std::ranges::count(csv, '\n'), 41);
-    EXPECT_TRUE(csv.starts_with("point,sequence,replicate,case_id,seed,x1,x2,response\r\n0,0,0,"));
+    EXPECT_TRUE(csv.starts_with("point,sequence,replicate,case_id,seed,x1,x2,response\n0,0,0,"));
     const auto text = in_folder(folder, {"plan", "c.json"});
     EXPECT_EQ(text.code, 0);
     EXPECT_NE(text.out.find("cases      40"), std::string::npos) << text.out;

@@ -8,7 +8,8 @@
 
 namespace grainsweep::tests {
 
-campaign::Campaign answer_by(store::Store& store, const std::string& text, const Formula& formula, std::size_t cases) {
+campaign::Campaign answer_by(store::Store& store, const std::string& text, const Formula& formula, std::size_t cases,
+                             const std::function<bool(const campaign::PlacedCase&)>& wanted) {
     auto campaign = campaign::parse_campaign(text, std::filesystem::temp_directory_path());
     const auto placed =
         campaign::unfold(campaign, store::make_filter(campaign.where, campaign::filter_names(campaign)));
@@ -17,6 +18,7 @@ campaign::Campaign answer_by(store::Store& store, const std::string& text, const
         std::set<campaign::CaseId> settled;
         for (std::size_t i = 0; i < std::min(cases, placed.size()); ++i) {
             const auto& question = placed[i].question;
+            if (wanted && !wanted(placed[i])) continue;
             const bool known = states[i].outcome && settles(*states[i].outcome);
             if (known || !settled.insert(question.id).second) continue;
             campaign::CaseResult result;

@@ -16,7 +16,8 @@ using Formula = std::function<std::optional<double>(const Inputs&)>;
 
 /// Enrols the campaign of the text and settles its first `cases` cases (all, where there are fewer) in one group.
 campaign::Campaign answer_by(store::Store& store, const std::string& text, const Formula& formula,
-                             std::size_t cases = static_cast<std::size_t>(-1));
+                             std::size_t cases = static_cast<std::size_t>(-1),
+                             const std::function<bool(const campaign::PlacedCase&)>& wanted = {});
 
 /// A real input of a case.
 [[nodiscard]] double input(const Inputs& inputs, std::string_view name);

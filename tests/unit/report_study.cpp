@@ -90,6 +90,25 @@ TEST_F(Study, OnlyAGaplessBeginningIsJudged) {
     EXPECT_THAT(history.warnings, Contains(HasSubstr("34 of 64 cases are not settled")));
 }
 
+// The order of a lattice means nothing: every case that has its last word counts, wherever the others lie.
+TEST_F(Study, APartOfALatticeIsCounted) {
+    const std::string text = R"({"campaign": "c", "scene": "rehearsal", "replicates": 2,
+        "factors": [{"name": "x1", "levels": [0.2, 0.4, 0.6, 0.8]}], "design": {"kind": "lattice"}})";
+    answer_by(
+        store, text, [](const Inputs& inputs) { return input(inputs, "x1"); }, 8,
+        [](const campaign::PlacedCase& placed) { return placed.replicate == 0 && placed.point != 1; });
+    const auto responses = ask("c");
+    EXPECT_EQ(responses.rows(), 8u);
+    EXPECT_EQ(responses.settled, 3u);
+    EXPECT_EQ(responses.counted_points(), 3);
+    EXPECT_THAT(responses.judged(responses.observable("y")), ElementsAre(0.2, 0.6, 0.8));
+    const auto history = history_of(responses, responses.observable("y"));
+    EXPECT_EQ(history.all.count, 3);
+    EXPECT_EQ(history.all.points, 3);
+    EXPECT_EQ(responses.candidates, 4);
+    EXPECT_THAT(history.warnings, Contains("5 of 8 cases are not settled"));
+}
+
 TEST_F(Study, AStoppedCampaignIsJudgedOnWhereItStopped) {
     answer_by(store, halton("c", 64), [](const Inputs& inputs) { return linear(inputs); });
     store.group([&] { store.stop("c", 40); });

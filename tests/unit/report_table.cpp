@@ -1,4 +1,4 @@
-// One table, three formats: aligned text, RFC 4180, JSON; numbers read back as they were.
+// One table, three formats: aligned text, CSV, JSON; numbers read back as they were.
 #include "sweep/report/table.hpp"
 
 #include <gtest/gtest.h>
@@ -40,11 +40,11 @@ TEST(Table, TextIsAlignedAndStaysOnOneLineARow) {
 
 TEST(Table, CsvIsQuotedWhereItMustBe) {
     EXPECT_EQ(written(mixed, Format::csv),
-              "name,count,value\r\n"
-              "plain,12,0.1\r\n"
-              "\"a, \"\"b\"\"\nc\",,-1e-300\r\n"
-              "\"\",-3,\r\n"
-              "µm,9007199254740993,0.3333333333333333\r\n");
+              "name,count,value\n"
+              "plain,12,0.1\n"
+              "\"a, \"\"b\"\"\nc\",,-1e-300\n"
+              "\"\",-3,\n"
+              "µm,9007199254740993,0.3333333333333333\n");
 }
 
 TEST(Table, JsonIsOneValueWithKeysInOrder) {
@@ -58,12 +58,15 @@ TEST(Table, JsonIsOneValueWithKeysInOrder) {
     EXPECT_EQ(rows[3]["count"], 9007199254740993);
     EXPECT_EQ(rows[3]["value"].get<double>(), 1.0 / 3);
     EXPECT_EQ(written({{"a"}, {}}, Format::json), "[]\n");
+    // A name that is there more than once loses no value.
+    EXPECT_EQ(written({{"y", "y", "y_2", "y"}, {{1, 2, 3, 4}}}, Format::json),
+              "[{\"y\":1,\"y_2\":2,\"y_2_2\":3,\"y_3\":4}]\n");
 }
 
 TEST(Table, NumbersRoundTrip) {
     for (const double x : {0.1, 1.0 / 3, 5e-324, 1.7976931348623157e308, 123456789.125, -2.5e-7}) {
         const store::Table table{{"x"}, {{x}}};
-        EXPECT_EQ(std::strtod(written(table, Format::csv).c_str() + 3, nullptr), x);
+        EXPECT_EQ(std::strtod(written(table, Format::csv).c_str() + 2, nullptr), x);
         EXPECT_EQ(nlohmann::json::parse(written(table, Format::json))[0]["x"].get<double>(), x);
     }
 }

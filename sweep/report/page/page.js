@@ -241,7 +241,9 @@
     const c = card(titled(family), family.meaning + (family.at === null ? "" : `; at time ${show(family.at)}`), true);
     const xs = family.curves.flatMap((curve) => curve.x);
     const low = Math.min(...xs), high = Math.max(...xs);
-    const log = family.over === "bin" && low > 0 && high > 30 * low;
+    // Bins in a geometric series belong on a logarithmic axis: their last step is as large, relatively, as their first.
+    const bins = [...new Set(xs)].sort((a, b) => a - b), end = bins.length - 1;
+    const log = family.over === "bin" && low > 0 && end > 2 && Math.abs(Math.log(bins[1] / bins[0]) / Math.log(bins[end] / bins[end - 1]) - 1) < 0.1;
     const last = (item) => labels.indexOf(item.text) >= 0 && family.curves.findIndex((curve) => curve.label === item.text) === item.datasetIndex;
     draw(c.canvas, {
       type: "line",
@@ -388,7 +390,7 @@
 
   function provenanceSection(campaign) {
     const columns = [["start"], ["version"], ["commit"], ["compiler"], ["flags", "text"], ["instructions"], ["processor", "text"], ["host"], ["settled", "number"]];
-    const rows = campaign.runs.map((run) => [run.start, run.version, String(run.commit).slice(0, 12), run.compiler, run.flags, run.instruction_path, run.processor, run.host, run.settled]);
+    const rows = campaign.runs.map((run) => [run.start, run.version, String(run.commit).replace(/^([0-9a-f]{12})[0-9a-f]*/, "$1"), run.compiler, run.flags, run.instruction_path, run.processor, run.host, run.settled]);
     return section("Provenance", "One line per run over this database.", el("div", { class: "card" }, table(columns, rows)),
       el("details", {}, el("summary", {}, "The campaign file"), el("pre", { class: "card" }, campaign.text)));
   }
