@@ -5,10 +5,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <memory>
 #include <string_view>
+#include <system_error>
 
 namespace grainsweep::cli {
+
+CLI::Validator whole_number(std::int64_t least, std::int64_t most) {
+    const bool open = most == std::numeric_limits<std::int64_t>::max();
+    const std::string rule = open ? fmt::format("a whole number, {} or more", least)
+                                  : fmt::format("a whole number from {} to {}", least, most);
+    return {[=](const std::string& word) {
+                std::int64_t number = 0;
+                const auto* end = word.data() + word.size();
+                const auto read = std::from_chars(word.data(), end, number);
+                const bool good = read.ec == std::errc() && read.ptr == end && number >= least && number <= most;
+                return good ? std::string() : fmt::format("got '{}'; must be {}", word, rule);
+            },
+            ""};
+}
 
 void declare(CLI::App& app, const std::vector<Command>& commands, Action& chosen) {
     for (const auto& command : commands) {

@@ -5,8 +5,10 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cstdint>
 #include <functional>
 #include <iosfwd>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -23,6 +25,10 @@ struct Command {
     std::function<Action(CLI::App& parser, const report::Format& format)> declare;
     bool hidden = false;
 };
+
+/// Checks an argument: a whole number from `least` to `most`; the complaint says so.
+[[nodiscard]] CLI::Validator whole_number(std::int64_t least,
+                                          std::int64_t most = std::numeric_limits<std::int64_t>::max());
 
 // One line per group of commands; each group has a file of its own.
 [[nodiscard]] std::vector<Command> plan_commands();       // plan

@@ -54,13 +54,13 @@ Command run_command() {
                 parser.add_option("CONFIG", request->config, "campaign file")->required();
                 parser.add_option("--db", request->database, "database; default: NAME.db in the current folder");
                 parser.add_option("-j", request->workers, "workers; 0: all cores; default: execution.workers")
-                    ->check(CLI::Range(0, 4096));
+                    ->check(whole_number(0, 4096));
                 parser
                     .add_option("-k", request->stop_after_failures, "start nothing more after N failed cases; 0: never")
-                    ->check(CLI::NonNegativeNumber);
+                    ->check(whole_number(0));
                 parser.add_option("--again", *again, "asks again what ended with this outcome");
                 parser.add_option("--max-cases", request->max_cases, "settle at most N cases in this run; 0: all")
-                    ->check(CLI::NonNegativeNumber);
+                    ->check(whole_number(0));
                 parser.add_flag("--quiet", request->quiet, "no progress, no table");
                 declare_path(parser, request->path);
                 return [request, again, &format] {

@@ -203,7 +203,7 @@ std::vector<Command> solve_commands() {
                      ->type_name("NAME=VALUE")
                      ->allow_extra_args(false);
                  parser.add_option("--seed", request->seed, "seed of the case; default: as in the campaign")
-                     ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{0x7FFFFFFFFFFFFFFF}));
+                     ->check(whole_number(0));
                  declare_pictures(parser, request->pictures);
                  declare_path(parser, request->path);
                  return [request, &format] {

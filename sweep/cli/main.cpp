@@ -5,6 +5,7 @@
 #include "sweep/store/store.hpp"
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -43,7 +44,8 @@ int flushed(int code) {
     errno = 0;
     std::cout.flush();
     if (!std::cout || std::fflush(stdout) != 0) {
-        throw store::BrokenWorld(std::string("standard output cannot be written: ") + std::strerror(errno) + ".");
+        const std::string why = errno == 0 ? "" : std::string(": ") + std::strerror(errno);  // lost in an earlier write
+        throw store::BrokenWorld("standard output cannot be written" + why + ".");
     }
     return code;
 }
@@ -53,6 +55,7 @@ int flushed(int code) {
 int main(int argc, char** argv) {
     CLI::App app("Parameter sweeps of granular processes: from one JSON file to an answer.", "grainsweep");
     cli::Action chosen;
+    std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is a full disk: said, not died of
     try {
         const auto commands = all_commands();
         app.set_version_flag("--version", cli::version_text, "version, commit, compiler, flags, instruction path");

@@ -1,6 +1,7 @@
 #include "sweep/cli/pictures.hpp"
 
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/cli/command.hpp"
 #include "sweep/report/vtk_series.hpp"
 
 #include <fmt/format.h>
@@ -15,7 +16,7 @@ void declare_pictures(CLI::App& parser, PictureRequest& request) {
             ->type_name("DIR");
     parser.add_option("--frames", request.frames, "pictures from start to end")
         ->needs(folder)
-        ->check(CLI::Range(2, 9999))
+        ->check(whole_number(2, 9999))
         ->capture_default_str();
 }
 

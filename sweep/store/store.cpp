@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <stdexcept>
 
@@ -27,14 +28,31 @@ std::int64_t pragma(const Connection& db, std::string_view name) {
     return statement.step() ? statement.get<std::int64_t>(0) : 0;
 }
 
-/// A file that never was SQLite's is a wrong question; one whose header is gone is damage.
+std::uint32_t big_endian(const char* bytes) {
+    std::uint32_t value = 0;
+    for (int i = 0; i < 4; ++i) value = value << 8U | static_cast<unsigned char>(bytes[i]);
+    return value;
+}
+
+[[noreturn]] void refuse_stranger(const std::filesystem::path& file) {
+    throw WrongQuestion(fmt::format("'{}' is a database of another program, not grainsweep's.", file.string()));
+}
+
+/// A file that never was SQLite's, or is another program's, is a wrong question; one whose header is gone is damage.
+/// Told from the header alone, before a lock or a journal is made beside a stranger's file.
 void check_header(const std::filesystem::path& file) {
-    std::array<char, 16> header{};
+    std::array<char, 100> header{};
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw BrokenWorld(fmt::format("database '{}': cannot be read", file.string()));
     stream.read(header.data(), header.size());
     const std::string_view seen(header.data(), static_cast<std::size_t>(stream.gcount()));
-    if (seen.empty() || seen == std::string_view("SQLite format 3\0", 16)) return;
+    if (seen.empty()) return;
+    if (seen.starts_with(std::string_view("SQLite format 3\0", 16))) {
+        // https://www.sqlite.org/fileformat.html, 1.3: schema cookie at 40 (0: no table yet), application id at 68
+        if (seen.size() == header.size() && big_endian(&header[40]) != 0 && big_endian(&header[68]) != application)
+            refuse_stranger(file);
+        return;
+    }
     if (seen.front() == '\0')
         throw BrokenWorld(fmt::format("database '{}': damaged, its header is gone", file.string()));
     throw WrongQuestion(fmt::format("'{}' is not a grainsweep database.", file.string()));
@@ -56,9 +74,7 @@ std::int64_t schema_version(const Connection& db, const std::filesystem::path& f
     auto objects = db.prepare("SELECT count(*) FROM sqlite_schema");
     const bool empty = objects.step() && objects.get<std::int64_t>(0) == 0;
     if (version == 0 && id == 0 && empty) return 0;
-    if (id != application || version < 1) {
-        throw WrongQuestion(fmt::format("'{}' is a database of another program, not grainsweep's.", file.string()));
-    }
+    if (id != application || version < 1) refuse_stranger(file);
     const auto known = static_cast<std::int64_t>(schema_migrations().size());
     if (version > known) {
         throw WrongQuestion(fmt::format("'{}' was written by a newer grainsweep (schema {}, this one knows {}).",

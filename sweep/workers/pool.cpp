@@ -196,7 +196,9 @@ struct Pool::Impl {
             bp::std_in<worker->in, bp::std_out> worker->out, bp::std_err > worker->err, error,
             // a process group of its own: the terminal's Ctrl-C reaches only the boss, and a kill reaches all of it
             bp::extend::on_exec_setup = [](auto&) { ::setpgid(0, 0); });
-        if (error) throw std::runtime_error(fmt::format("cannot start a worker: {}", error.message()));
+        if (error)
+            throw std::runtime_error(
+                fmt::format("cannot start a worker with '{}': {}", command.front(), error.message()));
         worker->began = Clock::now();
         workers.push_back(worker);
         await_line(worker);
