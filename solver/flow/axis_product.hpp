@@ -1,4 +1,8 @@
 // A matrix applied along one axis of a field: every line a -> M a.
+//
+// The matrices here are exponentials and inverses of second differences: dense, but their entries fall off like a
+// Gaussian or an exponential with the distance from the diagonal. Entries below 1e-17 of the largest are skipped, block
+// of rows by block of rows: a line of n values changes by less than n 1e-17 of its largest, less than rounding does.
 #pragma once
 
 #include "solver/flow/field.hpp"
@@ -6,6 +10,7 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 namespace grainsweep::flow {
@@ -13,16 +18,24 @@ namespace grainsweep::flow {
 class AxisProduct {
 public:
     AxisProduct() = default;
-    /// matrix: n x n for indices 1 ... n along `direction`.
-    AxisProduct(const Grid& grid, int direction, const Eigen::MatrixXd& matrix);
+    /// matrix: n x n for indices 1 ... n along `direction`. Entries up to `negligible` times the largest may be
+    /// skipped.
+    AxisProduct(const Grid& grid, int direction, const Eigen::MatrixXd& matrix, double negligible = 1e-17);
 
     /// Inner values of `to` from those of `from`, another field; ghosts are left alone.
     void apply(const Field& from, Field& to) const;
+    /// Share of the matrix that is multiplied.
+    [[nodiscard]] double kept() const;
 
 private:
+    /// Rows of the matrix and the columns between which they are not negligible.
+    struct Block {
+        std::ptrdiff_t row = 0, rows = 0, column = 0, columns = 0;
+    };
     std::array<int, 3> n_{};
     int direction_ = 0;
     std::vector<double> entries_;  // row-major; along x, where the field stands on the left of the product, transposed
+    std::vector<Block> blocks_;
 };
 
 }  // namespace grainsweep::flow

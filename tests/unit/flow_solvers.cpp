@@ -1,4 +1,6 @@
+#include "solver/flow/axis_product.hpp"
 #include "solver/flow/dense_product.hpp"
+#include "solver/flow/dense_tiles.hpp"
 #include "solver/flow/flow.hpp"
 #include "solver/flow/implicit_diffusion.hpp"
 #include "solver/flow/poisson.hpp"
@@ -110,6 +112,26 @@ TEST(DenseProduct, AgreesWithEigenForEveryRemainder) {
             }
 }
 
+TEST(DenseProduct, IsTheSameToTheLastBitOnEveryInstructionSet) {
+    std::vector<DenseProduct*> others;
+    if (__builtin_cpu_supports("x86-64-v3")) others.push_back(dense_product_avx2);
+    if (__builtin_cpu_supports("x86-64-v4")) others.push_back(dense_product_avx512);
+    for (DenseProduct* const other : others)
+        for (int rows : {1, 4, 7, 8, 12, 21})
+            for (int columns : {1, 4, 7, 8, 12, 16, 29, 40, 85}) {
+                const int depth = 37;
+                const RowMajor a = RowMajor::Random(rows, depth), b = RowMajor::Random(depth, columns);
+                RowMajor plain(rows, columns), c = RowMajor::Constant(rows, columns, 99);
+                for (int r = 0; r < rows; ++r)
+                    for (int m = 0; m < columns; ++m) {
+                        plain(r, m) = 0;
+                        for (int k = 0; k < depth; ++k) plain(r, m) += a(r, k) * b(k, m);
+                    }
+                other(rows, columns, depth, a.data(), depth, b.data(), columns, c.data(), columns);
+                EXPECT_TRUE((c.array() == plain.array()).all()) << rows << ' ' << columns;
+            }
+}
+
 TEST(DenseProduct, SumsInOrderWhateverTheBlock) {
     // Each entry is the same whether it stands in a wide tile, a narrow one or the remainder.
     const RowMajor a = RowMajor::Random(5, 40);
@@ -122,6 +144,46 @@ TEST(DenseProduct, SumsInOrderWhateverTheBlock) {
             for (int k = 0; k < 40; ++k) alone += a(r, k) * b(k, c);
             EXPECT_EQ(alone, together(r, c));
         }
+}
+
+// What is skipped of a matrix that falls off changes nothing but the last rounding; of one that does not, nothing is.
+TEST(AxisProduct, SkipsWhatIsNegligible) {
+    for (const int n : {2, 7, 28, 40}) {
+        const Grid grid = box(n, n, n);
+        const Field field = noise(grid, 1);
+        for (int d = 0; d < 3; ++d) {
+            Eigen::MatrixXd bell(n, n);
+            for (int r = 0; r < n; ++r)
+                for (int c = 0; c < n; ++c) bell(r, c) = (1 + 0.1 * r) * std::exp(-0.5 * (r - c) * (r - c));
+            const AxisProduct banded(grid, d, bell), whole(grid, d, bell, 0);
+            EXPECT_EQ(whole.kept(), 1);
+            EXPECT_LE(banded.kept(), n == 40 ? 0.6 : 1);
+            EXPECT_EQ(AxisProduct(grid, d, Eigen::MatrixXd::Ones(n, n)).kept(), 1);
+            Field fast(grid), plain(grid);
+            banded.apply(field, fast);
+            whole.apply(field, plain);
+            const auto line = [&](int i, int j, int k) {  // entry by entry
+                double sum = 0;
+                for (int m = 1; m <= n; ++m)
+                    sum += bell((d == 0   ? i
+                                 : d == 1 ? j
+                                          : k) -
+                                    1,
+                                m - 1) *
+                           field(d == 0 ? m : i, d == 1 ? m : j, d == 2 ? m : k);
+                return sum;
+            };
+            double skipped = 0, wrong = 0;
+            for (int k = 1; k <= n; ++k)
+                for (int j = 1; j <= n; ++j)
+                    for (int i = 1; i <= n; ++i) {
+                        skipped = std::max(skipped, std::abs(fast(i, j, k) - plain(i, j, k)));
+                        wrong = std::max(wrong, std::abs(plain(i, j, k) - line(i, j, k)));
+                    }
+            EXPECT_LE(skipped, n * 1e-17 * bell.maxCoeff() + 2e-16 * bell.maxCoeff()) << n << ' ' << d;
+            EXPECT_LE(wrong, 1e-14 * bell.maxCoeff()) << n << ' ' << d;
+        }
+    }
 }
 
 TEST(SecondDifference, IsExactForQuadraticsOnUniformGrids) {
