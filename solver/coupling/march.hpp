@@ -8,16 +8,16 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <ranges>
 #include <vector>
 
 namespace grainsweep::coupling {
 
-/// `order` names the particles; stand(p) -> its Footing in the middle of the step;
-/// feel(p, footing) -> Surroundings without `other`; moved(p, velocity before) follows the step of particle p, before
-/// walls turn it back. vibration: s(t) in the middle of the step.
+/// `order` names the particles; stand(p) -> its Footing in the middle of the step; feel(p, footing) -> Surroundings;
+/// moved(p, velocity before) follows the step of particle p. vibration: s(t) in the middle of the step, of all.
 template <class Drag, class Order, class Stand, class Feel, class Moved>
-void march(Cloud& cloud, const Motion<Drag>& motion, const Walls& walls, double vibration, const Order& order,
-           Stand stand, Feel feel, Moved moved) {
+void march(Cloud& cloud, const Motion<Drag>& motion, double vibration, const Order& order, Stand stand, Feel feel,
+           Moved moved) {
     Lanes lanes;
     std::vector<decltype(stand(order[0]))> feet;
     feet.reserve(Lanes::size);
@@ -32,7 +32,7 @@ void march(Cloud& cloud, const Motion<Drag>& motion, const Walls& walls, double 
                 lanes.position[d][i] = cloud.position[p][d];
                 lanes.velocity[d][i] = cloud.velocity[p][d];
                 lanes.fluid_velocity[d][i] = around.velocity[d];
-                lanes.fluid_acceleration[d][i] = around.acceleration[d];
+                lanes.pull[d][i] = 1.5 * around.acceleration[d] + around.other[d];
             }
         }
         motion.advance(lanes, count, vibration);
@@ -44,9 +44,26 @@ void march(Cloud& cloud, const Motion<Drag>& motion, const Walls& walls, double 
                 cloud.velocity[p][d] = lanes.velocity[d][i];
             }
             moved(p, before);
-            walls.apply(cloud.position[p], cloud.velocity[p]);
         }
     }
+}
+
+/// ... and turned back by walls after `moved`.
+template <class Drag, class Order, class Stand, class Feel, class Moved>
+void march(Cloud& cloud, const Motion<Drag>& motion, const Walls& walls, double vibration, const Order& order,
+           Stand stand, Feel feel, Moved moved) {
+    march(cloud, motion, vibration, order, stand, feel, [&](std::size_t p, const Vec3& before) {
+        moved(p, before);
+        walls.apply(cloud.position[p], cloud.velocity[p]);
+    });
+}
+
+/// All particles in their own order; around(p) -> Surroundings.
+template <class Drag, class Around, class Moved>
+void march_all(Cloud& cloud, const Motion<Drag>& motion, double vibration, Around around, Moved moved) {
+    march(
+        cloud, motion, vibration, std::views::iota(std::size_t{0}, cloud.size()), [](std::size_t p) { return p; },
+        [&](std::size_t p, std::size_t /*itself*/) { return around(p); }, moved);
 }
 
 }  // namespace grainsweep::coupling

@@ -11,13 +11,13 @@ template <class Drag>
     auto& [x0, x1, x2] = lanes.position;
     auto& [v0, v1, v2] = lanes.velocity;
     const auto& [u0, u1, u2] = lanes.fluid_velocity;
-    const auto& [a0, a1, a2] = lanes.fluid_acceleration;
+    const auto& [a0, a1, a2] = lanes.pull;
     const Vec3 p = push;
     for (std::size_t i = 0; i < count; ++i) {
         Vec3 x{x0[i], x1[i], x2[i]};
         Vec3 v{v0[i], v1[i], v2[i]};
         const Vec3 u{u0[i], u1[i], u2[i]};
-        const Vec3 q{1.5 * a0[i] / c.mass + p[0], 1.5 * a1[i] / c.mass + p[1], 1.5 * a2[i] / c.mass + p[2]};
+        const Vec3 q{a0[i] / c.mass + p[0], a1[i] / c.mass + p[1], a2[i] / c.mass + p[2]};
         advance_one<Drag>(c, x, v, u, q);
         x0[i] = x[0], x1[i] = x[1], x2[i] = x[2];
         v0[i] = v[0], v1[i] = v[1], v2[i] = v[2];

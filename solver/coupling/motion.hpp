@@ -50,7 +50,7 @@ struct Lanes {
     static constexpr std::size_t size = 64;
     using Row = std::array<double, size>;
     alignas(64) std::array<Row, 3> position, velocity;
-    alignas(64) std::array<Row, 3> fluid_velocity, fluid_acceleration;
+    alignas(64) std::array<Row, 3> fluid_velocity, pull;  ///< pull: 3/2 Du/Dt + a
 };
 
 /// What does not change from step to step.
@@ -109,7 +109,7 @@ public:
         advance_one<Drag>(constants_, x, v, around.velocity, q);
     }
 
-    /// The same for many, in vectors: the same bits as one by one without `other`.
+    /// The same for many, in vectors: the same bits as one by one.
     void advance(Lanes& lanes, std::size_t count, double vibration) const {
         advance_lanes(Drag{}, constants_, vibrated(vibration), lanes, count);
     }

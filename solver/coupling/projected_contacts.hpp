@@ -9,6 +9,7 @@
 #pragma once
 
 #include "solver/coupling/cloud.hpp"
+#include "solver/coupling/march.hpp"
 #include "solver/coupling/motion.hpp"
 #include "solver/coupling/near_pairs.hpp"
 #include "solver/coupling/solids_volume.hpp"
@@ -41,7 +42,7 @@ public:
     void move(Cloud& cloud, const Motion& motion, const Walls&, SolidsVolume&, const Feet&, const Around& around,
               std::vector<Vec3>& handed) {
         before_ = cloud.velocity;
-        for (std::size_t p = 0; p < cloud.size(); ++p) motion.advance(cloud.position[p], cloud.velocity[p], around(p));
+        march_all(cloud, motion, around.vibration, around, [](std::size_t, const Vec3&) {});
         separate(cloud, motion.time_step(), handed);
     }
     void settle(Cloud&, const Walls&, SolidsVolume&) {}

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "solver/coupling/granular_temperature.hpp"
+#include "solver/coupling/march.hpp"
 #include "solver/coupling/packing_limit.hpp"
 
 #include <algorithm>
@@ -17,16 +18,22 @@
 
 namespace grainsweep::coupling {
 
-/// One particle on its own: moved, handed over, turned back by walls.
-template <class Motion>
-void advance_free(Cloud& cloud, std::size_t p, const Motion& motion, const Walls& walls, const Surroundings& around,
-                  Vec3& handed) {
-    Vec3& v = cloud.velocity[p];
-    const Vec3 before = v;
-    motion.advance(cloud.position[p], v, around);
+/// Particles that do not touch: moved, handed over, turned back by walls. push(p): force per volume besides the
+/// fluid's.
+template <class Motion, class Around, class Push>
+void advance_free(Cloud& cloud, const Motion& motion, const Walls& walls, const Around& around, Push push,
+                  std::vector<Vec3>& handed) {
     const double inertia = motion.sphere().density_ratio / motion.time_step();
-    for (std::size_t d = 0; d < 3; ++d) handed[d] = around.other[d] - inertia * (v[d] - before[d]);
-    walls.apply(cloud.position[p], v);
+    const auto pushed = [&](std::size_t p) {
+        Surroundings here = around(p);
+        here.other = handed[p] = push(p);
+        return here;
+    };
+    march_all(cloud, motion, around.vibration, pushed, [&](std::size_t p, const Vec3& before) {
+        Vec3& v = cloud.velocity[p];
+        for (std::size_t d = 0; d < 3; ++d) handed[p][d] -= inertia * (v[d] - before[d]);
+        walls.apply(cloud.position[p], v);
+    });
 }
 
 template <class Temperature>
@@ -60,14 +67,13 @@ public:
         stepped_ = true;
         find_stress(cloud, solids, feet, motion.time_step());
         const double most = 0.1 * smallest_ / (mobility_ * motion.time_step());
-        for (std::size_t p = 0; p < cloud.size(); ++p) {
-            Surroundings here = around(p);
-            if (stressed_) {
-                here.other = feet[p].gather(stress_);
-                for (double& force : here.other) force = std::clamp(force, -most, most);
-            }
-            advance_free(cloud, p, motion, walls, here, handed[p]);
-        }
+        const auto push = [&](std::size_t p) {
+            if (!stressed_) return Vec3{};
+            Vec3 force = feet[p].gather(stress_);
+            for (double& component : force) component = std::clamp(component, -most, most);
+            return force;
+        };
+        advance_free(cloud, motion, walls, around, push, handed);
     }
 
     /// After walls: the packing limit. `solids` is left at the final positions.
@@ -152,7 +158,8 @@ struct NoInteraction {
     template <class Motion, class Feet, class Around>
     void move(Cloud& cloud, const Motion& motion, const Walls& walls, SolidsVolume&, const Feet&, const Around& around,
               std::vector<Vec3>& handed) {
-        for (std::size_t p = 0; p < cloud.size(); ++p) advance_free(cloud, p, motion, walls, around(p), handed[p]);
+        advance_free(
+            cloud, motion, walls, around, [](std::size_t) { return Vec3{}; }, handed);
     }
     void settle(Cloud&, const Walls&, SolidsVolume&) {}
     void save(std::vector<std::byte>&) const {}

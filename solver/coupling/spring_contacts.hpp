@@ -12,6 +12,7 @@
 
 #include "solver/coupling/cloud.hpp"
 #include "solver/coupling/hysteretic_spring.hpp"
+#include "solver/coupling/march.hpp"
 #include "solver/coupling/motion.hpp"
 #include "solver/coupling/near_pairs.hpp"
 #include "solver/coupling/solids_volume.hpp"
@@ -40,10 +41,9 @@ public:
     void move(Cloud& cloud, const Motion& motion, const Walls&, SolidsVolume&, const Feet&, const Around& around,
               std::vector<Vec3>& handed) {
         begin(cloud);
-        for (std::size_t p = 0; p < cloud.size(); ++p) {
-            surroundings_[p] = around(p);
-            motion.advance(cloud.position[p], cloud.velocity[p], surroundings_[p]);
-        }
+        march_all(
+            cloud, motion, around.vibration, [&](std::size_t p) { return surroundings_[p] = around(p); },
+            [](std::size_t, const Vec3&) {});
         find_active(cloud);
         for (Active& one : active_) {
             one.tau = motion.relaxation(surroundings_[one.particle].velocity, velocity_[one.particle]);

@@ -199,22 +199,23 @@ std::unique_ptr<Scene> make(const Inputs& inputs, std::uint64_t seed, Artefacts&
     return make_with<coupling::Trilinear>(question, seed, artefacts);
 }
 
-// Measured with bench_flow at 20^3, 28^3 and 40^3 with 3150 particles on an undisturbed core. At 40^3: 3 ms per fluid
-// step, half of that on half the grid; 0.5 ms per sweep of the particles; 2.2 ms to spread their force on the fluid;
-// for their volume and contacts 1.2 ms more per 3150 particles, and 9 ms (ddpm) or 3 ms (cfd_dem) of work on the grid.
+// Measured with bench_flow at 20^3, 28^3 and 40^3 with 3150 particles on an undisturbed core with AVX-512. At 40^3: 1.8
+// ms per fluid step, half of that on half the grid; 0.4 ms per sweep of the particles; 1 ms to spread their force on
+// the fluid; for their volume and contacts 0.9 ms more per 3150 particles, and 7 ms (ddpm) or 2.5 ms (cfd_dem) on the
+// grid.
 double estimate_cost(const Inputs& inputs) {
     const Question question(inputs);
     const double size = static_cast<double>(question.cells) / 40;
     const double cube = size * size * size * (0.7 + 0.3 * size);
     const double cloud = static_cast<double>(question.particles) / 3150;
-    const double fluid_step = (question.mirrored() ? 1.5e-3 : 3e-3) * cube;
-    const double sweep = 0.5e-3 * cloud;
-    const double spreading = 2.2e-3 * cube + 0.1e-3 * cloud;
+    const double fluid_step = (question.mirrored() ? 0.9e-3 : 1.8e-3) * cube;
+    const double sweep = 0.4e-3 * cloud;
+    const double spreading = 1e-3 * cube + 0.1e-3 * cloud;
     const auto steps = static_cast<double>(question.total_steps());
     if (question.particles == 0) return steps * fluid_step;
     if (question.dense()) {
-        const double on_grid = (question.coupling == "cfd_dem" ? 3e-3 : 9e-3) * cube;
-        return steps * (fluid_step + sweep + spreading + 1.2e-3 * cloud + on_grid);
+        const double on_grid = (question.coupling == "cfd_dem" ? 2.5e-3 : 7e-3) * cube;
+        return steps * (fluid_step + sweep + spreading + 0.9e-3 * cloud + on_grid);
     }
     if (question.coupling == "two_way") return steps * (fluid_step + sweep + spreading);
     const bool carried = question.particle_start == "periodic_flow" && !question.steady_force();

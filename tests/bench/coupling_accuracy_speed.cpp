@@ -32,6 +32,7 @@ double seconds_since(std::clock_t start) {
 }
 
 struct Vacuum {
+    double vibration = 0;
     coupling::Surroundings operator()(std::size_t) const { return {}; }
     [[nodiscard]] Vec3 rotation(std::size_t) const { return {}; }
 };

@@ -20,6 +20,7 @@ struct Collision {
 };
 struct Nothing {
     Vec3 spin{};
+    double vibration = 0;
     Surroundings operator()(std::size_t) const { return {}; }
     [[nodiscard]] Vec3 rotation(std::size_t) const { return spin; }
 };

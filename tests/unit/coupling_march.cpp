@@ -61,7 +61,10 @@ void expect_the_same_bits(const Sphere& sphere, double dt) {
             for (std::size_t d = 0; d < 3; ++d) cloud.velocity[p][d] = 200 * (random.uniform(3 * p + d) - 0.5);
         const auto around = [&](std::size_t p) {
             const Vec3 x = cloud.position[p];
-            return Surroundings{{90 * x[1], -40 * x[2], 70 * x[0]}, {1e4 * x[2], 3e4 * x[0], -2e4 * x[1]}, 0.7, {}};
+            return Surroundings{{90 * x[1], -40 * x[2], 70 * x[0]},
+                                {1e4 * x[2], 3e4 * x[0], -2e4 * x[1]},
+                                0.7,
+                                {-1e3 * x[0], 7e3 * x[1], 0}};
         };
         Cloud alone = cloud;
         for (std::size_t p = 0; p < count; ++p) {
