@@ -125,11 +125,12 @@ std::vector<ObservableSpec> observables_of_spreading() {
         {"vx_profile", "m/s",
          "mean velocity along the blade's motion in the 12 layers of thickness D/2 above the gap, "
          "within 6 D ahead of the front face, from t1 to t2; bin: top of the layer over the gap, in D",
-         Shape::profile},
+         Shape::profile, "top of the layer over the gap (D)"},
         {"vx_unevenness", "1",
          "root mean square second difference of vx_profile from layer to layer, over the speed of the blade: 0 for a "
          "profile that rises evenly"},
-        {"flux_series", "1", "mfr of each 1/140 of the travel; time since the blade started", Shape::series},
+        {"flux_series", "1", "mfr of each 1/140 of the travel; time since the blade started", Shape::series,
+         "time since the blade started (s)"},
     };
 }
 

@@ -167,8 +167,9 @@ SceneInfo rehearsal_scene() {
                                std::int64_t{0},
                                Interval{0, 1000},
                                {{"behaviour", Relevance::Condition::is_word, {"crash", "hang", "unstable", "huge"}}}});
-    info.observables = {{"y", "1", "the response", Shape::scalar},
-                        {"y_series", "1", "y growing linearly in time ('huge' only)", Shape::series}};
+    info.observables = {
+        {"y", "1", "the response", Shape::scalar},
+        {"y_series", "1", "y growing linearly in time ('huge' only)", Shape::series, "share of the case"}};
     info.make = [](const Inputs& inputs, std::uint64_t seed, Artefacts&) -> std::unique_ptr<Scene> {
         return std::make_unique<Rehearsal>(inputs, seed);
     };

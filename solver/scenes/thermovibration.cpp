@@ -116,6 +116,7 @@ std::vector<ParameterSpec> parameters() {
 }
 
 std::vector<ObservableSpec> observables() {
+    const std::string time = "time (L^2/alpha)";
     return {
         {"accumulation", "1", "K on sampling_cells^3 at the end", Shape::scalar},
         {"accumulation_excess", "1", "(K - K_random)/(1 - K_random): 0 random, 1 all in one cell", Shape::scalar},
@@ -139,12 +140,12 @@ std::vector<ObservableSpec> observables() {
          "by "
          "the inertia of the particles (likewise)",
          Shape::scalar},
-        {"accumulation_series", "1", "K on sampling_cells^3, always at the same phase", Shape::series},
-        {"accumulation_5", "1", "K on 5^3 cells", Shape::series},
-        {"accumulation_20", "1", "K on 20^3 cells", Shape::series},
-        {"accumulation_cells", "1", "K on the cells of the flow grid", Shape::series},
-        {"density_y", "1", "particles per slab across y over the mean, at the end", Shape::profile},
-        {"density_z", "1", "particles per slab across z over the mean, at the end", Shape::profile},
+        {"accumulation_series", "1", "K on sampling_cells^3, always at the same phase", Shape::series, time},
+        {"accumulation_5", "1", "K on 5^3 cells", Shape::series, time},
+        {"accumulation_20", "1", "K on 20^3 cells", Shape::series, time},
+        {"accumulation_cells", "1", "K on the cells of the flow grid", Shape::series, time},
+        {"density_y", "1", "particles per slab across y over the mean, at the end", Shape::profile, "y/L"},
+        {"density_z", "1", "particles per slab across z over the mean, at the end", Shape::profile, "z/L"},
     };
 }
 

@@ -85,6 +85,7 @@ struct ObservableSpec {
     std::string unit;
     std::string meaning;
     Shape shape = Shape::scalar;
+    std::string over = {};  ///< what it runs along, with its unit: of a series the time, of a profile the bin
 };
 
 /// One entry of a series or profile; what does not apply is NaN.

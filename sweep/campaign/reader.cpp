@@ -128,11 +128,7 @@ Campaign parse_campaign(std::string_view text, const fs::path& folder) {
 
 Campaign read_campaign(const fs::path& file) {
     const std::string text = read_text(file);
-    try {
-        return parse_campaign(text, file.parent_path());
-    } catch (const WrongQuestion& wrong) {
-        throw WrongQuestion(fmt::format("{}: {}", file.string(), wrong.what()));
-    }
+    return asked_in(file, [&] { return parse_campaign(text, file.parent_path()); });
 }
 
 }  // namespace grainsweep::campaign

@@ -1,6 +1,7 @@
 // A question that cannot be asked: where, what value, which rule, the nearest right word. Exit code 2.
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -17,6 +18,16 @@ public:
 /// "path: got value; rule. Did you mean 'x'?"
 [[nodiscard]] WrongQuestion wrong_question(std::string_view where, std::string_view value, std::string_view rule,
                                            std::string_view suggestion = {});
+
+/// What `ask` answers; its WrongQuestion names the file before the path within it.
+template <class Ask>
+auto asked_in(const std::filesystem::path& file, const Ask& ask) {
+    try {
+        return ask();
+    } catch (const WrongQuestion& wrong) {
+        throw WrongQuestion(file.string() + ": " + wrong.what());
+    }
+}
 
 /// The candidate with the smallest edit distance to `word`, empty where none is near.
 [[nodiscard]] std::string nearest_word(std::string_view word, std::span<const std::string> candidates);

@@ -151,13 +151,18 @@ campaign::Case as_asked_today(campaign::Case question) {
     return question;
 }
 
-int replay(const std::string& database, const std::string& id, const PictureRequest& pictures, Format format) {
+int replay(const std::string& database, const std::string& id, const PictureRequest& pictures, const std::string& path,
+           Format format) {
     const Store archive(database, Store::Mode::read);
     const campaign::Case question = as_asked_today(require_case(archive, id));
     const auto stored = archive.result(question.id);
     if (!stored) throw campaign::wrong_question("CASE", id, "has no result to compare with yet");
     const auto attempts = archive.attempts(question.id);
     const auto then = std::ranges::find(attempts, stored->attempt.number, &store::LoggedAttempt::number);
+    if (!path.empty())
+        use_path(path);
+    else if (then != attempts.end())
+        use_path_of_old(then->instruction_path);
     const auto here = provenance();
     const bool same_path =
         then != attempts.end() && then->version == build_version() && then->instruction_path == here.instruction_path;
@@ -246,10 +251,9 @@ std::vector<Command> archive_commands() {
              const auto pictures = std::make_shared<PictureRequest>();
              declare_pictures(parser, *pictures);
              const auto path = std::make_shared<std::string>();
-             declare_path(parser, *path);
+             declare_path(parser, *path, "that of the archive");
              return [arguments, pictures, path, &format] {
-                 use_path(*path);
-                 return replay(arguments->database, arguments->text, *pictures, format);
+                 return replay(arguments->database, arguments->text, *pictures, *path, format);
              };
          },
          false},

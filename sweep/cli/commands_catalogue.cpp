@@ -80,10 +80,10 @@ store::Table parameters_of(const SceneInfo& scene) {
 }
 
 store::Table observables_of(const SceneInfo& scene) {
-    store::Table table{{"observable", "unit", "shape", "meaning"}, {}};
+    store::Table table{{"observable", "unit", "shape", "over", "meaning"}, {}};
     for (const auto& observable : scene.observables) {
         table.rows.push_back({observable.name, text_or_none(observable.unit), std::string(word_of(observable.shape)),
-                              observable.meaning});
+                              text_or_none(observable.over), observable.meaning});
     }
     return table;
 }
@@ -128,7 +128,8 @@ Json json_of(const SceneInfo& scene) {
         object["observables"].push_back({{"name", observable.name},
                                          {"unit", observable.unit},
                                          {"meaning", observable.meaning},
-                                         {"shape", word_of(observable.shape)}});
+                                         {"shape", word_of(observable.shape)},
+                                         {"over", observable.over}});
     }
     object["accuracy"] = Json::object();
     for (const auto& [name, inputs] : scene.accuracy) object["accuracy"][name] = json_of(inputs);

@@ -1,6 +1,7 @@
 // plan: check and unfold a campaign; show the design and the predicted cost; run nothing.
 #include "sweep/campaign/forecast.hpp"
 #include "sweep/campaign/reader.hpp"
+#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/progress.hpp"
 #include "sweep/store/expression.hpp"
@@ -150,9 +151,10 @@ void show_text(const Campaign& campaign, std::span<const PlacedCase> cases, cons
 
 int plan(const std::string& config, Format format) {
     const Campaign campaign = campaign::read_campaign(config);
-    const auto filter = store::make_filter(campaign.where, campaign::filter_names(campaign));
-    const auto cases = campaign::unfold(campaign, filter);
-    const auto cost = campaign::forecast(campaign.scene(), cases);
+    const auto cases = campaign::asked_in(config, [&] {
+        return campaign::unfold(campaign, store::make_filter(campaign.where, campaign::filter_names(campaign)));
+    });
+    const auto cost = campaign::asked_in(config, [&] { return campaign::forecast(campaign.scene(), cases); });
     if (format == Format::text) show_text(campaign, cases, cost);
     if (format == Format::csv) report::write(std::cout, cases_of(campaign, cases), format);
     if (format == Format::json) report::write(std::cout, json_of(campaign, cases, cost));

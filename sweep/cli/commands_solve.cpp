@@ -78,7 +78,8 @@ campaign::Case question_of(const SolveRequest& request) {
     Campaign campaign = campaign::read_campaign(request.config);
     apply(request.settings, campaign, std::filesystem::path(request.config).parent_path());
     const Inputs inputs = middle_of(campaign.space);
-    const auto filter = store::make_filter(campaign.where, campaign::filter_names(campaign));
+    const auto filter = campaign::asked_in(
+        request.config, [&] { return store::make_filter(campaign.where, campaign::filter_names(campaign)); });
     if (!filter(inputs)) std::cerr << "grainsweep: the campaign leaves this point out: " << campaign.where << '\n';
     const std::uint64_t seed = request.seed ? *request.seed : campaign::case_seed(campaign, inputs, 0);
     return campaign::make_case(campaign.scene(), inputs, seed);

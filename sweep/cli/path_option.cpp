@@ -10,10 +10,11 @@
 
 namespace grainsweep::cli {
 
-void declare_path(CLI::App& parser, std::string& word) {
+void declare_path(CLI::App& parser, std::string& word, std::string_view otherwise) {
     parser
-        .add_option("--path", word,
-                    "instruction set of the particle loops: baseline, avx2 or avx512; default: the widest there is")
+        .add_option(
+            "--path", word,
+            fmt::format("instruction set of the particle loops: baseline, avx2 or avx512; default: {}", otherwise))
         ->type_name("WORD");
 }
 
@@ -29,6 +30,12 @@ void use_path(const std::string& word) {
         throw campaign::wrong_question(
             "--path", word,
             fmt::format("this processor lacks these instructions; the widest it has are {}", instruction_path()));
+}
+
+void use_path_of_old(std::string_view path) {
+    const std::string_view word = path == "x86-64-v2" ? "baseline" : path;
+    if (std::ranges::find(instruction_path_words(), word) != instruction_path_words().end())
+        (void)choose_instruction_path(word);  // a processor without it keeps its widest; the comparison says so
 }
 
 }  // namespace grainsweep::cli

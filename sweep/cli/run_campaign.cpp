@@ -2,6 +2,7 @@
 
 #include "sweep/campaign/forecast.hpp"
 #include "sweep/campaign/reader.hpp"
+#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/progress.hpp"
 #include "sweep/schedule/judge.hpp"
@@ -121,18 +122,18 @@ int exit_code(Ending ending, const schedule::Plan::Tally& tally) {
 
 RunReport run_campaign(const RunRequest& request) {
     const campaign::Campaign campaign = campaign::read_campaign(request.config);
-    const auto filter = store::make_filter(campaign.where, campaign::filter_names(campaign));
-    const std::vector<PlacedCase> placed = campaign::unfold(campaign, filter);
-
-    (void)campaign::forecast(campaign.scene(),
-                             placed);  // refuses a campaign of impossible cases before anything is made
+    const auto placed = campaign::asked_in(request.config, [&] {
+        auto cases = campaign::unfold(campaign, store::make_filter(campaign.where, campaign::filter_names(campaign)));
+        (void)campaign::forecast(campaign.scene(), cases);  // refuses impossible cases before anything is made
+        return cases;
+    });
 
     const fs::path database = request.database.empty() ? fs::path(campaign.name + ".db") : request.database;
     fs::path artefacts = fs::absolute(database);
     artefacts.replace_extension(".artefacts");
 
     store::Store store(database, store::Store::Mode::create);
-    const auto states = store.enrol(campaign, placed, provenance());
+    const auto states = campaign::asked_in(request.config, [&] { return store.enrol(campaign, placed, provenance()); });
     const auto judge = make_judge(campaign, store, placed);
     Questions questions = collect(campaign, placed, states);
     schedule::Rules rules;

@@ -95,6 +95,7 @@ Curves read_curves(const store::Store& store, const Responses& responses, const 
             family.name = spec.name;
             family.unit = spec.unit;
             family.meaning = spec.meaning;
+            family.over = spec.over;
         }
     std::vector<std::size_t> completed;
     for (std::size_t row = 0; row < responses.rows(); ++row)

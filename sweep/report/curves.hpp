@@ -20,7 +20,7 @@ struct Curve {
 
 /// One observable: of a series y over time; of a profile, or of a histogram at one of its times, y over bins.
 struct CurveFamily {
-    std::string name, unit, meaning;
+    std::string name, unit, meaning, over;  ///< over: words of the horizontal axis
     bool over_bins = false;
     double at_time = std::numeric_limits<double>::quiet_NaN();  ///< of a histogram taken at several times
     std::vector<Curve> curves;

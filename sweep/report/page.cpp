@@ -175,9 +175,9 @@ Json failures_of(const store::Store& store, const Responses& responses) {
 Json json_of(const Curves& curves) {
     Json value = {{"completed", curves.completed}, {"drawn", curves.drawn}, {"families", Json::array()}};
     for (const auto& family : curves.families) {
-        Json one = {{"name", family.name},         {"unit", family.unit},
-                    {"meaning", family.meaning},   {"over", family.over_bins ? "bin" : "time"},
-                    {"at", drawn(family.at_time)}, {"curves", Json::array()}};
+        Json one = {{"name", family.name},    {"unit", family.unit},           {"meaning", family.meaning},
+                    {"over", family.over},    {"over_bins", family.over_bins}, {"at", drawn(family.at_time)},
+                    {"curves", Json::array()}};
         for (const auto& curve : family.curves)
             one["curves"].push_back({{"label", curve.label}, {"x", drawn(curve.x)}, {"y", drawn(curve.y)}});
         value["families"].push_back(std::move(one));

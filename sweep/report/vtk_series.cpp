@@ -124,6 +124,8 @@ void VtkSeries::add(const Snapshot& snapshot, double time) {
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
     if (error) throw store::BrokenWorld(fmt::format("cannot make {}: {}", folder_.string(), error.message()));
+    if (times_.empty())  // what a longer series of this name left behind would lie between these moments
+        for (std::size_t k = 1; std::filesystem::remove(folder_ / file_of(k), error);) ++k;
     write(folder_ / file_of(times_.size()), vtp(snapshot, time));
     times_.push_back(time);
     std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n";

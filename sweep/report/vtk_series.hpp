@@ -21,7 +21,8 @@ public:
     VtkSeries(std::filesystem::path folder, std::string name);
 
     /// Writes NAME_0000.vtp, NAME_0001.vtp, ..., then NAME.pvd anew, which names all so far. Makes the folder where
-    /// there is none. Throws store::BrokenWorld where it cannot.
+    /// there is none; the first moment takes away an older series of this name. Throws store::BrokenWorld where it
+    /// cannot.
     void add(const Snapshot& snapshot, double time);
     [[nodiscard]] std::size_t size() const { return times_.size(); }
     [[nodiscard]] std::filesystem::path collection() const { return folder_ / (name_ + ".pvd"); }

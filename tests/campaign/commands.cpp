@@ -93,6 +93,43 @@ TEST(Commands, CataloguesAreOneJsonValueEach) {
     EXPECT_TRUE(json::accept(in_folder(folder, {"schema"}).out));
 }
 
+TEST(Commands, EveryObservableSaysWhatItRunsAlong) {
+    const Folder folder;
+    for (const auto& scene : json::parse(in_folder(folder, {"scenes", "--format", "json"}).out)) {
+        const auto shown = in_folder(folder, {"scenes", scene["scene"], "--format", "json"});
+        for (const auto& observable : json::parse(shown.out)["observables"])
+            EXPECT_EQ(observable["over"] == "", observable["shape"] == "scalar") << observable;
+    }
+}
+
+// What is found only after the file is read names the file all the same.
+TEST(Commands, WrongPlansNameTheFile) {
+    const Folder folder;
+    json wrong = json::parse(config);
+    wrong["where"] = "x1 > 2";
+    folder.write("c.json", wrong.dump());
+    for (const char* command : {"plan", "run"}) {
+        const auto ended = in_folder(folder, {command, "c.json"});
+        EXPECT_EQ(ended.code, 2);
+        EXPECT_EQ(ended.err.find("grainsweep: c.json: $.where: got \"x1 > 2\"; it leaves none"), 0U) << ended.err;
+    }
+    wrong["where"] = "x1 >";
+    folder.write("c.json", wrong.dump());
+    for (const char* command : {"plan", "run", "solve"}) {
+        const auto ended = in_folder(folder, {command, "c.json"});
+        EXPECT_EQ(ended.code, 2);
+        EXPECT_EQ(ended.err.find("grainsweep: c.json: $.where: "), 0U) << ended.err;
+    }
+    wrong.erase("where");
+    folder.write("c.json", wrong.dump());
+    ASSERT_EQ(in_folder(folder, {"run", "c.json", "--quiet"}).code, 0);
+    wrong["seed"] = 99;
+    folder.write("c.json", wrong.dump());
+    const auto other = in_folder(folder, {"run", "c.json", "--quiet"});
+    EXPECT_EQ(other.code, 2);
+    EXPECT_EQ(other.err.find("grainsweep: c.json: $.seed"), 0U) << other.err;
+}
+
 TEST(Commands, WrongArgumentsAreOneSentenceAndTwo) {
     const Folder folder;
     folder.write("c.json", config);
@@ -154,11 +191,13 @@ TEST(Commands, PathForcesTheInstructionSetOfParticles) {
             in_folder(folder, {"query", database, "SELECT instruction_path FROM provenance", "--format", "json"}).out);
         ASSERT_EQ(rows.size(), 1U);
         EXPECT_EQ(rows[0]["instruction_path"], recorded);
-        // The worker computed with the path it was told: the stored bits are those of this path, replayed.
+        // The worker computed with the path it was told, and a replay takes the one of the archive by itself.
         const auto id = answer["case_id"].get<std::string>();
-        const auto again = in_folder(folder, {"replay", database, id, "--path", word, "--format", "json"});
+        const auto again = in_folder(folder, {"replay", database, id, "--format", "json"});
         EXPECT_EQ(again.code, 0) << again.out;
         EXPECT_EQ(json::parse(again.out)["verdict"], "equal to the last bit");
+        const auto elsewhere = in_folder(folder, {"replay", database, id, "--path", "baseline", "--format", "json"});
+        EXPECT_EQ(json::parse(elsewhere.out)["same_path"], word == "baseline");
     }
     EXPECT_GE(rates.size(), 1U) << "every x86-64-v2 processor has the baseline";
     for (const char* command : {"solve", "run"}) {

@@ -113,7 +113,8 @@ TEST_F(ReportCurves, StandInThePage) {
     const auto data = report::page_data(store, "a.db");
     const auto& curves = data["campaigns"][0]["curves"];
     EXPECT_EQ(curves["drawn"], 11);
-    EXPECT_EQ(curves["families"][0]["over"], "time");
+    EXPECT_EQ(curves["families"][0]["over"], "time (sqrt(2 L/g))");
+    EXPECT_EQ(curves["families"][0]["over_bins"], false);
     EXPECT_TRUE(curves["families"][0]["at"].is_null());
     EXPECT_EQ(curves["families"][1]["at"], 2);
     EXPECT_EQ(curves["families"][0]["curves"][0]["x"].size(), 200u);

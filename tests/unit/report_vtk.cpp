@@ -134,6 +134,18 @@ TEST(VtkSeries, NamesEveryMomentInTheCollection) {
     EXPECT_EQ(read(contents(folder / "deep/inside/cell_0001.vtp")).time, 0.25);
 }
 
+TEST(VtkSeries, ReplacesALongerSeriesOfItsName) {
+    const test::Folder folder;
+    report::VtkSeries longer(folder / "p", "cell"), other(folder / "p", "bed"), shorter(folder / "p", "cell");
+    for (const double t : {0.0, 1.0, 2.0, 3.0}) longer.add(three_particles(), t);
+    for (const double t : {0.0, 1.0, 2.0}) other.add(three_particles(), t);
+    for (const double t : {0.0, 0.5}) shorter.add(three_particles(), t);
+    const auto there = [&](const char* name) { return std::filesystem::exists(folder / "p" / name); };
+    EXPECT_TRUE(there("cell_0000.vtp") && there("cell_0001.vtp") && there("bed_0002.vtp"));
+    EXPECT_FALSE(there("cell_0002.vtp") || there("cell_0003.vtp"));
+    EXPECT_EQ(read(contents(folder / "p/cell_0001.vtp")).time, 0.5);
+}
+
 TEST(VtkSeries, AFolderThatCannotBeMadeIsSaid) {
     const test::Folder folder;
     folder.write("file", "in the way");

@@ -130,6 +130,7 @@ std::vector<ParameterSpec> tpms_discharge_parameters() {
 }
 
 std::vector<ObservableSpec> tpms_discharge_observables() {
+    const std::string time = "time (sqrt(2 L/g))";
     return {
         {"retention", "1", "mobile centres in the cell at the end over those at the start", Shape::scalar},
         {"time_to_half", "sqrt(2 L/g)", "when half has left; undefined if it never does", Shape::scalar},
@@ -148,19 +149,19 @@ std::vector<ObservableSpec> tpms_discharge_observables() {
         {"max_force", "m 9.81 m/s2", "largest contact force, at any sample", Shape::scalar},
         {"particles", "1", "mobile particles at the start", Shape::scalar},
         {"wall_particles", "1", "frozen particles of the shell", Shape::scalar},
-        {"retention_series", "1", "retention every 0.0165 sqrt(2 L/g)", Shape::series},
-        {"velocity_series", "sqrt(2 g L)", "largest speed along gravity in the cell", Shape::series},
+        {"retention_series", "1", "retention every 0.0165 sqrt(2 L/g)", Shape::series, time},
+        {"velocity_series", "sqrt(2 g L)", "largest speed along gravity in the cell", Shape::series, time},
         {"mobile_series", "1", "mobile particles not yet gone (two diameters outside the cell) over those at the start",
-         Shape::series},
+         Shape::series, time},
         {"at_rest_series", "1", "those in the cell slower than 0.001 sqrt(2 g L) over those at the start",
-         Shape::series},
+         Shape::series, time},
         {"overlap_histogram", "1",
          "share of contacts per bin of overlap, twenty bins per decade, every 0.165 sqrt(2 L/g); below 1e-6: the first",
-         Shape::profile},
+         Shape::profile, "overlap (particle diameters)"},
         {"force_histogram", "1",
          "share of contacts per bin of force, twenty bins per decade, every 0.165 sqrt(2 L/g); below 1e-3: the first",
-         Shape::profile},
-        {"retained_profile", "1", "retention of twenty layers along z at the end; bin: z/L", Shape::profile},
+         Shape::profile, "force (m 9.81 m/s2)"},
+        {"retained_profile", "1", "retention of twenty layers along z at the end; bin: z/L", Shape::profile, "z/L"},
     };
 }
 

@@ -237,23 +237,22 @@
   function curves(family) {
     const labels = [...new Set(family.curves.map((curve) => curve.label))];
     const tone = (label) => `hsl(${(212 + 137.508 * labels.indexOf(label)) % 360}, 62%, 48%)`;
-    const over = family.over === "bin" ? "bin" : "time";
     const c = card(titled(family), family.meaning + (family.at === null ? "" : `; at time ${show(family.at)}`), true);
     const xs = family.curves.flatMap((curve) => curve.x);
     const low = Math.min(...xs), high = Math.max(...xs);
     // Bins in a geometric series belong on a logarithmic axis: their last step is as large, relatively, as their first.
     const bins = [...new Set(xs)].sort((a, b) => a - b), end = bins.length - 1;
-    const log = family.over === "bin" && low > 0 && end > 2 && Math.abs(Math.log(bins[1] / bins[0]) / Math.log(bins[end] / bins[end - 1]) - 1) < 0.1;
+    const log = family.over_bins && low > 0 && end > 2 && Math.abs(Math.log(bins[1] / bins[0]) / Math.log(bins[end] / bins[end - 1]) - 1) < 0.1;
     const last = (item) => labels.indexOf(item.text) >= 0 && family.curves.findIndex((curve) => curve.label === item.text) === item.datasetIndex;
     draw(c.canvas, {
       type: "line",
       data: { datasets: family.curves.map((curve) => ({ label: curve.label, data: curve.x.map((x, i) => ({ x, y: curve.y[i] })),
         borderColor: tone(curve.label), backgroundColor: tone(curve.label), borderWidth: 1.6, pointRadius: curve.x.length < 2 ? 3 : 0, pointHitRadius: 6 })) },
       options: {
-        scales: { x: axis(over, { type: log ? "logarithmic" : "linear", min: low, max: high }), y: axis("") },
+        scales: { x: axis(family.over, { type: log ? "logarithmic" : "linear", min: low, max: high }), y: axis("") },
         plugins: {
           legend: { display: labels.length <= 12, position: "bottom", labels: { filter: last, boxWidth: 14, color: colour("ink") } },
-          tooltip: { callbacks: { title: (items) => `${over} ${show(items[0].parsed.x)}`, label: (item) => `${item.dataset.label}: ${show(item.parsed.y)}` } } },
+          tooltip: { callbacks: { title: (items) => `${family.over}: ${show(items[0].parsed.x)}`, label: (item) => `${item.dataset.label}: ${show(item.parsed.y)}` } } },
       },
     });
     return c.node;
