@@ -7,8 +7,8 @@
 //
 // Interaction is what the level adds: SolidsPressure<AlgebraicTemperature> (ddpm),
 // SolidsPressure<TransportedTemperature> (ddpm_ktgf), SpringContacts or ProjectedContacts (cfd_dem), NoInteraction.
-// Terms that hold phi_p and dV_p/dt lag by one step; with phi_p -> 0 the scheme is that of suspension.hpp with
-// TwoWay<ForceForm>.
+// Terms that hold phi_p and dV_p/dt lag by one step and make the scheme one of first order in the step, with phi_p as a
+// factor; with phi_p -> 0 it is that of suspension.hpp with TwoWay<ForceForm>.
 #pragma once
 
 #include "solver/coupling/levels.hpp"
@@ -33,7 +33,7 @@ public:
           cloud_(std::move(cloud)),
           interaction_(std::move(interaction)),
           space_(fluid_.grid(), fluid_.sides(), fluid_.viscosity()),
-          deposit_(fluid_.grid(), fluid_.sides(), kernel_width),
+          deposit_(fluid_.grid(), fluid_.sides(), kernel_width, Kernel::hats),
           solids_(fluid_.grid(), fluid_.sides(), motion.sphere().volume(), kernel_width),
           handed_(cloud_.size(), Vec3{}),
           source_(flow::face_vectors(fluid_.grid())),
@@ -51,7 +51,7 @@ public:
         feet_.clear();
         for (std::size_t p = 0; p < cloud_.size(); ++p) feet_.push_back(foot(p));
         find_source(s, dt);
-        fluid_.step(source_);
+        fluid_.step(source_, solids_.fraction());
         fluid_.midpoint(velocity_, acceleration_);
         const FaceVectors& flux = solids_.flux();
         space_.interstitial(velocity_, flux, solids_.fraction(), between_);
@@ -108,9 +108,8 @@ private:
         [[nodiscard]] Surroundings operator()(std::size_t p) const {
             return {all.feet_[p].gather(all.between_), all.feet_[p].gather(all.acceleration_), vibration, {}};
         }
-        /// rot u/2 by differences over a diameter.
-        [[nodiscard]] Vec3 rotation(std::size_t p) const {
-            const Vec3 x = all.cloud_.position[p];
+        /// rot u/2 at x by differences over a diameter, or what of it is inside the box.
+        [[nodiscard]] Vec3 rotation(const Vec3& x) const {
             const double r = all.motion_.sphere().radius();
             std::array<Vec3, 3> slope;
             for (std::size_t e = 0; e < 3; ++e) {
@@ -122,7 +121,8 @@ private:
                 high = all.walls_.clipped(high);
                 const Vec3 below = all.footing(low).gather(all.between_);
                 const Vec3 above = all.footing(high).gather(all.between_);
-                for (std::size_t d = 0; d < 3; ++d) slope[e][d] = (above[d] - below[d]) / (2 * r);
+                const double apart = all.walls_.periodic[e] ? 2 * r : high[e] - low[e];
+                for (std::size_t d = 0; d < 3; ++d) slope[e][d] = (above[d] - below[d]) / apart;
             }
             return {0.5 * (slope[1][2] - slope[2][1]), 0.5 * (slope[2][0] - slope[0][2]),
                     0.5 * (slope[0][1] - slope[1][0])};
@@ -157,7 +157,6 @@ private:
             for (std::size_t m = 0; m < source_[d].size(); ++m)
                 source_[d].values()[m] += (flux[d].values()[m] - flux_before_[d].values()[m]) / dt;
         space_.add_excess(fluid_.velocity(), flux, solids_.fraction(), source_);
-        fluid_.add_missing_buoyancy(solids_.fraction(), source_);
     }
 
     flow::Flow<Heat> fluid_;

@@ -54,12 +54,12 @@ std::array<bool, 3> periodic_axes(const flow::Sides& sides) {
     return axes;
 }
 
-FaceDeposit::FaceDeposit(const flow::Grid& grid, const flow::Sides& sides, double width)
+FaceDeposit::FaceDeposit(const flow::Grid& grid, const flow::Sides& sides, double width, Hats hats)
     : grid_(grid), edges_(frictionless_edges(sides)), scratch_{flow::Field(grid), flow::Field(grid)} {
     for (int d = 0; d < 3; ++d) {
         std::array<Nodes, 3> nodes{Nodes::cells, Nodes::cells, Nodes::cells};
         nodes[static_cast<std::size_t>(d)] = Nodes::faces;
-        spreading_.emplace_back(grid, periodic_axes(sides), nodes, width);
+        spreading_.emplace_back(grid, periodic_axes(sides), nodes, width, hats);
     }
 }
 

@@ -40,6 +40,7 @@ struct AxisWeights {
 
 /// `place` is where x lies on the axis, find(axis, x), found once for both.
 struct Trilinear {
+    static constexpr Hats hats = Hats::linear;
     [[nodiscard]] static int find(const flow::Axis& axis, double x) { return axis.cell_at(x); }
     /// Along the component's own axis: nodes are faces.
     [[nodiscard]] static AxisWeights<2> own(const flow::Axis& axis, bool /*periodic*/, double x, int cell) {
@@ -55,6 +56,7 @@ struct Trilinear {
 };
 
 struct Solenoidal {
+    static constexpr Hats hats = Hats::metric;
     [[nodiscard]] static flow::Place find(const flow::Axis& axis, double x) { return axis.locate(x); }
     [[nodiscard]] static AxisWeights<3> own(const flow::Axis& axis, bool periodic, double /*x*/, flow::Place place) {
         const int n = axis.cells();
@@ -158,8 +160,8 @@ void fold_ghosts(flow::Field& field, const flow::Grid& grid, const flow::Edges& 
 /// carries.
 class FaceDeposit {
 public:
-    /// width: see spreading.hpp.
-    FaceDeposit(const flow::Grid& grid, const flow::Sides& sides, double width);
+    /// width, hats: see spreading.hpp.
+    FaceDeposit(const flow::Grid& grid, const flow::Sides& sides, double width, Hats hats = Hats::linear);
 
     static void clear(flow::FaceVectors& faces);
     /// Extensive deposit, ghosts included -> per volume of each face's control volume.

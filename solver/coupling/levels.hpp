@@ -9,6 +9,8 @@
 // (point-force coupling, Crowe, Sharma & Stock 1977, doi 10.1115/1.3448756, for a Boussinesq fluid: the vibrational
 // buoyancy of the cloud is part of it and dominates; k is the kernel of spreading.hpp). Written through the balance
 // instead of the drag law it has no stiffness: the large term is known exactly, dV_p/dt is that of the step before.
+// That term is a share xi phi_p of the whole and lags by a step to a step and a half, so the force is of first order in
+// the step with that share as its factor, and stable below a share of about 1.
 //
 // Two-way, equation 9 of Manayil Santhosh, Anwar & Lappa 2024 (IAC-24-A1.2.3) as printed:
 //     s_m = -(1/fluid fraction) sum k v_p xi dV_p/dt.
@@ -87,11 +89,11 @@ public:
     /// Least share of a cell that is fluid: random close packing leaves 1 - 0.63.
     static constexpr double least_fluid = 0.37;
 
-    /// kernel_width: see spreading.hpp.
+    /// kernel_width, hats: see spreading.hpp.
     TwoWay(const flow::Grid& grid, const flow::Sides& sides, const Sphere& sphere, std::size_t particles,
-           double kernel_width)
+           double kernel_width, Hats hats = Hats::linear)
         : sphere_(sphere),
-          deposit_(grid, sides, kernel_width),
+          deposit_(grid, sides, kernel_width, hats),
           rate_(particles, Vec3{}),
           source_(flow::face_vectors(grid)) {
         if constexpr (Form::per_fluid_volume) solid_ = flow::face_vectors(grid);

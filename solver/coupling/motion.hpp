@@ -2,9 +2,11 @@
 //
 //   (xi + 1/2) dV/dt = 3/2 Du/Dt + f(Re_p) (Pr/St) (u - V) + (xi - 1) gamma s(t) e + a,   dX/dt = V
 //
-// (Maxey & Riley 1983, doi 10.1063/1.864230, without history and Faxen terms; added mass 1/2 on the left-hand side,
-// where it belongs: taken explicitly it multiplies errors by 1/(2 xi) per step). xi density ratio, St = 2/9 (R/L)^2,
-// gamma amplitude of the vibrational acceleration, `a` any other force per volume of the sphere.
+// (Maxey & Riley 1983, doi 10.1063/1.864230, without Faxen terms, and without the history force, whose relative size is
+// R/sqrt(2 nu/omega): it would change the slip by 8 to 10 % in the runs of configs/lappa2024_run*, mostly its phase;
+// added mass 1/2 on the left-hand side, where it belongs: taken explicitly it multiplies errors by 1/(2 xi) per step).
+// xi density ratio, St = 2/9 (R/L)^2, gamma amplitude of the vibrational acceleration, `a` any other force per volume
+// of the sphere.
 //
 // One step with the fluid frozen at its middle is solved exactly, so relaxation times far below the step are
 // harmless:
@@ -66,18 +68,25 @@ template <class Drag>
     return c.free_tau / Drag::factor(c.reynolds * slip);
 }
 
-/// (x, v) after one step in a fluid of velocity u; q: the acceleration by all but the drag.
+/// tau at the slip in the middle of a step that begins with velocity v.
 template <class Drag>
-[[gnu::always_inline]] inline void advance_one(const MotionConstants& c, Vec3& x, Vec3& v, const Vec3& u,
-                                               const Vec3& q) {
-    double tau = relaxation<Drag>(c, u, v);
+[[nodiscard, gnu::always_inline]] inline double step_relaxation(const MotionConstants& c, const Vec3& v, const Vec3& u,
+                                                                const Vec3& q) {
+    const double tau = relaxation<Drag>(c, u, v);
     const double half = exponential(-0.5 * c.dt / tau).value();
     Vec3 middle;
     for (std::size_t d = 0; d < 3; ++d) {
         const double limit = u[d] + tau * q[d];
         middle[d] = limit + (v[d] - limit) * half;
     }
-    tau = relaxation<Drag>(c, u, middle);
+    return relaxation<Drag>(c, u, middle);
+}
+
+/// (x, v) after one step in a fluid of velocity u; q: the acceleration by all but the drag.
+template <class Drag>
+[[gnu::always_inline]] inline void advance_one(const MotionConstants& c, Vec3& x, Vec3& v, const Vec3& u,
+                                               const Vec3& q) {
+    const double tau = step_relaxation<Drag>(c, v, u, q);
     const double decayed = -exponential(-c.dt / tau).less_one();  // 1 - E, accurate for dt << tau
     for (std::size_t d = 0; d < 3; ++d) {
         const double limit = u[d] + tau * q[d];
@@ -102,11 +111,11 @@ public:
                      2 * sphere.radius() / sphere.prandtl} {}
 
     void advance(Vec3& x, Vec3& v, const Surroundings& around) const {
-        const Vec3 push = vibrated(around.vibration);
-        Vec3 q;
-        for (std::size_t d = 0; d < 3; ++d)
-            q[d] = (1.5 * around.acceleration[d] + around.other[d]) / constants_.mass + push[d];
-        advance_one<Drag>(constants_, x, v, around.velocity, q);
+        advance_one<Drag>(constants_, x, v, around.velocity, pull(around));
+    }
+    /// tau of that step for a sphere of velocity v before it.
+    [[nodiscard]] double step_relaxation(const Vec3& v, const Surroundings& around) const {
+        return coupling::step_relaxation<Drag>(constants_, v, around.velocity, pull(around));
     }
 
     /// The same for many, in vectors: the same bits as one by one.
@@ -123,6 +132,12 @@ public:
     [[nodiscard]] double time_step() const { return constants_.dt; }
 
 private:
+    // Acceleration by all but the drag.
+    [[nodiscard]] Vec3 pull(const Surroundings& around) const {
+        Vec3 q = vibrated(around.vibration);
+        for (std::size_t d = 0; d < 3; ++d) q[d] += (1.5 * around.acceleration[d] + around.other[d]) / constants_.mass;
+        return q;
+    }
     [[nodiscard]] Vec3 vibrated(double vibration) const {
         Vec3 push{};
         push[static_cast<std::size_t>(sphere_.direction)] =

@@ -7,14 +7,15 @@ namespace grainsweep::coupling {
 
 using namespace geometry;
 
-double OverlapRemoval::apply(std::vector<Vec3>& positions, std::vector<Vec3>& displacement, int sweeps) {
-    displacement.assign(positions.size(), Vec3{});
-    const auto hold = [&](std::size_t p) {
+double OverlapRemoval::apply(std::vector<Vec3>& positions, int sweeps) {
+    moves_.clear();
+    const auto hold = [&](std::uint32_t p) {
         const Vec3 held = walls_.inside(positions[p]);
-        displacement[p] += held - positions[p];
+        if (held == positions[p]) return;
+        moves_.push_back({p, Move::wall, held - positions[p]});
         positions[p] = held;
     };
-    for (std::size_t p = 0; p < positions.size(); ++p) hold(p);
+    for (std::uint32_t p = 0; p < positions.size(); ++p) hold(p);
     // Partners that could come to touch while the others are moved.
     std::vector<Vec3> wrapped = positions;
     for (Vec3& x : wrapped) x = walls_.clipped(x);
@@ -32,8 +33,7 @@ double OverlapRemoval::apply(std::vector<Vec3>& positions, std::vector<Vec3>& di
             const Vec3 half = (0.5 * overlap) * n;
             positions[i] += half;
             positions[j] -= half;
-            displacement[i] += half;
-            displacement[j] -= half;
+            moves_.push_back({i, j, half});
             hold(i);
             hold(j);
         }
@@ -42,26 +42,14 @@ double OverlapRemoval::apply(std::vector<Vec3>& positions, std::vector<Vec3>& di
     return largest;
 }
 
-ProjectedContacts::ProjectedContacts(const Sphere& sphere, const Walls& walls, double time_step)
-    : density_ratio_(sphere.density_ratio), walls_(walls), removal_(walls, 2 * sphere.radius()) {
-    const double mass = sphere.density_ratio + 0.5;
-    const double tau = mass * sphere.stokes / sphere.prandtl;
-    const double ratio = time_step / tau;
-    // dt/tau - (1 - exp(-dt/tau)), by its series where that cancels.
-    const double reach = ratio > 1e-3 ? ratio + std::expm1(-ratio) : ratio * ratio * (0.5 - ratio / 6);
-    force_per_displacement_ = mass / (tau * tau * reach);
-}
+ProjectedContacts::ProjectedContacts(const Sphere& sphere, const Walls& walls)
+    : density_ratio_(sphere.density_ratio), walls_(walls), removal_(walls, 2 * sphere.radius()) {}
 
-void ProjectedContacts::separate(Cloud& cloud, double time_step, std::vector<Vec3>& handed) {
+bool ProjectedContacts::remove_overlaps(Cloud& cloud) {
     for (const Vec3& x : cloud.position)
-        if (!std::isfinite(x[0] + x[1] + x[2])) return;  // the run will say so
-    removal_.apply(cloud.position, displacement_, 10);
-    for (std::size_t p = 0; p < cloud.size(); ++p) {
-        Vec3& v = cloud.velocity[p];
-        v += (1 / time_step) * displacement_[p];
-        handed[p] = force_per_displacement_ * displacement_[p] - (density_ratio_ / time_step) * (v - before_[p]);
-        cloud.position[p] = walls_.clipped(cloud.position[p]);
-    }
+        if (!std::isfinite(x[0] + x[1] + x[2])) return false;
+    removal_.apply(cloud.position, 10);
+    return true;
 }
 
 }  // namespace grainsweep::coupling

@@ -40,12 +40,12 @@ template <class Temperature>
 class SolidsPressure {
 public:
     SolidsPressure(const flow::Grid& grid, const flow::Sides& sides, const Sphere& sphere, const Granular& grains,
-                   double least_temperature, double kernel_width)
+                   double least_temperature, double kernel_width, Hats hats = Hats::linear)
         : grid_(grid),
           grains_(grains),
           thinnest_(2 * lone_fraction(grid, sphere.volume(), kernel_width)),
           volume_(sphere.volume()),
-          deposit_(grid, sides, kernel_width),
+          deposit_(grid, sides, kernel_width, hats),
           mobility_(sphere.stokes / sphere.prandtl),
           limit_(grid, sides, grains.packing_limit),
           packed_(grid, sides, sphere.volume(), 2 * sphere.radius()),
@@ -84,7 +84,6 @@ public:
         if (stepped_) ++limited_;
     }
 
-    [[nodiscard]] const flow::Field& temperature() const { return temperature_.values(); }
     /// Steps in which the packing limit moved particles.
     [[nodiscard]] std::int64_t limited_steps() const { return limited_; }
 

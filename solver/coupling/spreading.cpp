@@ -3,6 +3,7 @@
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace grainsweep::coupling {
@@ -64,16 +65,41 @@ Eigen::MatrixXd spreading_matrix(const flow::Axis& axis, bool periodic, Nodes no
     return rate.exp();
 }
 
+Eigen::MatrixXd levelling_matrix(const flow::Axis& axis, bool periodic, Nodes nodes) {
+    const int n = axis.cells();
+    Eigen::MatrixXd level = Eigen::MatrixXd::Identity(n, n);
+    if (periodic || nodes == Nodes::faces) return level;  // periodic cells are equal; faces get what they stand for
+    const auto too_much_below = [&](int f) { return f > 1 && f <= n ? (axis.width(f) - axis.width(f - 1)) / 4 : 0; };
+    for (int f = 2; f <= n; ++f) {
+        const double excess = too_much_below(f);
+        const int from = excess > 0 ? f - 1 : f;
+        const int to = excess > 0 ? f : f - 1;
+        const double left = axis.width(from) + too_much_below(from + 1) - too_much_below(from);
+        const double share = std::abs(excess) / left;
+        if (nodes == Nodes::cells) {
+            level(from - 1, from - 1) -= share;
+            level(to - 1, from - 1) += share;
+        } else {  // through face f, of the change of the cell it comes from
+            const double upward = excess > 0 ? share : -share;
+            if (from > 1) level(f - 1, from - 1) += upward;
+            if (from < n) level(f - 1, from) -= upward;
+        }
+    }
+    return level;
+}
+
 Spreading::Spreading(const flow::Grid& grid, const std::array<bool, 3>& periodic, const std::array<Nodes, 3>& nodes,
-                     double width) {
+                     double width, Hats hats) {
     for (int d = 0; d < 3; ++d) {
         const auto at = static_cast<std::size_t>(d);
         const Eigen::MatrixXd kernel = spreading_matrix(grid[d], periodic[at], nodes[at], width);
         const Eigen::VectorXd lengths = node_lengths(grid[d], periodic[at], nodes[at]);
         const Eigen::VectorXd inverse = (lengths.array() > 0).select(lengths.cwiseInverse(), 0);
-        from_densities_[at] =
-            flow::AxisProduct(grid, d, kernel * (lengths.array() > 0).cast<double>().matrix().asDiagonal());
-        from_deposits_[at] = flow::AxisProduct(grid, d, kernel * inverse.asDiagonal());
+        const Eigen::MatrixXd level = hats == Hats::linear ? levelling_matrix(grid[d], periodic[at], nodes[at])
+                                                           : Eigen::MatrixXd::Identity(kernel.rows(), kernel.cols());
+        const Eigen::MatrixXd inner = kernel * (lengths.array() > 0).cast<double>().matrix().asDiagonal();
+        from_densities_[at] = flow::AxisProduct(grid, d, level.transpose() * inner);
+        from_deposits_[at] = flow::AxisProduct(grid, d, kernel * inverse.asDiagonal() * level);
     }
 }
 

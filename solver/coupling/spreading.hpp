@@ -8,6 +8,12 @@
 // product). h^2/6 is what the linear deposit has already, h the local cell: the variance is w^2 where h < 2.4 w and
 // that of the cell beyond. Conservative, positive, and its own transpose between deposits and densities, to the
 // round-off of the exponential: 1e-15 at w of a cell, 1e-10 where w is hundred thin cells.
+//
+// Linear weights between the centres of unequal cells sum to 1, but a uniform density leaves (h_{i-1} + 2 h_i +
+// h_{i+1})/4 on cell i, (3 h_1 + h_2)/4 on that at a wall, not its width: a cloud would seem 7 % denser beside the
+// walls of 20 cells clustered by 1.5. Before anything else, what is too much below a face, (h_i - h_{i-1})/4, is moved
+// over it as a share of the cell that has it. Sums stay, a uniform density leaves the widths, a deposit moves by h^2 at
+// most.
 #pragma once
 
 #include "solver/flow/axis_product.hpp"
@@ -31,6 +37,16 @@ enum class Nodes {
 /// The lengths the nodes stand for: deposit = density x length; 0 for a face on a wall, 1 for Nodes::flux.
 [[nodiscard]] Eigen::VectorXd node_lengths(const flow::Axis& axis, bool periodic, Nodes nodes);
 
+/// What a cloud of uniform density leaves on cells of unequal width (Trilinear, Solenoidal).
+enum class Hats {
+    linear,  ///< weights linear between centres: to be levelled
+    metric   ///< weights scaled with the widths: the widths already
+};
+
+/// The n x n matrix that levels linear deposits: on cells as said above, columns sum to 1; on fluxes what that carries
+/// through faces, so that the divergence of a levelled flux is the levelled divergence; on faces nothing.
+[[nodiscard]] Eigen::MatrixXd levelling_matrix(const flow::Axis& axis, bool periodic, Nodes nodes);
+
 /// The kernel of a field on the grid.
 class Spreading {
 public:
@@ -39,7 +55,7 @@ public:
 
     /// width: standard deviation, 0 for none beyond the deposit's own.
     Spreading(const flow::Grid& grid, const std::array<bool, 3>& periodic, const std::array<Nodes, 3>& nodes,
-              double width);
+              double width, Hats hats = Hats::linear);
 
     /// Extensive deposits, none on ghosts -> densities. Ghosts are left alone, here and below.
     void densities(flow::Field& field, Scratch& scratch) const;

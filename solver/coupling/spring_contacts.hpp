@@ -35,7 +35,7 @@ public:
     /// under an impact at the slip speed it causes, and whose contacts do not outlast a step.
     [[nodiscard]] static double stiffness(const Sphere& sphere, double overlap, double time_step);
 
-    /// Advances every particle; `around(p)` is what it feels of the fluid, around.rotation(p) half its vorticity.
+    /// Advances every particle; `around(p)` is what it feels of the fluid, around.rotation(x) half its vorticity.
     /// handed[p]: force of the contacts less the inertia of the particle, per volume.
     template <class Motion, class Feet, class Around>
     void move(Cloud& cloud, const Motion& motion, const Walls&, SolidsVolume&, const Feet&, const Around& around,
@@ -47,13 +47,12 @@ public:
         find_active(cloud);
         for (Active& one : active_) {
             one.tau = motion.relaxation(surroundings_[one.particle].velocity, velocity_[one.particle]);
-            one.rotation = around.rotation(one.particle);
+            one.rotation = around.rotation(position_[one.particle]);
         }
         advance_active(cloud, motion.time_step(), handed);
     }
     void settle(Cloud&, const Walls&, SolidsVolume&) {}
 
-    [[nodiscard]] std::size_t active() const { return active_.size(); }
     [[nodiscard]] std::int64_t substeps(double time_step) const;
     [[nodiscard]] const std::vector<Vec3>& spins() const { return spin_; }
 

@@ -15,7 +15,7 @@ namespace grainsweep::coupling {
 
 class VisitOrder {
 public:
-    /// The order, sorted anew every `lifetime` calls: particles cross a cell in about a hundred steps.
+    /// The order, sorted anew every `lifetime` calls: few particles leave their cell meanwhile.
     const std::vector<std::uint32_t>& of(const Cloud& cloud, const flow::Grid& grid) {
         if (order_.size() != cloud.size() || age_ >= lifetime) sort(cloud, grid);
         ++age_;

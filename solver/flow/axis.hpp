@@ -61,9 +61,10 @@ public:
     [[nodiscard]] Place locate(double x) const {
         const double t = std::clamp((x - middle_) / half_, -1.0, 1.0);
         const double in_cells = 0.5 * ((clustering_ > 0 ? unclustered(t) : t) + 1) * mapped_;
-        // Written so that a position that is no number still yields a cell that exists.
+        // Written so that a position that is no number still yields a place that exists.
         const int cell = in_cells < cells_ - 1 ? static_cast<int>(in_cells) : cells_ - 1;
-        return {cell + 1, in_cells - cell};
+        const double offset = in_cells - cell;
+        return {cell + 1, offset >= 0 ? offset : 0};
     }
     /// dx/ds of the smooth map at a position (the local cell width).
     [[nodiscard]] double stretch(double x) const {

@@ -45,7 +45,7 @@ void assemble_row(const AssembleRow& row) {
     }
 }
 
-// to = from + change - scale * difference of the potential.
+// to -= scale * difference of the potential.
 GRAINSWEEP_VECTOR_CLONES
 void correct_row(double* __restrict to, const double* __restrict q, std::ptrdiff_t s, const double* __restrict scale_x,
                  double scale, int first, int last) {
@@ -126,17 +126,22 @@ void Flow<Heat>::set_velocity(const VectorFunction& velocity) {
 
 template <class Heat>
 void Flow<Heat>::step() {
-    advance(nullptr);
+    advance(nullptr, nullptr);
 }
 
 template <class Heat>
 void Flow<Heat>::step(const FaceVectors& acceleration) {
-    advance(&acceleration);
+    advance(&acceleration, nullptr);
+}
+
+template <class Heat>
+void Flow<Heat>::step(const FaceVectors& acceleration, const Field& occupied) {
+    advance(&acceleration, &occupied);
 }
 
 // right_ = dt (convection + diffusion + forces - grad p) for component d; leaves C^n in convection_[0].
 template <class Heat>
-void Flow<Heat>::assemble(int d, const FaceVectors* acceleration) {
+void Flow<Heat>::assemble(int d, const FaceVectors* acceleration, const Field* occupied) {
     const auto m = at(d);
     Field& now = convection_[0][m];
     momentum_transport(d, velocity_, weights_[m], cells_, setup_.viscosity, now, change_);
@@ -145,7 +150,9 @@ void Flow<Heat>::assemble(int d, const FaceVectors* acceleration) {
         right_ = (*acceleration)[m];
     else
         std::fill(right_.values().begin(), right_.values().end(), 0.0);
-    heat_.add_force(d, time() + 0.5 * setup_.time_step, right_);
+    const double middle = time() + 0.5 * setup_.time_step;
+    heat_.add_force(d, middle, right_);
+    if (occupied != nullptr) heat_.remove_force(d, middle, *occupied, right_);
     const auto [now_weight, before_weight] = convection_weights(steps_ == 0);
     each_row(right_, first, cells_, [&, nw = now_weight, bw = before_weight](std::ptrdiff_t row, int j, int k) {
         assemble_row({right_.data() + row, now.data() + row, convection_[1][m].data() + row, change_.data() + row,
@@ -181,7 +188,7 @@ void Flow<Heat>::project() {
     }
 }
 
-// Projects the initial velocity and finds the pressure of the initial state: lap p = div(C + nu lap V + forces).
+// Projects the initial velocity and finds the pressure of the initial state: lap p = div(C + nu lap V + buoyancy).
 template <class Heat>
 void Flow<Heat>::start() {
     project();
@@ -209,13 +216,13 @@ void Flow<Heat>::start() {
 }
 
 template <class Heat>
-void Flow<Heat>::advance(const FaceVectors* acceleration) {
+void Flow<Heat>::advance(const FaceVectors* acceleration, const Field* occupied) {
     if (steps_ == 0) start();
     heat_.step(velocity_, steps_ == 0);
     std::swap(convection_[0], convection_[1]);
     for (int d = 0; d < 3; ++d) {
         const auto m = at(d);
-        assemble(d, acceleration);
+        assemble(d, acceleration, occupied);
         diffusion_[m].solve(right_, change_);
         const auto& first = weights_[m].first;
         each_row(right_, first, cells_, [&](std::ptrdiff_t row, int, int) {
@@ -234,11 +241,6 @@ void Flow<Heat>::advance(const FaceVectors* acceleration) {
     });
     fill_ghosts(pressure_, setup_.grid, pressure_edges_);
     ++steps_;
-}
-
-template <class Heat>
-void Flow<Heat>::add_missing_buoyancy(const Field& occupied, FaceVectors& acceleration) const {
-    heat_.add_missing(occupied, time() + 0.5 * setup_.time_step, acceleration);
 }
 
 template <class Heat>

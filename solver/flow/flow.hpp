@@ -57,6 +57,8 @@ public:
     /// One time step; `acceleration` (ghosts ignored) holds at the middle of the step.
     void step();
     void step(const FaceVectors& acceleration);
+    /// ... and only the share 1 - `occupied` of each cell (ghosts filled) is moved by heat.
+    void step(const FaceVectors& acceleration, const Field& occupied);
 
     [[nodiscard]] const Grid& grid() const { return setup_.grid; }
     [[nodiscard]] const Sides& sides() const { return setup_.sides; }
@@ -69,10 +71,6 @@ public:
     [[nodiscard]] const Field& temperature() const requires std::same_as<Heat, Boussinesq> {
         return heat_.temperature();
     }
-
-    /// Takes the buoyancy of the share `occupied` of each cell (ghosts filled) off `acceleration`: for a step to come,
-    /// with the temperature at hand.
-    void add_missing_buoyancy(const Field& occupied, FaceVectors& acceleration) const;
 
     /// What a particle between the last two time levels feels, on the faces, ghosts filled:
     /// velocity (V^n + V^{n+1})/2 and fluid acceleration DV/Dt = (V^{n+1} - V^n)/dt - (3/2 C^n - 1/2 C^{n-1}).
@@ -96,8 +94,8 @@ public:
 
 private:
     void start();
-    void advance(const FaceVectors* acceleration);
-    void assemble(int d, const FaceVectors* acceleration);
+    void advance(const FaceVectors* acceleration, const Field* occupied);
+    void assemble(int d, const FaceVectors* acceleration, const Field* occupied);
     void project();
 
     FlowSetup setup_;

@@ -93,17 +93,20 @@ void HeatState<Boussinesq>::add_force(int d, double time, Field& acceleration) c
     });
 }
 
-void HeatState<Boussinesq>::add_missing(const Field& occupied, double time, FaceVectors& acceleration) const {
-    const int d = heat_.direction;
+void HeatState<Boussinesq>::remove_force(int d, double time, const Field& occupied, Field& acceleration) const {
+    if (d != heat_.direction) return;
     const double strength = heat_.buoyancy * heat_.vibration.at(time);
-    Field& out = acceleration[at(d)];
-    const auto s = out.stride(d);
-    each_row(out, {1, 1, 1}, cells_, [&](std::ptrdiff_t row, int, int) {
+    const auto& lower = face_lower_[at(d)];
+    const auto s = acceleration.stride(d);
+    each_row(acceleration, {1, 1, 1}, cells_, [&](std::ptrdiff_t row, int j, int k) {
         const double* const share = occupied.data() + row;
-        const double* const theta = temperature_.data() + row;
-        double* const a = out.data() + row;
-        for (int i = 1; i <= cells_[0]; ++i)
-            a[i] -= strength * (0.5 * (share[i - s] + share[i])) * (0.5 * (theta[i - s] + theta[i]));
+        const double* const theta = middle_.data() + row;
+        double* const a = acceleration.data() + row;
+        for (int i = 1; i <= cells_[0]; ++i) {
+            const double low = lower[at(d == 0 ? i : d == 1 ? j : k)];
+            const double high = 1 - low;
+            a[i] -= strength * (low * share[i - s] + high * share[i]) * (low * theta[i - s] + high * theta[i]);
+        }
     });
 }
 

@@ -46,7 +46,7 @@ public:
     void start() {}
     void step(const FaceVectors&, bool) {}
     void add_force(int, double, Field&) const {}
-    void add_missing(const Field&, double, FaceVectors&) const {}
+    void remove_force(int, double, const Field&, Field&) const {}
     void save(std::vector<std::byte>&) const {}
     void restore(std::span<const std::byte>&) {}
 };
@@ -59,13 +59,12 @@ public:
     void step(const FaceVectors& velocity, bool first);
     /// Adds the buoyancy acceleration B theta^{n+1/2} s(time) to component d.
     void add_force(int d, double time, Field& acceleration) const;
-    /// Subtracts the same of the share `occupied`, with theta^n.
-    void add_missing(const Field& occupied, double time, FaceVectors& acceleration) const;
+    /// Subtracts the same of the share `occupied` of each cell, ghosts filled.
+    void remove_force(int d, double time, const Field& occupied, Field& acceleration) const;
     void save(std::vector<std::byte>& into) const;
     void restore(std::span<const std::byte>& from);
 
     [[nodiscard]] const Field& temperature() const { return temperature_; }
-    [[nodiscard]] const Boussinesq& properties() const { return heat_; }
     void set(const ScalarFunction& temperature);
 
 private:

@@ -8,8 +8,10 @@
 namespace grainsweep::observables {
 namespace {
 
+// What is no number counts in the first bin.
 int bin(double x, double low, double high, int n) {
-    return std::clamp(static_cast<int>(std::floor((x - low) / (high - low) * n)), 0, n - 1);
+    const double at = (x - low) / (high - low) * n;
+    return at > 0 ? static_cast<int>(std::min(at, n - 1.0)) : 0;
 }
 
 }  // namespace
@@ -103,15 +105,17 @@ int structures(std::span<const int> counts, int n) {
     return found;
 }
 
-double formation_time(std::span<const double> times, std::span<const double> values, double start, double noise) {
+double formation_time(std::span<const double> times, std::span<const double> values, double scatter) {
     constexpr double never = std::numeric_limits<double>::quiet_NaN();
     if (values.empty()) return never;
     const double last = values.back();
-    const double rise = last - start;
-    if (!(std::abs(rise) > noise)) return never;
+    const double rise = std::abs(last - values.front());
+    if (!(rise > 5 * scatter)) return never;
+    const double near = std::max(0.1 * rise, 3 * scatter);
     std::size_t first = values.size();
-    while (first > 0 && std::abs(values[first - 1] - last) <= 0.1 * std::abs(rise)) --first;
-    return times[first];
+    while (first > 0 && std::abs(values[first - 1] - last) <= near) --first;
+    const bool late = times[first] - times.front() >= 0.9 * (times.back() - times.front());
+    return late ? never : times[first];
 }
 
 }  // namespace grainsweep::observables

@@ -39,9 +39,9 @@ struct Box {
 /// holds at least a twentieth of all particles: 0 for a random cloud, 2 for the two classical structures.
 [[nodiscard]] int structures(std::span<const int> counts, int n);
 
-/// The first time from which a series stays within a tenth of its total rise from its last value; NaN when the rise
-/// from `start` does not exceed `noise`.
-[[nodiscard]] double formation_time(std::span<const double> times, std::span<const double> values, double start,
-                                    double noise);
+/// The first time from which a series stays near its last value: within a tenth of its rise from its first, or within
+/// 3 `scatter`, its standard deviation from sample to sample, where that is more. NaN where the rise is no more than 5
+/// `scatter`, and where that time lies in the last tenth of all, as that of a steady rise does: not formed yet.
+[[nodiscard]] double formation_time(std::span<const double> times, std::span<const double> values, double scatter);
 
 }  // namespace grainsweep::observables

@@ -122,7 +122,10 @@ std::vector<ObservableSpec> observables() {
         {"accumulation_excess", "1", "(K - K_random)/(1 - K_random): 0 random, 1 all in one cell", Shape::scalar},
         {"structures", "1", "connected groups of cells above twice the mean that hold at least 5 % of the particles",
          Shape::scalar},
-        {"formation_time", "L^2/alpha", "from when K stays within a tenth of its rise from its last value",
+        {"formation_time", "L^2/alpha",
+         "from when K stays within a tenth of its rise, or three standard deviations of a random cloud's K, from its "
+         "last "
+         "value; undefined where that is only in the last tenth of the time: still rising",
          Shape::scalar},
         {"gershuni", "1", "Gershuni number (Pr/2)(Ra/Omega)^2", Shape::scalar},
         {"kinetic_energy", "(alpha/L)^2", "mean of |V|^2/2 over the volume and the last period", Shape::scalar},
@@ -143,7 +146,8 @@ std::vector<ObservableSpec> observables() {
         {"accumulation_series", "1", "K on sampling_cells^3, always at the same phase", Shape::series, time},
         {"accumulation_5", "1", "K on 5^3 cells", Shape::series, time},
         {"accumulation_20", "1", "K on 20^3 cells", Shape::series, time},
-        {"accumulation_cells", "1", "K on the cells of the flow grid", Shape::series, time},
+        {"accumulation_40", "1", "K on 40^3 cells", Shape::series, time},
+        {"accumulation_cells", "1", "K on as many cells as the flow grid has, all of one size", Shape::series, time},
         {"density_y", "1", "particles per slab across y over the mean, at the end", Shape::profile, "y/L"},
         {"density_z", "1", "particles per slab across z over the mean, at the end", Shape::profile, "z/L"},
     };
@@ -171,7 +175,8 @@ std::unique_ptr<Scene> make_with(const Question& question, std::uint64_t seed, A
     };
     const auto granular = [&]<class Temperature>(std::type_identity<Temperature>) {
         return dense(coupling::SolidsPressure<Temperature>(grid, sides, question.sphere(), question.grains(),
-                                                           question.granular_temperature, question.kernel()));
+                                                           question.granular_temperature, question.kernel(),
+                                                           Kernel::hats));
     };
     const bool carried =
         question.particles > 0 && question.particle_start == "periodic_flow" && !question.steady_force();
@@ -183,7 +188,8 @@ std::unique_ptr<Scene> make_with(const Question& question, std::uint64_t seed, A
     if (question.particles == 0 || question.coupling == "one_way") return one_way(coupling::OneWay{});
     if (question.coupling == "two_way") {
         const auto form = [&]<class Form>(Form) {
-            return dilute(coupling::TwoWay<Form>(grid, sides, question.sphere(), particles, question.kernel()));
+            return dilute(
+                coupling::TwoWay<Form>(grid, sides, question.sphere(), particles, question.kernel(), Kernel::hats));
         };
         return question.source_form == "force" ? form(coupling::ForceForm{}) : form(coupling::EquationNine{});
     }
@@ -191,7 +197,7 @@ std::unique_ptr<Scene> make_with(const Question& question, std::uint64_t seed, A
     if (question.coupling == "ddpm_ktgf") return granular(std::type_identity<coupling::TransportedTemperature>{});
     if (question.coupling == "cfd_dem" && question.contact == "spring")
         return dense(coupling::SpringContacts(question.sphere(), question.walls(), question.spring(), particles));
-    return dense(coupling::ProjectedContacts(question.sphere(), question.walls(), question.step()));
+    return dense(coupling::ProjectedContacts(question.sphere(), question.walls()));
 }
 
 std::unique_ptr<Scene> make(const Inputs& inputs, std::uint64_t seed, Artefacts& artefacts) {
@@ -244,7 +250,7 @@ SceneInfo thermovibration_scene() {
     SceneInfo info;
     info.name = "thermovibration";
     info.summary = "particles in a heated, vibrated cube of fluid: do they gather, into what, how fast";
-    info.revision = 5;
+    info.revision = 6;
     info.parameters = parameters();
     info.observables = observables();
     info.accuracy = {

@@ -91,6 +91,24 @@ void say(const ToBoss& message) {
     std::fflush(stdout);
 }
 
+/// Shared starting states, kept apart by build and instruction path: another one rounds differently, and a state found
+/// must be to the last bit the one that would be computed.
+class OwnArtefacts final : public Artefacts {
+public:
+    OwnArtefacts(store::ArtefactFolder* folder, const std::string& version)
+        : folder_(folder), suffix_(fmt::format("\nversion={}\npath={}\n", version, instruction_path())) {}
+    [[nodiscard]] std::optional<Bytes> get(std::string_view key) override {
+        return folder_ != nullptr ? folder_->get(std::string(key) + suffix_) : std::nullopt;
+    }
+    void put(std::string_view key, std::span<const std::byte> contents) override {
+        if (folder_ != nullptr) folder_->put(std::string(key) + suffix_, contents);
+    }
+
+private:
+    store::ArtefactFolder* folder_;
+    std::string suffix_;
+};
+
 /// Saves and finds the state of an unfinished case. The file is named by the case and the build, not by the
 /// attempt: every attempt follows the same path bit for bit, so any attempt may continue any other's.
 class Checkpoints {
@@ -154,8 +172,7 @@ private:
 };
 
 void answer(const Run& run, const WorkerOptions& options, store::ArtefactFolder* folder, Ear& ear) {
-    NoArtefacts none;
-    Artefacts& artefacts = folder ? static_cast<Artefacts&>(*folder) : none;
+    OwnArtefacts artefacts(folder, options.version);
     Checkpoints checkpoints(folder, run.question.id, options.version);
     // Looking for a checkpoint costs a failed open; only a case tried before can have one.
     const auto resume = run.attempt > 1 ? checkpoints.load() : std::nullopt;

@@ -126,7 +126,7 @@ int main(int argc, char** argv) {
           coupling::SolidsPressure<coupling::TransportedTemperature>(grid, walls, sphere, grains, 1e-3, 0.03));
     const double stiffness = coupling::SpringContacts::stiffness(sphere, 0.01, setup.time_step);
     dense("cfd_dem_spring", coupling::SpringContacts(sphere, box, {stiffness, 0.9, 0.3}, particles));
-    dense("cfd_dem_projection", coupling::ProjectedContacts(sphere, box, setup.time_step));
+    dense("cfd_dem_projection", coupling::ProjectedContacts(sphere, box));
 
     coupling::PeriodSum period(grid);
     for (int s = 0; s < 32; ++s) period.add(2 * pi * (s + 0.5) / 32, 32, velocity, acceleration);

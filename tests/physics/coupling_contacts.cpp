@@ -22,7 +22,7 @@ struct Nothing {
     Vec3 spin{};
     double vibration = 0;
     Surroundings operator()(std::size_t) const { return {}; }
-    [[nodiscard]] Vec3 rotation(std::size_t) const { return spin; }
+    [[nodiscard]] Vec3 rotation(const Vec3&) const { return spin; }
 };
 
 Collision collide(double restitution, double speed, double offset, double friction) {

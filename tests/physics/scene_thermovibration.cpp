@@ -252,7 +252,6 @@ TEST(Thermovibration, HalfOfASymmetricFlowAnswersAsTheWhole) {
                  std::invalid_argument);
 }
 
-// The published fluid numbers follow from the inputs.
 // Slow particles of a dilute cloud hand nearly all of the vibrational force on to the fluid; equation 9 hands over
 // their inertia only, which for them, in phase with the fluid at Omega St << 1, is smaller by two orders of magnitude
 // (the study's run 21: 217 times).

@@ -62,7 +62,7 @@ struct Setting {
         if constexpr (std::is_same_v<Interaction, SpringContacts>)
             return {sphere, around, {SpringContacts::stiffness(sphere, 0.01, dt), collision, friction}, particles};
         else if constexpr (std::is_same_v<Interaction, ProjectedContacts>)
-            return {sphere, around, dt};
+            return {sphere, around};
         else if constexpr (std::is_same_v<Interaction, NoInteraction>)
             return {};
         else

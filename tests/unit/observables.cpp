@@ -75,9 +75,17 @@ TEST(Structures, AreCountedOncePerBand) {
 TEST(FormationTime, IsWhenTheSeriesStaysNearItsEnd) {
     const std::vector<double> t = {0, 1, 2, 3, 4, 5};
     const std::vector<double> k = {0, 0.95, 0.5, 0.91, 0.99, 1};
-    EXPECT_EQ(formation_time(t, k, 0, 0.1), 3);
-    EXPECT_TRUE(std::isnan(formation_time(t, k, 0.95, 0.1)));
-    EXPECT_TRUE(std::isnan(formation_time({}, {}, 0, 0)));
+    EXPECT_EQ(formation_time(t, k, 0.02), 3);
+    EXPECT_EQ(formation_time(t, k, 0.17), 1) << "0.5 is within three deviations of 1";
+    EXPECT_TRUE(std::isnan(formation_time(t, k, 0.21))) << "a rise of less than five deviations";
+    EXPECT_TRUE(std::isnan(formation_time({}, {}, 0)));
+    std::vector<double> steady, settled;
+    for (const double time : t) {
+        steady.push_back(time);
+        settled.push_back(std::min(time, 4.4));
+    }
+    EXPECT_TRUE(std::isnan(formation_time(t, steady, 0))) << "still rising";
+    EXPECT_EQ(formation_time(t, settled, 0), 4);
 }
 
 TEST(Gershuni, IsThePublishedNumber) {

@@ -152,10 +152,8 @@ coupling::Cloud Question::cloud(std::uint64_t seed) const {
     if (coupling != "cfd_dem") return cloud;
     constexpr double tolerated = 1e-3;  // diameters
     coupling::OverlapRemoval removal(walls(), 2 * sphere().radius());
-    std::vector<coupling::Vec3> displacement;
     double left = 1;
-    for (int round = 0; round < 100 && left > tolerated; ++round)
-        left = removal.apply(cloud.position, displacement, 10);
+    for (int round = 0; round < 100 && left > tolerated; ++round) left = removal.apply(cloud.position, 10);
     if (left > tolerated)
         throw std::invalid_argument("particles = " + std::to_string(particles) +
                                     " cannot be placed at random without overlap (fewer, or a smaller stokes)");
@@ -163,7 +161,7 @@ coupling::Cloud Question::cloud(std::uint64_t seed) const {
 }
 
 std::string Question::flow_key() const {
-    return "thermovibration periodic flow 2; cells=" + std::to_string(cells) + "; clustering=" + shortest(clustering) +
+    return "thermovibration periodic flow 3; cells=" + std::to_string(cells) + "; clustering=" + shortest(clustering) +
            "; frequency=" + shortest(frequency) + "; prandtl=" + shortest(prandtl) +
            "; rayleigh=" + shortest(rayleigh) + "; start_phase=" + shortest(start_phase) +
            "; steps_per_period=" + std::to_string(steps_per_period) + "; symmetry=" + (mirrored() ? "mirror" : "none");

@@ -75,6 +75,7 @@ void Record::sample(double t, const coupling::Cloud& cloud) {
     k_.push_back(k(question_.sampling_cells));
     k5_.push_back(k(5));
     k20_.push_back(k(20));
+    k40_.push_back(k(40));
     k_cells_.push_back(k(question_.cells));
     last_ = cloud.position;
 }
@@ -98,12 +99,13 @@ void Record::observe(Observations& into) const {
     into.scalars["accumulation"] = k_.back();
     into.scalars["accumulation_excess"] = (k_.back() - random) / (1 - random);
     into.scalars["structures"] = observables::structures(observables::cell_counts(last_, cube, n), n);
-    const double noise = 5 * observables::random_accumulation_deviation(last_.size(), sampling_total());
-    const double formation = observables::formation_time(times_, k_, k_.front(), noise);
+    const double scatter = observables::random_accumulation_deviation(last_.size(), sampling_total());
+    const double formation = observables::formation_time(times_, k_, scatter);
     if (std::isfinite(formation)) into.scalars["formation_time"] = formation;
     add_series(into, "accumulation_series", times_, k_);
     add_series(into, "accumulation_5", times_, k5_);
     add_series(into, "accumulation_20", times_, k20_);
+    add_series(into, "accumulation_40", times_, k40_);
     add_series(into, "accumulation_cells", times_, k_cells_);
     add_profile(into, "density_y", last_, n, 1);
     add_profile(into, "density_z", last_, n, 2);
@@ -115,7 +117,7 @@ void Record::save(std::vector<std::byte>& into) const {
     flow::append_bytes(into, budget_);
     flow::append_bytes(into, static_cast<std::int64_t>(has_budget_));
     flow::append_bytes(into, limited_share_);
-    for (const auto* column : {&times_, &k_, &k5_, &k20_, &k_cells_}) save_column(into, *column);
+    for (const auto* column : {&times_, &k_, &k5_, &k20_, &k40_, &k_cells_}) save_column(into, *column);
     save_column(into, last_);
 }
 
@@ -129,7 +131,7 @@ void Record::restore(std::span<const std::byte>& from) {
     flow::take_bytes(from, has_budget);
     has_budget_ = has_budget != 0;
     flow::take_bytes(from, limited_share_);
-    for (auto* column : {&times_, &k_, &k5_, &k20_, &k_cells_}) restore_column(from, *column);
+    for (auto* column : {&times_, &k_, &k5_, &k20_, &k40_, &k_cells_}) restore_column(from, *column);
     restore_column(from, last_);
 }
 

@@ -65,7 +65,7 @@ private:
     BudgetMeans budget_;
     bool has_budget_ = false;
     double limited_share_ = -1;  ///< negative: the level has no packing limit
-    std::vector<double> times_, k_, k5_, k20_, k_cells_;
+    std::vector<double> times_, k_, k5_, k20_, k40_, k_cells_;
     std::vector<coupling::Vec3> last_;  ///< positions of the last sample
 };
 

@@ -2,9 +2,11 @@
 
 #include "solver/observables/flow_state.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <numeric>
 
 namespace grainsweep::thermovibration {
 namespace {
@@ -38,6 +40,16 @@ std::string fault(const flow::Flow<flow::Boussinesq>& fluid, double time) {
 }
 
 std::string fault(const coupling::Cloud& cloud, double time_step, double cell, double time) {
+    double fastest = 0;  // squared
+    double any = 0;      // no number if one of them is none
+    for (std::size_t p = 0; p < cloud.size(); ++p) {
+        const auto& v = cloud.velocity[p];
+        const auto& x = cloud.position[p];
+        const double square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+        fastest = std::max(fastest, square);
+        any += square + x[0] + x[1] + x[2];
+    }
+    if (std::isfinite(any) && time_step * std::sqrt(fastest) <= cell) return {};
     for (std::size_t p = 0; p < cloud.size(); ++p) {
         const auto& v = cloud.velocity[p];
         const auto& x = cloud.position[p];
@@ -63,6 +75,12 @@ std::string fault(const coupling::SolidsVolume& solids, const flow::Grid& grid, 
     return {};
 }
 
+std::int64_t watch_interval(std::int64_t steps_per_period) {
+    std::int64_t steps = 7;
+    while (std::gcd(steps, steps_per_period) != 1) ++steps;
+    return steps;
+}
+
 Snapshot picture(const coupling::Cloud& cloud) {
     Snapshot snapshot;
     snapshot.positions = cloud.position;
@@ -84,7 +102,7 @@ void SpinUp::step() {
     const std::int64_t in_period = fluid_.steps() % per_period;
     const bool judged = (fluid_.steps() / per_period) % judged_every == judged_every - 1;
     fluid_.step();
-    if (fluid_.steps() % watch_steps == 0) {
+    if (fluid_.steps() % watch_interval(per_period) == 0) {
         fault_ = thermovibration::fault(fluid_, time());
         if (!fault_.empty()) return;
     }
@@ -109,9 +127,9 @@ void SpinUp::compare() {
         for (std::size_t m = 0; m < mean_[d].size(); ++m) previous_mean_[d].values()[m] -= mean_[d].values()[m];
     const double change = size_of(fluid_.grid(), previous_mean_);
     const double size = size_of(fluid_.grid(), mean_);
-    const double periods_to_come =
+    const double relaxation_over_interval =
         1 / (std::numbers::pi * std::numbers::pi * question_.period() * static_cast<double>(judged_every));
-    const double to_come = change * std::max(1.0, periods_to_come);
+    const double to_come = change * std::max(1.0, relaxation_over_interval);
     const bool settled = to_come <= 0.02 * size || to_come <= 1e-5 * std::sqrt(mean_square_);
     passes_ = settled ? passes_ + 1 : 0;
     std::swap(mean_, previous_mean_);

@@ -26,8 +26,9 @@ using Drag = coupling::SchillerNaumann;
 [[nodiscard]] std::string fault(const coupling::Cloud& cloud, double time_step, double cell, double time);
 [[nodiscard]] std::string fault(const coupling::SolidsVolume& solids, const flow::Grid& grid, double time);
 [[nodiscard]] Snapshot picture(const coupling::Cloud& cloud);
-/// Steps between two looks for faults.
-constexpr std::int64_t watch_steps = 8;
+/// Particles are watched after every step, fluid and fractions every so many (and before what they are sampled for):
+/// about eight, with no divisor in common with those of a period, so that all phases of the vibration come up in turn.
+[[nodiscard]] std::int64_t watch_interval(std::int64_t steps_per_period);
 
 /// Together: the coupled system, a Suspension or a DenseSuspension.
 template <class Together>
@@ -72,13 +73,14 @@ private:
     void step() {
         suspension_.step();
         const auto& fluid = suspension_.fluid();
-        if (steps() % watch_steps == 0 || finished()) {
+        const bool sampled = steps() % question_.sample_steps() == 0 || finished();
+        std::string thrown =
+            fault(suspension_.cloud(), fluid.time_step(), 1.0 / static_cast<double>(question_.cells), time());
+        if (sampled || steps() % watch_ == 0 || !thrown.empty()) {  // it may be the fluid that threw the particle
             fault_ = fault(fluid, time());
-            if (fault_.empty())
-                fault_ =
-                    fault(suspension_.cloud(), fluid.time_step(), 1.0 / static_cast<double>(question_.cells), time());
             if constexpr (requires { suspension_.solids(); })
                 if (fault_.empty()) fault_ = fault(suspension_.solids(), fluid.grid(), time());
+            if (fault_.empty()) fault_ = std::move(thrown);
             if (!fault_.empty()) return;
         }
         const bool counted = steps() > question_.total_steps() - question_.window();
@@ -91,7 +93,7 @@ private:
         if constexpr (requires { suspension_.interaction().limited_steps(); })
             record_.set_limited_share(static_cast<double>(suspension_.interaction().limited_steps()) /
                                       static_cast<double>(steps()));
-        if (steps() % question_.sample_steps() == 0 || finished()) record_.sample(time(), suspension_.cloud());
+        if (sampled) record_.sample(time(), suspension_.cloud());
     }
 
     Question question_;
@@ -99,6 +101,7 @@ private:
     FlowMeans means_;  // of the last window, as far as it has come
     BudgetMeans budget_;
     Together suspension_;
+    std::int64_t watch_ = watch_interval(question_.window());
     std::string fault_;
 };
 
@@ -262,8 +265,7 @@ private:
             [](std::size_t, const coupling::Vec3&) {});
         ++steps_;
         const double now = static_cast<double>(steps_) * dt;
-        if (steps_ % watch_steps == 0 || finished())
-            fault_ = fault(cloud_, dt, 1.0 / static_cast<double>(question_.cells), now);
+        fault_ = fault(cloud_, dt, 1.0 / static_cast<double>(question_.cells), now);
         if (!fault_.empty()) return;
         if (steps_ % question_.sample_steps() == 0 || finished()) record_.sample(now, cloud_);
     }
