@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
@@ -39,6 +40,8 @@ struct Interval {
 struct Words {
     std::vector<std::string> allowed;
     bool file_allowed = false;
+    /// Throws std::invalid_argument with a sentence where the contents of a file are none of this kind; may be empty.
+    std::function<void(std::string_view contents)> check_file = {};
 };
 
 /// A file given where a word may name one travels as the value "file:<hash of its contents>:<absolute path>".

@@ -100,6 +100,8 @@ inline constexpr std::int64_t most_cases = 1'000'000;
 /// Point numbers keep the gaps of what was filtered out. Throws WrongQuestion when the design's options are
 /// impossible together, when no point is left and when there are more than most_cases.
 [[nodiscard]] std::vector<PlacedCase> unfold(const Campaign& campaign, const Filter& filter);
+/// Throws WrongQuestion where unfold would for the design.
+void check_design(const Campaign& campaign);
 
 /// A case from inputs (defaults filled in, types coerced): its id is the hash of its canonical text.
 /// Throws WrongQuestion for a parameter the scene has not.

@@ -166,7 +166,8 @@ std::vector<Key> design_keys(const designs::DesignInfo& design) {
 std::span<const std::string> reserved_names() {
     static const std::vector<std::string> names = {
         "campaign",    "sim_case",   "case_input", "campaign_case",       "attempt",   "observable", "observation",
-        "convergence", "provenance", "series",     "convergence_history", "parameter", "inputs"};
+        "convergence", "provenance", "series",     "convergence_history", "parameter", "inputs",     "json_each",
+        "json_tree"};  // the last two are SQLite's own
     return names;
 }
 

@@ -9,6 +9,7 @@
 #include <charconv>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 
 namespace grainsweep::campaign {
 
@@ -40,6 +41,13 @@ Value read_file_word(const Cursor& place, const Words& words, const fs::path& fo
     std::ifstream stream(path, std::ios::binary);
     const std::string contents{std::istreambuf_iterator<char>(stream), {}};
     if (!stream.good() && !stream.eof()) place.refuse("the file cannot be read");
+    if (words.check_file) {
+        try {
+            words.check_file(contents);
+        } catch (const std::invalid_argument& reason) {
+            place.refuse(fmt::format("the file is none of the kind asked for: {}", reason.what()));
+        }
+    }
     return fmt::format("file:{}:{}", content_hash(contents), path.string());
 }
 

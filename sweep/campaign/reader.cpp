@@ -36,7 +36,8 @@ std::string read_name(const Cursor& place) {
     // SQL folds the case of names, so do we.
     const std::string folded = lower(name);
     if (std::ranges::find(reserved_names(), folded) != reserved_names().end() || folded.starts_with("sqlite_")) {
-        place.refuse("the database has a table or view of this name; take another", name + "_1");
+        place.refuse("the database has a table or view of this name; take another",
+                     folded.starts_with("sqlite_") ? "my_" + name : name + "_1");
     }
     return name;
 }

@@ -12,11 +12,17 @@ namespace {
 designs::PointSet sample(const Campaign& campaign) {
     const auto* design = designs::find_design(campaign.design);
     if (design == nullptr) throw wrong_question("$.design.kind", campaign.design, "there is no such design");
+    designs::PointSet points;
     try {
-        return design->sample(campaign.request);
+        points = design->sample(campaign.request);
     } catch (const std::invalid_argument& error) {
         throw wrong_question("$.design", "", error.what());
     }
+    if (points.size() == 0) throw wrong_question("$.design", "", "the design has no point");
+    if (points.size() > static_cast<std::size_t>(most_cases / campaign.replicates))
+        throw wrong_question("$.design", fmt::format("{} points x {} replicates", points.size(), campaign.replicates),
+                             fmt::format("a campaign has at most {} cases", most_cases));
+    return points;
 }
 
 /// A scene and its defaults, looked up once for many cases.
@@ -50,13 +56,12 @@ private:
 
 }  // namespace
 
+void check_design(const Campaign& campaign) {
+    (void)sample(campaign);
+}
+
 std::vector<PlacedCase> unfold(const Campaign& campaign, const Filter& filter) {
     const designs::PointSet points = sample(campaign);
-    if (points.size() == 0) throw wrong_question("$.design", "", "the design has no point");
-    if (points.size() > static_cast<std::size_t>(most_cases / campaign.replicates)) {
-        throw wrong_question("$.design", fmt::format("{} points x {} replicates", points.size(), campaign.replicates),
-                             fmt::format("a campaign has at most {} cases", most_cases));
-    }
     const CaseMaker maker(campaign.scene());
     const std::size_t sequences = std::max<std::size_t>(points.sequences, 1);
     std::vector<PlacedCase> cases;

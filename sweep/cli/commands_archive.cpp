@@ -32,10 +32,42 @@ campaign::Case require_case(const Store& archive, const std::string& id) {
 
 // ---- explain ------------------------------------------------------------------------------------------------
 
-std::string why(const std::vector<store::LoggedAttempt>& attempts) {
-    if (attempts.empty()) return "it was never begun: the next run of its campaign starts it";
+/// The campaigns that will not come to it: they converged and stopped before its point. Empty: one of them will.
+std::string out_of_reach(const std::vector<store::CasePlace>& places) {
+    std::string reason;
+    for (const auto& place : places) {
+        if (!place.stopped_at || place.point < *place.stopped_at) return {};
+        reason = fmt::format("campaign '{}' converged and stopped at {} points, before its point {}", place.campaign,
+                             *place.stopped_at, place.point);
+    }
+    return reason;
+}
+
+std::string why_failed(const std::vector<store::LoggedAttempt>& attempts, const std::vector<store::CasePlace>& places) {
+    const auto failures = std::ranges::count_if(attempts, [](const auto& attempt) {
+        return attempt.outcome == Outcome::crashed || attempt.outcome == Outcome::timed_out;
+    });
+    std::int64_t limit = 0;
+    for (const auto& place : places) limit = std::max(limit, place.attempts.value_or(campaign::Limits{}.attempts));
+    if (failures < limit)
+        return fmt::format("{} of its attempts failed, and limits.attempts is {}: the next run tries it again",
+                           failures, limit);
+    return fmt::format(
+        "{} of its attempts failed, and limits.attempts is {}: it will not run again unless that grows or `run --again "
+        "{}` asks for it",
+        failures, limit, to_string(*attempts.back().outcome));
+}
+
+std::string why(const std::vector<store::LoggedAttempt>& attempts, const std::vector<store::CasePlace>& places) {
+    const std::string passed_by = out_of_reach(places);
+    const auto next_run = [&](const std::string& does) {
+        return passed_by.empty() ? does : fmt::format("it will not run: {}", passed_by);
+    };
+    if (attempts.empty())
+        return passed_by.empty() ? "it was never begun: the next run of its campaign starts it"
+                                 : fmt::format("it was never begun and will not be: {}", passed_by);
     const auto& last = attempts.back();
-    if (!last.outcome) return "its last attempt is under way, or its boss died: the next run starts it again";
+    if (!last.outcome) return next_run("its last attempt is under way, or its boss died: the next run starts it again");
     switch (*last.outcome) {
         case Outcome::completed:
         case Outcome::skipped:
@@ -45,18 +77,13 @@ std::string why(const std::vector<store::LoggedAttempt>& attempts) {
             return fmt::format("it is settled: the same question would end the same way; `run --again {}` asks it anew",
                                to_string(*last.outcome));
         case Outcome::abandoned:
-            return "it was given back unfinished: the next run starts it again, from its checkpoint where there is one";
+            return next_run(
+                "it was given back unfinished: the next run starts it again, from its checkpoint where there is one");
         case Outcome::crashed:
         case Outcome::timed_out:
             break;
     }
-    const auto failures = std::ranges::count_if(attempts, [](const auto& attempt) {
-        return attempt.outcome == Outcome::crashed || attempt.outcome == Outcome::timed_out;
-    });
-    return fmt::format(
-        "{} of its attempts failed: the next run tries it again while that is below limits.attempts; "
-        "`run --again {}` tries it in any case",
-        failures, to_string(*last.outcome));
+    return next_run(why_failed(attempts, places));
 }
 
 Table attempts_table(const std::vector<store::LoggedAttempt>& attempts) {
@@ -75,6 +102,7 @@ int explain(const std::string& database, const std::string& id, Format format) {
     const campaign::Case question = require_case(archive, id);
     const auto attempts = archive.attempts(question.id);
     const Table table = attempts_table(attempts);
+    const std::string reason = why(attempts, archive.places(question.id));
     if (format == Format::csv) {
         report::write(std::cout, table, format);
         return 0;
@@ -88,7 +116,7 @@ int explain(const std::string& database, const std::string& id, Format format) {
                                                         {"seed", question.seed},
                                                         {"inputs", inputs},
                                                         {"attempts", report::to_json(table)},
-                                                        {"why", why(attempts)}});
+                                                        {"why", reason}});
         return 0;
     }
     std::cout << fmt::format("case {}\nscene {} revision {}, seed {}\n", question.id, question.scene, question.revision,
@@ -101,7 +129,7 @@ int explain(const std::string& database, const std::string& id, Format format) {
     }
     std::cout << '\n';
     report::write(std::cout, table, format);
-    std::cout << '\n' << why(attempts) << '\n';
+    std::cout << '\n' << reason << '\n';
     return 0;
 }
 
@@ -157,6 +185,11 @@ int replay(const std::string& database, const std::string& id, const PictureRequ
     const campaign::Case question = as_asked_today(require_case(archive, id));
     const auto stored = archive.result(question.id);
     if (!stored) throw campaign::wrong_question("CASE", id, "has no result to compare with yet");
+    if (stored->outcome == Outcome::abandoned)
+        throw campaign::wrong_question("CASE", id, "was given back unfinished: there is no answer to compare with yet");
+    if (stored->outcome == Outcome::crashed || stored->outcome == Outcome::timed_out)
+        std::cerr << fmt::format("grainsweep: this case {}; computed here it may do the same\n",
+                                 stored->outcome == Outcome::crashed ? "crashed its worker" : "found no end");
     const auto attempts = archive.attempts(question.id);
     const auto then = std::ranges::find(attempts, stored->attempt.number, &store::LoggedAttempt::number);
     if (!path.empty())

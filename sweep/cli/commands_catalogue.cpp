@@ -223,7 +223,10 @@ int list_designs(const std::string& name, Format format) {
 }
 
 int print_schema(Format format) {
-    if (format == Format::csv) throw campaign::wrong_question("--format", "csv", "a JSON schema is text or json");
+    if (format == Format::csv) {
+        report::write(std::cout, store::Table{{"schema"}, {{campaign::campaign_schema()}}}, format);
+        return 0;
+    }
     if (format == Format::json) {
         report::write(std::cout, Json::parse(campaign::campaign_schema()));
     } else {

@@ -76,6 +76,7 @@ Inputs middle_of(const campaign::ParameterSpace& space) {
 
 campaign::Case question_of(const SolveRequest& request) {
     Campaign campaign = campaign::read_campaign(request.config);
+    campaign::asked_in(request.config, [&] { campaign::check_design(campaign); });
     apply(request.settings, campaign, std::filesystem::path(request.config).parent_path());
     const Inputs inputs = middle_of(campaign.space);
     const auto filter = campaign::asked_in(
@@ -102,6 +103,9 @@ Json json_of(const campaign::Case& question, const CaseResult& result) {
     object["outcome"] = campaign::to_string(result.outcome);
     object["message"] = result.message;
     object["scalars"] = Json::object();
+    if (result.outcome == campaign::Outcome::completed || result.outcome == campaign::Outcome::skipped)
+        for (const auto& declared : find_scene(question.scene)->observables)  // null: undefined in this case
+            if (declared.shape == Shape::scalar) object["scalars"][declared.name] = nullptr;
     for (const auto& [name, value] : result.observations.scalars)
         object["scalars"][name] = report::to_json(Cell{value});
     object["series"] = Json::object();

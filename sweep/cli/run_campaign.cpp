@@ -128,7 +128,15 @@ RunReport run_campaign(const RunRequest& request) {
         return cases;
     });
 
+    const auto& launcher = campaign.execution.launcher;
+    if (!launcher.empty() && !workers::Pool::can_start(launcher.front()))
+        throw campaign::wrong_question(request.config.string() + ": $.execution.launcher[0]", launcher.front(),
+                                       "there is no such program to start workers with");
+
     const fs::path database = request.database.empty() ? fs::path(campaign.name + ".db") : request.database;
+    if (const auto folder = fs::absolute(database).parent_path(); !fs::is_directory(folder))
+        throw campaign::wrong_question("--db", database.string(),
+                                       fmt::format("there is no folder '{}'", folder.string()));
     fs::path artefacts = fs::absolute(database);
     artefacts.replace_extension(".artefacts");
 

@@ -94,7 +94,7 @@ DesignInfo halton_design() {
                      .kind = OptionSpec::Kind::count,
                      .default_value = std::int64_t{1},
                      .minimum = 0,
-                     .maximum = 1'000'000'000'000,
+                     .maximum = 9'007'199'254'740'991,  // 2^53 - 1, the largest whole number of every JSON
                      .words = {}}},
         .extends = true,
         .independent_sequences = true,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <limits>
 #include <utility>
 
 namespace grainsweep::schedule {
@@ -15,6 +16,18 @@ template <class... Cases>
 struct Overloaded : Cases... {
     using Cases::operator()...;
 };
+
+/// What the boss knows of an attempt that brought no answer: how long it took, not what it cost.
+campaign::CaseResult unanswered(const campaign::Attempt& attempt, Outcome outcome, double seconds) {
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    campaign::CaseResult result;
+    result.attempt = attempt;
+    result.outcome = outcome;
+    result.cost.wall_seconds = seconds;
+    result.cost.cpu_seconds = unknown;
+    result.cost.particle_steps = unknown;
+    return result;
+}
 
 }  // namespace
 
@@ -62,14 +75,15 @@ void Scheduler::handle(workers::PoolEvent event) {
     std::visit(Overloaded{[&](workers::Finished& finished) { handle_finished(finished); },
                           [&](const workers::Heartbeat& beat) { plan_.advanced(beat.attempt, beat.progress); },
                           [&](const workers::Lost& lost) {
-                              if (lost.running) handle_failure(*lost.running, Outcome::crashed, lost.reason);
+                              if (lost.running)
+                                  handle_failure(*lost.running, Outcome::crashed, lost.reason, lost.seconds);
                               take_back(lost.queued);
                           },
                           [&](const workers::TimedOut& late) {
-                              handle_failure(late.running, Outcome::timed_out, late.reason);
+                              handle_failure(late.running, Outcome::timed_out, late.reason, late.seconds);
                               take_back(late.queued);
                           },
-                          [&](const workers::GivenBack& back) { park(back.attempt); },
+                          [&](const workers::GivenBack& back) { park(back); },
                           [&](const workers::Interrupted& stop) {
                               plan_.close();
                               if (!early_) early_ = Ending::interrupted;
@@ -93,11 +107,10 @@ void Scheduler::handle_finished(workers::Finished& finished) {
     judge_prefix();
 }
 
-void Scheduler::handle_failure(const campaign::Attempt& attempt, Outcome outcome, const std::string& reason) {
+void Scheduler::handle_failure(const campaign::Attempt& attempt, Outcome outcome, const std::string& reason,
+                               double seconds) {
     --in_flight_;
-    campaign::CaseResult result;
-    result.attempt = attempt;
-    result.outcome = outcome;
+    campaign::CaseResult result = unanswered(attempt, outcome, seconds);
     result.message = reason;
     const auto verdict = plan_.ended(attempt, outcome);
     if (verdict == Plan::Verdict::stale) return;
@@ -118,12 +131,10 @@ void Scheduler::take_back(const std::vector<campaign::Attempt>& attempts) {
     }
 }
 
-void Scheduler::park(const campaign::Attempt& attempt) {
+void Scheduler::park(const workers::GivenBack& back) {
     --in_flight_;
-    plan_.returned(attempt);
-    campaign::CaseResult result;
-    result.attempt = attempt;
-    result.outcome = Outcome::abandoned;
+    plan_.returned(back.attempt);
+    campaign::CaseResult result = unanswered(back.attempt, Outcome::abandoned, back.seconds);
     result.message = "given back before it was finished";
     recorder_.write(std::move(result));
 }

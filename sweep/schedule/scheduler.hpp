@@ -49,9 +49,10 @@ private:
     void hand_out();
     void handle(workers::PoolEvent event);
     void handle_finished(workers::Finished& finished);
-    void handle_failure(const campaign::Attempt& attempt, campaign::Outcome outcome, const std::string& reason);
+    void handle_failure(const campaign::Attempt& attempt, campaign::Outcome outcome, const std::string& reason,
+                        double seconds);
     void take_back(const std::vector<campaign::Attempt>& attempts);
-    void park(const campaign::Attempt& attempt);
+    void park(const workers::GivenBack& back);
     void judge_prefix();
     void show();
 

@@ -50,6 +50,28 @@ std::string columns_of(std::span<const std::string> names) {
     return text;
 }
 
+/// Whether a bracket closes that was not opened, or stays open. Text in quotes and comments have none.
+bool unbalanced(std::string_view expression) {
+    int depth = 0;
+    for (std::size_t i = 0; i < expression.size(); ++i) {
+        const char c = expression[i];
+        const std::string_view rest = expression.substr(i);
+        std::string_view end;
+        if (c == '\'' || c == '"' || c == '`') end = expression.substr(i, 1);
+        if (c == '[') end = "]";
+        if (rest.starts_with("--")) end = "\n";
+        if (rest.starts_with("/*")) end = "*/";
+        if (!end.empty()) {
+            const auto close = expression.find(end, i + (end == "*/" ? 2 : 1));
+            if (close == std::string_view::npos) break;
+            i = close + end.size() - 1;
+        }
+        if (c == '(') ++depth;
+        if (c == ')' && --depth < 0) return true;
+    }
+    return depth != 0;
+}
+
 /// Prepares the expression as the only output of one SELECT over one row of inputs, and reports which columns it
 /// reads. The authorizer sees everything the expression would do.
 std::set<std::string> check(Connection& db, std::string_view expression, std::span<const std::string> names) {
@@ -75,6 +97,7 @@ std::set<std::string> check(Connection& db, std::string_view expression, std::sp
     });
     const auto finish = [&] { db.authorize({}); };
     try {
+        if (unbalanced(expression)) throw RefusedSql("a bracket is not closed, or closed without being opened");
         // The line break ends a comment. An expression that closes our bracket and goes on as a statement of its
         // own is caught by the second form, which has a bracket more.
         const std::string plain = fmt::format("SELECT ({}\n) FROM inputs", expression);

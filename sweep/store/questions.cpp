@@ -144,7 +144,7 @@ std::vector<LoggedAttempt> Store::attempts(std::string_view case_id) const {
     const auto key = case_key(impl_->db, case_id);
     if (!key) return attempts;
     auto rows = impl_->db.ask(
-        "SELECT number, outcome, coalesce(message, ''), coalesce(wall_seconds, 0.0), started, host, "
+        "SELECT number, outcome, coalesce(message, ''), wall_seconds, started, host, "
         "version || ' (' || \"commit\" || ')', instruction_path "
         "FROM attempt AS t JOIN provenance AS v ON v.provenance_id = t.provenance_id "
         "WHERE case_key = ? ORDER BY number",
@@ -160,6 +160,23 @@ std::vector<LoggedAttempt> Store::attempts(std::string_view case_id) const {
                             .instruction_path = rows.get<std::string>(7)});
     }
     return attempts;
+}
+
+std::vector<CasePlace> Store::places(std::string_view case_id) const {
+    std::vector<CasePlace> places;
+    const auto key = case_key(impl_->db, case_id);
+    if (!key) return places;
+    auto rows = impl_->db.ask(
+        "SELECT g.name, p.point, g.stopped_at, (SELECT json_extract(v.campaign_text, '$.limits.attempts') FROM "
+        "provenance AS v WHERE v.campaign_id = g.campaign_id ORDER BY v.provenance_id DESC LIMIT 1) "
+        "FROM campaign_case AS p JOIN campaign AS g ON g.campaign_id = p.campaign_id WHERE p.case_key = ? "
+        "ORDER BY g.campaign_id, p.point",
+        *key);
+    while (rows.next()) {
+        places.push_back({rows.get<std::string>(0), rows.get<std::int64_t>(1), rows.get<std::optional<std::int64_t>>(2),
+                          rows.get<std::optional<std::int64_t>>(3)});
+    }
+    return places;
 }
 
 std::optional<campaign::CaseResult> Store::result(std::string_view case_id) const {

@@ -40,7 +40,7 @@ struct LoggedAttempt {
     std::int64_t number = 0;
     std::optional<campaign::Outcome> outcome;  ///< none: running, or its boss died
     std::string message;
-    double wall_seconds = 0;
+    double wall_seconds = 0;                               ///< NaN: running, or its boss died
     std::string started, host, version, instruction_path;  ///< version (commit) of the program
 };
 
@@ -67,6 +67,14 @@ struct PlacedValue {
     std::int64_t point = 0, sequence = 0, replicate = 0;
     std::optional<campaign::Outcome> outcome;
     double value = 0;  ///< NaN where there is none
+};
+
+/// Where a case stands, and what decides there whether it runs.
+struct CasePlace {
+    std::string campaign;
+    std::int64_t point = 0;
+    std::optional<std::int64_t> stopped_at;  ///< of the campaign
+    std::optional<std::int64_t> attempts;    ///< limits.attempts of its last run, where that said so
 };
 
 struct CampaignRecord {
@@ -117,6 +125,7 @@ public:
     /// Throws WrongQuestion where several cases begin so.
     [[nodiscard]] std::optional<campaign::Case> find_case(std::string_view id_or_prefix) const;
     [[nodiscard]] std::vector<LoggedAttempt> attempts(std::string_view case_id) const;
+    [[nodiscard]] std::vector<CasePlace> places(std::string_view case_id) const;
     /// Of the last finished attempt.
     [[nodiscard]] std::optional<campaign::CaseResult> result(std::string_view case_id) const;
     /// One scalar over the campaign's design, ordered by (point, replicate).

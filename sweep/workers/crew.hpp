@@ -17,19 +17,21 @@ struct Lost {
     std::optional<campaign::Attempt> running;
     std::vector<campaign::Attempt> queued;
     std::string reason;  ///< how it ended, and the last lines it wrote to standard error
+    double seconds = 0;  ///< since it began `running`
 };
 
 /// The case exceeded its wall time; its worker was stopped.
 struct TimedOut {
     campaign::Attempt running;
     std::vector<campaign::Attempt> queued;
-    double wall_seconds = 0;
     std::string reason;
+    double seconds = 0;
 };
 
 /// Given back unfinished after a stop.
 struct GivenBack {
     campaign::Attempt attempt;
+    double seconds = 0;  ///< since it was begun, 0 where it never was
 };
 
 struct Finished {

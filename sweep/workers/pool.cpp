@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/wait.h>
+#include <unistd.h>
 #include <boost/asio.hpp>
 #include <boost/process.hpp>
 #include <boost/process/extend.hpp>
@@ -16,6 +17,7 @@
 #include <cstring>
 #include <deque>
 #include <stdexcept>
+#include <thread>
 
 namespace grainsweep::workers {
 namespace {
@@ -32,6 +34,7 @@ constexpr std::size_t queue_of_short_cases = 4;
 constexpr std::size_t kept_log_bytes = 4096;
 constexpr auto lease_every = 10s;
 constexpr auto grace_before_kill = 2s;
+constexpr auto time_to_end = 5s;  // of a worker that has nothing left to do, and of what launched it
 // So many workers in a row that end before they are ready: the launcher is wrong, not the case. One that somebody
 // killed says less about the launcher.
 constexpr int unready_limit = 3;
@@ -40,6 +43,17 @@ constexpr int killed_unready_limit = 10;
 /// Our ends of a pipe must not live on in other workers, or nobody would ever see an end of file.
 void close_on_exec(bp::async_pipe& pipe) {
     for (const int fd : {pipe.native_source(), pipe.native_sink()}) ::fcntl(fd, F_SETFD, FD_CLOEXEC);
+}
+
+boost::filesystem::path program_of(const std::string& word) {
+    if (word.find('/') == std::string::npos) return bp::search_path(word);
+    boost::system::error_code error;
+    const bool there = boost::filesystem::is_regular_file(word, error) && ::access(word.c_str(), X_OK) == 0;
+    return there ? boost::filesystem::path(word) : boost::filesystem::path();
+}
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -121,12 +135,15 @@ struct Pool::Impl {
                 take_off(*worker, done->result.attempt);
                 events.emplace_back(Finished{std::move(done->result), done->checkpointed});
             } else if (auto* parked = std::get_if<Parked>(&message)) {
+                const bool begun = worker->ready && parked->attempt == worker->cases.front();
+                const double seconds = begun ? seconds_since(worker->began) : 0;
                 take_off(*worker, parked->attempt);
-                events.emplace_back(GivenBack{parked->attempt});
+                events.emplace_back(GivenBack{parked->attempt, seconds});
             } else if (auto* alive = std::get_if<Alive>(&message)) {
                 events.emplace_back(Heartbeat{alive->attempt, alive->progress});
             } else if (const auto& ready = std::get<Ready>(message); ready.version == options.version) {
                 worker->ready = true;
+                worker->began = Clock::now();  // what it took to be launched is not the case's
                 unready_in_a_row = 0;
             } else {
                 complain(*worker,
@@ -167,16 +184,17 @@ struct Pool::Impl {
         std::string reason =
             worker->complaint.empty() ? describe_end(worker->process.native_exit_code()) : worker->complaint;
         if (!worker->log.empty()) reason += "; it wrote: " + worker->log;
+        const double seconds = seconds_since(worker->began);
         const bool killed = worker->complaint.empty() && was_killed(worker->process.native_exit_code());
         const int limit = killed ? killed_unready_limit : unready_limit;
         if (!worker->ready && ++unready_in_a_row >= limit) {
             broken = "cannot start workers with '" + joined(options.command) + "': " + reason;
         }
         if (worker->timed_out && running) {
-            events.emplace_back(TimedOut{*running, std::move(queued), options.wall_seconds,
-                                         fmt::format("no answer within {} s", options.wall_seconds)});
+            events.emplace_back(TimedOut{*running, std::move(queued),
+                                         fmt::format("no answer within {} s", options.wall_seconds), seconds});
         } else {
-            events.emplace_back(Lost{std::move(running), std::move(queued), std::move(reason)});
+            events.emplace_back(Lost{std::move(running), std::move(queued), std::move(reason), seconds});
         }
     }
 
@@ -187,8 +205,7 @@ struct Pool::Impl {
         for (auto* pipe : {&worker->in, &worker->out, &worker->err}) close_on_exec(*pipe);
         std::error_code error;
         const auto& command = options.command;
-        auto executable = command.front().find('/') == std::string::npos ? bp::search_path(command.front())
-                                                                         : boost::filesystem::path(command.front());
+        const auto executable = program_of(command.front());
         if (executable.empty())
             throw std::runtime_error(fmt::format("cannot find '{}' to start a worker", command.front()));
         worker->process = bp::child(
@@ -232,7 +249,7 @@ struct Pool::Impl {
             for (const auto& worker : workers) send(worker, Lease{});
         }
         for (const auto& worker : workers) {
-            if (options.wall_seconds > 0 && !worker->cases.empty() && !worker->timed_out &&
+            if (options.wall_seconds > 0 && worker->ready && !worker->cases.empty() && !worker->timed_out &&
                 now - worker->began > std::chrono::duration<double>(options.wall_seconds)) {
                 worker->timed_out = true;
                 worker->killed_at = now;
@@ -322,10 +339,38 @@ void Pool::retire() {
     }
 }
 
+bool Pool::can_start(const std::string& program) {
+    return !program_of(program).empty();
+}
+
+// A launcher has things to do after its worker has ended (srun gives its part of the machine back), so both are
+// asked, then told, and killed last. Workers with nothing left to do end by themselves at the end of their input.
 void Pool::dismiss() {
+    const auto running = [&] {
+        return std::ranges::any_of(impl_->workers, [](const auto& worker) {
+            std::error_code ignored;
+            return worker->process.running(ignored);
+        });
+    };
+    const auto wait_for = [&](std::chrono::milliseconds at_most) {
+        const auto until = Clock::now() + at_most;
+        for (auto pause = 1ms; running() && Clock::now() < until;
+             pause = std::min<std::chrono::milliseconds>(2 * pause, 50ms))
+            std::this_thread::sleep_for(pause);
+    };
     for (const auto& worker : impl_->workers) {
         worker->ended = true;
-        Impl::kill(*worker, SIGKILL);
+        boost::system::error_code ignored;
+        if (worker->retiring && worker->cases.empty())
+            worker->in.close(ignored);
+        else
+            Impl::kill(*worker, SIGTERM);
+    }
+    wait_for(time_to_end);
+    for (const auto& worker : impl_->workers) Impl::kill(*worker, SIGTERM);
+    wait_for(grace_before_kill);
+    for (const auto& worker : impl_->workers) {
+        Impl::kill(*worker, SIGKILL);  // whatever is left of its process group
         std::error_code ignored;
         worker->process.wait(ignored);
     }

@@ -91,6 +91,7 @@ TEST(Commands, CataloguesAreOneJsonValueEach) {
         EXPECT_EQ(in_folder(folder, arguments).code, 0);
     }
     EXPECT_TRUE(json::accept(in_folder(folder, {"schema"}).out));
+    EXPECT_TRUE(in_folder(folder, {"schema", "--format", "csv"}).out.starts_with("schema\n\"{"));
 }
 
 TEST(Commands, EveryObservableSaysWhatItRunsAlong) {
@@ -100,6 +101,40 @@ TEST(Commands, EveryObservableSaysWhatItRunsAlong) {
         for (const auto& observable : json::parse(shown.out)["observables"])
             EXPECT_EQ(observable["over"] == "", observable["shape"] == "scalar") << observable;
     }
+}
+
+TEST(Commands, AFileOfTheWrongKindIsAWrongQuestion) {
+    const Folder folder;
+    folder.write("good.csv", "x,y,z\n1,1,1\n3,3,3\n");
+    folder.write("header.csv", "a,b,c\n1,1,1\n");
+    folder.write("short.csv", "x,y,z\n1,1\n");
+    folder.write("none.csv", "");
+    const auto planned = [&](const std::string& file) {
+        folder.write("c.json", R"({"campaign": "c", "scene": "tpms_discharge", "factors": [{"name": "friction",
+            "levels": [0.2]}], "fixed": {"edge": 10, "packing": ")" +
+                                   file + R"("}, "design": {"kind": "lattice"}})");
+        return in_folder(folder, {"plan", "c.json"});
+    };
+    EXPECT_EQ(planned("good.csv").code, 0);
+    for (const char* file : {"header.csv", "short.csv", "none.csv"}) {
+        const auto ended = planned(file);
+        EXPECT_EQ(ended.code, 2) << file;
+        EXPECT_EQ(ended.err.find("grainsweep: c.json: $.fixed.packing: got \"" + std::string(file) +
+                                 "\"; the file is none of the kind asked for: packing, line "),
+                  0U)
+            << ended.err;
+    }
+}
+
+TEST(Commands, SolveRefusesTheDesignsThatPlanRefuses) {
+    const Folder folder;
+    folder.write("c.json", R"({"campaign": "c", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
+        "design": {"kind": "lattice"}})");
+    const auto planned = in_folder(folder, {"plan", "c.json"});
+    const auto solved_alone = in_folder(folder, {"solve", "c.json"});
+    EXPECT_EQ(planned.code, 2);
+    EXPECT_EQ(solved_alone.code, 2);
+    EXPECT_EQ(solved_alone.err, planned.err);
 }
 
 // What is found only after the file is read names the file all the same.
@@ -186,6 +221,8 @@ TEST(Commands, PathForcesTheInstructionSetOfParticles) {
         ASSERT_EQ(solved.code, 0) << solved.err;
         const auto answer = json::parse(solved.out);
         EXPECT_EQ(answer["instruction_path"], recorded);
+        for (const char* name : {"mfr", "packing_fraction", "layer_roughness", "empty_share"})
+            EXPECT_TRUE(answer["scalars"].contains(name)) << name << ": null where it is undefined";
         rates.push_back(answer["scalars"]["mfr"]);
         const auto rows = json::parse(
             in_folder(folder, {"query", database, "SELECT instruction_path FROM provenance", "--format", "json"}).out);

@@ -2,6 +2,7 @@
 #include "tests/support/process.hpp"
 
 #include <gtest/gtest.h>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
@@ -53,6 +54,34 @@ TEST(Outcomes, ExplainTellsEveryAttempt) {
     EXPECT_EQ(explained.code, 0) << explained.err;
     EXPECT_NE(explained.out.find("signal 9"), std::string::npos) << explained.out;
     EXPECT_NE(explained.out.find("crashed"), std::string::npos);
+    EXPECT_NE(explained.out.find("3 of its attempts failed, and limits.attempts is 3: it will not run again unless"),
+              std::string::npos)
+        << explained.out;
+    const auto replayed = run_program({"replay", "trouble.db", id}, folder.path());
+    EXPECT_NE(replayed.err.find("this case crashed its worker"), std::string::npos) << replayed.err;
+    // More attempts allowed, and none of them yet: the next run would.
+    folder.write("c.json", config("\"crash\"", R"({"attempts": 5})"));
+    run_program({"run", "c.json", "--quiet", "--max-cases", "1"}, folder.path());
+    const std::string other =
+        query(folder, "SELECT case_id FROM trouble WHERE outcome = 'crashed' AND attempts = 3 LIMIT 1")[0]["case_id"];
+    const auto again = run_program({"explain", "trouble.db", other}, folder.path());
+    EXPECT_NE(again.out.find("3 of its attempts failed, and limits.attempts is 5: the next run tries it again"),
+              std::string::npos)
+        << again.out;
+}
+
+TEST(Outcomes, ExplainKnowsWhereACampaignStopped) {
+    const Folder folder;
+    folder.write("c.json",
+                 R"({"campaign": "trouble", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
+      "design": {"kind": "halton", "sequences": 8, "points": 4000},
+      "convergence": {"observable": "y", "rule": "replicates", "gates": ["mean"], "tolerance": 0.05, "block": 64}})");
+    ASSERT_EQ(run_program({"run", "c.json", "--quiet"}, folder.path()).code, 0);
+    const std::string id = query(folder, "SELECT case_id FROM trouble ORDER BY point DESC LIMIT 1")[0]["case_id"];
+    const auto explained = run_program({"explain", "trouble.db", id}, folder.path());
+    EXPECT_NE(explained.out.find("it was never begun and will not be: campaign 'trouble' converged and stopped at "),
+              std::string::npos)
+        << explained.out;
 }
 
 TEST(Outcomes, ACrashThatPassesIsForgiven) {
@@ -79,6 +108,36 @@ TEST(Outcomes, AHangingCaseIsStoppedAtItsWallTime) {
     ASSERT_EQ(rows.size(), 2U);
     EXPECT_EQ(rows[1]["outcome"], "timed_out");
     EXPECT_EQ(rows[1]["n"], 4);
+    // How long it took is known, what it cost is not.
+    const auto cost =
+        query(folder, "SELECT wall_seconds, cpu_seconds FROM attempt WHERE outcome = 'timed_out' ORDER BY 1")[0];
+    EXPECT_GT(cost["wall_seconds"], 0.45);
+    EXPECT_LT(cost["wall_seconds"], 10);
+    EXPECT_TRUE(cost["cpu_seconds"].is_null());
+}
+
+// The time a launcher takes, a queue perhaps, is not the case's.
+TEST(Outcomes, TheWallTimeBeginsWhenTheWorkerIsReady) {
+    const Folder folder;
+    folder.write("c.json",
+                 R"({"campaign": "trouble", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
+      "design": {"kind": "random", "points": 3}, "limits": {"wall_seconds": 0.5, "attempts": 1},
+      "execution": {"launcher": ["/bin/sh", "-c", "sleep 1.5; exec \"$@\"", "sh"]}})");
+    const auto run = run_program({"run", "c.json", "-j", "1", "--quiet"}, folder.path());
+    EXPECT_EQ(run.code, 0) << run.err;
+}
+
+// What launched a worker is not killed while it tidies up behind it, after a run to the end and after a second Ctrl-C.
+TEST(Outcomes, ALauncherMayTidyUp) {
+    const Folder folder;
+    folder.write("c.json",
+                 R"({"campaign": "trouble", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
+      "design": {"kind": "random", "points": 4},
+      "execution": {"launcher": ["/bin/sh", "-c", "\"$@\"; sleep 0.3; echo tidy >> tidied", "sh"]}})");
+    ASSERT_EQ(run_program({"run", "c.json", "-j", "2", "--quiet"}, folder.path()).code, 0);
+    std::ifstream tidied(folder / "tidied");
+    std::string first, second;
+    EXPECT_TRUE(tidied >> first >> second) << "two workers were launched, and left to end";
 }
 
 TEST(Outcomes, AnUnstableCaseIsSettledWithItsReasonAndWithoutNumbers) {
@@ -143,6 +202,26 @@ TEST(Outcomes, ALauncherThatCannotStartIsABrokenWorldNotAFailedCase) {
     const auto run = run_program({"run", "c.json", "--quiet"}, folder.path());
     EXPECT_EQ(run.code, 3) << run.err;
     EXPECT_NE(run.err.find("/bin/false"), std::string::npos) << run.err;
+}
+
+TEST(Outcomes, ALauncherThatDoesNotExistIsAWrongQuestion) {
+    for (const char* launcher : {"nosuchprogram", "./nosuch", "/tmp"}) {
+        const Folder folder;
+        folder.write("c.json",
+                     R"({"campaign": "trouble", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
+          "design": {"kind": "random", "points": 5}, "execution": {"launcher": [")" +
+                         std::string(launcher) + R"("]}})");
+        const auto run = run_program({"run", "c.json", "--quiet"}, folder.path());
+        EXPECT_EQ(run.code, 2) << run.err;
+        EXPECT_EQ(run.err, "grainsweep: c.json: $.execution.launcher[0]: got " + std::string(launcher) +
+                               "; there is no such program to start workers with.\n");
+        EXPECT_FALSE(std::filesystem::exists(folder / "trouble.db"));
+    }
+    const Folder folder;
+    folder.write("c.json", config("\"crash\""));
+    const auto run = run_program({"run", "c.json", "--db", "missing/x.db"}, folder.path());
+    EXPECT_EQ(run.code, 2);
+    EXPECT_NE(run.err.find("--db: got missing/x.db; there is no folder"), std::string::npos) << run.err;
 }
 
 TEST(Outcomes, ALauncherPrefixCarriesTheWorker) {

@@ -99,6 +99,29 @@ TEST(SpringContacts, FrictionConservesAngularMomentum) {
     EXPECT_NEAR(angular(), before, 0.02 * std::abs(before));
 }
 
+// Two walls slide past each other: what rests against one of them turns with half the vorticity, which the half of
+// its neighbourhood that is fluid tells.
+TEST(SpringContacts, TurnWithTheShearBesideAWall) {
+    const Sphere sphere{3.49, 3.1e-4, 18, 1.09e6, 1};
+    const double r = sphere.radius();
+    const double shear = 40;
+    flow::Sides sides = endless;
+    sides[1] = {flow::NoSlip{{-0.5 * shear, 0, 0}}, flow::NoSlip{{0.5 * shear, 0, 0}}};
+    const Grid grid = cube(8);
+    const double dt = 1e-5;
+    auto fluid = still_fluid(grid, sides, 18, dt);
+    fluid.set_velocity([&](double, double y, double) { return Vec3{shear * y, 0, 0}; });
+    const Walls around{{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, {true, false, true}, 0, 1};  // contact of the centre
+    Cloud cloud;
+    cloud.position = {{0, 0.5, 0}, {0.25, 0.5 - 0.4 * r, 0.25}};
+    cloud.velocity = {{0.5 * shear, 0, 0}, {0.5 * shear, 0, 0}};
+    const HystereticSpring smooth{SpringContacts::stiffness(sphere, 0.01, dt), 0.8, 0};
+    Dense<SpringContacts> together(std::move(fluid), {}, Motion<SchillerNaumann>(sphere, dt), around, cloud,
+                                   SpringContacts(sphere, around, smooth, 2), 0.1);
+    for (int s = 0; s < 400; ++s) together.step();
+    for (const Vec3& spin : together.interaction().spins()) EXPECT_NEAR(spin[2], -0.5 * shear, 0.03 * shear);
+}
+
 // Dense particles that vibrate against a wall rest on it with the overlap asked for, and the fluid does not feel the
 // force that the wall takes.
 TEST(SpringContacts, AParticlePressedToAWallRestsThere) {
@@ -121,6 +144,24 @@ TEST(SpringContacts, AParticlePressedToAWallRestsThere) {
     auto falling = setting.together<SpringContacts>({}, cloud);
     for (int s = 0; s < 20; ++s) falling.step();
     EXPECT_LT(fluid, 0.05 * observables::peak_velocity(setting.grid, falling.fluid().velocity()));
+}
+
+// Displacement instead of springs: not a part in 1e9 of the force reaches the fluid, whether the step is shorter or
+// longer than the relaxation time.
+TEST(ProjectedContacts, WhatRestsOnAWallGivesTheFluidNothing) {
+    const Sphere sphere{3.49, 3.1e-4, 18, 1.09e8, 1};  // tau = 6.9e-5
+    const double r = sphere.radius();
+    for (const double dt : {5e-6, 1e-4}) {
+        const Setting setting{cube(6), closed, sphere, dt, 2};
+        Cloud cloud;
+        cloud.position = {{0, 0.5 - 1.02 * r, 0}, {0.2, 0.5 - 1.5 * r, 0.2}};
+        cloud.velocity = {{}, {}};
+        auto together = setting.together<ProjectedContacts>({}, cloud);
+        for (int s = 0; s < 0.05 / dt; ++s) together.step();  // until the fluid is at rest, too
+        const double drive = together.budget().drive;
+        EXPECT_NEAR(drive, 2 * 2.49 * 1.09e8 * sphere.volume(), 1e-9 * drive);
+        EXPECT_LT(std::abs(together.budget().given), 1e-9 * drive) << dt;
+    }
 }
 
 // A cloud pressed to a wall by a steady force: springs without friction and displacement end in the same layer, and

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 
 using namespace grainsweep;
 using namespace grainsweep::tests;
@@ -57,19 +58,18 @@ TEST(TwoWay, ConservesMomentumToRoundOff) {
     }
 }
 
-// A uniform cloud is a uniform excess density: the pressure carries it and nothing moves, beside walls least of all.
-// Eight particles in every cell, held there by a tiny slip. The same particles gathered in one half of the box do stir
-// the fluid.
+// A uniform cloud is a uniform excess density: the pressure carries it and nothing moves, beside walls least of all,
+// also where the cells of the grid are unequal. Particles on a lattice, held there by a tiny slip. The same particles
+// gathered in one half of the box do stir the fluid.
 TEST(TwoWay, AUniformCloudMovesNothing) {
     const int n = 10;
-    const Grid grid = cube(n);
     const flow::Sides sides{walls, walls, walls};
     const Sphere sphere{2.65, 3.1e-6, 18, 1e6, 1};
     const double dt = 1e-6;
     const Walls box{{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, {}, 0, 1};
-    const auto speed = [&](double squeeze) {
+    const auto speed = [&](double clustering, int m, double squeeze, Hats hats) {
+        const Grid grid = cube(n, clustering);
         Cloud cloud;
-        const int m = 2 * n;
         for (int k = 0; k < m; ++k)
             for (int j = 0; j < m; ++j)
                 for (int i = 0; i < m; ++i) {
@@ -79,11 +79,18 @@ TEST(TwoWay, AUniformCloudMovesNothing) {
                     cloud.velocity.push_back({});
                 }
         Together<TwoWay<ForceForm>> pair(still_fluid(grid, sides, 18, dt), {}, Motion<SchillerNaumann>(sphere, dt), box,
-                                         cloud, TwoWay<ForceForm>(grid, sides, sphere, cloud.size(), 0.1));
+                                         cloud, TwoWay<ForceForm>(grid, sides, sphere, cloud.size(), 0.1, hats));
         for (int s = 0; s < 10; ++s) pair.step();
         return observables::peak_velocity(grid, pair.fluid().velocity());
     };
-    EXPECT_LT(speed(1), 1e-2 * speed(0.5));
+    EXPECT_LT(speed(0, 2 * n, 1, Hats::linear), 1e-2 * speed(0, 2 * n, 0.5, Hats::linear));
+    const int fine = 48;  // as fine as it takes for a lattice to be uniform on these cells
+    const double even = speed(1.5, fine, 1, Hats::linear);
+    const double not_levelled = speed(1.5, fine, 1, Hats::metric);
+    const double stirred = speed(1.5, fine, 0.5, Hats::linear);
+    std::printf("clustered: %.3g, without levelling %.3g, stirred %.3g\n", even, not_levelled, stirred);
+    EXPECT_LT(even, 1e-2 * stirred);
+    EXPECT_LT(even, 0.2 * not_levelled);
 }
 
 // A layer of dilute cloud answers the vibration as a layer of cold fluid with the same excess density,

@@ -207,7 +207,7 @@ TEST(Thermovibration, ClusteredGridsMeetTheHeatedCube) {
         std::int64_t cells;
     };
     for (const Cube& cube : {Cube{1e3, 1.0700, 1.2, 1e-3, 0.6, 24}, Cube{1e4, 2.0542, 1.4, 4e-4, 0.5, 32},
-                             Cube{1e5, 4.3370, 1.8, 1.6e-4, 0.4, 40}}) {
+                             Cube{1e5, 4.3370, 1.8, 1.6e-4, 0.4, 40}, Cube{1e6, 8.6407, 2.0, 5e-5, 0.3, 28}}) {
         Inputs inputs = info().defaults();
         inputs["particles"] = std::int64_t{0};
         inputs["frequency"] = 0.0;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -80,6 +81,49 @@ TEST(ThermovibrationCorners, FinishOrSayWhatWentWrong) {
             }
 }
 
+// Found by a review: the solenoidal kernel met a position that is no number.
+TEST(ThermovibrationCorners, SayWhatWentWrongInEveryKernel) {
+    for (const char* kernel : {"trilinear", "solenoidal"})
+        for (const char* coupling : {"one_way", "two_way", "ddpm", "cfd_dem"}) {
+            Inputs inputs = tiny();
+            inputs["interpolation"] = std::string(kernel);
+            inputs["coupling"] = std::string(coupling);
+            inputs["contact"] = std::string("projection");
+            inputs["frequency"] = 0.0;
+            inputs["time_step"] = 0.1;
+            inputs["rayleigh"] = 1e9;
+            inputs["prandtl"] = 1.0;
+            inputs["clustering"] = 3.0;
+            inputs["cells"] = std::int64_t{24};
+            inputs["end_time"] = 20.0;
+            NoArtefacts none;
+            const auto scene = info().make(inputs, 1, none);
+            while (!scene->finished() && scene->health().stable()) scene->advance(scene->time() + 1);
+            EXPECT_NE(scene->health().reason.find("t = "), std::string::npos) << kernel << ' ' << coupling;
+        }
+}
+
+// Particles swing with the vibration: one look at the same phase of every period would find them slow. The cloud of
+// run 29 vibrated 37 times as much crosses several cells a step at 16, 17 and 24 steps a period.
+TEST(ThermovibrationCorners, LookAtEveryPhaseOfTheVibration) {
+    for (const char* start : {"with_flow", "periodic_flow"})
+        for (const std::int64_t steps : {8, 16, 17, 24}) {
+            Inputs inputs = tiny();
+            inputs["rayleigh"] = 3.04e5;
+            inputs["frequency"] = 23300.0;
+            inputs["acceleration"] = 4e10;
+            inputs["density_ratio"] = 3.49;
+            inputs["cells"] = std::int64_t{20};
+            inputs["particle_start"] = std::string(start);
+            inputs["steps_per_period"] = steps;
+            inputs["end_time"] = 3 * 2 * 3.14159265358979323846 / 23300;
+            NoArtefacts none;
+            const auto scene = info().make(inputs, 1, none);
+            while (!scene->finished() && scene->health().stable()) scene->advance(scene->time() + 1);
+            EXPECT_NE(scene->health().reason.find("cells in a step"), std::string::npos) << start << ' ' << steps;
+        }
+}
+
 namespace {
 
 const char* const levels[] = {"one_way", "two_way", "ddpm", "ddpm_ktgf", "cfd_dem"};
@@ -110,7 +154,8 @@ Observations answer(const char* level, const Inputs& changes, double periods, st
 }  // namespace
 
 // Light and heavy particles, small and large, weak and violent convection: no energy out of nothing. The fluid cannot
-// be faster than the force on the densest cloud could make it in a quarter of a period.
+// be faster than the forces could make it in a quarter of a period where the cloud, random at the start, is thirty
+// times as dense as on the mean.
 TEST(ThermovibrationCorners, StayBoundedOverDecades) {
     std::vector<Inputs> corners;
     for (const double xi : {0.01, 0.1, 10.0, 100.0}) corners.push_back({{"density_ratio", xi}});
@@ -133,15 +178,18 @@ TEST(ThermovibrationCorners, StayBoundedOverDecades) {
                 const auto given = changes.find(name);
                 return given == changes.end() ? otherwise : std::get<double>(given->second);
             };
-            const double heavy = std::abs(number("density_ratio", 1.65) - 1) * 0.74;
+            const double radius = std::sqrt(4.5 * number("stokes", 3.1e-6));
+            const double filled = 400 * 4.0 / 3.0 * 3.14159265358979323846 * radius * radius * radius;
+            const double heavy = std::abs(number("density_ratio", 1.65) - 1) * std::min(0.74, 30 * filled);
             const double drive = 18 * number("rayleigh", 4.81e5) + heavy * 1.72e9;
             EXPECT_LT(found.scalars.at("peak_velocity"), 2 * drive / 1.667e4) << level;
         }
     EXPECT_GE(stable, 40);  // of 60
 }
 
-// From 8 steps per period on the energy of the flow is of second order in the step at every level: what a level adds
-// one step late is a small part of it.
+// From 8 steps per period on the energy of the flow is of second order in the step at every level where the cloud is
+// dilute (1e-4 here): what a level adds a step late is small then. It is a share of density ratio times fraction, of
+// first order: the next test.
 TEST(ThermovibrationCorners, EightStepsPerPeriodAreSecondOrderAlready) {
     for (const char* level : levels) {
         std::string reason;
@@ -155,6 +203,29 @@ TEST(ThermovibrationCorners, EightStepsPerPeriodAreSecondOrderAlready) {
         const double fine = energy(32);
         EXPECT_NEAR(std::log2((coarse - middle) / (middle - fine)), 2, 0.25) << level;
         EXPECT_LT(std::abs(middle - fine), 0.02 * fine) << level;
+    }
+}
+
+// A twentieth of the volume is particles 3.49 times as heavy as the fluid: their inertia, handed on a step late, is a
+// sixth of the whole. Between first and second order, and 2 % at 24 steps per period.
+TEST(ThermovibrationCorners, HeavyCloudsConvergeWithTheStep) {
+    for (const char* level : {"two_way", "ddpm"}) {
+        std::string reason;
+        std::vector<double> energy;
+        for (const std::int64_t steps : {24, 48, 96, 192}) {
+            const auto found = answer(level,
+                                      {{"steps_per_period", steps},
+                                       {"density_ratio", 3.49},
+                                       {"stokes", 1e-4},
+                                       {"particles", std::int64_t{1250}},
+                                       {"acceleration", 0.0}},
+                                      3, reason);
+            ASSERT_EQ(reason, "") << level << ' ' << steps;
+            energy.push_back(found.scalars.at("kinetic_energy"));
+        }
+        EXPECT_GT(std::log2((energy[0] - energy[1]) / (energy[1] - energy[2])), 0.9) << level;
+        EXPECT_GT(std::log2((energy[1] - energy[2]) / (energy[2] - energy[3])), 0.9) << level;
+        EXPECT_LT(std::abs(energy[0] - energy[3]), 0.03 * energy[3]) << level;
     }
 }
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -45,6 +46,32 @@ TEST(Spreading, KeepsTotalsAndUniformDensities) {
             }
 }
 
+// What linear weights leave of a uniform density, levelled: the widths. Sums stay, nothing becomes negative.
+TEST(Levelling, EvensWhatAUniformDensityDeposits) {
+    for (const Line& line : lines()) {
+        const int n = line.axis.cells();
+        Eigen::VectorXd deposit = Eigen::VectorXd::Zero(n);
+        const int places = 20000 * n;
+        for (int p = 0; p < places; ++p) {
+            const double x = line.axis.low() + line.axis.length() * (p + 0.5) / places;
+            const auto w = Trilinear::across(line.axis, line.periodic, x, Trilinear::find(line.axis, x));
+            for (int a = 0; a < 2; ++a) {
+                const int cell = line.periodic ? (w.first + a - 1 + n) % n : std::clamp(w.first + a - 1, 0, n - 1);
+                deposit(cell) += w.weight[static_cast<std::size_t>(a)] * line.axis.length() / places;
+            }
+        }
+        const Eigen::MatrixXd level = levelling_matrix(line.axis, line.periodic, Nodes::cells);
+        const Eigen::VectorXd widths = node_lengths(line.axis, line.periodic, Nodes::cells);
+        EXPECT_LT((level * deposit - widths).cwiseAbs().maxCoeff(), 1e-6);
+        EXPECT_LT((level.transpose() * Eigen::VectorXd::Ones(n) - Eigen::VectorXd::Ones(n)).cwiseAbs().maxCoeff(),
+                  1e-14);
+        EXPECT_GE(level.minCoeff(), 0);
+        if (!line.axis.is_uniform() && n > 3) {
+            EXPECT_GT((deposit - widths).cwiseQuotient(widths).cwiseAbs().maxCoeff(), 0.05) << "there was work to do";
+        }
+    }
+}
+
 // The divergence of a spread flux is the spread divergence: what lets a volume fraction and its flux agree.
 TEST(Spreading, CommutesWithTheDivergence) {
     for (const Line& line : lines())
@@ -68,6 +95,15 @@ TEST(Spreading, CommutesWithTheDivergence) {
                 EXPECT_EQ(spread(0), 0);
             }
             EXPECT_LT((divergence(spread) - of_cells * divergence(flux)).cwiseAbs().maxCoeff(), 1e-10);
+            // Levelling works on amounts, not on densities.
+            const Eigen::VectorXd widths = node_lengths(line.axis, line.periodic, Nodes::cells);
+            const Eigen::VectorXd levelled = levelling_matrix(line.axis, line.periodic, Nodes::flux) * flux;
+            if (!line.periodic) {
+                EXPECT_EQ(levelled(0), 0);
+            }
+            const Eigen::VectorXd left =
+                levelling_matrix(line.axis, line.periodic, Nodes::cells) * divergence(flux).cwiseProduct(widths);
+            EXPECT_LT((divergence(levelled).cwiseProduct(widths) - left).cwiseAbs().maxCoeff(), 1e-13);
         }
 }
 

@@ -45,6 +45,7 @@ TEST(StoreExpression, Decides) {
     EXPECT_TRUE(holds("case when particles = 7 then true else false end"));
     EXPECT_TRUE(holds("\"gap\" > diameter -- a remark"));
     EXPECT_TRUE(holds("inputs.gap > diameter"));
+    EXPECT_TRUE(holds("cohesion_law != ') (' and (gap > 0) /* ) */ -- ("));
     EXPECT_TRUE(holds("\"select\" = 1"));
     EXPECT_TRUE(holds("true"));
     EXPECT_FALSE(holds("0"));
@@ -102,6 +103,9 @@ TEST(StoreExpression, OnlyOneDeterministicExpressionOfTheCase) {
                                               "gap) FROM inputs /*",
                                               "gap)) FROM inputs /*",
                                               "1) UNION SELECT (1",
+                                              "gap > 0.9) or (1",
+                                              "0) + (1",
+                                              "gap > 0 /* ( */ )",
                                               "gap > ?",
                                               "gap > :limit",
                                               "gap; 1",

@@ -3,9 +3,11 @@
 #include "solver/dem/material.hpp"
 #include "solver/dem/shaking.hpp"
 #include "solver/dem/time_step.hpp"
+#include "solver/particles/packing.hpp"
 
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -26,11 +28,17 @@ ParameterSpec whole(std::string name, std::string meaning, std::int64_t standard
     return {std::move(name), "1", std::move(meaning), standard, interval, std::move(relevant_if)};
 }
 
-/// A parameter whose value is one of some words; the first is the default.
+/// A parameter whose value is one of some words; the first is the default. check_file: it may be a file as well.
 ParameterSpec word(std::string name, std::string meaning, std::vector<std::string> allowed,
-                   std::vector<Relevance> relevant_if = {}, bool file_allowed = false) {
+                   std::vector<Relevance> relevant_if = {},
+                   std::function<void(std::string_view contents)> check_file = {}) {
     std::string standard = allowed.front();
-    return {std::move(name),       "", std::move(meaning), std::move(standard), Words{std::move(allowed), file_allowed},
+    const bool file_allowed = check_file != nullptr;
+    return {std::move(name),
+            "",
+            std::move(meaning),
+            std::move(standard),
+            Words{std::move(allowed), file_allowed, std::move(check_file)},
             std::move(relevant_if)};
 }
 
@@ -94,7 +102,10 @@ std::vector<ParameterSpec> tpms_discharge_parameters() {
         number("edge", "particle diameters", "edge of the cubic cell, L", 100, {8, 200}),
         number("shell", "particle diameters", "largest thickness of the frozen shell", 4, {0.5, 20}),
         word("packing", "random close packing made for the case, or a CSV file of centres (x,y,z in diameters)",
-             {"generated"}, {}, true),
+             {"generated"}, {},
+             [](std::string_view csv) {
+                 (void)particles::read_packing(csv, std::numeric_limits<double>::infinity());  // whatever the edge
+             }),
         number("packing_fraction", "1", "volume fraction of the generated packing", 0.62, {0.05, 0.635}, {generated}),
         whole("packing_seed", "which generated packing; 0: another one for each case and replicate", 1, {0, 9.0e15},
               {generated}),
