@@ -344,14 +344,13 @@ bool Pool::can_start(const std::string& program) {
 }
 
 // A launcher has things to do after its worker has ended (srun gives its part of the machine back), so both are
-// asked, then told, and killed last. Workers with nothing left to do end by themselves at the end of their input.
+// asked, then told, and killed last. Workers that were retired and have nothing left to do end by themselves.
 void Pool::dismiss() {
-    const auto running = [&] {
-        return std::ranges::any_of(impl_->workers, [](const auto& worker) {
-            std::error_code ignored;
-            return worker->process.running(ignored);
-        });
+    const auto runs = [](const auto& worker) {
+        std::error_code ignored;
+        return worker->process.running(ignored);
     };
+    const auto running = [&] { return std::ranges::any_of(impl_->workers, runs); };
     const auto wait_for = [&](std::chrono::milliseconds at_most) {
         const auto until = Clock::now() + at_most;
         for (auto pause = 1ms; running() && Clock::now() < until;
@@ -360,17 +359,15 @@ void Pool::dismiss() {
     };
     for (const auto& worker : impl_->workers) {
         worker->ended = true;
-        boost::system::error_code ignored;
-        if (worker->retiring && worker->cases.empty())
-            worker->in.close(ignored);
-        else
-            Impl::kill(*worker, SIGTERM);
+        if (!worker->retiring || !worker->cases.empty()) Impl::kill(*worker, SIGTERM);
     }
     wait_for(time_to_end);
-    for (const auto& worker : impl_->workers) Impl::kill(*worker, SIGTERM);
+    for (const auto& worker : impl_->workers)
+        if (runs(worker)) Impl::kill(*worker, SIGTERM);
     wait_for(grace_before_kill);
     for (const auto& worker : impl_->workers) {
-        Impl::kill(*worker, SIGKILL);  // whatever is left of its process group
+        if (runs(worker)) Impl::kill(*worker, SIGKILL);
+        ::kill(-worker->process.id(), SIGKILL);  // whatever is left of its process group
         std::error_code ignored;
         worker->process.wait(ignored);
     }
