@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 using namespace grainsweep;
 using namespace grainsweep::tests;
@@ -91,6 +92,52 @@ TEST(TwoWay, AUniformCloudMovesNothing) {
     std::printf("clustered: %.3g, without levelling %.3g, stirred %.3g\n", even, not_levelled, stirred);
     EXPECT_LT(even, 1e-2 * stirred);
     EXPECT_LT(even, 0.2 * not_levelled);
+}
+
+// A steady point force in a periodic box: the Stokeslet of the kernel's Gaussian (Hasimoto 1959, doi
+// 10.1017/S0022112059000222, for a point),
+//   u(x) = F/nu sum over k != 0 of (e - k (k.e)/k^2)/k^2 exp(-k^2 w^2/2) cos(k.(x - X)),
+// far from the particle as at its place, where it is what the particle feels of itself.
+TEST(TwoWay, APointForceIsAStokeslet) {
+    const int n = 32;
+    const Grid grid = cube(n);
+    const flow::Sides sides{periodic, periodic, periodic};
+    const double width = 0.08;
+    const Vec3 x{0.013, -0.021, 0.007};
+    auto fluid = still_fluid(grid, sides, 1, 1e-3);
+    FaceDeposit deposit(grid, sides, width);
+    flow::FaceVectors force = flow::face_vectors(grid);
+    Footing<Trilinear>(grid, {true, true, true}, x).scatter({0, 1, 0}, force);
+    deposit.spread(force);
+    for (int s = 0; s < 300; ++s) fluid.step(force);  // the slowest mode decays as exp(-4 pi^2 t)
+    const double drift = fluid.time();                // of the whole box, which nothing holds
+    const auto exact = [&](const Vec3& at) {
+        constexpr double pi = std::numbers::pi;
+        Vec3 u{};
+        const int modes = 10;
+        for (int a = -modes; a <= modes; ++a)
+            for (int b = -modes; b <= modes; ++b)
+                for (int c = -modes; c <= modes; ++c) {
+                    if (a == 0 && b == 0 && c == 0) continue;
+                    const Vec3 k{2 * pi * a, 2 * pi * b, 2 * pi * c};
+                    const double square = k[0] * k[0] + k[1] * k[1] + k[2] * k[2];
+                    const double phase = k[0] * (at[0] - x[0]) + k[1] * (at[1] - x[1]) + k[2] * (at[2] - x[2]);
+                    const double amplitude = std::exp(-0.5 * square * width * width) / square * std::cos(phase);
+                    for (std::size_t d = 0; d < 3; ++d) u[d] += ((d == 1 ? 1 : 0) - k[d] * k[1] / square) * amplitude;
+                }
+        return u;
+    };
+    const double self = exact(x)[1];
+    // Alone in infinite space less what its images take away, 2.8373/(6 pi nu L) for points (Hasimoto).
+    constexpr double pi = std::numbers::pi;
+    EXPECT_NEAR(self, 1 / (3 * std::pow(pi, 1.5) * std::sqrt(2.0) * width) - 2.8373 / (6 * pi), 0.01 * self);
+    for (const Vec3& apart : {Vec3{}, Vec3{0, 0.12, 0}, Vec3{0.12, 0, 0}, Vec3{0.1, 0.1, 0}, Vec3{0.2, 0.1, -0.15}}) {
+        const Vec3 at{x[0] + apart[0], x[1] + apart[1], x[2] + apart[2]};
+        const Vec3 found = Footing<Trilinear>(grid, {true, true, true}, at).gather(fluid.velocity());
+        const Vec3 expected = exact(at);
+        for (std::size_t d = 0; d < 3; ++d)
+            EXPECT_NEAR(found[d] - (d == 1 ? drift : 0), expected[d], 0.02 * self) << apart[0] << ' ' << apart[1];
+    }
 }
 
 // A layer of dilute cloud answers the vibration as a layer of cold fluid with the same excess density,
