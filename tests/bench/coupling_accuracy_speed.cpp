@@ -34,7 +34,7 @@ double seconds_since(std::clock_t start) {
 struct Vacuum {
     double vibration = 0;
     coupling::Surroundings operator()(std::size_t) const { return {}; }
-    [[nodiscard]] Vec3 rotation(std::size_t) const { return {}; }
+    [[nodiscard]] Vec3 rotation(const Vec3&) const { return {}; }
 };
 
 /// Relative velocity after over before; the gap at the start shifts the sub-steps against the contact.

@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(
               "'Series_1'?"},
         Wrong{R"([{"op": "replace", "path": "/campaign", "value": "sqlite_x"}])",
               "$.campaign: got \"sqlite_x\"; the database has a table or view of this name; take another. Did you mean "
-              "'sqlite_x_1'?"},
+              "'my_sqlite_x'?"},
         Wrong{R"([{"op": "move", "from": "/design", "path": "/desing"}])",
               "$.desing: unknown key; $ has 'campaign', 'scene', 'factors', 'fixed', 'where', 'design', 'replicates', "
               "'seed', 'convergence', 'accuracy', 'limits', 'execution' or 'notes'. Did you mean 'design'?"},
