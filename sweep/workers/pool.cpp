@@ -135,7 +135,7 @@ struct Pool::Impl {
                 take_off(*worker, done->result.attempt);
                 events.emplace_back(Finished{std::move(done->result), done->checkpointed});
             } else if (auto* parked = std::get_if<Parked>(&message)) {
-                const bool begun = worker->ready && parked->attempt == worker->cases.front();
+                const bool begun = worker->ready && !worker->cases.empty() && parked->attempt == worker->cases.front();
                 const double seconds = begun ? seconds_since(worker->began) : 0;
                 take_off(*worker, parked->attempt);
                 events.emplace_back(GivenBack{parked->attempt, seconds});

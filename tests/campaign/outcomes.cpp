@@ -127,7 +127,7 @@ TEST(Outcomes, TheWallTimeBeginsWhenTheWorkerIsReady) {
     EXPECT_EQ(run.code, 0) << run.err;
 }
 
-// What launched a worker is not killed while it tidies up behind it, after a run to the end and after a second Ctrl-C.
+// What launched a worker is not killed while it tidies up behind it.
 TEST(Outcomes, ALauncherMayTidyUp) {
     const Folder folder;
     folder.write("c.json",
