@@ -98,16 +98,11 @@ std::set<std::string> check(Connection& db, std::string_view expression, std::sp
     const auto finish = [&] { db.authorize({}); };
     try {
         if (unbalanced(expression)) throw RefusedSql("a bracket is not closed, or closed without being opened");
-        // The line break ends a comment. An expression that closes our bracket and goes on as a statement of its
-        // own is caught by the second form, which has a bracket more.
+        // An expression with brackets of its own in order cannot close ours; the line break ends a comment.
         const std::string plain = fmt::format("SELECT ({}\n) FROM inputs", expression);
-        const Statement first = db.prepare(plain);
-        if (first.parameters() > 0) throw RefusedSql("names stand as they are, without ? or :");
-        if (first.columns() != 1 || !first.tail().empty()) throw RefusedSql("one expression is expected");
-        selects = 0;
-        const std::string nested = fmt::format("SELECT (({}\n)) FROM inputs", expression);
-        const Statement second = db.prepare(nested);
-        if (second.columns() != 1 || !second.tail().empty()) throw RefusedSql("one expression is expected");
+        const Statement select = db.prepare(plain);
+        if (select.parameters() > 0) throw RefusedSql("names stand as they are, without ? or :");
+        if (select.columns() != 1 || !select.tail().empty()) throw RefusedSql("one expression is expected");
     } catch (const RefusedSql& refused) {
         finish();
         if (!forbidden.empty()) {
