@@ -1,4 +1,6 @@
 // The include rules of the house: every #include of every file is read, and a forbidden one fails.
+#include "tests/support/places.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +9,8 @@
 #include <regex>
 #include <string>
 #include <vector>
+
+using namespace grainsweep;
 
 namespace {
 
@@ -25,7 +29,7 @@ bool starts_with_any(const std::string& text, const std::vector<std::string>& pr
 std::vector<fs::path> sources(const std::vector<std::string>& folders) {
     std::vector<fs::path> found;
     for (const auto& folder : folders) {
-        const fs::path root = fs::path(GRAINSWEEP_SOURCE) / folder;
+        const fs::path root = tests::source(folder);
         if (!fs::exists(root)) continue;
         for (const auto& entry : fs::recursive_directory_iterator(root)) {
             const auto extension = entry.path().extension();
@@ -46,7 +50,7 @@ std::vector<Include> all_includes() {
         while (std::getline(stream, line)) {
             std::smatch match;
             if (std::regex_search(line, match, pattern)) {
-                includes.push_back({fs::relative(path, GRAINSWEEP_SOURCE).string(), match[2], match[1] == "\""});
+                includes.push_back({fs::relative(path, tests::source()).string(), match[2], match[1] == "\""});
             }
         }
     }

@@ -25,6 +25,7 @@
 #include "solver/dem/fast/mixed_engine.hpp"
 #include "tests/support/granular_beds.hpp"
 #include "tests/support/peer_programs.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/process.hpp"
 #include "tests/support/reference.hpp"
 
@@ -195,7 +196,7 @@ double wall_seconds(const std::vector<std::string>& argv, const std::filesystem:
 
 void campaign() {
     constexpr std::size_t sample = 24;
-    const std::string config = std::string(GRAINSWEEP_SOURCE) + "/configs/wu2020_lds.json";
+    const std::string config = tests::source("configs/wu2020_lds.json");
     const test::Folder folder;
     const auto planned = test::run_program({"plan", config, "--format", "json"}, folder.path());
     const auto plan = nlohmann::json::parse(planned.out);

@@ -45,8 +45,7 @@ constexpr auto mixed = Method::Precision::mixed;
 
 /// Largest difference to a recorded trajectory: positions over the diameter, speeds and R w over the largest speed.
 double deviation(const std::string& name, const dem::Setup& setup, Method::Precision precision) {
-    const auto table =
-        tests::read_table(std::filesystem::path(GRAINSWEEP_SOURCE) / "tests/reference/rolling" / (name + ".csv"));
+    const auto table = tests::read_table(tests::reference("rolling/" + name + ".csv"));
     double fastest = 0;
     for (const auto& sphere : setup.spheres)
         fastest =

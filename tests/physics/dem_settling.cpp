@@ -77,7 +77,6 @@ std::vector<double> distances(const dem::State& state, const tests::Table& table
 }  // namespace
 
 TEST(DemSettling, FollowsLiggghtsParticleByParticle) {
-    if (!exists(tests::reference("spreading/init.data"))) GTEST_SKIP() << "no reference bed here";
     const auto setup = mini_scene();
     const auto table = tests::read_table(tests::reference("spreading/mini_settle.csv"));
     const LastingMindlin mindlin{dem::mindlin(setup.material, setup.time_step)};
@@ -100,7 +99,6 @@ TEST(DemSettling, FollowsLiggghtsParticleByParticle) {
 
 // Ours, which forgets at separation, differs only where somebody touched twice.
 TEST(DemSettling, ForgettingAtSeparationMattersToFew) {
-    if (!exists(tests::reference("spreading/init.data"))) GTEST_SKIP() << "no reference bed here";
     const auto table = tests::read_table(tests::reference("spreading/mini_settle.csv"));
     const auto engine = dem::make_engine(mini_scene(), {});
     engine->run(500);

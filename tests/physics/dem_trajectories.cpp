@@ -71,7 +71,6 @@ json cases() {
 
 // Rounding alone: an independent program in another order of operations differs by 6e-15 from the reference.
 TEST(DemTrajectories, EqualLiggghtsToRounding) {
-    if (!exists(tests::reference("trajectories/cases.json"))) GTEST_SKIP() << "no reference trajectories here";
     int seen = 0;
     const json all = cases();
     for (const auto& [name, c] : all.items()) {
@@ -88,7 +87,6 @@ TEST(DemTrajectories, EqualLiggghtsToRounding) {
 // Where the general combination of laws and columns is chosen, the numbers are the same: a second, frozen and far
 // sphere of another size changes nothing but the instantiation.
 TEST(DemTrajectories, EqualLiggghtsWithTheGeneralCombination) {
-    if (!exists(tests::reference("trajectories/cases.json"))) GTEST_SKIP() << "no reference trajectories here";
     const json all = cases();
     for (const auto& [name, c] : all.items()) {
         if (!c["blade"].is_null()) continue;
@@ -102,7 +100,6 @@ TEST(DemTrajectories, EqualLiggghtsWithTheGeneralCombination) {
 // The blade as a closed box touched at its closest point: equal to the reference until its mesh touches twice.
 // From then on the reference has up to 9 % more force at the tip; the closest point alone is worth 2e-2 of the speed.
 TEST(DemTrajectories, BladeTouchesAtItsClosestPoint) {
-    if (!exists(tests::reference("trajectories/cases.json"))) GTEST_SKIP() << "no reference trajectories here";
     const json all = cases();
     for (const auto& [name, c] : all.items()) {
         if (c["blade"].is_null()) continue;

@@ -39,7 +39,6 @@ Errors errors_of(const std::string& kind, std::int64_t n) {
 }  // namespace
 
 TEST(DesignsAccuracy, RandomisedDesignsErrAsMuchAsInTheStudy) {
-    SKIP_WITHOUT_REFERENCE("designs/convergence_rmse.csv");
     const ReferenceTable table("designs/convergence_rmse.csv");
     int compared = 0;
     for (std::size_t r = 0; r < table.size(); ++r) {

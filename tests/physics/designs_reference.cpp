@@ -30,13 +30,11 @@ std::size_t expect_same_bits(const ReferenceTable& table, const std::string& kin
 }  // namespace
 
 TEST(DesignsReference, PlainHalton) {
-    SKIP_WITHOUT_REFERENCE("designs/halton_plain.csv");
     const ReferenceTable table("designs/halton_plain.csv");
     EXPECT_EQ(expect_same_bits(table, "halton", {{"points", 100}, {"first", 0}, {"scramble", "none"}}), 800U);
 }
 
 TEST(DesignsReference, BraatenWellerHalton) {
-    SKIP_WITHOUT_REFERENCE("designs/halton_bw1979.csv");
     const ReferenceTable original("designs/halton_bw1979.csv");
     EXPECT_EQ(expect_same_bits(original, "halton", {{"points", 100}, {"first", 0}, {"scramble", "braaten_weller"}}),
               1600U);
@@ -47,7 +45,6 @@ TEST(DesignsReference, BraatenWellerHalton) {
 }
 
 TEST(DesignsReference, BraatenWellerTables) {
-    SKIP_WITHOUT_REFERENCE("designs/permutations.csv");
     const ReferenceTable table("designs/permutations.csv");
     // The digit permuted is the coordinate of index d times the base: read back through the design itself.
     const auto original = ask_design("halton", 25, {{"points", 97}, {"first", 0}, {"scramble", "braaten_weller"}});
@@ -64,7 +61,6 @@ TEST(DesignsReference, BraatenWellerTables) {
 }
 
 TEST(DesignsReference, LargeIndices) {
-    SKIP_WITHOUT_REFERENCE("designs/halton_large_index.csv");
     const ReferenceTable table("designs/halton_large_index.csv");
     ASSERT_EQ(table.size(), 30U);
     for (std::size_t r = 0; r < table.size(); ++r) {
@@ -77,7 +73,6 @@ TEST(DesignsReference, LargeIndices) {
 }
 
 TEST(DesignsReference, RandomHalton) {
-    SKIP_WITHOUT_REFERENCE("designs/rhalton_proposed.csv");
     const ReferenceTable table("designs/rhalton_proposed.csv");
     for (std::size_t r = 0; r < table.size(); ++r) {
         const std::uint64_t seed = table.whole(r, "seed");
@@ -93,7 +88,6 @@ TEST(DesignsReference, RandomHalton) {
 }
 
 TEST(DesignsReference, RandomHaltonInternals) {
-    SKIP_WITHOUT_REFERENCE("designs/rhalton_proposed_internals.csv");
     const ReferenceTable table("designs/rhalton_proposed_internals.csv");
     for (std::size_t r = 0; r < table.size(); ++r) {
         const std::string& what = table.cell(r, "what");
@@ -125,7 +119,6 @@ TEST(DesignsReference, RandomHaltonInternals) {
 }
 
 TEST(DesignsReference, Sobol) {
-    SKIP_WITHOUT_REFERENCE("designs/sobol_joekuo_64x8.csv");
     const ReferenceTable table("designs/sobol_joekuo_64x8.csv");
     EXPECT_EQ(expect_same_bits(table, "sobol", {{"points", 64}, {"scramble", "none"}}), 512U);
 }

@@ -1,4 +1,4 @@
-// One, two and three spheres against LIGGGHTS 3.8.0 (reference/trajectories), mixed precision: positions to 1e-6
+// One, two and three spheres against LIGGGHTS 3.8.0 (tests/reference/trajectories), mixed precision: positions to 1e-6
 // diameters, velocities to 3e-6 of the largest. Single precision rounds every force to 1e-7; a collision sums some
 // hundred of them.
 //
@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -18,6 +17,7 @@
 #include <vector>
 
 #include "solver/dem/fast/mixed_engine.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/trajectory_case.hpp"
 
 using namespace grainsweep;
@@ -25,12 +25,10 @@ using nlohmann::json;
 
 namespace {
 
-const std::filesystem::path folder = std::filesystem::path(GRAINSWEEP_REFERENCE) / "trajectories";
-
 using Rows = std::vector<std::vector<double>>;  // step, t, id, x y z, vx vy vz, omega x y z, force x y z
 
 Rows read_rows(const std::string& name) {
-    std::ifstream in(folder / (name + ".csv"));
+    std::ifstream in(tests::reference("trajectories/" + name + ".csv"));
     std::string line;
     std::getline(in, line);
     Rows rows;
@@ -58,8 +56,7 @@ dem::Setup setup_of(const json& c) {
 }  // namespace
 
 TEST(FastTrajectories, AgreeWithLiggghts) {
-    if (!std::filesystem::exists(folder / "cases.json")) GTEST_SKIP() << "no reference trajectories here";
-    std::ifstream in(folder / "cases.json");
+    std::ifstream in(tests::reference("trajectories/cases.json"));
     const json all = json::parse(in);
     int seen = 0;
     for (const auto& [name, c] : all.items()) {

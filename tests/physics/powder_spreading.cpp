@@ -135,7 +135,6 @@ TEST(PowderSpreading, RefusesImpossibleCombinations) {
 // A table point with the table's time step: three seeds against the reference's, with the scatter between LIGGGHTS's
 // seeds (README of the reference: 5.1 % of the mean at this gap/diameter).
 TEST(PowderSpreading, AgreesWithLiggghts) {
-    if (!exists(tests::reference("spreading/mfr_table.csv"))) GTEST_SKIP() << "no reference table here";
     const auto table = tests::read_table(tests::reference("spreading/mfr_table.csv"));
     for (const std::size_t row : {7U, 4U}) {
         double mfr = 0;

@@ -107,7 +107,6 @@ TEST(ConvergenceReference, TheResponseHasTheKnownMoments) {
 }
 
 TEST(ConvergenceReference, ReplicatesStopWhereTheStudyStopped) {
-    SKIP_WITHOUT_REFERENCE("designs/stopping_rules_rqmc_gates.csv");
     for (const std::string model : {"A", "B"}) {
         const double onset = model == "A" ? 1.0 : 1.25;
         const Summary true_values = truth(onset);
@@ -135,7 +134,6 @@ TEST(ConvergenceReference, ReplicatesStopWhereTheStudyStopped) {
 }
 
 TEST(ConvergenceReference, PearsonsSkewnessTakesLonger) {
-    SKIP_WITHOUT_REFERENCE("designs/stopping_rules_rqmc_gates.csv");
     const std::vector<Statistic> gates = {Statistic::mean, Statistic::sd, Statistic::kurtosis, Statistic::skewness};
     const Expected expected = from_study("mean+sd+kurt+pearson2/3", "A", "0.02");
     const Stops got =

@@ -70,7 +70,6 @@ std::pair<std::vector<double>, std::vector<double>> expected_indices(const std::
 }  // namespace
 
 TEST(SensitivityReference, EstimatorsOnFixedPoints) {
-    SKIP_WITHOUT_REFERENCE("sensitivity/sensitivity_fixed_data.csv");
     const ReferenceTable table("sensitivity/sensitivity_fixed_data.csv");
     int compared = 0;
     for (std::size_t r = 0; r < table.size(); ++r) {
@@ -94,7 +93,6 @@ TEST(SensitivityReference, EstimatorsOnFixedPoints) {
 }
 
 TEST(SensitivityReference, FirstOrderFromDataAtHand) {
-    SKIP_WITHOUT_REFERENCE("sensitivity/sensitivity_reference.csv");
     for (const auto& [function, response, d] : closed_forms()) {
         const auto set = ask_design("halton", d, {{"points", 16'384}, {"sequences", 8}});
         std::vector<std::size_t> groups;
@@ -111,7 +109,6 @@ TEST(SensitivityReference, FirstOrderFromDataAtHand) {
 }
 
 TEST(SensitivityReference, TotalsOfASaltelliDesign) {
-    SKIP_WITHOUT_REFERENCE("sensitivity/sensitivity_reference.csv");
     // Measured for the hardest function (all a = 0): rms error of the totals 0.0059 at 8192 base rows, 0.0016 at
     // 32768, 0.0004 at 131072. Allowed: four times that.
     for (const auto& [function, response, d] : closed_forms()) {
@@ -129,7 +126,6 @@ TEST(SensitivityReference, TotalsOfASaltelliDesign) {
 
 TEST(SensitivityReference, SpreadingResponseAsAccurateAsStated) {
     // The reference study: error 0.0013 (worst input 0.0022) over 60 randomisations at 2400 points of one sequence.
-    SKIP_WITHOUT_REFERENCE("sensitivity/sensitivity_reference.csv");
     const auto expected = expected_indices("mfr_model_A", 4).first;
     double squares = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {

@@ -1,5 +1,7 @@
 #include "tests/support/process.hpp"
 
+#include "tests/support/places.hpp"
+
 #include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -89,7 +91,7 @@ std::vector<pid_t> Process::children() const {
 }
 
 std::vector<std::string> program_command(const std::vector<std::string>& arguments) {
-    std::vector<std::string> argv = {GRAINSWEEP_EXECUTABLE};
+    std::vector<std::string> argv = {tests::executable()};
     argv.insert(argv.end(), arguments.begin(), arguments.end());
     return argv;
 }

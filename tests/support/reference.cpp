@@ -25,8 +25,4 @@ Table read_table(const std::filesystem::path& file) {
     return table;
 }
 
-std::filesystem::path reference(const std::string& part) {
-    return std::filesystem::path(GRAINSWEEP_REFERENCE) / part;
-}
-
 }  // namespace grainsweep::tests

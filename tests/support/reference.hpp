@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/places.hpp"
+
 namespace grainsweep::tests {
 
 /// A CSV file with one header row: column name -> numbers.
@@ -15,9 +17,7 @@ struct Table {
     [[nodiscard]] double at(const std::string& column, std::size_t row) const { return columns.at(column).at(row); }
 };
 
+/// Throws std::runtime_error where the file cannot be read.
 [[nodiscard]] Table read_table(const std::filesystem::path& file);
-
-/// GRAINSWEEP_REFERENCE/part, which may not exist.
-[[nodiscard]] std::filesystem::path reference(const std::string& part);
 
 }  // namespace grainsweep::tests

@@ -1,35 +1,32 @@
 // Reads a table of the reference numbers: a header row, cells without commas inside.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "tests/support/places.hpp"
+
 namespace grainsweep::testing {
 
 class ReferenceTable {
 public:
-    /// `file` is relative to the reference folder, e.g. "designs/halton_plain.csv".
+    /// `file` is relative to tests/reference, e.g. "designs/halton_plain.csv". Throws std::runtime_error where it
+    /// cannot be read.
     explicit ReferenceTable(const std::string& file) {
-        std::ifstream stream(path(file));
-        if (!stream) throw std::runtime_error("cannot read " + path(file).string());
+        const auto path = tests::reference(file);
+        std::ifstream stream(path);
+        if (!stream) throw std::runtime_error("cannot read " + path.string());
         std::string line;
         std::getline(stream, line);
         header_ = split(line);
         while (std::getline(stream, line)) rows_.push_back(split(line));
     }
-
-    [[nodiscard]] static std::filesystem::path path(const std::string& file) {
-        return std::filesystem::path(GRAINSWEEP_REFERENCE) / file;
-    }
-    [[nodiscard]] static bool exists(const std::string& file) { return std::filesystem::exists(path(file)); }
 
     [[nodiscard]] std::size_t size() const { return rows_.size(); }
     [[nodiscard]] std::size_t columns() const { return header_.size(); }
@@ -66,8 +63,3 @@ private:
 };
 
 }  // namespace grainsweep::testing
-
-/// Skips the running test where the reference numbers are not at hand.
-#define SKIP_WITHOUT_REFERENCE(file)                        \
-    if (!grainsweep::testing::ReferenceTable::exists(file)) \
-    GTEST_SKIP() << "no reference numbers at " << grainsweep::testing::ReferenceTable::path(file)

@@ -3,6 +3,7 @@
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/schema.hpp"
 #include "sweep/campaign/wrong_question.hpp"
+#include "tests/support/places.hpp"
 
 #include <gtest/gtest.h>
 
@@ -153,7 +154,7 @@ TEST(Schema, DefaultsAreThoseOfTheReader) {
 
 TEST(Configs, EveryFileReadsWithoutError) {
     std::size_t read = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(std::string(GRAINSWEEP_SOURCE) + "/configs")) {
+    for (const auto& entry : std::filesystem::directory_iterator(tests::source("configs"))) {
         if (entry.path().extension() != ".json") continue;
         EXPECT_NO_THROW({
             const auto campaign = read_campaign(entry.path());
