@@ -7,8 +7,14 @@
 #include "sweep/report/summary.hpp"
 #include "sweep/workers/worker.hpp"
 
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
 #include <nlohmann/json.hpp>
 
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -46,6 +52,26 @@ void show(const RunReport& report, Format format) {
                   format);
 }
 
+/// Whether standard output has no reader: a pipe without a reader, a closed terminal or descriptor.
+bool reader_is_gone() {
+    if (errno == EPIPE || errno == EIO || errno == EBADF) return true;
+    pollfd output{STDOUT_FILENO, POLLOUT, 0};
+    return ::poll(&output, 1, 0) == 1 && (output.revents & (POLLERR | POLLHUP | POLLNVAL)) != 0;
+}
+
+/// The campaign is over and stored: that its summary finds no reader does not change how it ended.
+void forgive_a_reader_that_is_gone() {
+    errno = 0;
+    std::cout.flush();
+    if (std::cout && std::fflush(stdout) == 0) return;
+    if (!reader_is_gone()) return;
+    const int nothing = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+    if (nothing < 0 || ::dup2(nothing, STDOUT_FILENO) < 0) return;
+    ::close(nothing);
+    std::clearerr(stdout);
+    std::cout.clear();
+}
+
 Command run_command() {
     return {"run", "runs what is not settled yet; running again is resuming",
             [](CLI::App& parser, const Format& format) -> Action {
@@ -65,9 +91,13 @@ Command run_command() {
                 declare_path(parser, request->path);
                 return [request, again, &format] {
                     use_path(request->path);
+                    // A campaign outlives the terminal it was started from, and the reader of its output.
+                    std::signal(SIGHUP, SIG_IGN);
+                    std::signal(SIGPIPE, SIG_IGN);
                     if (!again->empty()) request->again = outcome_asked_again(*again);
                     const RunReport report = run_campaign(*request);
                     if (!request->quiet || format != Format::text) show(report, format);
+                    forgive_a_reader_that_is_gone();
                     return report.exit_code;
                 };
             },

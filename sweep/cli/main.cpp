@@ -4,9 +4,13 @@
 #include "sweep/cli/command.hpp"
 #include "sweep/store/store.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <iostream>
@@ -50,9 +54,20 @@ int flushed(int code) {
     return code;
 }
 
+/// A descriptor from 0 to 2 that is closed would be given to the next file opened, the database perhaps, which every
+/// message would then be written into. Opened the wrong way round, so that using it is still an error.
+void occupy_standard_descriptors() {
+    for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor) {
+        if (::fcntl(descriptor, F_GETFD) != -1 || errno != EBADF) continue;
+        if (::open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY) != descriptor)
+            std::_Exit(broken_world);
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+    occupy_standard_descriptors();
     CLI::App app("Parameter sweeps of granular processes: from one JSON file to an answer.", "grainsweep");
     cli::Action chosen;
     std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is a full disk: said, not died of

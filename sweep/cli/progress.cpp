@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
 
 namespace grainsweep::cli {
 namespace {
@@ -18,10 +19,31 @@ constexpr auto terminal_interval = 100ms;
 constexpr auto log_interval = 5s;
 constexpr std::size_t bar_width = 30;
 constexpr std::size_t shown_notes = 20;
+constexpr std::size_t note_bytes = 500;
 
 std::size_t terminal_width() {
     winsize size{};
     return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+/// Standard error may be a full disk, a closed terminal or a pipe without a reader: the campaign goes on without it.
+void show(std::string_view text) {
+    (void)std::fwrite(text.data(), 1, text.size(), stderr);
+    (void)std::fflush(stderr);
+}
+
+/// What a worker wrote, fit for a line of a terminal: no control characters, and not longer than a few lines.
+std::string one_line(std::string text) {
+    const bool cut = text.size() > note_bytes;
+    if (cut) {
+        text.resize(note_bytes);
+        while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U) text.pop_back();
+        if (!text.empty() && static_cast<unsigned char>(text.back()) >= 0xC0U) text.pop_back();  // half a character
+    }
+    std::ranges::replace_if(
+        text, [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
+    while (text.ends_with(' ')) text.pop_back();
+    return cut ? text + " ..." : text;
 }
 
 }  // namespace
@@ -39,9 +61,9 @@ ProgressLine::ProgressLine(bool quiet, std::size_t workers)
     : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), workers_(std::max<std::size_t>(workers, 1)) {}
 
 ProgressLine::~ProgressLine() {
-    if (line_open_) std::fputc('\n', stderr);
+    if (line_open_) show("\n");
     if (notes_ > shown_notes)
-        fmt::print(stderr, "... and {} more failures; the database has them all\n", notes_ - shown_notes);
+        show(fmt::format("... and {} more notes; the database has every attempt\n", notes_ - shown_notes));
 }
 
 void ProgressLine::update(const schedule::Progress& progress) {
@@ -59,23 +81,22 @@ void ProgressLine::update(const schedule::Progress& progress) {
     shown_ = now;
     last_ = text;
     if (terminal_) {
-        fmt::print(stderr, "\r\033[K{}", text.substr(0, terminal_width() - 1));
+        show("\r\033[K" + text.substr(0, terminal_width() - 1));
         line_open_ = true;
     } else {
-        fmt::print(stderr, "{}\n", text);
+        show(text + '\n');
     }
-    std::fflush(stderr);
 }
 
 void ProgressLine::note(const std::string& text) {
     if (++notes_ > shown_notes) return;
     erase();
-    fmt::print(stderr, "{}\n", text);
+    show(one_line(text) + '\n');
     last_.clear();
 }
 
 void ProgressLine::erase() {
-    if (line_open_) std::fputs("\r\033[K", stderr);
+    if (line_open_) show("\r\033[K");
     line_open_ = false;
 }
 
