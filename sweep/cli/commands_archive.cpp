@@ -251,7 +251,7 @@ struct Arguments {
     std::string database, text;
 };
 
-std::shared_ptr<Arguments> with_database(CLI::App& parser) {
+std::shared_ptr<Arguments> with_database(Parser& parser) {
     auto arguments = std::make_shared<Arguments>();
     parser.add_option("DB", arguments->database, "database")->required();
     return arguments;
@@ -262,7 +262,7 @@ std::shared_ptr<Arguments> with_database(CLI::App& parser) {
 std::vector<Command> archive_commands() {
     return {
         {"status", "counts by outcome, rate, time left",
-         [](CLI::App& parser, const Format& format) -> Action {
+         [](Parser& parser, const Format& format) -> Action {
              const auto arguments = with_database(parser);
              return [arguments, &format] {
                  report::write(std::cout, Store(arguments->database, Store::Mode::read).status(), format);
@@ -271,14 +271,14 @@ std::vector<Command> archive_commands() {
          },
          false},
         {"explain", "every attempt of a case, and why it will or will not run",
-         [](CLI::App& parser, const Format& format) -> Action {
+         [](Parser& parser, const Format& format) -> Action {
              const auto arguments = with_database(parser);
              parser.add_option("CASE", arguments->text, "case id, or its beginning")->required();
              return [arguments, &format] { return explain(arguments->database, arguments->text, format); };
          },
          false},
         {"replay", "computes a stored case again in this process and compares",
-         [](CLI::App& parser, const Format& format) -> Action {
+         [](Parser& parser, const Format& format) -> Action {
              const auto arguments = with_database(parser);
              parser.add_option("CASE", arguments->text, "case id, or its beginning")->required();
              const auto pictures = std::make_shared<PictureRequest>();
@@ -291,7 +291,7 @@ std::vector<Command> archive_commands() {
          },
          false},
         {"query", "read-only SQL",
-         [](CLI::App& parser, const Format& format) -> Action {
+         [](Parser& parser, const Format& format) -> Action {
              const auto arguments = with_database(parser);
              parser.add_option("SQL", arguments->text, "one statement; each campaign is a view of its name")
                  ->required();
@@ -303,7 +303,7 @@ std::vector<Command> archive_commands() {
          },
          false},
         {"dump", "canonical text of all results: equal for equal science",
-         [](CLI::App& parser, const Format& format) -> Action {
+         [](Parser& parser, const Format& format) -> Action {
              const auto arguments = with_database(parser);
              return [arguments, &format] {
                  const Store archive(arguments->database, Store::Mode::read);

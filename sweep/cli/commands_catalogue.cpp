@@ -238,7 +238,7 @@ int print_schema(Format format) {
 /// A command with one optional NAME.
 Command listing(std::string command, std::string summary, int (*list)(const std::string&, Format)) {
     return {std::move(command), std::move(summary),
-            [list](CLI::App& parser, const Format& format) -> Action {
+            [list](Parser& parser, const Format& format) -> Action {
                 const auto name = std::make_shared<std::string>();
                 parser.add_option("NAME", *name, "one of them in full");
                 return [name, &format, list] { return list(*name, format); };
@@ -253,7 +253,7 @@ std::vector<Command> catalogue_commands() {
         listing("scenes", "what can be asked: parameters, units, bounds, defaults, observables", list_scenes),
         listing("designs", "how the points can be chosen: kinds and their options", list_designs),
         {"schema", "JSON Schema of a campaign file",
-         [](CLI::App&, const Format& format) -> Action { return [&format] { return print_schema(format); }; }, false},
+         [](Parser&, const Format& format) -> Action { return [&format] { return print_schema(format); }; }, false},
     };
 }
 

@@ -165,7 +165,7 @@ int plan(const std::string& config, Format format) {
 
 std::vector<Command> plan_commands() {
     return {{"plan", "check and unfold a campaign; show the design and the predicted cost; run nothing",
-             [](CLI::App& parser, const Format& format) -> Action {
+             [](Parser& parser, const Format& format) -> Action {
                  const auto config = std::make_shared<std::string>();
                  parser.add_option("CONFIG", *config, "campaign file")->required();
                  return [config, &format] { return plan(*config, format); };

@@ -74,7 +74,7 @@ void forgive_a_reader_that_is_gone() {
 
 Command run_command() {
     return {"run", "runs what is not settled yet; running again is resuming",
-            [](CLI::App& parser, const Format& format) -> Action {
+            [](Parser& parser, const Format& format) -> Action {
                 const auto request = std::make_shared<RunRequest>();
                 const auto again = std::make_shared<std::string>();
                 parser.add_option("CONFIG", request->config, "campaign file")->required();
@@ -106,7 +106,7 @@ Command run_command() {
 
 Command worker_command() {
     return {"worker", "computes cases for a run; started by it",
-            [](CLI::App& parser, const Format&) -> Action {
+            [](Parser& parser, const Format&) -> Action {
                 const auto options = std::make_shared<workers::WorkerOptions>();
                 parser.add_option("--artefacts", options->artefacts,
                                   "folder of shared starting states and checkpoints");

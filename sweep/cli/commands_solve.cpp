@@ -199,7 +199,7 @@ int solve(const SolveRequest& request, Format format) {
 
 std::vector<Command> solve_commands() {
     return {{"solve", "one case of a campaign in this process, without an archive",
-             [](CLI::App& parser, const Format& format) -> Action {
+             [](Parser& parser, const Format& format) -> Action {
                  const auto request = std::make_shared<SolveRequest>();
                  parser.add_option("CONFIG", request->config, "campaign file")->required();
                  parser

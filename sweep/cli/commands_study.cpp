@@ -206,7 +206,7 @@ int write_report(const std::string& database, std::string output, Format format)
 /// A command about one observable of one campaign, or of all.
 Command study(std::string command, std::string summary, int (*answer)(const Subject&, Format)) {
     return {std::move(command), std::move(summary),
-            [answer](CLI::App& parser, const Format& format) -> Action {
+            [answer](Parser& parser, const Format& format) -> Action {
                 const auto subject = std::make_shared<Subject>();
                 parser.add_option("DB", subject->database, "the database")->required();
                 parser.add_option("--campaign", subject->campaign, "one of its campaigns; default: all");
@@ -224,7 +224,7 @@ std::vector<Command> study_commands() {
         study("converge", "moments with their errors, check by check, and the verdict", converge),
         study("sensitivity", "which factor moves the response: indices with their errors", sensitivity),
         {"report", "one self-contained page with all figures and pictures",
-         [](CLI::App& parser, const Format& format) -> Action {
+         [](Parser& parser, const Format& format) -> Action {
              struct Request {
                  std::string database, output;
              };

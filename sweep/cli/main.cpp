@@ -1,6 +1,5 @@
 // The front door: the table of commands, and the only place where an exception ends.
 #include "sweep/campaign/wrong_question.hpp"
-#include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/store/store.hpp"
 
@@ -68,21 +67,9 @@ void occupy_standard_descriptors() {
 
 int main(int argc, char** argv) {
     occupy_standard_descriptors();
-    CLI::App app("Parameter sweeps of granular processes: from one JSON file to an answer.", "grainsweep");
-    cli::Action chosen;
     std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is a full disk: said, not died of
     try {
-        const auto commands = all_commands();
-        app.set_version_flag("--version", cli::version_text, "version, commit, compiler, flags, instruction path");
-        app.require_subcommand(0, 1);
-        cli::declare(app, commands, chosen);
-        cli::check_command(commands, argc, argv);
-        app.parse(argc, argv);
-        return flushed(chosen ? chosen() : 0);
-    } catch (const CLI::Success& asked) {  // --help and --version
-        return app.exit(asked);
-    } catch (const CLI::ParseError& error) {
-        return complain(wrong_question, cli::sentence_of(error, app));
+        return flushed(cli::parse_command_line(all_commands(), argc, argv)());
     } catch (const campaign::WrongQuestion& error) {
         return complain(wrong_question, error.what());
     } catch (const std::exception& error) {  // BrokenWorld and what nobody foresaw

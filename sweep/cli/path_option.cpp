@@ -10,7 +10,7 @@
 
 namespace grainsweep::cli {
 
-void declare_path(CLI::App& parser, std::string& word, std::string_view otherwise) {
+void declare_path(Parser& parser, std::string& word, std::string_view otherwise) {
     parser
         .add_option(
             "--path", word,

@@ -1,7 +1,6 @@
 #include "sweep/cli/pictures.hpp"
 
 #include "sweep/campaign/wrong_question.hpp"
-#include "sweep/cli/command.hpp"
 #include "sweep/report/vtk_series.hpp"
 
 #include <fmt/format.h>
@@ -10,7 +9,7 @@
 
 namespace grainsweep::cli {
 
-void declare_pictures(CLI::App& parser, PictureRequest& request) {
+void declare_pictures(Parser& parser, PictureRequest& request) {
     auto* folder =
         parser.add_option("--vtk", request.folder, "folder for pictures of the particles (VTP files and a PVD series)")
             ->type_name("DIR");

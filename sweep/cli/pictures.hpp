@@ -1,9 +1,8 @@
 // --vtk DIR and --frames N: pictures on the way, for the commands that compute a case in this process.
 #pragma once
 
+#include "sweep/cli/parser.hpp"
 #include "sweep/workers/compute.hpp"
-
-#include <CLI/CLI.hpp>
 
 #include <cstdint>
 #include <string>
@@ -15,7 +14,7 @@ struct PictureRequest {
     std::int64_t frames = 50;
 };
 
-void declare_pictures(CLI::App& parser, PictureRequest& request);
+void declare_pictures(Parser& parser, PictureRequest& request);
 
 /// A camera that fills the folder, none where none is asked for. Throws WrongQuestion on its first frame where the
 /// scene shows no particles, store::BrokenWorld where a file cannot be written.

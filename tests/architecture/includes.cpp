@@ -107,7 +107,7 @@ const std::vector<Library>& libraries() {
         {"boost/process", {"sweep/workers/pool."}},
         {"boost/asio", {"sweep/workers/pool."}},
         {"nlohmann/", {"sweep/campaign/", "sweep/workers/message.cpp", "sweep/report/", "sweep/cli/"}},
-        {"CLI/", {"sweep/cli/"}},
+        {"CLI/", {"sweep/cli/parser.cpp"}},
         {"Eigen/", {"solver/", "stats/"}},
         {"boost/", {"sweep/workers/pool.", "sweep/designs/", "solver/", "stats/"}},
         {"fmt/", {"sweep/"}},

@@ -1,0 +1,179 @@
+// The only file that includes CLI11.
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/cli/build_facts.hpp"
+#include "sweep/cli/command.hpp"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <memory>
+#include <string_view>
+#include <system_error>
+
+namespace grainsweep::cli {
+namespace {
+
+/// Empty where the word obeys the rule, else the complaint.
+std::string complaint(const std::string& word, const WholeNumber& rule) {
+    std::int64_t number = 0;
+    const auto* end = word.data() + word.size();
+    const auto read = std::from_chars(word.data(), end, number);
+    if (read.ec == std::errc() && read.ptr == end && number >= rule.least && number <= rule.most) return {};
+    const bool open = rule.most == std::numeric_limits<std::int64_t>::max();
+    return fmt::format(
+        "got '{}'; must be a whole number{}", word,
+        open ? fmt::format(", {} or more", rule.least) : fmt::format(" from {} to {}", rule.least, rule.most));
+}
+
+template <typename T>
+Option* declared(CLI::App& app, std::deque<Option>& options, const std::string& names, T& into,
+                 const std::string& help) {
+    return &options.emplace_back(app.add_option(names, into, help));
+}
+
+/// The commands as subcommands of `app`. The chosen one's action is in `chosen` after parsing.
+void declare(CLI::App& app, const std::vector<Command>& commands, std::deque<Parser>& parsers, Action& chosen) {
+    for (const auto& command : commands) {
+        CLI::App* subcommand = app.add_subcommand(command.name, command.summary);
+        if (command.hidden) subcommand->group("");
+        auto format = std::make_shared<report::Format>(report::Format::text);
+        subcommand
+            ->add_option_function<std::string>(
+                "--format", [format](const std::string& word) { *format = *report::format_named(word); },
+                "text, csv or json")
+            ->check([](const std::string& word) {
+                return report::format_named(word) ? std::string()
+                                                  : "must be 'text', 'csv' or 'json', not '" + word + "'";
+            })
+            ->type_name("FORMAT");
+        parsers.emplace_back(*subcommand);
+        subcommand->callback([&chosen, format, action = command.declare(parsers.back(), *format)] {
+            chosen = [format, action] { return action(); };  // the action refers to the format
+        });
+    }
+}
+
+/// The first argument that is no option must name a command: else WrongQuestion with the nearest.
+void check_command(const std::vector<Command>& commands, int argc, const char* const* argv) {
+    if (argc < 2) throw campaign::WrongQuestion("name a command; grainsweep --help lists them.");
+    const std::string word = argv[1];
+    if (word.starts_with('-') || std::ranges::find(commands, word, &Command::name) != commands.end()) return;
+    std::vector<std::string> names;
+    for (const auto& command : commands) {
+        if (!command.hidden) names.push_back(command.name);
+    }
+    throw campaign::wrong_question("", "", fmt::format("there is no command '{}'; grainsweep --help lists them", word),
+                                   campaign::nearest_word(word, names));
+}
+
+/// A parse error in one sentence, with the nearest option where an unknown one was given.
+std::string sentence_of(const CLI::ParseError& error, const CLI::App& app) {
+    std::vector<std::string> known;
+    std::vector<std::string> extras = app.remaining(true);
+    std::string command = "grainsweep";
+    for (const auto* parser : app.get_subcommands()) {
+        command = parser->get_name();
+        for (const auto* option : parser->get_options()) {
+            for (const auto& name : option->get_lnames()) known.push_back("--" + name);
+        }
+    }
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError) && !extras.empty()) {
+        const auto option = std::ranges::find_if(extras, [](const auto& extra) { return extra.starts_with("-"); });
+        if (option == extras.end())
+            return fmt::format("{}: there is one argument too many: '{}'.", command, extras.front());
+        const auto nearest = campaign::nearest_word(*option, known);
+        return fmt::format("{} has no option '{}'.{}", command, *option,
+                           nearest.empty() ? "" : fmt::format(" Did you mean '{}'?", nearest));
+    }
+    std::string sentence = error.what();
+    std::ranges::replace(sentence, '\n', ' ');
+    if (!sentence.ends_with('.')) sentence += '.';
+    return sentence;
+}
+
+}  // namespace
+
+Option* Option::required() {
+    option_->required();
+    return this;
+}
+
+Option* Option::needs(Option* other) {
+    option_->needs(other->option_);
+    return this;
+}
+
+Option* Option::check(WholeNumber rule) {
+    option_->check([rule](const std::string& word) { return complaint(word, rule); });
+    return this;
+}
+
+Option* Option::type_name(const std::string& word) {
+    option_->type_name(word);
+    return this;
+}
+
+Option* Option::allow_extra_args(bool allowed) {
+    option_->allow_extra_args(allowed);
+    return this;
+}
+
+Option* Option::capture_default_str() {
+    option_->capture_default_str();
+    return this;
+}
+
+Option* Parser::add_option(const std::string& names, std::string& into, const std::string& help) {
+    return declared(*app_, options_, names, into, help);
+}
+
+Option* Parser::add_option(const std::string& names, std::filesystem::path& into, const std::string& help) {
+    return declared(*app_, options_, names, into, help);
+}
+
+Option* Parser::add_option(const std::string& names, std::vector<std::string>& into, const std::string& help) {
+    return declared(*app_, options_, names, into, help);
+}
+
+Option* Parser::add_option(const std::string& names, double& into, const std::string& help) {
+    return declared(*app_, options_, names, into, help);
+}
+
+Option* Parser::add_option(const std::string& names, std::int64_t& into, const std::string& help) {
+    return declared(*app_, options_, names, into, help);
+}
+
+Option* Parser::add_option(const std::string& names, std::optional<std::int64_t>& into, const std::string& help) {
+    return declared(*app_, options_, names, into, help);
+}
+
+Option* Parser::add_option(const std::string& names, std::optional<std::uint64_t>& into, const std::string& help) {
+    return declared(*app_, options_, names, into, help);
+}
+
+Option* Parser::add_flag(const std::string& names, bool& into, const std::string& help) {
+    return &options_.emplace_back(app_->add_flag(names, into, help));
+}
+
+Action parse_command_line(const std::vector<Command>& commands, int argc, const char* const* argv) {
+    CLI::App app("Parameter sweeps of granular processes: from one JSON file to an answer.", "grainsweep");
+    std::deque<Parser> parsers;
+    Action chosen;
+    try {
+        app.set_version_flag("--version", version_text, "version, commit, compiler, flags, instruction path");
+        app.require_subcommand(0, 1);
+        declare(app, commands, parsers, chosen);
+        check_command(commands, argc, argv);
+        app.parse(argc, argv);
+        return chosen ? chosen : [] { return 0; };
+    } catch (const CLI::Success& asked) {  // --help and --version
+        const int code = app.exit(asked);
+        return [code] { return code; };
+    } catch (const CLI::ParseError& error) {
+        throw campaign::WrongQuestion(sentence_of(error, app));
+    }
+}
+
+}  // namespace grainsweep::cli

@@ -1,0 +1,67 @@
+// The arguments of one command: what a command declares, and nothing of the library behind it (CLI11), whose headers
+// take longer to compile than a command does.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace grainsweep::cli {
+
+/// A rule for an argument: a whole number from `least` to `most`.
+struct WholeNumber {
+    std::int64_t least = 0;
+    std::int64_t most = std::numeric_limits<std::int64_t>::max();
+};
+[[nodiscard]] constexpr WholeNumber whole_number(std::int64_t least,
+                                                 std::int64_t most = std::numeric_limits<std::int64_t>::max()) {
+    return {least, most};
+}
+
+/// One argument; every call returns it again.
+class Option {
+public:
+    explicit Option(CLI::Option* option) : option_(option) {}
+    Option* required();
+    Option* needs(Option* other);
+    Option* check(WholeNumber rule);
+    /// What stands for the value in --help.
+    Option* type_name(const std::string& word);
+    /// Of a list: false takes one value each time the option is given.
+    Option* allow_extra_args(bool allowed);
+    /// --help shows the value the variable has now.
+    Option* capture_default_str();
+
+private:
+    CLI::Option* option_;
+};
+
+/// Declares arguments: a name without dashes is a place, "-o,--output" an option with two names. `into` is written
+/// when the command line is read and must still be there then.
+class Parser {
+public:
+    explicit Parser(CLI::App& app) : app_(&app) {}
+    Option* add_option(const std::string& names, std::string& into, const std::string& help);
+    Option* add_option(const std::string& names, std::filesystem::path& into, const std::string& help);
+    Option* add_option(const std::string& names, std::vector<std::string>& into, const std::string& help);
+    Option* add_option(const std::string& names, double& into, const std::string& help);
+    Option* add_option(const std::string& names, std::int64_t& into, const std::string& help);
+    Option* add_option(const std::string& names, std::optional<std::int64_t>& into, const std::string& help);
+    Option* add_option(const std::string& names, std::optional<std::uint64_t>& into, const std::string& help);
+    Option* add_flag(const std::string& names, bool& into, const std::string& help);
+
+private:
+    CLI::App* app_;
+    std::deque<Option> options_;
+};
+
+}  // namespace grainsweep::cli
