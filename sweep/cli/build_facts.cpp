@@ -2,7 +2,7 @@
 
 #include "solver/scenes/scene.hpp"
 
-#include <grainsweep_commit.hpp>
+#include <grainsweep_version.hpp>
 
 #include <fmt/format.h>
 #include <unistd.h>
