@@ -113,9 +113,10 @@ Json factor_schema(const ParameterSpec& parameter) {
     Json schema = section(factor_keys());
     schema["description"] = meaning;
     schema["properties"]["name"] = {{"const", parameter.name}, {"description", meaning}};
-    schema["properties"]["levels"] = {{"type", "array"}, {"minItems", 1}, {"uniqueItems", true}, {"items", value}};
+    schema["properties"]["levels"].update({{"type", "array"}, {"minItems", 1}, {"uniqueItems", true}, {"items", value}});
     if (std::holds_alternative<double>(parameter.default_value)) {
-        schema["properties"]["between"] = {{"type", "array"}, {"minItems", 2}, {"maxItems", 2}, {"items", value}};
+        schema["properties"]["between"].update(
+            {{"type", "array"}, {"minItems", 2}, {"maxItems", 2}, {"items", value}});
         schema["oneOf"] = {{{"required", {"between"}}}, {{"required", {"levels"}}}};
     } else {
         schema["properties"].erase("between");

@@ -1,0 +1,63 @@
+// docs/campaign_file.md and the JSON Schema tell of the same keys, and each key stands in an example that is planned.
+#include "tests/documents/page.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+using namespace grainsweep::test;
+using nlohmann::json;
+
+namespace {
+
+using Keys = std::set<std::string>;  // "seed", "design.points", "factors.name"
+
+void add_properties(Keys& keys, const std::string& section, const json& object) {
+    for (const auto& [name, ignored] : object["properties"].items())
+        if (name != "notes") keys.insert(section.empty() ? name : section + "." + name);
+}
+
+/// Every key a campaign file may have, whatever its scene and design.
+Keys keys_of_schema() {
+    const auto schema = json::parse(answer_of({"schema"}));
+    Keys keys = {"notes"};
+    add_properties(keys, "", schema);
+    for (const char* section : {"convergence", "limits", "execution"})
+        add_properties(keys, section, schema["properties"][section]);
+    for (const auto& design : schema["properties"]["design"]["oneOf"]) add_properties(keys, "design", design);
+    for (const auto& rule : schema["allOf"])
+        for (const auto& factor : rule["then"]["properties"]["factors"]["items"]["oneOf"])
+            add_properties(keys, "factors", factor);
+    return keys;
+}
+
+/// Keys of a campaign file or of a part of one; `fixed` holds names of parameters.
+void add_keys(Keys& keys, const json& campaign) {
+    for (const auto& [name, value] : campaign.items()) {
+        keys.insert(name);
+        if (name == "fixed") continue;
+        const auto objects = value.is_array() ? value : json::array({value});
+        for (const auto& object : objects) {
+            if (!object.is_object()) continue;
+            for (const auto& [key, ignored] : object.items())
+                if (key != "notes") keys.insert(name + "." + key);
+        }
+    }
+}
+
+TEST(CampaignFilePage, ShowsEveryKeyOfTheSchemaAndNoOther) {
+    const auto known = keys_of_schema();
+    EXPECT_GT(known.size(), 35U);
+    Keys shown;
+    for (const auto& block : read_page("docs/campaign_file.md").blocks) {
+        if (block.language != "json") continue;
+        const auto example = json::parse(block.text, nullptr, false);
+        ASSERT_FALSE(example.is_discarded()) << "line " << block.line << " is no JSON";
+        add_keys(shown, example);
+    }
+    for (const auto& key : known) EXPECT_TRUE(shown.contains(key)) << "no example of " << key;
+    for (const auto& key : shown) EXPECT_TRUE(known.contains(key)) << "the schema has no key " << key;
+}
+
+}  // namespace

@@ -1,0 +1,213 @@
+// Tables of the documents that repeat what the program knows are generated from it and compared here. To write them
+// anew after a change: GRAINSWEEP_WRITE_DOCUMENTS=1 build/tests/test_documents --gtest_filter='Tables.*'
+#include "tests/documents/page.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
+#include <stdexcept>
+
+using namespace grainsweep::test;
+using nlohmann::ordered_json;
+
+namespace {
+
+ordered_json catalogue(std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--format", "json"});
+    return ordered_json::parse(answer_of(arguments));
+}
+
+/// A cell must not break its row.
+std::string escaped(const std::string& text) {
+    std::string cell;
+    for (const char c : text) cell += c == '|' ? std::string("\\|") : std::string(1, c);
+    return cell;
+}
+
+std::string row(const std::vector<std::string>& cells) {
+    std::string line = "|";
+    for (const auto& cell : cells) line += " " + escaped(cell) + " |";
+    return line + "\n";
+}
+
+std::string head(const std::vector<std::string>& cells) {
+    std::string rule = "|";
+    for (std::size_t k = 0; k < cells.size(); ++k) rule += "---|";
+    return row(cells) + rule + "\n";
+}
+
+std::string shown(const ordered_json& value) {
+    if (value.is_string()) return value.get<std::string>();
+    if (value.is_number_float()) return fmt::format("{}", value.get<double>());
+    return value.dump();
+}
+
+std::string words_of(const ordered_json& words) {
+    std::string list;
+    for (const auto& word : words) list += (list.empty() ? "`" : ", `") + shown(word) + "`";
+    return list;
+}
+
+/// [low, high], a round bracket where an end is excluded; nothing where an end is open.
+std::string bounds_of(const ordered_json& parameter) {
+    if (parameter.contains("words"))
+        return words_of(parameter["words"]) + (parameter["file_allowed"].get<bool>() ? ", or a file" : "");
+    const auto end = [&](const char* name) { return parameter[name].is_null() ? "" : shown(parameter[name]); };
+    return fmt::format("{}{}, {}{}", parameter["low_open"].get<bool>() ? "(" : "[", end("low"), end("high"),
+                       parameter["high_open"].get<bool>() ? ")" : "]");
+}
+
+std::string parameters_table(const ordered_json& scene) {
+    std::string table = head({"parameter", "unit", "bounds", "default", "meaning"});
+    for (const auto& parameter : scene["parameters"]) {
+        std::string meaning = parameter["meaning"];
+        std::string only_if;
+        for (const auto& condition : parameter["matters_if"])
+            only_if += (only_if.empty() ? "" : " and ") + shown(condition);
+        if (!only_if.empty()) meaning += fmt::format(" (only if {})", only_if);
+        table += row({"`" + shown(parameter["name"]) + "`", shown(parameter["unit"]), bounds_of(parameter),
+                      shown(parameter["default"]), meaning});
+    }
+    return table;
+}
+
+std::string observables_table(const ordered_json& scene) {
+    std::string table = head({"observable", "unit", "over", "meaning"});
+    for (const auto& observable : scene["observables"])
+        table += row({"`" + shown(observable["name"]) + "`", shown(observable["unit"]), shown(observable["over"]),
+                      shown(observable["meaning"])});
+    return table;
+}
+
+std::string accuracy_table(const ordered_json& scene) {
+    std::string table = head({"accuracy", "inputs"});
+    for (const auto& [name, inputs] : scene["accuracy"].items()) {
+        std::string list;
+        for (const auto& [input, value] : inputs.items())
+            list += fmt::format("{}{} = {}", list.empty() ? "" : ", ", input, shown(value));
+        table += row({"`" + name + "`", list});
+    }
+    return table;
+}
+
+std::string designs_table() {
+    std::string table = head({"design", "extends", "what it is good for"});
+    for (const auto& design : catalogue({"designs"}))
+        table += row({"`" + shown(design["design"]) + "`", shown(design["extends"]), shown(design["summary"])});
+    return table;
+}
+
+std::string options_table(const std::string& design) {
+    std::string table = head({"option", "default", "allowed", "meaning"});
+    const auto described = catalogue({"designs", design});
+    for (const auto& option : described["options"])
+        table += row({"`" + shown(option["option"]) + "`", option["default"].is_null() ? "" : shown(option["default"]),
+                      shown(option["allowed"]), shown(option["meaning"])});
+    return table;
+}
+
+/// The keys of one object of the campaign file, as the JSON Schema tells them.
+std::string keys_table(const std::string& section) {
+    const auto schema = ordered_json::parse(answer_of({"schema"}));
+    const auto& object = section == "campaign" ? schema
+                         : section == "factor"
+                             ? schema["allOf"][0]["then"]["properties"]["factors"]["items"]["oneOf"][0]
+                             : schema["properties"][section];
+    std::string table = head({"key", "default", "meaning"});
+    for (const auto& [name, key] : object["properties"].items()) {
+        const bool required =
+            object.contains("required") && object["required"].dump().find('"' + name + '"') != std::string::npos;
+        // What a key of a factor means is told by the parameter it names.
+        std::string meaning =
+            section == "factor" && name == "name" ? "a parameter of the scene" : shown(key["description"]);
+        if (key.contains("enum")) meaning += ": " + words_of(key["enum"]);
+        if (key.contains("items") && key["items"].contains("enum")) meaning += ": " + words_of(key["items"]["enum"]);
+        table += row({"`" + name + "`",
+                      required                  ? "required"
+                      : key.contains("default") ? "`" + key["default"].dump() + "`"
+                                                : "",
+                      meaning});
+    }
+    return table;
+}
+
+std::string generated(const std::string& what) {
+    std::istringstream words(what);
+    std::string kind, name, part;
+    words >> kind >> name >> part;
+    if (kind == "scene") {
+        const auto scene = catalogue({"scenes", name});
+        if (part == "parameters") return parameters_table(scene);
+        if (part == "observables") return observables_table(scene);
+        if (part == "accuracy") return accuracy_table(scene);
+    }
+    if (kind == "designs") return designs_table();
+    if (kind == "design") return options_table(name);
+    if (kind == "keys") return keys_table(name);
+    throw std::invalid_argument("no table is called '" + what + "'");
+}
+
+/// The page with every generated table written anew, and the names of those.
+std::pair<std::string, std::vector<std::string>> with_fresh_tables(const std::string& text) {
+    static const std::regex marked(R"(<!-- table: ([^>]*) -->\n([^]*?)<!-- end -->)");
+    std::string fresh;
+    std::vector<std::string> names;
+    auto rest = text.cbegin();
+    for (std::sregex_iterator it(text.begin(), text.end(), marked), end; it != end; ++it) {
+        const std::string what = (*it)[1];
+        fresh.append(rest, (*it)[0].first);
+        fresh += "<!-- table: " + what + " -->\n\n" + generated(what) + "\n<!-- end -->";
+        rest = (*it)[0].second;
+        names.push_back(what);
+    }
+    fresh.append(rest, text.cend());
+    return {fresh, names};
+}
+
+/// First line in which two texts differ.
+std::string difference(const std::string& page, const std::string& fresh) {
+    std::istringstream a(page), b(fresh);
+    std::string x, y;
+    do {
+        x.clear();
+        y.clear();
+        std::getline(a, x);
+        std::getline(b, y);
+    } while (x == y && (a || b));
+    return "the page says:    " + x + "\nthe program says: " + y;
+}
+
+TEST(Tables, EqualWhatTheProgramSays) {
+    const bool write = std::getenv("GRAINSWEEP_WRITE_DOCUMENTS") != nullptr;
+    for (const auto& page : user_pages()) {
+        const auto [fresh, names] = with_fresh_tables(page.text);
+        if (write && fresh != page.text) std::ofstream(page.path(), std::ios::binary) << fresh;
+        if (!write) {
+            EXPECT_TRUE(page.text == fresh) << page.file << "\n" << difference(page.text, fresh);
+        }
+    }
+}
+
+TEST(Tables, EverySceneHasItsPageAndEveryDesignItsOptions) {
+    std::string all;
+    for (const auto& page : user_pages())
+        for (const auto& name : with_fresh_tables(page.text).second) all += name + '\n';
+    for (const auto& scene : catalogue({"scenes"})) {
+        const std::string name = shown(scene["scene"]);
+        EXPECT_NE(all.find("scene " + name + " parameters\n"), std::string::npos) << name;
+        EXPECT_NE(all.find("scene " + name + " observables\n"), std::string::npos) << name;
+        const auto page = read_page("docs/scenes/" + name + ".md");
+        EXPECT_TRUE(page.text.starts_with("# " + name + "\n")) << name;
+        EXPECT_NE(page.text.find("## What it cannot do\n"), std::string::npos) << name;
+        EXPECT_NE(page.text.find("](" + name + ".svg)"), std::string::npos) << name << " has no drawing";
+    }
+    for (const auto& design : catalogue({"designs"}))
+        EXPECT_NE(all.find("design " + shown(design["design"]) + "\n"), std::string::npos) << design;
+}
+
+}  // namespace
