@@ -24,6 +24,7 @@ program_packages=(
 )
 test_packages=(
     libgtest-dev=/usr/include/gtest/gtest.h libgmock-dev=/usr/include/gmock/gmock.h
+    sqlite3=/usr/bin/sqlite3
 )
 
 present() {  # PACKAGE=FILE[:LIBRARY]

@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 Json notes_schema() {
     return {
-        {"description", "any text; read by nobody"}, {"type", {"string", "array"}}, {"items", {{"type", "string"}}}};
+        {"description", "any text; ignored"}, {"type", {"string", "array"}}, {"items", {{"type", "string"}}}};
 }
 
 Json number_of(double x) {

@@ -1,5 +1,6 @@
 // Every command of the documents is run as a reader would run it: page.hpp has the rules.
 #include "tests/documents/page.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/process.hpp"
 
 #include <gtest/gtest.h>
@@ -14,6 +15,8 @@
 #include <string_view>
 
 using namespace grainsweep::test;
+using grainsweep::tests::executable;
+using grainsweep::tests::source;
 using nlohmann::json;
 
 namespace {
@@ -24,10 +27,9 @@ namespace fs = std::filesystem;
 class Clone {
 public:
     Clone() {
-        const fs::path source = GRAINSWEEP_SOURCE;
-        for (const char* name : {"configs", "bootstrap.sh"}) fs::create_symlink(source / name, folder_ / name);
+        for (const char* name : {"configs", "bootstrap.sh"}) fs::create_symlink(source(name), folder_ / name);
         fs::create_directory(folder_ / "build");
-        fs::create_symlink(GRAINSWEEP_EXECUTABLE, folder_ / "build/grainsweep");
+        fs::create_symlink(executable(), folder_ / "build/grainsweep");
     }
     [[nodiscard]] Ended bash(const std::string& script) const {
         const std::string whole = "export PATH=\"$PWD/build:$PATH\"\n" + script;
@@ -109,7 +111,7 @@ bool mentioned_in(const fs::path& file, const std::string& word) {
 
 /// A target or executable of the tests: test_KIND, bench_NAME or slow_NAME.
 void check_test_program(const std::string& name, const std::string& where) {
-    const fs::path tests = fs::path(GRAINSWEEP_SOURCE) / "tests";
+    const fs::path tests = source("tests");
     const auto cut = name.find('_');
     const std::string kind = name.substr(0, cut);
     const std::string rest = name.substr(cut + 1);
@@ -147,7 +149,7 @@ void check_long(const Clone& clone, const Block& block, const std::string& where
 
 void run_python(const Clone& clone, const Block& block, const std::string& where) {
     clone.write("block.py", block.text);
-    static const std::regex import(R"((?:^|\n)import ([a-z0-9_]+))");
+    static const std::regex import(R"((?:^|\n)import ([a-z0-9_, ]+))");
     std::string libraries = "import sys";
     for (std::sregex_iterator it(block.text.begin(), block.text.end(), import), end; it != end; ++it)
         libraries += ", " + (*it)[1].str();

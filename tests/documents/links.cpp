@@ -1,5 +1,6 @@
 // What the documents point to is there, and what must be pointed to is.
 #include "tests/documents/page.hpp"
+#include "tests/support/places.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +9,7 @@
 #include <set>
 
 using namespace grainsweep::test;
+using grainsweep::tests::source;
 
 namespace {
 
@@ -25,8 +27,7 @@ TEST(Documents, EveryLinkLeadsSomewhere) {
                 const auto hash = target.find('#');
                 const fs::path file = target.substr(0, hash);
                 const fs::path there = file.empty() ? page.file : (page.file.parent_path() / file).lexically_normal();
-                EXPECT_TRUE(fs::exists(fs::path(GRAINSWEEP_SOURCE) / there))
-                    << page.file << ":" << number << " " << target;
+                EXPECT_TRUE(fs::exists(source() / there)) << page.file << ":" << number << " " << target;
                 if (hash == std::string::npos || there.extension() != ".md") continue;
                 const auto anchors = read_page(there).anchors();
                 EXPECT_NE(std::ranges::find(anchors, target.substr(hash + 1)), anchors.end())
@@ -46,8 +47,7 @@ TEST(Documents, EveryPageIsReachedFromTheReadme) {
         open.pop_back();
         for (std::sregex_iterator it(page.text.begin(), page.text.end(), link), end; it != end; ++it) {
             const fs::path there = (page.file.parent_path() / (*it)[1].str()).lexically_normal();
-            if (there.extension() == ".md" && fs::exists(fs::path(GRAINSWEEP_SOURCE) / there) &&
-                reached.insert(there).second)
+            if (there.extension() == ".md" && fs::exists(source() / there) && reached.insert(there).second)
                 open.push_back(there);
         }
     }
@@ -58,7 +58,7 @@ TEST(Documents, EveryCampaignFileIsMentioned) {
     std::string all;
     for (const auto& page : user_pages()) all += page.text;
     std::size_t files = 0;
-    for (const auto& entry : fs::directory_iterator(fs::path(GRAINSWEEP_SOURCE) / "configs")) {
+    for (const auto& entry : fs::directory_iterator(source("configs"))) {
         if (entry.path().extension() != ".json") continue;
         ++files;
         const std::regex name("\\b" + entry.path().stem().string() + "\\b");
@@ -71,7 +71,7 @@ TEST(Documents, EveryCampaignFileMentionedExists) {
     static const std::regex name(R"(\bconfigs/[A-Za-z0-9_.]+\.json)");
     for (const auto& page : user_pages())
         for (std::sregex_iterator it(page.text.begin(), page.text.end(), name), end; it != end; ++it)
-            EXPECT_TRUE(fs::exists(fs::path(GRAINSWEEP_SOURCE) / it->str())) << page.file << " " << it->str();
+            EXPECT_TRUE(fs::exists(source() / it->str())) << page.file << " " << it->str();
 }
 
 TEST(Documents, TheReadmeIsShort) {
@@ -80,7 +80,7 @@ TEST(Documents, TheReadmeIsShort) {
 }
 
 TEST(Documents, PicturesAreSmall) {
-    for (const auto& entry : fs::recursive_directory_iterator(fs::path(GRAINSWEEP_SOURCE) / "docs"))
+    for (const auto& entry : fs::recursive_directory_iterator(source("docs")))
         if (entry.is_regular_file() && entry.path().extension() != ".md") {
             EXPECT_LT(entry.file_size(), 150'000U) << entry.path();
         }

@@ -1,5 +1,6 @@
 #include "tests/documents/page.hpp"
 
+#include "tests/support/places.hpp"
 #include "tests/support/process.hpp"
 
 #include <gtest/gtest.h>
@@ -17,15 +18,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path source = GRAINSWEEP_SOURCE;
-
 std::vector<Page> pages_under(const std::vector<fs::path>& roots) {
     std::vector<fs::path> files;
     for (const auto& root : roots) {
-        if (fs::is_regular_file(source / root)) files.push_back(root);
-        if (!fs::is_directory(source / root)) continue;
-        for (const auto& entry : fs::recursive_directory_iterator(source / root))
-            if (entry.path().extension() == ".md") files.push_back(fs::relative(entry.path(), source));
+        if (fs::is_regular_file(tests::source() / root)) files.push_back(root);
+        if (!fs::is_directory(tests::source() / root)) continue;
+        for (const auto& entry : fs::recursive_directory_iterator(tests::source() / root))
+            if (entry.path().extension() == ".md") files.push_back(fs::relative(entry.path(), tests::source()));
     }
     std::ranges::sort(files);
     std::vector<Page> pages;
@@ -51,7 +50,7 @@ std::string anchor_of(const std::string& heading) {
 }  // namespace
 
 fs::path Page::path() const {
-    return source / file;
+    return tests::source() / file;
 }
 
 std::vector<std::pair<std::size_t, std::string>> Page::prose() const {
@@ -89,9 +88,13 @@ std::vector<std::string> Page::anchors() const {
     return anchors;
 }
 
+void PrintTo(const Page& page, std::ostream* stream) {
+    *stream << page.file;
+}
+
 Page read_page(const fs::path& file) {
     Page page{file, {}, {}};
-    std::ifstream stream(source / file, std::ios::binary);
+    std::ifstream stream(tests::source() / file, std::ios::binary);
     page.text.assign(std::istreambuf_iterator<char>(stream), {});
     std::istringstream lines(page.text);
     Block* open = nullptr;

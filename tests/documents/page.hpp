@@ -17,7 +17,9 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <iosfwd>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace grainsweep::test {
@@ -42,6 +44,9 @@ struct Page {
     /// Headings as the anchors that links use.
     [[nodiscard]] std::vector<std::string> anchors() const;
 };
+
+/// What GoogleTest calls a page in its messages.
+void PrintTo(const Page& page, std::ostream* stream);
 
 [[nodiscard]] Page read_page(const std::filesystem::path& file);
 /// README.md and docs/**/*.md, sorted.
