@@ -43,7 +43,11 @@ std::string head(const std::vector<std::string>& cells) {
 
 std::string shown(const ordered_json& value) {
     if (value.is_string()) return value.get<std::string>();
-    if (value.is_number_float()) return fmt::format("{}", value.get<double>());
+    if (value.is_number_float()) {
+        const std::string plain = fmt::format("{}", value.get<double>());
+        const std::string short_form = fmt::format("{:g}", value.get<double>());
+        return short_form.size() < plain.size() && std::stod(short_form) == value.get<double>() ? short_form : plain;
+    }
     return value.dump();
 }
 
@@ -125,8 +129,8 @@ std::string keys_table(const std::string& section) {
         // What a key of a factor means is told by the parameter it names.
         std::string meaning =
             section == "factor" && name == "name" ? "a parameter of the scene" : shown(key["description"]);
-        if (key.contains("enum")) meaning += ": " + words_of(key["enum"]);
-        if (key.contains("items") && key["items"].contains("enum")) meaning += ": " + words_of(key["items"]["enum"]);
+        if (key.contains("enum")) meaning += "; one of " + words_of(key["enum"]);
+        if (key.contains("items") && key["items"].contains("enum")) meaning += "; of " + words_of(key["items"]["enum"]);
         table += row({"`" + name + "`",
                       required                  ? "required"
                       : key.contains("default") ? "`" + key["default"].dump() + "`"
