@@ -122,9 +122,13 @@ void check_test_program(const std::string& name, const std::string& where) {
     EXPECT_TRUE(there) << where << ": no " << name;
 }
 
-void check_bootstrap(std::span<const std::string> arguments, const std::string& where) {
+void check_bootstrap(const Clone& clone, std::span<const std::string> arguments, const std::string& where) {
     ASSERT_FALSE(arguments.empty()) << where;
     EXPECT_TRUE(mentioned_in("bootstrap.sh", "./bootstrap.sh " + arguments.front())) << where;
+    if (arguments.front() == "run") {
+        std::vector<std::string> run(arguments.begin(), arguments.end());
+        check_grainsweep(clone, run, where);
+    }
     if (arguments.front() != "bench") return;
     for (const auto& name : arguments.subspan(1)) check_test_program("bench_" + name, where);
 }
@@ -141,7 +145,7 @@ void check_long(const Clone& clone, const Block& block, const std::string& where
         if (program == "grainsweep")
             check_grainsweep(clone, arguments, where);
         else if (program == "bootstrap.sh")
-            check_bootstrap(arguments, where);
+            check_bootstrap(clone, arguments, where);
         else if (program.starts_with("test_") || program.starts_with("slow_") || program.starts_with("bench_"))
             check_test_program(program, where);
     }
