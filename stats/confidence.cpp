@@ -3,6 +3,7 @@
 #include <boost/math/distributions/students_t.hpp>
 
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace grainsweep::stats {
@@ -17,22 +18,23 @@ double squared_deviations(std::span<const double> values) {
     return sum;
 }
 
-double student_t(std::size_t count) {
-    return boost::math::quantile(boost::math::students_t(static_cast<double>(count - 1)), 0.975);
-}
-
 }  // namespace
+
+double student_factor(std::int64_t freedom) {
+    if (freedom < 1) return std::numeric_limits<double>::quiet_NaN();
+    return boost::math::quantile(boost::math::students_t(static_cast<double>(freedom)), 0.975);
+}
 
 double student_half_width(std::span<const double> values) {
     if (values.size() < 2) return std::numeric_limits<double>::quiet_NaN();
     const auto n = static_cast<double>(values.size());
-    return student_t(values.size()) * std::sqrt(squared_deviations(values) / (n * (n - 1)));
+    return student_factor(std::ssize(values) - 1) * std::sqrt(squared_deviations(values) / (n * (n - 1)));
 }
 
 double jackknife_half_width(std::span<const double> leave_one_out) {
     if (leave_one_out.size() < 2) return std::numeric_limits<double>::quiet_NaN();
     const auto n = static_cast<double>(leave_one_out.size());
-    return student_t(leave_one_out.size()) * std::sqrt((n - 1) / n * squared_deviations(leave_one_out));
+    return student_factor(std::ssize(leave_one_out) - 1) * std::sqrt((n - 1) / n * squared_deviations(leave_one_out));
 }
 
 }  // namespace grainsweep::stats

@@ -1,9 +1,13 @@
 // 95 % half-widths: how far an estimate may be off, from repetitions or from leaving parts out.
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 namespace grainsweep::stats {
+
+/// t_{freedom, 0.975}: half-widths in standard errors. NaN below one degree of freedom.
+[[nodiscard]] double student_factor(std::int64_t freedom);
 
 /// Student-t 95 % half-width of the mean of independent, equally distributed values:
 /// t_{R-1, 0.975} s / sqrt(R), s with divisor R - 1. NaN for fewer than two values or any NaN.

@@ -1,10 +1,14 @@
 #include "sweep/report/effects.hpp"
 
 #include "stats/confidence.hpp"
+#include "sweep/report/sample_parts.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
+#include <map>
 #include <utility>
 
 namespace grainsweep::report {
@@ -12,28 +16,57 @@ namespace {
 
 constexpr std::size_t most_bins = 16;
 constexpr std::size_t fewest_per_bin = 8;
+constexpr std::size_t fewest_parts = 4;
 
-using Pairs = std::vector<std::pair<double, double>>;  // factor, response
+/// One settled case with a response.
+struct Entry {
+    double factor, response;
+    std::size_t part;
+};
 
-EffectBin bin_of(std::span<const std::pair<double, double>> pairs) {
-    std::vector<double> responses;
-    responses.reserve(pairs.size());
-    double factor_sum = 0, response_sum = 0;
-    for (const auto& [x, y] : pairs) {
-        factor_sum += x;
-        response_sum += y;
-        responses.push_back(y);
+/// 95 % half-width of the mean of a bin from the parts of the sample that have cases in it.
+double error_of_parts(std::span<const Entry> entries) {
+    struct Sum {
+        double total = 0, count = 0;
+    };
+    std::map<std::size_t, Sum> parts;
+    Sum all;
+    for (const auto& entry : entries) {
+        Sum& part = parts[entry.part];
+        part.total += entry.response;
+        part.count += 1;
+        all.total += entry.response;
+        all.count += 1;
     }
-    const auto n = static_cast<double>(pairs.size());
-    return {factor_sum / n, response_sum / n, stats::student_half_width(responses),
-            static_cast<std::int64_t>(pairs.size())};
+    if (parts.size() < fewest_parts) return std::numeric_limits<double>::quiet_NaN();
+    std::vector<double> leave_one_out;
+    for (const auto& [label, part] : parts)
+        leave_one_out.push_back((all.total - part.total) / (all.count - part.count));
+    return stats::jackknife_half_width(leave_one_out);
+}
+
+EffectBin bin_of(std::span<const Entry> entries, const EffectErrors& errors) {
+    EffectBin bin;
+    for (const auto& entry : entries) {
+        bin.at += entry.factor;
+        bin.mean += entry.response;
+    }
+    const auto n = static_cast<double>(entries.size());
+    bin.at /= n;
+    bin.mean /= n;
+    bin.count = std::ssize(entries);
+    bin.pure_error = errors.pure.half_width(n);
+    bin.error = errors.source == EffectErrors::Source::parts        ? error_of_parts(entries)
+                : errors.source == EffectErrors::Source::pure_error ? bin.pure_error
+                                                                    : std::numeric_limits<double>::quiet_NaN();
+    return bin;
 }
 
 /// Ends of the runs of equal factor values.
-std::vector<std::size_t> ends_of_runs(const Pairs& sorted) {
+std::vector<std::size_t> ends_of_runs(std::span<const Entry> sorted) {
     std::vector<std::size_t> ends;
     for (std::size_t i = 1; i <= sorted.size(); ++i)
-        if (i == sorted.size() || sorted[i].first != sorted[i - 1].first) ends.push_back(i);
+        if (i == sorted.size() || sorted[i].factor != sorted[i - 1].factor) ends.push_back(i);
     return ends;
 }
 
@@ -58,22 +91,43 @@ Histogram histogram_of(std::span<const double> values) {
     return histogram;
 }
 
-std::vector<EffectBin> main_effect(const FactorColumn& factor, std::span<const double> response) {
-    Pairs pairs;
+EffectErrors effect_errors(const Responses& responses, const ResponseColumn& response) {
+    EffectErrors errors;
+    errors.pure = stats::pure_error(std::span(responses.points).first(responses.settled), responses.judged(response));
+    auto parts = sample_parts(responses);
+    if (responses.ordered_sample()) {
+        errors.source = EffectErrors::Source::parts;
+        errors.parts = std::move(parts.labels);
+        errors.says =
+            fmt::format("95 %, from {}; none where a mean is over fewer than {} of them", parts.what, fewest_parts);
+    } else if (errors.pure.freedom > 0) {
+        errors.source = EffectErrors::Source::pure_error;
+        errors.says = fmt::format("95 %, from the scatter of replicates (pure error, {} degrees of freedom)",
+                                  errors.pure.freedom);
+    } else {
+        errors.says =
+            fmt::format("none: a {} of single runs tells no error; replicates would", responses.campaign.design);
+    }
+    return errors;
+}
+
+std::vector<EffectBin> main_effect(const FactorColumn& factor, std::span<const double> response,
+                                   const EffectErrors& errors) {
+    std::vector<Entry> entries;
     for (std::size_t i = 0; i < response.size(); ++i)
         if (std::isfinite(response[i]) && std::isfinite(factor.values[i]))
-            pairs.emplace_back(factor.values[i], response[i]);
-    std::ranges::stable_sort(pairs, {}, &std::pair<double, double>::first);
-    auto ends = ends_of_runs(pairs);
+            entries.push_back({factor.values[i], response[i], errors.parts.empty() ? 0 : errors.parts[i]});
+    std::ranges::stable_sort(entries, {}, &Entry::factor);
+    auto ends = ends_of_runs(entries);
     if (factor.continuous() && ends.size() > most_bins) {
-        const std::size_t bins = std::clamp<std::size_t>(pairs.size() / fewest_per_bin, 1, most_bins);
+        const std::size_t bins = std::clamp<std::size_t>(entries.size() / fewest_per_bin, 1, most_bins);
         ends.clear();
-        for (std::size_t b = 1; b <= bins; ++b) ends.push_back(pairs.size() * b / bins);
+        for (std::size_t b = 1; b <= bins; ++b) ends.push_back(entries.size() * b / bins);
     }
     std::vector<EffectBin> effect;
     std::size_t begin = 0;
     for (const std::size_t end : ends) {
-        effect.push_back(bin_of(std::span(pairs).subspan(begin, end - begin)));
+        effect.push_back(bin_of(std::span(entries).subspan(begin, end - begin), errors));
         begin = end;
     }
     return effect;

@@ -1,12 +1,17 @@
 #include "sweep/report/influence.hpp"
 
-#include "stats/random.hpp"
-#include "sweep/schedule/judge.hpp"
+#include "stats/confidence.hpp"
+#include "stats/trend.hpp"
+#include "sweep/report/effects.hpp"
+#include "sweep/report/sample_parts.hpp"
+#include "sweep/report/summary.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <set>
 #include <stdexcept>
@@ -15,7 +20,8 @@ namespace grainsweep::report {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t groups = 8;
+constexpr double monotone_share = 0.9;
+constexpr std::size_t most_pieces = 15;
 
 /// One row per design point from 0 on: coordinates and the mean over its repeats; NaN where the point was filtered
 /// out, failed or is not there. What designs made of blocks need.
@@ -41,28 +47,6 @@ Grid grid_of(const Responses& responses, const ResponseColumn& response) {
     return grid;
 }
 
-/// Parts of the sample to leave out in turn: independent sequences, else stretches of whole blocks, else (a list
-/// has no order) parts drawn at random.
-std::vector<std::size_t> groups_of(const Responses& responses) {
-    const auto sequences = schedule::independent_sequences(responses.campaign.design,
-                                                           static_cast<std::size_t>(responses.campaign.sequences));
-    const auto block =
-        static_cast<std::int64_t>(responses.campaign.design == "saltelli" ? responses.factors.size() + 2 : 1);
-    const std::int64_t blocks = responses.settled_points / block + 1;
-    std::vector<std::size_t> labels(responses.settled);
-    for (std::size_t row = 0; row < labels.size(); ++row) {
-        const std::int64_t point = responses.points[row];
-        if (sequences >= 4) {
-            labels[row] = static_cast<std::size_t>(point) % sequences;
-        } else if (responses.campaign.design == "list") {
-            labels[row] = static_cast<std::size_t>(stats::bits_at(1, 0, static_cast<std::uint64_t>(point)) % groups);
-        } else {
-            labels[row] = static_cast<std::size_t>(point / block) * groups / static_cast<std::size_t>(blocks);
-        }
-    }
-    return labels;
-}
-
 /// A level is a bin of its own, and so is a coordinate of a lattice; else so many bins that each has 16 cases.
 std::size_t bins_for(const FactorColumn& factor, bool lattice, std::size_t settled, std::int64_t cases) {
     if (lattice || !factor.continuous()) {
@@ -72,11 +56,116 @@ std::size_t bins_for(const FactorColumn& factor, bool lattice, std::size_t settl
     return std::clamp<std::size_t>(static_cast<std::size_t>(cases) / 16, 4, 16);
 }
 
+/// The binned index of a lattice with replicates without the part that scatter gives to the means, and the half-width
+/// of normal scatter: a sum of squares S of f degrees of freedom has E[S] = S0 + f sigma^2 and, as a (noncentral)
+/// chi-squared variable, V[S] = 2 f sigma^4 + 4 sigma^2 S0; the index is one such sum over that and the rest.
+void take_out_scatter(FactorInfluence& factor, const stats::VarianceSplit& split, std::span<const double> values) {
+    double n = 0, mean = 0, squares = 0;
+    for (const double value : values) {
+        if (!std::isfinite(value)) continue;
+        n += 1;
+        const double before = value - mean;
+        mean += before / n;
+        squares += before * (value - mean);
+    }
+    const double variance = split.pure.variance, freedom = static_cast<double>(factor.bins) - 1;
+    double& share = factor.first.value;
+    share -= freedom * variance / squares;
+    const auto variance_of = [&](double degrees, double sum) {
+        return 2 * degrees * variance * variance + 4 * variance * std::max(0.0, sum);
+    };
+    const double own = variance_of(freedom, share * squares);
+    const double rest = variance_of(n - 1 - freedom, (1 - share) * squares - (n - 1) * variance);
+    const double subtracted = 2 * std::pow(freedom * variance, 2) / static_cast<double>(split.pure.freedom);
+    const double total = std::pow(1 - share, 2) * own + share * share * rest + subtracted;
+    factor.first.half_width = stats::student_factor(split.pure.freedom) * std::sqrt(total) / squares;
+}
+
+/// Levels as numbers in their order, or nothing where they are words.
+std::vector<double> numbers_of(const std::vector<std::string>& levels) {
+    std::vector<double> numbers;
+    for (const auto& level : levels) {
+        double x = 0;
+        const auto [end, error] = std::from_chars(level.data(), level.data() + level.size(), x);
+        if (error != std::errc{} || end != level.data() + level.size()) return {};
+        numbers.push_back(x);
+    }
+    return numbers;
+}
+
+Trend trend_of(const FactorColumn& factor, const std::vector<double>& levels, std::span<const double> values) {
+    auto bins = main_effect(factor, values, {});
+    if (!levels.empty())
+        std::ranges::sort(bins, {}, [&](const auto& bin) { return levels[static_cast<std::size_t>(bin.at)]; });
+    std::vector<double> means, negated, weights;
+    for (const auto& bin : bins) {
+        means.push_back(bin.mean);
+        negated.push_back(-bin.mean);
+        weights.push_back(static_cast<double>(bin.count));
+    }
+    if (means.size() < 2) return Trend::unknown;
+    const double rising = stats::rising_share(means, weights), falling = stats::rising_share(negated, weights);
+    if (std::isnan(rising)) return Trend::unknown;
+    if (rising >= monotone_share) return Trend::rises;
+    return falling >= monotone_share ? Trend::falls : Trend::bends;
+}
+
+/// Rank correlations, and trends where the factor has an influence that can be told from none.
+void add_trends(Influence& influence, const Responses& responses, const ResponseColumn& response) {
+    const auto values = responses.judged(response);
+    const auto labels = sample_parts(responses).labels;
+    for (std::size_t j = 0; j < responses.factors.size(); ++j) {
+        const auto& factor = responses.factors[j];
+        auto& found = influence.factors[j];
+        const auto levels = numbers_of(factor.levels);
+        if (!factor.continuous() && levels.empty()) continue;
+        std::vector<double> x(factor.values.begin(),
+                              factor.values.begin() + static_cast<std::ptrdiff_t>(responses.settled));
+        if (!factor.continuous())
+            for (double& level : x) level = levels[static_cast<std::size_t>(level)];
+        auto& rank = found.rank_correlation;
+        rank = stats::rank_correlation(x, values, labels);
+        if (!responses.ordered_sample()) rank.half_width = none;
+        if (found.effects) {
+            const double size = found.effects->mu_star;
+            if (size > 0)
+                found.trend = std::abs(found.effects->mu) < monotone_share * size ? Trend::bends
+                              : found.effects->mu > 0                             ? Trend::rises
+                                                                                  : Trend::falls;
+            continue;
+        }
+        // What the scatter of independent points gives the bins of a sample; a lattice has its errors from replicates.
+        const auto cases = static_cast<double>(std::max<std::int64_t>(1, influence.used));
+        const double in_bins = responses.campaign.design == "lattice" ? 0 : static_cast<double>(found.bins - 1) / cases;
+        const double noise = std::isfinite(found.first.half_width) ? std::max(in_bins, found.first.half_width) : 1e-9;
+        const bool seen = found.first.value > noise || std::abs(rank.value) > rank.half_width;
+        if (seen) found.trend = trend_of(factor, levels, values);
+    }
+}
+
+stats::VarianceSplit split_of(const Responses& responses, const ResponseColumn& response) {
+    const auto points = std::span(responses.points).first(responses.settled);
+    const auto values = responses.judged(response);
+    const bool lattice = responses.campaign.design == "lattice";
+    const std::size_t count = std::set<std::int64_t>(points.begin(), points.end()).size();
+    const std::size_t d = responses.factors.size();
+    std::vector<std::vector<double>> coordinates(d);
+    std::vector<stats::SplitFactor> factors;
+    for (std::size_t j = 0; j < d; ++j) {
+        const auto& factor = responses.factors[j];
+        for (std::size_t row = 0; row < responses.settled; ++row) coordinates[j].push_back(factor.coordinate(row));
+        const bool levels = lattice || !factor.continuous();
+        factors.push_back({coordinates[j], factor.continuous() || !numbers_of(factor.levels).empty(),
+                           levels ? 0 : std::clamp<std::size_t>(count / (5 * d), 2, most_pieces)});
+    }
+    return stats::split_variance(points, factors, values, sample_parts(responses).labels, lattice);
+}
+
 void add_given_data(Influence& influence, const Responses& responses, const ResponseColumn& response) {
     const bool lattice = responses.campaign.design == "lattice";
     const auto values = responses.judged(response);
     const auto cases = std::ranges::count_if(values, [](double x) { return std::isfinite(x); });
-    const auto labels = groups_of(responses);
+    const auto labels = sample_parts(responses).labels;
     std::size_t most_bins = 0;
     for (std::size_t j = 0; j < responses.factors.size(); ++j) {
         const auto& factor = responses.factors[j];
@@ -87,12 +176,19 @@ void add_given_data(Influence& influence, const Responses& responses, const Resp
         found.first = indices.first[0];
         // Lines of a lattice are no sample of it: leaving some out tells nothing about the error.
         if (lattice) found.first.half_width = none;
+        if (lattice && influence.split.pure.freedom > 0) take_out_scatter(found, influence.split, values);
         influence.used = indices.count;
         influence.excluded = indices.excluded;
         most_bins = std::max(most_bins, found.bins);
     }
-    if (lattice) {
-        influence.notes.emplace_back("a lattice gives its indices without errors: compare campaigns of growing levels");
+    if (lattice && influence.split.pure.freedom > 0) {
+        influence.notes.push_back(fmt::format(
+            "errors are those of the scatter of single runs (pure error, {} degrees of freedom), not of the "
+            "lattice's steps: compare campaigns of growing levels",
+            influence.split.pure.freedom));
+    } else if (lattice) {
+        influence.notes.emplace_back(
+            "a lattice of single runs gives its indices without errors: compare campaigns of growing levels");
     } else if (influence.used > 0) {
         const double floor = static_cast<double>(most_bins - 1) / static_cast<double>(influence.used);
         influence.notes.push_back(
@@ -147,16 +243,62 @@ void add_morris(Influence& influence, const Responses& responses, const Response
 
 }  // namespace
 
+std::string_view to_string(Trend trend) {
+    switch (trend) {
+        case Trend::unknown:
+            return "";
+        case Trend::rises:
+            return "rises";
+        case Trend::falls:
+            return "falls";
+        case Trend::bends:
+            return "bends";
+    }
+    return "";
+}
+
+std::string unexplained_text(const Influence& influence) {
+    const auto& split = influence.split;
+    if (!std::isfinite(split.unexplained.value)) {
+        return std::isfinite(split.pure.variance)
+                   ? fmt::format(
+                         "single runs scatter with a standard deviation of {:.3g} (pure error, {} degrees of freedom)",
+                         std::sqrt(split.pure.variance), split.pure.freedom)
+                   : "";
+    }
+    const auto text = fmt::format("main effects together explain {} of the variance of single runs; unexplained {}",
+                                  index_text(split.main_effects), index_text(split.unexplained));
+    if (std::isfinite(split.scatter.value)) {
+        return fmt::format(
+            "{}: interactions {}, scatter of single runs {} (standard deviation {:.3g}, pure error of {} "
+            "degrees of freedom)",
+            text, index_text(split.interactions), index_text(split.scatter), std::sqrt(split.pure.variance),
+            split.pure.freedom);
+    }
+    if (std::isfinite(split.pairs.value)) {
+        return fmt::format(
+            "{}: interactions of two factors {}, scatter of single runs and higher interactions {}; "
+            "replicates would tell these apart",
+            text, index_text(split.pairs), index_text(split.remainder));
+    }
+    return text + ": interactions and scatter of single runs, which replicates would tell apart";
+}
+
 Influence influence_of(const Responses& responses, const ResponseColumn& response) {
     Influence influence;
     const auto& design = responses.campaign.design;
-    for (const auto& factor : responses.factors) influence.factors.push_back({factor.name, 0, {}, {}, {}, {}});
+    for (const auto& factor : responses.factors) influence.factors.emplace_back().factor = factor.name;
     if (design == "morris") {
         influence.method = Influence::Method::morris;
+        influence.split.pure =
+            stats::pure_error(std::span(responses.points).first(responses.settled), responses.judged(response));
         add_morris(influence, responses, response);
+        add_trends(influence, responses, response);
         return influence;
     }
+    influence.split = split_of(responses, response);
     add_given_data(influence, responses, response);
+    add_trends(influence, responses, response);
     if (design == "saltelli") {
         influence.method = Influence::Method::saltelli;
         add_saltelli(influence, responses, response);

@@ -61,6 +61,14 @@ Cell points_needed(const History& history) {
     return check.points_needed ? Cell{*check.points_needed} : Cell{};
 }
 
+Cell trend_cell(const FactorInfluence& factor) {
+    return factor.trend == Trend::unknown ? Cell{} : Cell{std::string(to_string(factor.trend))};
+}
+
+Json json_of(const stats::SensitivityIndex& index) {
+    return {{"value", to_json(to_cell(index.value))}, {"error", to_json(to_cell(index.half_width))}};
+}
+
 Json number(double x) {
     return to_json(to_cell(x));
 }
@@ -190,13 +198,15 @@ store::Table influence_table(const Influence& influence) {
     store::Table table{{"factor"}, {}};
     const bool morris = influence.method == Influence::Method::morris;
     if (morris) {
-        table.columns.insert(table.columns.end(), {"mu*", "mu", "sigma", "effects"});
+        table.columns.insert(table.columns.end(), {"trend", "mu*", "mu", "sigma", "effects"});
     } else {
         table.columns.emplace_back("first order");
         if (influence.method == Influence::Method::saltelli) table.columns.emplace_back("total");
+        table.columns.insert(table.columns.end(), {"trend", "rank correlation"});
     }
     for (const auto* factor : order) {
         std::vector<Cell> row = {factor->factor};
+        if (morris) row.push_back(trend_cell(*factor));
         if (morris && factor->effects) {
             row.emplace_back(with_error(factor->effects->mu_star, factor->effects->mu_star_half_width));
             row.push_back(to_cell(factor->effects->mu));
@@ -205,6 +215,8 @@ store::Table influence_table(const Influence& influence) {
         } else if (!morris) {
             row.emplace_back(index_text(factor->first));
             if (influence.method == Influence::Method::saltelli) row.emplace_back(index_text(factor->total));
+            row.push_back(trend_cell(*factor));
+            row.emplace_back(with_error(factor->rank_correlation.value, factor->rank_correlation.half_width));
         }
         row.resize(table.columns.size());
         table.rows.push_back(std::move(row));
@@ -213,10 +225,10 @@ store::Table influence_table(const Influence& influence) {
 }
 
 store::Table influence_rows(const Responses& responses, const ResponseColumn& response, const Influence& influence) {
-    store::Table table{
-        {"campaign", "observable", "method", "factor", "first", "first_error", "first_saltelli", "first_saltelli_error",
-         "total", "total_error", "mu", "mu_star", "mu_star_error", "sigma", "used", "excluded"},
-        {}};
+    store::Table table{{"campaign", "observable", "method", "factor", "first", "first_error", "first_saltelli",
+                        "first_saltelli_error", "total", "total_error", "mu", "mu_star", "mu_star_error", "sigma",
+                        "used", "excluded", "trend", "rank_correlation", "rank_correlation_error"},
+                       {}};
     for (const auto& factor : influence.factors) {
         std::vector<Cell> row = {responses.campaign.name, response.name, std::string(method_name(influence.method)),
                                  factor.factor};
@@ -229,6 +241,9 @@ store::Table influence_rows(const Responses& responses, const ResponseColumn& re
             row.push_back(to_cell(x));
         row.emplace_back(influence.used);
         row.emplace_back(influence.excluded);
+        row.push_back(trend_cell(factor));
+        row.push_back(to_cell(factor.rank_correlation.value));
+        row.push_back(to_cell(factor.rank_correlation.half_width));
         table.rows.push_back(std::move(row));
     }
     return table;
@@ -243,9 +258,7 @@ Json to_json(const Responses& responses, const ResponseColumn& response, const I
     value["factors"] = Json::array();
     for (const auto& factor : influence.factors) {
         Json one = {{"name", factor.factor}};
-        const auto put = [&](const char* name, const stats::SensitivityIndex& index) {
-            one[name] = {{"value", number(index.value)}, {"error", number(index.half_width)}};
-        };
+        const auto put = [&](const char* name, const stats::SensitivityIndex& index) { one[name] = json_of(index); };
         if (influence.method != Influence::Method::morris) {
             one["bins"] = factor.bins;
             put("first", factor.first);
@@ -260,8 +273,16 @@ Json to_json(const Responses& responses, const ResponseColumn& response, const I
             one["mu"] = number(factor.effects->mu);
             one["sigma"] = number(factor.effects->sigma);
         }
+        one["trend"] = to_json(trend_cell(factor));
+        put("rank_correlation", factor.rank_correlation);
         value["factors"].push_back(std::move(one));
     }
+    const auto& split = influence.split;
+    value["variance"] = {
+        {"main_effects", json_of(split.main_effects)}, {"unexplained", json_of(split.unexplained)},
+        {"interactions", json_of(split.interactions)}, {"scatter", json_of(split.scatter)},
+        {"interactions_of_two", json_of(split.pairs)}, {"scatter_and_higher", json_of(split.remainder)},
+        {"pure_error", number(split.pure.variance)},   {"pure_error_freedom", split.pure.freedom}};
     value["notes"] = influence.notes;
     return value;
 }

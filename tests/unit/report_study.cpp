@@ -1,4 +1,5 @@
 // The study: moments, verdicts and influences recomputed from stored answers, and what is said about them.
+#include "stats/random.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/report/effects.hpp"
 #include "sweep/report/history.hpp"
@@ -352,7 +353,10 @@ TEST(Effects, BinsHoldEqualCountsAndLevelsAreBins) {
         response.push_back(3 * i / 320.0);
     }
     response[7] = none;
-    const auto effect = main_effect(factor, response);
+    report::EffectErrors errors;
+    errors.source = report::EffectErrors::Source::parts;
+    for (int i = 0; i < 320; ++i) errors.parts.push_back(static_cast<std::size_t>(i % 8));
+    const auto effect = main_effect(factor, response, errors);
     ASSERT_EQ(effect.size(), 16u);
     std::int64_t total = 0;
     for (const auto& bin : effect) {
@@ -364,11 +368,165 @@ TEST(Effects, BinsHoldEqualCountsAndLevelsAreBins) {
 
     factor.levels = {"a", "b"};
     for (std::size_t i = 0; i < factor.values.size(); ++i) factor.values[i] = i % 2 == 0 ? 0 : 1;
-    const auto levels = main_effect(factor, response);
+    const auto levels = main_effect(factor, response, errors);
     ASSERT_EQ(levels.size(), 2u);
     EXPECT_EQ(levels[1].at, 1);
     EXPECT_EQ(levels[0].count, 160);
     EXPECT_EQ(levels[1].count, 159);
+}
+
+/// A uniform disturbance of the case, of standard deviation sigma: what a scene's own random numbers do.
+std::optional<double> disturbed(double y, double sigma, std::uint64_t salt, std::uint64_t count) {
+    const double u = stats::Stream(salt, count).uniform(0);
+    return y + sigma * std::sqrt(12.0) * (u - 0.5);
+}
+
+std::string lattice(const std::string& name, int replicates) {
+    return R"({"campaign": ")" + name + R"(", "scene": "rehearsal", "replicates": )" + std::to_string(replicates) +
+           R"(, "factors": [{"name": "x1", "between": [0, 1]}, {"name": "x2", "between": [0, 1]}],
+        "design": {"kind": "lattice", "levels": [2, 5]}})";
+}
+
+// Two levels of a share that the other factor moves from 0 to 1: the values at a level differ by that factor, which is
+// no error of their mean.
+TEST_F(Study, MainEffectsOfALatticeOfSingleRunsHaveNoWhiskers) {
+    answer_by(store, lattice("c", 1), [](const Inputs& inputs) { return input(inputs, "x2"); });
+    const auto responses = ask("c");
+    const auto& y = responses.observable("y");
+    const auto errors = effect_errors(responses, y);
+    EXPECT_EQ(errors.source, report::EffectErrors::Source::none);
+    EXPECT_THAT(errors.says, HasSubstr("a lattice of single runs tells no error; replicates would"));
+    for (const auto& bin : main_effect(responses.factors[0], responses.judged(y), errors)) {
+        EXPECT_DOUBLE_EQ(bin.mean, 0.5);
+        EXPECT_TRUE(std::isnan(bin.error));
+    }
+}
+
+TEST_F(Study, MainEffectsOfAReplicatedLatticeHaveTheErrorOfTheirScatter) {
+    constexpr double sigma = 0.05;
+    std::uint64_t count = 0;
+    int covered = 0, bins = 0;
+    for (int k = 0; k < 40; ++k) {
+        const auto name = "c" + std::to_string(k);
+        answer_by(store, lattice(name, 3).insert(1, R"("seed": )" + std::to_string(k + 1) + ", "),
+                  [&](const Inputs& inputs) { return disturbed(input(inputs, "x2"), sigma, 5, ++count); });
+        const auto responses = ask(name);
+        const auto& y = responses.observable("y");
+        const auto errors = effect_errors(responses, y);
+        EXPECT_EQ(errors.pure.freedom, 20);  // 10 points, 3 runs each
+        EXPECT_THAT(errors.says, HasSubstr("pure error, 20 degrees of freedom"));
+        for (const auto& bin : main_effect(responses.factors[0], responses.judged(y), errors)) {
+            EXPECT_EQ(bin.count, 15);
+            EXPECT_NEAR(bin.error, 2.086 * std::sqrt(errors.pure.variance / 15), 1e-4);
+            covered += std::abs(bin.mean - 0.5) <= bin.error;
+            ++bins;
+        }
+    }
+    EXPECT_EQ(bins, 80);
+    EXPECT_GE(covered, 70);  // 95 % of 80 is 76, three standard errors are 5.8
+}
+
+TEST_F(Study, MainEffectsOfASampleCoverTheTruthAsOftenAsTheySay) {
+    // y = x1 + 2 x2 + 0.5 over x2 in [0, 0.5]: in a bin of x1 the mean is x1 + 1.
+    int covered = 0, bins = 0;
+    for (int k = 0; k < 12; ++k) {
+        const auto name = "c" + std::to_string(k);
+        answer_by(store, halton(name, 320, R"(, "seed": )" + std::to_string(k + 1)),
+                  [](const Inputs& inputs) { return input(inputs, "x1") + 2 * input(inputs, "x2") + 0.5; });
+        const auto responses = ask(name);
+        const auto& y = responses.observable("y");
+        for (const auto& bin : main_effect(responses.factors[0], responses.judged(y), effect_errors(responses, y))) {
+            covered += std::abs(bin.mean - bin.at - 1) <= bin.error;
+            ++bins;
+        }
+    }
+    EXPECT_EQ(bins, 192);
+    EXPECT_GE(covered, 173);  // 95 % less three standard errors
+}
+
+TEST_F(Study, AWhiskerNeedsFourPartsOfTheSample) {
+    answer_by(store, halton("c", 16), [](const Inputs& inputs) { return linear(inputs); });
+    auto responses = ask("c");
+    const auto& y = responses.observable("y");
+    const auto errors = effect_errors(responses, y);
+    auto& factor = responses.factors[0];
+    factor.levels = {"a", "b"};
+    for (std::size_t row = 0; row < 16; ++row) factor.values[row] = row < 3 ? 0 : 1;
+    const auto bins = main_effect(factor, responses.judged(y), errors);
+    EXPECT_TRUE(std::isnan(bins[0].error));
+    EXPECT_GT(bins[1].error, 0);
+}
+
+TEST_F(Study, SensitivityTellsInteractionFromScatterWhereReplicatesAllow) {
+    std::uint64_t count = 0;
+    const auto response = [&](const Inputs& inputs) {  // V: 1/12 + 1/12 + 1/144 x 12 of interaction + 1/12 of scatter
+        const double a = input(inputs, "x1") - 0.5, b = input(inputs, "x2") - 0.5;
+        return disturbed(a - b + std::sqrt(12.0) * a * b, std::sqrt(1.0 / 12), 3, ++count);
+    };
+    const std::string text = R"({"campaign": "twice", "scene": "rehearsal", "replicates": 2,
+        "factors": [{"name": "x1", "between": [0, 1]}, {"name": "x2", "between": [0, 1]}],
+        "design": {"kind": "halton", "sequences": 8, "points": 1200}})";
+    answer_by(store, text, response);
+    auto responses = ask("twice");
+    auto influence = influence_of(responses, responses.observable("y"));
+    EXPECT_NEAR(influence.split.main_effects.value, 0.5, 2 * influence.split.main_effects.half_width);
+    EXPECT_NEAR(influence.split.interactions.value, 0.25, 2 * influence.split.interactions.half_width);
+    EXPECT_NEAR(influence.split.scatter.value, 0.25, 2 * influence.split.scatter.half_width);
+    EXPECT_LT(influence.split.interactions.half_width, 0.06);
+    EXPECT_THAT(unexplained_text(influence), HasSubstr("pure error of 1200 degrees of freedom"));
+
+    std::string once = text;
+    once.replace(once.find("twice"), 5, "once");
+    once.erase(once.find(R"("replicates": 2,)"), 16);
+    answer_by(store, once, response);
+    responses = ask("once");
+    influence = influence_of(responses, responses.observable("y"));
+    EXPECT_TRUE(std::isnan(influence.split.scatter.value));
+    EXPECT_NEAR(influence.split.unexplained.value, 0.5, 2 * influence.split.unexplained.half_width);
+    EXPECT_THAT(unexplained_text(influence), HasSubstr("replicates would tell these apart"));
+    const auto json = to_json(responses, responses.observable("y"), influence);
+    EXPECT_TRUE(json["variance"]["scatter"]["value"].is_null());
+    EXPECT_GT(json["variance"]["unexplained"]["error"], 0);
+}
+
+TEST_F(Study, TrendsSayWhichWayTheResponseGoes) {
+    const std::string text = R"({"campaign": "c", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]},
+        {"name": "x2", "between": [0, 1]}, {"name": "x3", "between": [0, 1]}, {"name": "x4", "between": [0, 1]},
+        {"name": "response", "levels": ["sum", "ishigami"]}], "design": {"kind": "halton", "sequences": 8, "points": 800}})";
+    answer_by(store, text, [](const Inputs& inputs) {
+        return input(inputs, "x1") - 2 * input(inputs, "x2") + 8 * std::pow(input(inputs, "x3") - 0.5, 2);
+    });
+    const auto responses = ask("c");
+    const auto influence = influence_of(responses, responses.observable("y"));
+    const auto trend = [&](std::size_t j) { return std::string(to_string(influence.factors[j].trend)); };
+    EXPECT_EQ(trend(0), "rises");
+    EXPECT_EQ(trend(1), "falls");
+    EXPECT_EQ(trend(2), "bends");
+    EXPECT_EQ(trend(3), "");
+    EXPECT_EQ(trend(4), "");
+    EXPECT_GT(influence.factors[0].rank_correlation.value, 0.2);
+    EXPECT_LT(influence.factors[1].rank_correlation.value, -0.5);
+    EXPECT_NEAR(influence.factors[2].rank_correlation.value, 0, 2 * influence.factors[2].rank_correlation.half_width);
+    EXPECT_TRUE(std::isnan(influence.factors[4].rank_correlation.value));
+    const auto table = influence_table(influence);
+    EXPECT_THAT(table.columns, ElementsAre("factor", "first order", "trend", "rank correlation"));
+}
+
+TEST_F(Study, AReplicatedLatticeHasErrorsOfItsIndices) {
+    std::uint64_t count = 0;
+    answer_by(store, R"({"campaign": "c", "scene": "rehearsal", "replicates": 4, "factors": [
+        {"name": "x1", "between": [0, 1]}, {"name": "x2", "between": [0, 1]}], "design": {"kind": "lattice", "levels": 6}})",
+              [&](const Inputs& inputs) { return disturbed(input(inputs, "x1"), 0.2, 9, ++count); });
+    const auto responses = ask("c");
+    const auto influence = influence_of(responses, responses.observable("y"));
+    const double signal = 7.0 / 60;  // variance of six steps from 0 to 1
+    const auto& x1 = influence.factors[0].first;
+    const auto& x2 = influence.factors[1].first;
+    EXPECT_NEAR(x1.value, signal / (signal + 0.04), 2 * x1.half_width);
+    EXPECT_NEAR(x2.value, 0, 2 * x2.half_width);
+    EXPECT_LT(x1.half_width, 0.1);
+    EXPECT_LT(x2.half_width, 0.05);
+    EXPECT_THAT(influence.notes, Contains(HasSubstr("pure error, 108 degrees of freedom")));
 }
 
 }  // namespace
