@@ -27,6 +27,7 @@
 #include <string_view>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 namespace grainsweep::cli {
 namespace {
@@ -133,6 +134,8 @@ int sensitivity(const Subject& subject, Format format) {
                               print_heading(responses, response);
                               report::write(std::cout, report::influence_table(influence), Format::text);
                               std::cout << '\n';
+                              if (const auto text = report::unexplained_text(influence); !text.empty())
+                                  std::cout << text << '\n';
                               print_notes(influence.notes);
                           }
                       });
@@ -184,12 +187,19 @@ void write_page(const std::string& output, const std::string& page) {
     file.take_place();
 }
 
-int write_report(const std::string& database, std::string output, Format format) {
-    const Store store(database, Store::Mode::read);
+int write_report(const std::vector<std::string>& databases, std::string output, Format format) {
+    std::vector<Store> stores;
+    stores.reserve(databases.size());
+    std::vector<report::PageSource> sources;
+    for (const auto& name : databases) {
+        stores.emplace_back(name, Store::Mode::read);
+        sources.push_back({&stores.back(), fs::path(name).filename().string()});
+    }
+    const std::string& database = databases.front();
     if (output.empty()) output = fs::path(database).filename().replace_extension(".html").string();
-    check_output(output, database);
+    for (const auto& name : databases) check_output(output, name);
     std::ostringstream stream;
-    report::write_page(stream, store, fs::path(database).filename().string());
+    report::write_page(stream, sources);
     const std::string page = std::move(stream).str();
     write_page(output, page);
     const auto size = static_cast<std::int64_t>(page.size());
@@ -227,11 +237,18 @@ std::vector<Command> study_commands() {
          [](Parser& parser, const Format& format) -> Action {
              struct Request {
                  std::string database, output;
+                 std::vector<std::string> others;
              };
              const auto request = std::make_shared<Request>();
              parser.add_option("DB", request->database, "the database")->required();
              parser.add_option("-o,--output", request->output, "the page; default: the database's name with .html");
-             return [request, &format] { return write_report(request->database, request->output, format); };
+             parser.add_option("--with", request->others,
+                               "further databases whose campaigns are laid over those of the first");
+             return [request, &format] {
+                 std::vector<std::string> databases = {request->database};
+                 databases.insert(databases.end(), request->others.begin(), request->others.end());
+                 return write_report(databases, request->output, format);
+             };
          },
          false},
     };

@@ -6,6 +6,7 @@
 #include "sweep/report/effects.hpp"
 #include "sweep/report/history.hpp"
 #include "sweep/report/influence.hpp"
+#include "sweep/report/packed_column.hpp"
 #include "sweep/report/page_files.hpp"
 #include "sweep/report/summary.hpp"
 #include "sweep/report/table.hpp"
@@ -15,7 +16,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <ostream>
 #include <utility>
 
@@ -36,12 +36,6 @@ Json drawn(const std::vector<double>& values) {
     Json list = Json::array();
     for (const double x : values) list.push_back(drawn(x));
     return list;
-}
-
-std::vector<std::size_t> rows_to_draw(std::size_t rows) {
-    std::vector<std::size_t> all(rows);
-    std::iota(all.begin(), all.end(), std::size_t{0});
-    return random_rows(std::move(all), most_drawn_cases);
 }
 
 Json json_of(const History& history) {
@@ -82,7 +76,9 @@ Json json_of(const Influence& influence) {
                     {"first", drawn(factor.first.value)},
                     {"first_error", drawn(factor.first.half_width)},
                     {"total", drawn(factor.total.value)},
-                    {"total_error", drawn(factor.total.half_width)}};
+                    {"total_error", drawn(factor.total.half_width)},
+                    {"trend", to_string(factor.trend)},
+                    {"rank_text", with_error(factor.rank_correlation.value, factor.rank_correlation.half_width)}};
         if (factor.effects) {
             one["mu_star_text"] = with_error(factor.effects->mu_star, factor.effects->mu_star_half_width);
             one["mu_star"] = drawn(factor.effects->mu_star);
@@ -91,12 +87,21 @@ Json json_of(const Influence& influence) {
         }
         value["factors"].push_back(std::move(one));
     }
+    const auto& split = influence.split;
+    value["variance"] = {{"main_effects", drawn(split.main_effects.value)},
+                         {"unexplained", drawn(split.unexplained.value)},
+                         {"interactions", drawn(split.interactions.value)},
+                         {"scatter", drawn(split.scatter.value)},
+                         {"pairs", drawn(split.pairs.value)},
+                         {"remainder", drawn(split.remainder.value)}};
+    value["unexplained"] = unexplained_text(influence);
     return value;
 }
 
 Json json_of(const std::vector<EffectBin>& effect) {
     Json bins = Json::array();
-    for (const auto& bin : effect) bins.push_back({drawn(bin.at), drawn(bin.mean), drawn(bin.error), bin.count});
+    for (const auto& bin : effect)
+        bins.push_back({drawn(bin.at), drawn(bin.mean), drawn(bin.error), bin.count, drawn(bin.pure_error)});
     return bins;
 }
 
@@ -118,28 +123,29 @@ Json extremes_of(const Responses& responses, const ResponseColumn& response, boo
     return list;
 }
 
-Json json_of(const Responses& responses, const ResponseColumn& response, const std::vector<std::size_t>& drawn_rows) {
+Json json_of(const Responses& responses, const ResponseColumn& response) {
     Json value = {{"name", response.name}, {"unit", response.unit}, {"meaning", response.meaning}};
     const auto judged = responses.judged(response);
     value["history"] = json_of(history_of(responses, response));
     const auto histogram = histogram_of(judged);
     value["histogram"] = {{"low", drawn(histogram.low)}, {"high", drawn(histogram.high)}, {"counts", histogram.counts}};
     value["effects"] = Json::array();
-    for (const auto& factor : responses.factors) value["effects"].push_back(json_of(main_effect(factor, judged)));
+    const auto errors = effect_errors(responses, response);
+    value["whiskers"] = errors.says;
+    value["pure_error"] = drawn(errors.pure.variance);
+    value["pure_error_freedom"] = errors.pure.freedom;
+    for (const auto& factor : responses.factors)
+        value["effects"].push_back(json_of(main_effect(factor, judged, errors)));
     value["influence"] = json_of(influence_of(responses, response));
-    std::vector<double> values;
-    for (const auto row : drawn_rows) values.push_back(response.values[row]);
-    value["drawn"] = drawn(values);
+    value["values"] = packed(response.values);
     value["largest"] = extremes_of(responses, response, true);
     value["smallest"] = extremes_of(responses, response, false);
     return value;
 }
 
-Json factors_of(const Responses& responses, const std::vector<std::size_t>& drawn_rows) {
+Json factors_of(const Responses& responses) {
     Json list = Json::array();
     for (const auto& factor : responses.factors) {
-        std::vector<double> values;
-        for (const auto row : drawn_rows) values.push_back(factor.values[row]);
         list.push_back({{"name", factor.name},
                         {"unit", factor.unit},
                         {"meaning", factor.meaning},
@@ -147,9 +153,20 @@ Json factors_of(const Responses& responses, const std::vector<std::size_t>& draw
                         {"low", drawn(factor.low)},
                         {"high", drawn(factor.high)},
                         {"log", factor.log},
-                        {"drawn", drawn(values)}});
+                        {"values", packed(factor.values)}});
     }
     return list;
+}
+
+/// Every case: where it stands, what it is called, how it ended.
+void add_cases(Json& value, const Responses& responses) {
+    std::vector<std::string> outcomes;
+    for (const auto& outcome : responses.outcomes)
+        outcomes.push_back(outcome ? std::string(campaign::to_string(*outcome)) : "not yet");
+    value["points"] = packed(responses.points);
+    value["repeats"] = packed(responses.replicates);
+    value["outcome_of"] = packed(outcomes);
+    value["ids"] = packed_ids(responses.case_ids);
 }
 
 bool failed(const std::optional<campaign::Outcome>& outcome) {
@@ -179,7 +196,8 @@ Json json_of(const Curves& curves) {
                     {"over", family.over},    {"over_bins", family.over_bins}, {"at", drawn(family.at_time)},
                     {"curves", Json::array()}};
         for (const auto& curve : family.curves)
-            one["curves"].push_back({{"label", curve.label}, {"x", drawn(curve.x)}, {"y", drawn(curve.y)}});
+            one["curves"].push_back(
+                {{"row", curve.row}, {"label", curve.label}, {"x", drawn(curve.x)}, {"y", drawn(curve.y)}});
         value["families"].push_back(std::move(one));
     }
     return value;
@@ -205,12 +223,12 @@ Json runs_of(const store::Store& store, const std::string& campaign) {
                     campaign)));
 }
 
-Json campaign_of(const store::Store& store, const store::CampaignRecord& record) {
+Json campaign_of(const store::Store& store, const store::CampaignRecord& record, std::string_view database) {
     const auto responses = read_responses(store, record);
     const auto text = campaign::parse_json(record.text);
     const SceneInfo* scene = find_scene(record.scene);
-    const auto drawn_rows = rows_to_draw(responses.settled);
     Json value = {{"name", record.name},
+                  {"database", database},
                   {"notes", notes_of(text)},
                   {"scene", record.scene},
                   {"revision", record.revision},
@@ -224,13 +242,13 @@ Json campaign_of(const store::Store& store, const store::CampaignRecord& record)
                   {"rows", responses.rows()},
                   {"settled", responses.settled},
                   {"settled_points", responses.counted_points()},
-                  {"drawn_rows", drawn_rows.size()},
                   {"sample", responses.ordered_sample()},
                   {"text", record.text}};
     value["stopped_at"] = record.stopped_at ? Json(*record.stopped_at) : Json(nullptr);
     value["outcomes"] = Json::array();
     for (const auto& [outcome, count] : count_outcomes(responses)) value["outcomes"].push_back({outcome, count});
-    value["factors"] = factors_of(responses, drawn_rows);
+    add_cases(value, responses);
+    value["factors"] = factors_of(responses);
     value["observables"] = Json::array();
     value["main"] = 0;
     const auto* main = responses.main_observable();
@@ -238,7 +256,7 @@ Json campaign_of(const store::Store& store, const store::CampaignRecord& record)
         const auto finite = [](double x) { return std::isfinite(x); };
         if (&response != main && std::ranges::none_of(response.values, finite)) continue;
         if (&response == main) value["main"] = value["observables"].size();
-        value["observables"].push_back(json_of(responses, response, drawn_rows));
+        value["observables"].push_back(json_of(responses, response));
     }
     value["curves"] = json_of(read_curves(store, responses));
     value["failures"] = failures_of(store, responses);
@@ -264,9 +282,13 @@ void fill(std::ostream& out, std::string_view skeleton,
 
 }  // namespace
 
-Json page_data(const store::Store& store, std::string_view database) {
-    Json value = {{"database", database}, {"campaigns", Json::array()}};
-    for (const auto& record : find_campaigns(store, "")) value["campaigns"].push_back(campaign_of(store, record));
+Json page_data(std::span<const PageSource> sources) {
+    Json value = {{"databases", Json::array()}, {"campaigns", Json::array()}};
+    for (const auto& [store, database] : sources) {
+        value["databases"].push_back(database);
+        for (const auto& record : find_campaigns(*store, ""))
+            value["campaigns"].push_back(campaign_of(*store, record, database));
+    }
     return value;
 }
 
@@ -288,9 +310,9 @@ std::string safe_in_script(const Json& value) {
     return safe;
 }
 
-void write_page(std::ostream& out, const store::Store& store, std::string_view database) {
+void write_page(std::ostream& out, std::span<const PageSource> sources) {
     const auto files = page_files();
-    const auto data = safe_in_script(page_data(store, database));
+    const auto data = safe_in_script(page_data(sources));
     fill(out, files.skeleton,
          {{"style", files.style}, {"library", files.library}, {"data", data}, {"program", files.program}});
 }

@@ -6,25 +6,30 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <filesystem>
 #include <iosfwd>
+#include <span>
 #include <string>
-#include <string_view>
 
 namespace grainsweep::report {
 
-/// Pictures hold at most so many cases, drawn evenly at random from the campaign; statistics are over all.
-inline constexpr std::size_t most_drawn_cases = 1500;
 /// Failed cases that are listed one by one.
 inline constexpr std::size_t most_listed_failures = 200;
 
-/// The figures of every campaign of the store, as the page's program reads them. `database` is only its name.
-[[nodiscard]] nlohmann::ordered_json page_data(const store::Store& store, std::string_view database);
+/// A database of the page.
+struct PageSource {
+    const store::Store* store = nullptr;
+    std::string name;  ///< what the page calls it
+};
+
+/// The figures and all cases of every campaign of the databases, as the page's program reads them. Columns of numbers
+/// are packed (packed_column.hpp).
+[[nodiscard]] nlohmann::ordered_json page_data(std::span<const PageSource> sources);
 
 /// JSON that may stand inside a script element: "</", "<!--" and the line separators of JavaScript cannot occur.
 [[nodiscard]] std::string safe_in_script(const nlohmann::ordered_json& value);
 
-/// Writes the page. Bytes of the database that are no UTF-8 are replaced.
-void write_page(std::ostream& out, const store::Store& store, std::string_view database);
+/// Writes the page: all campaigns of all databases, of which any two can be laid over one another. Bytes of a database
+/// that are no UTF-8 are replaced.
+void write_page(std::ostream& out, std::span<const PageSource> sources);
 
 }  // namespace grainsweep::report

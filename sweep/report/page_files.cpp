@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-// The assembler copies a file between two labels; the build names the files (cmake/page.cmake).
+// The assembler copies a file between two labels; the build names the files (sweep/report/page/embed.cmake).
 #define GRAINSWEEP_EMBED(name, file)                   \
     __asm__(                                           \
         ".pushsection .rodata\n"                       \
@@ -23,7 +23,7 @@
 
 GRAINSWEEP_EMBED(page_html, PAGE_FOLDER "/page.html");
 GRAINSWEEP_EMBED(page_css, PAGE_FOLDER "/page.css");
-GRAINSWEEP_EMBED(page_js, PAGE_FOLDER "/page.js");
+GRAINSWEEP_EMBED(page_js, PAGE_PROGRAM);
 GRAINSWEEP_EMBED(chart_js, CHART_JS);
 
 namespace grainsweep::report {

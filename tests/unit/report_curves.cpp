@@ -110,7 +110,8 @@ TEST_F(ReportCurves, ManyCasesAreDrawnAtRandomAndTheSameEveryTime) {
 
 TEST_F(ReportCurves, StandInThePage) {
     answer_all_but_the_last();
-    const auto data = report::page_data(store, "a.db");
+    const report::PageSource source{&store, "a.db"};
+    const auto data = report::page_data({&source, 1});
     const auto& curves = data["campaigns"][0]["curves"];
     EXPECT_EQ(curves["drawn"], 11);
     EXPECT_EQ(curves["families"][0]["over"], "time (sqrt(2 L/g))");

@@ -1,5 +1,6 @@
 # The files the report's page is made of are compiled into the program byte for byte: sweep/report/page_files.cpp
-# takes them in by the assembler's .incbin, so that a report needs no file at run time.
+# takes them in by the assembler's .incbin, so that a report needs no file at run time. The page's program is several
+# files, by idea; they follow one another in the order below.
 find_file(CHART_JS chart.min.js
   PATHS /usr/share/javascript/chart.js /usr/share/nodejs/chart.js/dist /usr/share/javascript/chartjs
   DOC "Chart.js 3, as the distribution packages it (libjs-chart.js)")
@@ -7,6 +8,14 @@ if(NOT CHART_JS)
   message(FATAL_ERROR "Chart.js is missing: install libjs-chart.js, or set CHART_JS to its chart.min.js")
 endif()
 set(PAGE_FOLDER "${CMAKE_SOURCE_DIR}/sweep/report/page")
+set(PAGE_SCRIPTS data elements colours svg figure response explore curves cases case_panel page)
+list(TRANSFORM PAGE_SCRIPTS REPLACE "(.+)" "${PAGE_FOLDER}/\\1.js")
+set(PAGE_PROGRAM "${CMAKE_BINARY_DIR}/generated/page_program.js")
+add_custom_command(OUTPUT "${PAGE_PROGRAM}"
+  COMMAND "${CMAKE_COMMAND}" -E cat ${PAGE_SCRIPTS} > "${PAGE_PROGRAM}"
+  DEPENDS ${PAGE_SCRIPTS} VERBATIM)
+add_custom_target(page_program DEPENDS "${PAGE_PROGRAM}")
+add_dependencies(sweep page_program)
 set_source_files_properties(sweep/report/page_files.cpp PROPERTIES
-  COMPILE_DEFINITIONS "CHART_JS=\"${CHART_JS}\";PAGE_FOLDER=\"${PAGE_FOLDER}\""
-  OBJECT_DEPENDS "${CHART_JS};${PAGE_FOLDER}/page.html;${PAGE_FOLDER}/page.css;${PAGE_FOLDER}/page.js")
+  COMPILE_DEFINITIONS "CHART_JS=\"${CHART_JS}\";PAGE_FOLDER=\"${PAGE_FOLDER}\";PAGE_PROGRAM=\"${PAGE_PROGRAM}\""
+  OBJECT_DEPENDS "${CHART_JS};${PAGE_FOLDER}/page.html;${PAGE_FOLDER}/page.css;${PAGE_PROGRAM}")

@@ -1,0 +1,108 @@
+#include "sweep/report/packed_column.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <concepts>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+namespace grainsweep::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr std::size_t most_different = 256;
+constexpr double exact_in_float = 16'777'216;  // 2^24
+
+template <std::unsigned_integral Word>
+void append(Bytes& bytes, Word word) {
+    for (std::size_t k = 0; k < sizeof word; ++k) bytes.push_back(static_cast<std::uint8_t>(word >> (8 * k)));
+}
+
+/// Indices into the different values, in the order in which they occur; nothing where there are too many.
+template <class T>
+std::optional<std::pair<std::vector<T>, Bytes>> dictionary(std::span<const T> values) {
+    std::map<T, std::uint8_t> places;
+    std::pair<std::vector<T>, Bytes> found;
+    for (const T& value : values) {
+        auto place = places.find(value);
+        if (place == places.end()) {
+            if (places.size() == most_different) return std::nullopt;
+            place = places.emplace(value, static_cast<std::uint8_t>(places.size())).first;
+            found.first.push_back(value);
+        }
+        found.second.push_back(place->second);
+    }
+    return found;
+}
+
+}  // namespace
+
+std::string base64(std::span<const std::uint8_t> bytes) {
+    static constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::size_t there = std::min<std::size_t>(3, bytes.size() - i);
+        std::uint32_t word = 0;
+        for (std::size_t k = 0; k < 3; ++k) word = word << 8 | (k < there ? bytes[i + k] : 0u);
+        for (std::size_t k = 0; k < 4; ++k) text += k <= there ? digits[word >> (18 - 6 * k) & 63u] : '=';
+    }
+    return text;
+}
+
+Json packed(std::span<const double> values) {
+    // NaN is not equal to itself: in the dictionary it is an infinity, which no column holds.
+    std::vector<double> keys;
+    for (const double x : values) keys.push_back(std::isfinite(x) ? x : HUGE_VAL);
+    if (const auto found = dictionary<double>(keys)) {
+        Json of = Json::array();
+        for (const double x : found->first) of.push_back(std::isfinite(x) ? Json(x) : Json(nullptr));
+        return {{"of", std::move(of)}, {"u8", base64(found->second)}};
+    }
+    const bool wide =
+        std::ranges::any_of(values, [](double x) { return std::abs(x) > exact_in_float && x == std::floor(x); });
+    Bytes bytes;
+    for (const double x : values) {
+        if (wide)
+            append(bytes, std::bit_cast<std::uint64_t>(x));
+        else
+            append(bytes, std::bit_cast<std::uint32_t>(static_cast<float>(x)));
+    }
+    return {{wide ? "f64" : "f32", base64(bytes)}};
+}
+
+Json packed(std::span<const std::int64_t> values) {
+    const std::vector<double> numbers(values.begin(), values.end());
+    return packed(std::span<const double>(numbers));
+}
+
+Json packed(std::span<const std::string> words) {
+    const auto found = dictionary<std::string>(words);
+    if (!found) throw std::length_error("more than 256 different words in a column");
+    return {{"of", found->first}, {"u8", base64(found->second)}};
+}
+
+std::string packed_ids(std::span<const std::string> ids) {
+    Bytes bytes;
+    for (const auto& id : ids) {
+        if (id.size() != 32) throw std::invalid_argument("'" + id + "' is no case id");
+        for (std::size_t k = 0; k < 32; k += 2) {
+            std::uint8_t byte = 0;
+            const auto [end, error] = std::from_chars(id.data() + k, id.data() + k + 2, byte, 16);
+            if (error != std::errc{} || end != id.data() + k + 2)
+                throw std::invalid_argument("'" + id + "' is no case id");
+            bytes.push_back(byte);
+        }
+    }
+    return base64(bytes);
+}
+
+}  // namespace grainsweep::report

@@ -1,0 +1,29 @@
+// Columns of numbers as the page carries them: ten thousand cases in a few bytes each.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace grainsweep::report {
+
+/// Base64 (RFC 4648, section 4).
+[[nodiscard]] std::string base64(std::span<const std::uint8_t> bytes);
+
+/// One of, in base64 where bytes are meant, little-endian:
+///   {"of": [values], "u8": indices}   at most 256 different values, exact; NaN among them is null
+///   {"f32": numbers}                  others, to seven digits
+///   {"f64": numbers}                  whole numbers that seven digits do not hold
+[[nodiscard]] nlohmann::ordered_json packed(std::span<const double> values);
+[[nodiscard]] nlohmann::ordered_json packed(std::span<const std::int64_t> values);
+/// Words: {"of": [words], "u8": indices}; throws std::length_error for more than 256 different ones.
+[[nodiscard]] nlohmann::ordered_json packed(std::span<const std::string> words);
+/// 32 hexadecimal digits each, as 16 bytes each in base64. Throws std::invalid_argument for another text.
+[[nodiscard]] std::string packed_ids(std::span<const std::string> ids);
+
+}  // namespace grainsweep::report

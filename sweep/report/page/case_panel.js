@@ -1,0 +1,38 @@
+// The selected case: its inputs and what it answered. Whatever shows more of a case listens for the event
+// `grainsweep:case` of the document, whose detail names the campaign and the case.
+let selected = null;  // { index of the campaign, row }
+const selectionChanged = [];
+
+function casePanel() { return document.getElementById("case-panel"); }
+
+function closeCase() {
+  selected = null;
+  casePanel().hidden = true;
+  document.body.classList.remove("with-panel");
+  selectionChanged.forEach((tell) => tell());
+}
+
+function selectCase(model, row) {
+  selected = { index: model.index, row };
+  const { campaign } = model, id = model.id(row);
+  const line = (variable) => {
+    const shown = quantity(variable, [variable.values[row]]);
+    return [el("span", { title: variable.meaning }, variable.name), variable.levels.length > 0 ? textOf(variable, row) : Number.isFinite(variable.values[row]) ? show(variable.values[row] * shown.factor, 6) : "–", shown.unit];
+  };
+  const list = (title, variables) => [el("h3", {}, title), table([["", ""], ["", "number"], ["", "unit"]], variables.map(line))];
+  const failure = campaign.failures.listed.find((one) => one.case === id);
+  casePanel().replaceChildren(
+    el("div", { class: "caption" }, el("h2", {}, `Point ${model.places[0].values[row]}` + (model.places[1] ? `, replicate ${model.places[1].values[row]}` : "")),
+      el("button", { type: "button", class: "plain", "aria-label": "close", click: closeCase }, "✕")),
+    el("p", { class: "says" }, `${campaignTitle(campaign)} · ${model.outcome(row)}`),
+    failure ? el("p", { class: "warning" }, failure.reason) : "",
+    el("div", { class: "watch" }),
+    ...list("Inputs", model.factors), ...list("Responses", model.responses),
+    el("p", { class: "says" }, "Compute it again: ", el("code", {}, `grainsweep replay ${campaign.database} ${id}`)));
+  casePanel().hidden = false;
+  document.body.classList.add("with-panel");
+  selectionChanged.forEach((tell) => tell());
+  document.dispatchEvent(new CustomEvent("grainsweep:case", { detail: { campaign: campaign.name, case_id: id } }));
+}
+
+document.addEventListener("keydown", (event) => { if (event.key === "Escape" && selected) closeCase(); });

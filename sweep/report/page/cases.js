@@ -1,0 +1,113 @@
+// The table of all cases: sorted by a click on a column's name, filtered by an expression per column; only the rows in view
+// are in the page, so ten thousand are as fast as ten.
+const filterHelp = "Numbers: >0.3, <=2, 0.2..0.5, =1, !=1, several with a space between. Texts: a part of them, =all of it, !not this. none: no value.";
+
+// An expression of one column as a test of its rows, or a text that says what is wrong with it.
+function filterOf(expression, column) {
+  const tests = [];
+  for (const word of expression.trim().split(/[\s,]+/).filter(Boolean)) {
+    const comparison = /^(>=|<=|!=|>|<|=)(.+)$/.exec(word), range = /^(.+)\.\.(.+)$/.exec(word);
+    if (word === "none") tests.push((row) => column.missing(row));
+    else if (word === "!none") tests.push((row) => !column.missing(row));
+    else if (column.number && range) {
+      const [low, high] = [Number(range[1]), Number(range[2])];
+      if (Number.isNaN(low) || Number.isNaN(high)) return `${word}: a range is two numbers, as 0.2..0.5`;
+      tests.push((row) => column.number(row) >= low && column.number(row) <= high);
+    } else if (column.number && comparison) {
+      const x = Number(comparison[2]), near = (y) => Math.abs(y - x) <= 1e-6 * Math.max(Math.abs(x), Math.abs(y));
+      if (Number.isNaN(x)) return `${comparison[2]} is no number`;
+      tests.push({ ">": (row) => column.number(row) > x, ">=": (row) => column.number(row) >= x, "<": (row) => column.number(row) < x, "<=": (row) => column.number(row) <= x,
+        "=": (row) => near(column.number(row)), "!=": (row) => !near(column.number(row)) }[comparison[1]]);
+    } else if (comparison && comparison[1] === "=") tests.push((row) => column.text(row).toLowerCase() === comparison[2].toLowerCase());
+    else if (comparison && comparison[1] === "!=") tests.push((row) => column.text(row).toLowerCase() !== comparison[2].toLowerCase());
+    else if (comparison) return `${word}: this column holds texts; only = and != compare them`;
+    else if (word[0] === "!") tests.push((row) => !column.text(row).toLowerCase().includes(word.slice(1).toLowerCase()));
+    else if (column.number) tests.push((row) => column.text(row).startsWith(word));
+    else tests.push((row) => column.text(row).toLowerCase().includes(word.toLowerCase()));
+  }
+  return (row) => tests.every((test) => test(row));
+}
+
+function caseColumns(model) {
+  const ofVariable = (variable) => (variable.levels.length > 0
+    ? { title: variable.name, unit: "", meaning: variable.meaning, text: (row) => textOf(variable, row), missing: () => false, sort: (row) => variable.values[row] }
+    : { title: variable.name, unit: variable.unit === "1" ? "" : variable.unit, meaning: variable.meaning, number: (row) => variable.values[row], text: (row) => show(variable.values[row], 6),
+      missing: (row) => !Number.isFinite(variable.values[row]), sort: (row) => variable.values[row] });
+  const word = (title, meaning, text) => ({ title, unit: "", meaning, text, missing: () => false, sort: text });
+  return [...model.places.map(ofVariable), word("outcome", "how the case ended", model.outcome), ...model.factors.map(ofVariable), ...model.responses.map(ofVariable),
+    word("case", "its id: grainsweep explain, replay and solve take it", (row) => model.id(row).slice(0, 10))];
+}
+
+function caseTable(model, filtered) {
+  const columns = caseColumns(model), rowHeight = 27, filters = columns.map(() => null);
+  let order = Array.from({ length: model.rows }, (_, row) => row), sorted = { column: -1, down: false }, shown = order;
+  const widths = columns.map((column) => {
+    let longest = Math.max(column.title.length + 2, column.unit.length + 1, 6);
+    for (let k = 0; k < Math.min(60, model.rows); ++k) longest = Math.max(longest, column.text(Math.floor((k * model.rows) / Math.min(60, model.rows))).length);
+    return Math.min(22, longest) * 7.6 + 18;
+  });
+  const count = el("span", { class: "quiet" }), body = el("tbody"), above = el("td", { colspan: columns.length }), under = el("td", { colspan: columns.length });
+  const arrows = columns.map(() => el("span", { class: "arrow" }));
+  const sortBy = (k) => {
+    sorted = { column: k, down: sorted.column === k && !sorted.down };
+    const column = columns[k], sign = sorted.down ? -1 : 1;
+    const key = order.map((_, row) => column.sort(row));
+    order.sort((a, b) => {
+      const [x, y] = [key[a], key[b]];
+      if (typeof x === "string") return sign * (x < y ? -1 : x > y ? 1 : a - b);
+      if (Number.isNaN(x) || Number.isNaN(y)) return Number.isNaN(x) - Number.isNaN(y) || a - b;  // no value: last, either way
+      return sign * (x - y) || a - b;
+    });
+    arrows.forEach((arrow, j) => { arrow.textContent = j === k ? (sorted.down ? " ▼" : " ▲") : ""; });
+    refresh();
+  };
+  const heads = columns.map((column, k) => el("th", { scope: "col", title: column.meaning }, el("button", { type: "button", click: () => sortBy(k) }, column.title, arrows[k]), el("small", {}, column.unit || "\u00a0")));
+  let waiting = 0;
+  const inputs = columns.map((column, k) => el("input", { type: "text", spellcheck: "false", autocomplete: "off", "aria-label": `filter ${column.title}`, title: filterHelp, placeholder: column.number ? ">…" : "…",
+    input: (event) => {
+      const made = event.target.value.trim() === "" ? null : filterOf(event.target.value, column);
+      const wrong = typeof made === "string";
+      event.target.classList.toggle("wrong", wrong);
+      event.target.title = wrong ? made : filterHelp;
+      if (wrong) return;
+      filters[k] = made;
+      clearTimeout(waiting);
+      waiting = setTimeout(filter, model.rows > 3000 ? 180 : 60);
+    } }));
+  const view = el("div", { class: "rows", tabindex: "0", scroll: () => requestAnimationFrame(paint) },
+    el("table", { style: `width: ${widths.reduce((a, b) => a + b, 0)}px` }, el("colgroup", {}, widths.map((w) => el("col", { style: `width: ${w}px` }))),
+      el("thead", {}, el("tr", {}, heads), el("tr", { class: "filters" }, inputs.map((input) => el("th", {}, input)))),
+      el("tbody", { class: "space" }, el("tr", {}, above)), body, el("tbody", { class: "space" }, el("tr", {}, under))));
+  function filter() {
+    const tests = filters.filter(Boolean);
+    model.keep = tests.length > 0 ? Uint8Array.from({ length: model.rows }, (_, row) => (tests.every((test) => test(row)) ? 1 : 0)) : null;
+    refresh();
+    filtered();
+  }
+  function refresh() {
+    shown = model.keep ? order.filter((row) => model.keep[row]) : order;
+    count.textContent = model.keep ? `${shown.length} of ${plural(model.rows, "case")}` : plural(model.rows, "case");
+    view.scrollTop = 0;
+    paint();
+  }
+  function paint() {
+    const first = Math.max(0, Math.floor(view.scrollTop / rowHeight) - 8), last = Math.min(shown.length, first + Math.ceil((view.clientHeight || 460) / rowHeight) + 16);
+    above.style.height = `${first * rowHeight}px`;
+    under.style.height = `${(shown.length - last) * rowHeight}px`;
+    body.replaceChildren(...shown.slice(first, last).map((row) => el("tr", { class: selected && selected.index === model.index && selected.row === row ? "selected" : null, "data-row": row, click: () => selectCase(model, row) },
+      columns.map((column) => el("td", { class: column.number ? "number" : null, title: column.text(row) }, column.text(row))))));
+  }
+  function csv() {
+    const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replace(/"/g, '""')}"` : text);
+    const cell = (column, row) => (column.title === "case" ? model.id(row) : column.missing(row) ? "" : column.number ? String(Number(column.number(row).toPrecision(7))) : quoted(column.text(row)));
+    const lines = [columns.map((column) => quoted(column.title)), ...shown.map((row) => columns.map((column) => cell(column, row)))].map((line) => line.join(","));
+    save(fileName(model.campaign.name, "cases") + ".csv", new Blob([lines.join("\n") + "\n"], { type: "text/csv" }));
+  }
+  const clear = () => { inputs.forEach((input, k) => { input.value = ""; input.classList.remove("wrong"); filters[k] = null; }); filter(); };
+  shown = order;
+  count.textContent = plural(model.rows, "case");
+  const node = el("div", { class: "card cases" }, el("div", { class: "controls" }, count, el("span", { class: "spring" }),
+    el("button", { type: "button", class: "plain", click: clear }, "Clear filters"), el("button", { type: "button", class: "plain", click: csv }, "Save as CSV")), view,
+  el("p", { class: "says" }, filterHelp));
+  return { node, paint };
+}

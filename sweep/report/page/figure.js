@@ -1,0 +1,225 @@
+// Figures: drawn by Chart.js when they come into view, saved as SVG or PNG by drawing them once more on paper.
+const whiskers = {
+  id: "whiskers",
+  afterDatasetsDraw(chart) {
+    const { ctx } = chart;
+    chart.data.datasets.forEach((set, index) => {
+      if (!set.errors || !chart.isDatasetVisible(index)) return;
+      const across = chart.options.indexAxis === "y", scale = across ? chart.scales.x : chart.scales.y;
+      ctx.save();
+      ctx.strokeStyle = set.errorColour || colour("ink");
+      ctx.lineWidth = 1.2;
+      chart.getDatasetMeta(index).data.forEach((element, i) => {
+        const value = typeof set.data[i] === "object" && set.data[i] !== null ? set.data[i].y : set.data[i];
+        const error = set.errors[i];
+        if (value === null || error === null || error === undefined) return;
+        const low = scale.getPixelForValue(value - error), high = scale.getPixelForValue(value + error);
+        ctx.beginPath();
+        for (const [from, to, cap] of across ? [[low, high, 4]] : [[low, high, 3]]) {
+          const line = (a, b, c, d) => (across ? (ctx.moveTo(a, b), ctx.lineTo(c, d)) : (ctx.moveTo(b, a), ctx.lineTo(d, c)));
+          const middle = across ? element.y : element.x;
+          line(from, middle, to, middle);
+          line(from, middle - cap, from, middle + cap);
+          line(to, middle - cap, to, middle + cap);
+        }
+        ctx.stroke();
+      });
+      ctx.restore();
+    });
+  },
+};
+
+// A dashed line at an abscissa.
+const marker = {
+  id: "marker",
+  afterDatasetsDraw(chart, _, options) {
+    if (options.at === null || options.at === undefined) return;
+    const x = chart.scales.x.getPixelForValue(options.at);
+    const { ctx, chartArea } = chart;
+    ctx.save();
+    ctx.strokeStyle = ctx.fillStyle = colour("three");
+    ctx.setLineDash([5, 4]);
+    ctx.beginPath();
+    ctx.moveTo(x, chartArea.top);
+    ctx.lineTo(x, chartArea.bottom);
+    ctx.stroke();
+    ctx.font = "11px system-ui, sans-serif";
+    const right = x > (chartArea.left + chartArea.right) / 2;
+    ctx.textAlign = right ? "right" : "left";
+    ctx.fillText(options.label, x + (right ? -5 : 5), chartArea.top + 11);
+    ctx.restore();
+  },
+};
+
+// The scale of colours, at the right of the figure.
+const colourBar = {
+  id: "colourBar",
+  afterDraw(chart, _, options) {
+    const { tones } = options;
+    if (!tones) return;
+    const { ctx, chartArea } = chart, left = chartArea.right + 14, width = 12, height = chartArea.bottom - chartArea.top;
+    const steps = tones.tones.length;
+    ctx.save();
+    tones.tones.forEach((tone, k) => {
+      ctx.fillStyle = tone;
+      ctx.fillRect(left, chartArea.bottom - ((k + 1) * height) / steps, width, height / steps + 0.5);
+    });
+    ctx.font = "11px system-ui, sans-serif";
+    ctx.fillStyle = colour("quiet");
+    ctx.textBaseline = "middle";
+    const at = tones.log ? Math.log : (x) => x, low = at(tones.low), high = at(tones.high);
+    const k = tones.scale(1);
+    const ticks = high > low ? (tones.log ? logTicks(tones.low * k, tones.high * k) : roundTicks(tones.low * k, tones.high * k, 5)) : [tones.low * k];
+    for (const tick of ticks) {
+      const y = chartArea.bottom - (high > low ? ((at(tick / k) - low) / (high - low)) * height : height / 2);
+      ctx.fillRect(left + width, y - 0.5, 4, 1);
+      ctx.fillText(show(tick), left + width + 7, y);
+    }
+    ctx.textAlign = "right";
+    ctx.fillText(tones.title, chart.width - 4, Math.max(7, chartArea.top - 12));
+    ctx.restore();
+  },
+};
+
+// A ring around the selected case.
+const ring = {
+  id: "ring",
+  afterDatasetsDraw(chart, _, options) {
+    const at = options.at && options.at();
+    if (!at || !Number.isFinite(at.x) || !Number.isFinite(at.y)) return;
+    const { ctx } = chart;
+    ctx.save();
+    ctx.strokeStyle = colour("ink");
+    ctx.lineWidth = 2;
+    ctx.beginPath();
+    ctx.arc(chart.scales.x.getPixelForValue(at.x), chart.scales.y.getPixelForValue(at.y), 7, 0, 2 * Math.PI);
+    ctx.stroke();
+    ctx.restore();
+  },
+};
+
+function roundTicks(low, high, most) {
+  const raw = (high - low) / most, size = 10 ** Math.floor(Math.log10(raw));
+  const step = size * [1, 2, 5, 10].find((m) => m * size >= raw * (1 - 1e-9)), ticks = [];
+  for (let i = Math.ceil(low / step - 1e-9); i * step <= high * (1 + 1e-9) + 1e-12 * step; ++i) ticks.push(Number((i * step).toPrecision(12)));
+  return ticks;
+}
+
+// Decades where there are three or more of them, else 1, 2 and 5 of each; at most nine.
+function logTicks(low, high) {
+  const decades = Math.log10(high / low), steps = decades >= 3 ? [1] : decades >= 0.6 ? [1, 2, 5] : [1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9];
+  const ticks = [];
+  for (let e = Math.floor(Math.log10(low) + 1e-9); e <= Math.log10(high) + 1e-9; ++e)
+    for (const m of steps) {
+      const x = Number((m * 10 ** e).toPrecision(12));
+      if (x >= low * (1 - 1e-9) && x <= high * (1 + 1e-9)) ticks.push(x);
+    }
+  const every = Math.ceil(ticks.length / 9);
+  return ticks.filter((_, i) => i % every === 0);
+}
+
+function tickText(x, log) {
+  const exponent = Math.round(Math.log10(Math.abs(x)));
+  return log && Math.abs(exponent) >= 4 && Math.abs(Math.abs(x) / 10 ** exponent - 1) < 1e-9 ? power(exponent) : show(x);
+}
+
+function axis(title, more) {
+  const log = more && more.type === "logarithmic";
+  return Object.assign({
+    title: { display: Boolean(title), text: title, color: colour("quiet") },
+    ticks: { color: colour("quiet"), maxTicksLimit: log ? 12 : 7, maxRotation: 0, includeBounds: false, callback: (value) => tickText(value, log) },
+    grid: { color: colour("grid"), borderColor: colour("line") },
+  }, log ? { afterBuildTicks(scale) { scale.ticks = logTicks(scale.min, scale.max).map((value) => ({ value })); } } : {}, more || {});
+}
+
+// The axis of a variable; its numbers are drawn multiplied by quantity(variable).factor.
+function variableAxis(variable, numbers) {
+  if (variable.levels.length > 0)
+    return axis(variable.name, {
+      type: "linear", min: -0.5, max: variable.levels.length - 0.5,
+      ticks: { color: colour("quiet"), stepSize: 1, autoSkip: true, maxRotation: 40, callback: (value) => (Number.isInteger(value) ? variable.levels[value] : null) },
+      afterBuildTicks(scale) { scale.ticks = variable.levels.map((_, value) => ({ value })); },
+    });
+  const shown = quantity(variable, numbers);
+  const log = variable.log && rangeOf(numbers || variable.values)[0] > 0;
+  const range = variable.high > variable.low ? { min: shown.of(variable.low), max: shown.of(variable.high) } : {};
+  return axis(shown.title, Object.assign({ type: log ? "logarithmic" : "linear" }, range));
+}
+
+function configured(build) {
+  const config = build();
+  config.options = Object.assign({ responsive: true, maintainAspectRatio: false, animation: false }, config.options);
+  config.options.plugins = Object.assign({ legend: { display: false } }, config.options.plugins);
+  config.plugins = [whiskers, marker, colourBar, ring].concat(config.plugins || []);
+  return config;
+}
+
+let figures = [];
+const inView = new IntersectionObserver((entries) => {
+  for (const entry of entries) if (entry.isIntersecting) entry.target.figure.draw();
+}, { rootMargin: "300px" });
+
+// `build` makes the configuration of Chart.js anew: in the theme of the moment, with the data of the moment.
+function figure(title, says, build, more) {
+  const { tall, height, controls, below } = more || {};
+  const canvas = el("canvas", { role: "img", "aria-label": title });
+  const box = el("div", { class: tall ? "figure tall" : "figure", style: height ? `height: ${height}px` : null }, canvas);
+  const self = { canvas, chart: null, title,
+    draw() { if (!self.chart) self.chart = new Chart(canvas, configured(build)); return self.chart; },
+    redraw() { if (self.chart) { self.chart.destroy(); self.chart = null; self.draw(); } },
+    drop() { inView.unobserve(box); if (self.chart) self.chart.destroy(); self.chart = null; } };
+  const saver = (kind, work) => el("button", { type: "button", class: "save", title: `Save this figure as ${kind}`, click: () => work(self, build) }, kind);
+  self.node = el("figure", { class: "card" },
+    el("div", { class: "caption" }, el("h3", {}, title), el("span", { class: "savers" }, saver("SVG", saveSvg), saver("PNG", savePng))),
+    says ? el("p", { class: "says" }, says) : null, controls || null, box, below || null);
+  box.figure = self;
+  figures.push(self);
+  inView.observe(box);
+  return self;
+}
+
+// Draws the figure once more, on a canvas of its own, and hands the canvas to `use` before the chart goes.
+function redrawn(self, build, ratio, use, context) {
+  const width = Math.max(420, self.canvas.clientWidth), height = Math.max(240, self.canvas.clientHeight);
+  return onPaper(() => {
+    const canvas = document.createElement("canvas");
+    canvas.width = width;
+    canvas.height = height;
+    if (context) canvas.getContext = () => context(canvas, width, height);
+    const config = configured(build);
+    Object.assign(config.options, { responsive: false, devicePixelRatio: ratio, events: [] });
+    const chart = new Chart(canvas, config);
+    try {
+      return use(canvas, chart);
+    } finally {
+      chart.destroy();
+    }
+  });
+}
+
+function saveSvg(self, build) {
+  let svg = null;
+  const canvasPath = window.Path2D;
+  window.Path2D = SvgPath;  // Chart.js keeps the outlines of its lines in one
+  try {
+    redrawn(self, build, 1, (_, chart) => { svg.body = []; chart.draw(); }, (canvas, width, height) => (svg = svg || new SvgContext(canvas, width, height)));
+  } finally {
+    window.Path2D = canvasPath;
+  }
+  save(fileName(data.campaigns[chosen.campaign].name, self.title) + ".svg", new Blob([svg.text(self.title)], { type: "image/svg+xml" }));
+}
+
+function savePng(self, build) {
+  redrawn(self, build, 3, (canvas) => {
+    const paper = document.createElement("canvas");
+    paper.width = canvas.width;
+    paper.height = canvas.height;
+    const context = paper.getContext("2d");
+    context.fillStyle = "#ffffff";
+    context.fillRect(0, 0, paper.width, paper.height);
+    context.drawImage(canvas, 0, 0);
+    paper.toBlob((blob) => save(fileName(data.campaigns[chosen.campaign].name, self.title) + ".png", blob), "image/png");
+  });
+}
+
+window.addEventListener("beforeprint", () => figures.forEach((one) => one.draw()));
