@@ -1,0 +1,70 @@
+#!/usr/bin/env bash
+# Makes the pictures of README and docs anew: runs the program and opens its pages in headless Chromium.
+#   tests/pictures/make.sh [NAME]...       all, or some of: spreading cell bands report
+# PROGRAM (build/grainsweep) and CHROMIUM (chromium) may be given in the environment. The pictures go to docs/pictures,
+# less than 150 kB each. A minute of computing on two cores.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+program=${PROGRAM:-$here/build/grainsweep}
+chromium=${CHROMIUM:-chromium}
+pictures=$here/docs/pictures
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+mkdir -p "$pictures"
+cd "$work"
+
+# shoot PAGE NAME WIDTH HEIGHT SCALE: the top of a page as docs/pictures/NAME.png.
+# WebGL is drawn by the processor; virtual time lets scripts and animations come to an end.
+shoot() {
+    local file="$pictures/$2.png"
+    "$chromium" --headless --no-sandbox --hide-scrollbars --use-angle=swiftshader --enable-unsafe-swiftshader \
+        --user-data-dir="$work/browser" --force-device-scale-factor="$5" --window-size="$3,$4" \
+        --virtual-time-budget=8000 --screenshot="$file" "file://$work/$1" >"$work/browser.log" 2>&1 ||
+        { cat "$work/browser.log" >&2; exit 1; }
+    local size
+    size=$(stat -c %s "$file")
+    if [ "$size" -ge 150000 ]; then
+        echo "$file has $size bytes; make the window or the scale smaller" >&2
+        exit 1
+    fi
+    echo "$file ($size bytes)"
+}
+
+# The campaign of the README, on its report page.
+report() {
+    awk '/^```json first.json/ {inside = 1; next} /^```/ {inside = 0} inside' "$here/README.md" >first.json
+    "$program" run first.json --quiet
+    "$program" report first.db -o report.html
+    shoot report.html report 1300 1700 0.6
+}
+
+# Powder under the blade, halfway through the sweep.
+spreading() {
+    "$program" solve "$here/configs/quickstart.json" --set diameter=0.002 --set gap=0.004 --set width=20 --watch spreading.html
+    shoot "spreading.html#t=0.75" spreading 900 420 1
+}
+
+# Powder leaving a Gyroid cell at a fifth of the study's size.
+cell() {
+    "$program" solve "$here/configs/gupta_quick.json" --set cell=gyroid --set cohesion=25000 --set edge=30 --set gravity=32.7 \
+        --set end_time=2 --watch cell.html
+    shoot "cell.html#t=0.4" cell 900 520 1
+}
+
+# Bands of particles at the side walls of the vibrated cube.
+bands() {
+    "$program" solve "$here/configs/lappa2024_run29.json" --set coupling=one_way --set end_time=0.3 --set cells=20 \
+        --set steps_per_period=16 --watch bands.html
+    shoot "bands.html#t=1" bands 900 520 1
+}
+
+if [ $# -eq 0 ]; then set -- spreading cell bands report; fi
+for name in "$@"; do
+    case $name in
+        spreading | cell | bands | report) "$name" ;;
+        *)
+            echo "no picture '$name': there are spreading cell bands report" >&2
+            exit 2
+            ;;
+    esac
+done
