@@ -71,9 +71,10 @@ std::vector<double> density_profile(std::span<const Vec3> positions, const Box& 
     return profile;
 }
 
-int structures(std::span<const int> counts, int n) {
+double structures(std::span<const int> counts, int n) {
     const double total = std::accumulate(counts.begin(), counts.end(), 0.0);
     const double dense = 2 * total / static_cast<double>(counts.size());
+    if (dense < 1) return std::numeric_limits<double>::quiet_NaN();
     std::vector<char> seen(counts.size(), 0);
     const auto index = [n](int i, int j, int k) { return static_cast<std::size_t>(i + n * (j + n * k)); };
     int found = 0;

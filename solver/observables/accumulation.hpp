@@ -36,8 +36,9 @@ struct Box {
 [[nodiscard]] std::vector<double> density_profile(std::span<const Vec3> positions, const Box& box, int n, int d);
 
 /// Groups of neighbouring cells (sharing a face) that each hold more than twice the mean, counted when the group
-/// holds at least a twentieth of all particles: 0 for a random cloud, 2 for the two classical structures.
-[[nodiscard]] int structures(std::span<const int> counts, int n);
+/// holds at least a twentieth of all particles: 0 for a random cloud, 2 for the two classical structures. NaN where
+/// twice the mean is less than one particle: every particle would be a dense cell.
+[[nodiscard]] double structures(std::span<const int> counts, int n);
 
 /// The first time from which a series stays near its last value: within a tenth of its rise from its first, or within
 /// 3 `scatter`, its standard deviation from sample to sample, where that is more. NaN where the rise is no more than 5

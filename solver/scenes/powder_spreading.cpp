@@ -78,8 +78,9 @@ std::vector<ParameterSpec> parameters() {
         number("time_step_fraction", "1", "time step over the shorter of the two limits", 0.2, above(0, 1),
                {{"time_step", Condition::zero, {}}}),
         number("standard_error", "1",
-               "ends the sweep once mfr_standard_error is below this, looked at every tenth of the measured "
-               "travel from its half on; 0: sweeps to the end. The flux falls by 5 to 8 % over the measured travel, so "
+               "ends the sweep once mfr_standard_error is below this, or nothing has passed, looked at every tenth of "
+               "the measured travel from its half on; 0: sweeps to the end. The flux falls by 5 to 8 % over the "
+               "measured travel, so "
                "a shorter sweep answers up to 4 % higher: compare only cases asked alike",
                0.0, {0, 1}),
         {"precision",
@@ -111,24 +112,28 @@ std::vector<ObservableSpec> observables_of_spreading() {
         {"mfr_thesis", "s",
          "the same mass over W gap v rho, as eq. 15-17 of Wu (2020) are printed: mfr_window times "
          "thickness/speed"},
-        {"mfr_standard_error", "1", "standard error of mfr from the spread of 10 consecutive blocks of the flux"},
+        {"mfr_standard_error", "1",
+         "standard error of mfr from the spread of 10 consecutive blocks of the flux; undefined where nothing passed"},
         {"end_of_travel", "m", "travel of the blade when the sweep ended"},
-        {"max_overlap", "1", "largest overlap of two particles over the smaller diameter, over all steps of the sweep"},
+        {"max_overlap", "1",
+         "largest overlap of two particles over the smaller diameter, over all steps of the sweep; 0: none touched"},
         {"packing_fraction", "1",
          "volume of the spread particles over that of a layer as high as the gap, from where the "
-         "front face was at t1 to one thickness behind the blade at the end"},
+         "front face was at t1 to one thickness behind the blade at the end; undefined, as are layer_roughness and "
+         "empty_share, where the blade did not get that far"},
         {"layer_roughness", "1",
          "root mean square deviation of the height of the spread layer's surface, seen from above "
-         "on a grid of D/4, over the diameter"},
+         "on a grid of D/4, over the diameter; undefined where empty_share is above one half: there is no layer"},
         {"empty_share", "1", "share of the same grid that no particle covers"},
         {"particles", "1", "particles present"},
         {"vx_profile", "m/s",
          "mean velocity along the blade's motion in the 12 layers of thickness D/2 above the gap, "
-         "within 6 D ahead of the front face, from t1 to t2; bin: top of the layer over the gap, in D",
+         "within 6 D ahead of the front face, from t1 to t2, undefined where there was no particle; bin: top of the "
+         "layer over the gap, in D",
          Shape::profile, "top of the layer over the gap (D)"},
         {"vx_unevenness", "1",
          "root mean square second difference of vx_profile from layer to layer, over the speed of the blade: 0 for a "
-         "profile that rises evenly"},
+         "profile that rises evenly; undefined where no three neighbouring layers have a velocity"},
         {"flux_series", "1", "mfr of each 1/140 of the travel; time since the blade started", Shape::series,
          "time since the blade started (s)"},
     };
@@ -175,7 +180,8 @@ SceneInfo powder_spreading_scene() {
                      {"reference", numerics(0.05, 20, "double")}};
     info.parameters = parameters();
     info.observables = observables_of_spreading();
-    info.make = [](const Inputs& inputs, std::uint64_t seed, Artefacts& artefacts) -> std::unique_ptr<Scene> {
+    info.maker = [](const Inputs& inputs, std::uint64_t seed, Artefacts& artefacts,
+                    const Files&) -> std::unique_ptr<Scene> {
         return std::make_unique<spreading::Experiment>(spreading::study_of(inputs), seed, method_of(inputs), artefacts);
     };
     info.estimate_cost = estimate_cost;

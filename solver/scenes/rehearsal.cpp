@@ -170,7 +170,7 @@ SceneInfo rehearsal_scene() {
     info.observables = {
         {"y", "1", "the response", Shape::scalar},
         {"y_series", "1", "y growing linearly in time ('huge' only)", Shape::series, "share of the case"}};
-    info.make = [](const Inputs& inputs, std::uint64_t seed, Artefacts&) -> std::unique_ptr<Scene> {
+    info.maker = [](const Inputs& inputs, std::uint64_t seed, Artefacts&, const Files&) -> std::unique_ptr<Scene> {
         return std::make_unique<Rehearsal>(inputs, seed);
     };
     info.estimate_cost = [](const Inputs& inputs) { return 1e-5 + std::get<double>(inputs.at("wait_seconds")); };

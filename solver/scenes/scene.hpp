@@ -87,9 +87,8 @@ struct SceneInfo {
     /// Named sets of numerical inputs: "fast", "balanced", "reference". Empty: the scene offers none.
     std::map<std::string, Inputs, std::less<>> accuracy;
 
-    /// A complete map (every parameter present) -> a scene at time 0. Throws std::invalid_argument with
-    /// one sentence when inputs are each within bounds but impossible together.
-    std::function<std::unique_ptr<Scene>(const Inputs&, std::uint64_t seed, Artefacts&)> make;
+    /// What make() calls.
+    std::function<std::unique_ptr<Scene>(const Inputs&, std::uint64_t seed, Artefacts&, const Files&)> maker;
     /// Predicted processor seconds of a case on a plain core, for planning and order only.
     std::function<double(const Inputs&)> estimate_cost;
     /// The answer, where it is proven without simulation; otherwise empty.
@@ -98,6 +97,13 @@ struct SceneInfo {
     /// misbehaviour may be limited to the first attempts.
     std::function<Inputs(Inputs, std::int64_t attempt)> on_attempt;
 
+    /// A complete map (every parameter present) and the contents of the files it names -> a scene at time 0. Throws
+    /// std::invalid_argument with one sentence when inputs are each within bounds but impossible together, and when a
+    /// file is none of its kind or not among `files`.
+    [[nodiscard]] std::unique_ptr<Scene> make(const Inputs& inputs, std::uint64_t seed, Artefacts& artefacts,
+                                              const Files& files = {}) const {
+        return maker(inputs, seed, artefacts, files);
+    }
     [[nodiscard]] const ParameterSpec* find_parameter(std::string_view parameter) const;
     [[nodiscard]] const ObservableSpec* find_observable(std::string_view observable) const;
     [[nodiscard]] Inputs defaults() const;

@@ -118,16 +118,19 @@ std::vector<ParameterSpec> parameters() {
 std::vector<ObservableSpec> observables() {
     const std::string time = "time (L^2/alpha)";
     return {
-        {"accumulation", "1", "K on sampling_cells^3 at the end", Shape::scalar},
+        {"accumulation", "1", "K on sampling_cells^3 at the end; undefined for fewer than two particles",
+         Shape::scalar},
         {"accumulation_excess", "1", "(K - K_random)/(1 - K_random): 0 random, 1 all in one cell", Shape::scalar},
-        {"structures", "1", "connected groups of cells above twice the mean that hold at least 5 % of the particles",
+        {"structures", "1",
+         "connected groups of cells above twice the mean that hold at least 5 % of the particles; undefined for fewer "
+         "particles than half of the cells, where a cell with one is such a group",
          Shape::scalar},
         {"formation_time", "L^2/alpha",
          "from when K stays within a tenth of its rise, or three standard deviations of a random cloud's K, from its "
          "last "
          "value; undefined where that is only in the last tenth of the time: still rising",
          Shape::scalar},
-        {"gershuni", "1", "Gershuni number (Pr/2)(Ra/Omega)^2", Shape::scalar},
+        {"gershuni", "1", "Gershuni number (Pr/2)(Ra/Omega)^2; undefined under a steady force", Shape::scalar},
         {"kinetic_energy", "(alpha/L)^2", "mean of |V|^2/2 over the volume and the last period", Shape::scalar},
         {"nusselt", "1", "heat flux through the hot wall over that of conduction, mean of the last period",
          Shape::scalar},
@@ -200,7 +203,7 @@ std::unique_ptr<Scene> make_with(const Question& question, std::uint64_t seed, A
     return dense(coupling::ProjectedContacts(question.sphere(), question.walls()));
 }
 
-std::unique_ptr<Scene> make(const Inputs& inputs, std::uint64_t seed, Artefacts& artefacts) {
+std::unique_ptr<Scene> make(const Inputs& inputs, std::uint64_t seed, Artefacts& artefacts, const Files&) {
     const Question question(inputs);
     if (question.interpolation == "solenoidal") return make_with<coupling::Solenoidal>(question, seed, artefacts);
     return make_with<coupling::Trilinear>(question, seed, artefacts);
@@ -250,12 +253,12 @@ SceneInfo thermovibration_scene() {
     SceneInfo info;
     info.name = "thermovibration";
     info.summary = "particles in a heated, vibrated cube of fluid: do they gather, into what, how fast";
-    info.revision = 6;
+    info.revision = 7;
     info.parameters = parameters();
     info.observables = observables();
     info.accuracy = {
         {"fast", accuracy(20, 1.5, 16)}, {"balanced", accuracy(28, 1.5, 24)}, {"reference", accuracy(48, 1.5, 64)}};
-    info.make = make;
+    info.maker = make;
     info.estimate_cost = estimate_cost;
     info.proven_answer = proven_answer;
     return info;

@@ -60,6 +60,10 @@ struct FileWord {
     return FileWord{word.substr(prefix.size(), digits), word.substr(prefix.size() + digits + 1)};
 }
 
+/// What stands in the files that inputs name: parameter name -> contents. A scene opens no file; its caller
+/// reads them.
+using Files = std::map<std::string, std::string, std::less<>>;
+
 /// When a parameter matters: only if `other` can be (is_zero / non-zero / one of `words`).
 /// A campaign that gives a parameter which no case of it can feel is refused.
 struct Relevance {

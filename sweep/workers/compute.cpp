@@ -83,21 +83,23 @@ bool drive(Scene& scene, const Watch& watch, const Camera& camera) {
     return true;
 }
 
-/// Files that inputs name are part of the question by their contents: what no longer is what it was when the campaign
-/// was read must not be computed under its name. Empty: all is as it was.
-std::string changed_file(const Inputs& inputs) {
+/// The files that inputs name, or why they cannot be used: they are part of the question by their contents, so what has
+/// changed since the campaign was read must not be computed under its name.
+std::variant<Files, std::string> read_files(const Inputs& inputs) {
+    Files files;
     for (const auto& [name, value] : inputs) {
         const auto* word = std::get_if<std::string>(&value);
         const auto file = word == nullptr ? std::nullopt : file_word(*word);
         if (!file) continue;
         std::ifstream stream{std::string(file->path), std::ios::binary};
         if (!stream) return fmt::format("{}: cannot read {}", name, file->path);
-        const std::string contents{std::istreambuf_iterator<char>(stream), {}};
+        std::string contents{std::istreambuf_iterator<char>(stream), {}};
         if (campaign::content_hash(contents) != file->hash)
             return fmt::format("{}: {} has changed since the campaign was read; run the campaign file again", name,
                                file->path);
+        files.emplace(name, std::move(contents));
     }
-    return {};
+    return files;
 }
 
 bool all_finite(const Observations& observations) {
@@ -133,20 +135,21 @@ std::optional<campaign::CaseResult> compute(const campaign::Case& question, std:
         return close(campaign::Outcome::rejected,
                      fmt::format("this build has no scene '{}' of revision {}", question.scene, question.revision));
     }
-    if (std::string why = changed_file(question.inputs); !why.empty())
-        return close(campaign::Outcome::rejected, std::move(why));
+    auto read = read_files(question.inputs);
+    if (auto* const why = std::get_if<std::string>(&read)) return close(campaign::Outcome::rejected, std::move(*why));
+    const Files& files = std::get<Files>(read);
     const Inputs inputs = info->on_attempt ? info->on_attempt(question.inputs, attempt) : question.inputs;
     try {
         if (auto proven = info->proven_answer(inputs)) {
             result.observations = std::move(proven->observations);
             return close(campaign::Outcome::skipped, proven->reason);
         }
-        auto scene = info->make(inputs, question.seed, artefacts);
+        auto scene = info->make(inputs, question.seed, artefacts, files);
         if (resume) {
             try {
                 scene->restore(*resume);
             } catch (const std::invalid_argument&) {
-                scene = info->make(inputs, question.seed, artefacts);  // a checkpoint that does not fit
+                scene = info->make(inputs, question.seed, artefacts, files);  // a checkpoint that does not fit
             }
         }
         if (!drive(*scene, watch, camera)) return std::nullopt;

@@ -112,6 +112,8 @@ const std::vector<Library>& libraries() {
         {"boost/", {"sweep/workers/pool.", "sweep/designs/", "solver/", "stats/"}},
         {"fmt/", {"sweep/"}},
         {"chrono", {"sweep/"}},
+        {"fstream", {"sweep/"}},
+        {"filesystem", {"sweep/"}},
     };
     return table;
 }

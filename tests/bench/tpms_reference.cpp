@@ -12,6 +12,9 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
 #include <string>
 
 #include "solver/scenes/scene.hpp"
@@ -43,11 +46,15 @@ int main(int argc, char** argv) {
     const auto& times = table.columns.at("t_over_tstar");
     const auto& curve = table.columns.at("retention");
 
+    Files files;
+    if (packing != "generated") {
+        std::ifstream stream(packing, std::ios::binary);
+        if (!stream) throw std::runtime_error("cannot read " + packing);
+        files["packing"] = {std::istreambuf_iterator<char>(stream), {}};
+    }
     const SceneInfo& info = *find_scene("tpms_discharge");
     Inputs inputs = info.defaults();
-    inputs["packing"] = packing == "generated"
-                            ? packing
-                            : "file:" + std::string(32, '0') + ":" + std::filesystem::absolute(packing).string();
+    inputs["packing"] = packing == "generated" ? packing : "file:" + std::string(32, '0') + ":" + packing;
     inputs["edge"] = edge;
     inputs["shell"] = 2.0;
     inputs["gravity"] = 9.81 * 100 / edge;
@@ -60,7 +67,7 @@ int main(int argc, char** argv) {
     inputs["settle_rule"] = std::string("none");
 
     NoArtefacts none;
-    const auto scene = info.make(inputs, 1, none);
+    const auto scene = info.make(inputs, 1, none, files);
     // The reference looked at overlaps at these moments only; between them deeper ones come and go.
     const double t_star = std::sqrt(2 * edge * std::get<double>(inputs.at("diameter")) * edge / (9.81 * 100));
     double seconds = 0, sampled_overlap = 0;

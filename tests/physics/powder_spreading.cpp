@@ -80,6 +80,42 @@ TEST(PowderSpreading, MeasuresWhatItDeclares) {
     EXPECT_EQ(scene->snapshot().positions.size(), static_cast<std::size_t>(seen.scalars.at("particles")));
 }
 
+// A gap of a third of a diameter: the blade leaves a bare base, and what is said of a layer must not say "smooth".
+TEST(PowderSpreading, AnEmptyLayerHasNoRoughnessAndNoFluxNoError) {
+    Inputs inputs = small_case();
+    inputs["gap"] = 0.001;
+    const auto seen = finish(*make(inputs)).scalars;
+    EXPECT_EQ(seen.at("mfr"), 0);
+    EXPECT_EQ(seen.at("packing_fraction"), 0);
+    EXPECT_EQ(seen.at("empty_share"), 1);
+    EXPECT_FALSE(seen.contains("layer_roughness")) << seen.at("layer_roughness");
+    EXPECT_FALSE(seen.contains("mfr_standard_error")) << seen.at("mfr_standard_error");
+    // The sweep still ends early where an error is asked for: nothing has passed over half of it.
+    inputs["standard_error"] = 0.01;
+    const auto ended = finish(*make(inputs)).scalars;
+    EXPECT_LT(ended.at("end_of_travel"), 0.7 * seen.at("end_of_travel"));
+    EXPECT_FALSE(ended.contains("mfr_standard_error"));
+}
+
+// Ever fewer particles in the same sweep: the roughness is that of a layer or undefined, never ever smoother.
+TEST(PowderSpreading, ScatteredParticlesHaveNoRoughness) {
+    int layers = 0, scattered = 0;
+    for (const double area : {1e-4, 6e-5, 4e-5, 2e-5, 1e-5}) {
+        Inputs inputs = small_case();
+        inputs["layer_area"] = area;
+        const auto seen = finish(*make(inputs)).scalars;
+        const bool covered = seen.at("empty_share") <= 0.5;
+        ++(covered ? layers : scattered);
+        EXPECT_EQ(seen.contains("layer_roughness"), covered) << area;
+        if (covered) {
+            EXPECT_GT(seen.at("layer_roughness"), 0.1) << area;
+        }
+        EXPECT_GT(seen.at("packing_fraction"), 0) << area;
+    }
+    EXPECT_GE(layers, 1);
+    EXPECT_GE(scattered, 2);
+}
+
 TEST(PowderSpreading, SlicesDoNotChangeTheAnswer) {
     const auto whole = make(small_case());
     const auto expected = finish(*whole);

@@ -99,6 +99,21 @@ TEST(Thermovibration, MeasuresWhatItDeclares) {
     }
 }
 
+// Twenty particles in a thousand cells are no twenty structures, and one particle has no accumulation.
+TEST(Thermovibration, TooFewParticlesHaveNoStructures) {
+    NoArtefacts none;
+    const auto seen = [&](std::int64_t particles, std::int64_t cells) {
+        return finish(*make(small({{"particles", particles}, {"sampling_cells", cells}}), none)).scalars;
+    };
+    EXPECT_FALSE(seen(20, 10).contains("structures"));
+    EXPECT_TRUE(seen(20, 10).contains("accumulation_excess"));
+    EXPECT_TRUE(seen(60, 4).contains("structures"));
+    const auto single = seen(1, 4);
+    for (const char* name : {"accumulation", "accumulation_excess", "structures", "formation_time"})
+        EXPECT_FALSE(single.contains(name)) << name;
+    EXPECT_TRUE(single.contains("kinetic_energy"));
+}
+
 TEST(Thermovibration, AnswersTheSameHoweverItIsCutAndResumed) {
     for (const Inputs& kind : kinds) {
         NoArtefacts none;

@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <numbers>
+#include <sstream>
 
 #include "solver/geometry/tpms.hpp"
 #include "solver/particles/packing.hpp"
@@ -33,13 +32,13 @@ Inputs small_cell(double edge) {
     return inputs;
 }
 
-std::unique_ptr<Scene> make(const Inputs& inputs) {
+std::unique_ptr<Scene> make(const Inputs& inputs, const Files& files = {}) {
     NoArtefacts none;
-    return info().make(inputs, 1, none);
+    return info().make(inputs, 1, none, files);
 }
 
-Observations run(const Inputs& inputs) {
-    const auto scene = make(inputs);
+Observations run(const Inputs& inputs, const Files& files = {}) {
+    const auto scene = make(inputs, files);
     scene->advance(1e9);
     EXPECT_TRUE(scene->finished());
     EXPECT_EQ(scene->health().reason, "");
@@ -67,24 +66,17 @@ void expect_same(const Observations& a, const Observations& b) {
     }
 }
 
-/// A packing file that disappears with the test.
-class PackingFile {
-public:
-    explicit PackingFile(const std::vector<Point>& spheres)
-        : path_(std::filesystem::path(testing::TempDir()) / "tpms_scene_packing.csv") {
-        std::ofstream stream(path_);
-        stream.precision(17);
-        stream << "x,y,z\n";
-        for (const auto& x : spheres) stream << x[0] << "," << x[1] << "," << x[2] << "\n";
-    }
-    PackingFile(const PackingFile&) = delete;
-    PackingFile& operator=(const PackingFile&) = delete;
-    ~PackingFile() { std::filesystem::remove(path_); }
-    [[nodiscard]] std::string word() const { return "file:" + std::string(32, '0') + ":" + path_.string(); }
+/// The value of a parameter that names a packing file; its contents are handed in beside it.
+const std::string packing_file = "file:" + std::string(32, '0') + ":/nowhere/packing.csv";
 
-private:
-    std::filesystem::path path_;
-};
+/// A packing as its file holds it.
+Files packing_of(const std::vector<Point>& spheres) {
+    std::ostringstream text;
+    text.precision(17);
+    text << "x,y,z\n";
+    for (const auto& x : spheres) text << x[0] << "," << x[1] << "," << x[2] << "\n";
+    return {{"packing", text.str()}};
+}
 
 /// Spheres of a lattice that lie on the kept side of a P cell, each out of reach of all others in free fall.
 std::vector<Point> loose_spheres(double edge) {
@@ -104,10 +96,9 @@ TEST(TpmsScene, SpheresWithoutWallFallFreely) {
     const double edge = 12;
     const auto spheres = loose_spheres(edge);
     ASSERT_GT(spheres.size(), 50U);
-    const PackingFile file(spheres);
     Inputs inputs = small_cell(edge);
-    inputs["packing"] = file.word();
-    const Observations answer = run(inputs);
+    inputs["packing"] = packing_file;
+    const Observations answer = run(inputs, packing_of(spheres));
 
     EXPECT_EQ(answer.scalars.at("particles"), static_cast<double>(spheres.size()));
     EXPECT_EQ(answer.scalars.at("wall_particles"), 0);
@@ -149,20 +140,41 @@ TEST(TpmsScene, SpheresWithoutWallFallFreely) {
     EXPECT_NEAR(0.25 / answer.scalars.at("discharge_rate"), half - quarter, 2 * 0.0165);
 }
 
+// A cell that has run empty has no fastest particle: neither one at rest, nor the last one seen.
+TEST(TpmsScene, AnEmptyCellHasNoVelocity) {
+    const double edge = 12;
+    Inputs inputs = small_cell(edge);
+    inputs["packing"] = packing_file;
+    const Observations answer = run(inputs, packing_of(loose_spheres(edge)));
+    const auto& retention = answer.series.at("retention_series");
+    const auto& velocity = answer.series.at("velocity_series");
+    ASSERT_EQ(velocity.size(), retention.size());
+    int empty = 0;
+    double peak = 0;
+    for (std::size_t k = 0; k < velocity.size(); ++k) {
+        EXPECT_EQ(std::isnan(velocity[k].value), retention[k].value == 0) << retention[k].time;
+        if (retention[k].value == 0)
+            ++empty;
+        else
+            peak = std::max(peak, velocity[k].value);
+    }
+    EXPECT_GE(empty, 3);  // on their way from the lower face to where they are gone
+    EXPECT_EQ(answer.scalars.at("peak_velocity"), peak);
+}
+
 TEST(TpmsScene, AVibratingCellSeesItsPowderFallAsInTheLaboratory) {
     // z(t) = z0 + v t - g t^2/2 - A sin(w t) in the cell, v = A sin(w dt)/dt: the powder starts at rest in it.
     const double edge = 12, d = 45e-6, amplitude = 20e-6, dt = 1e-6;
     const double w = 2 * std::numbers::pi * 1000;
     const auto spheres = loose_spheres(edge);
-    const PackingFile file(spheres);
     for (const std::size_t axis : {std::size_t{2}, std::size_t{0}}) {
         Inputs inputs = small_cell(edge);
-        inputs["packing"] = file.word();
+        inputs["packing"] = packing_file;
         inputs["vibration_amplitude"] = amplitude;
         inputs["vibration_frequency"] = 1000.0;
         inputs["vibration_direction"] = std::string(axis == 2 ? "z" : "x");
         const double g = std::get<double>(inputs["gravity"]), t_star = std::sqrt(2 * edge * d / g);
-        const Observations answer = run(inputs);
+        const Observations answer = run(inputs, packing_of(spheres));
         std::size_t differ = 0;
         const auto& retention = answer.series.at("retention_series");
         for (const auto& sample : retention) {
@@ -186,11 +198,10 @@ TEST(TpmsScene, TiltedGravityPullsSideways) {
     // Under gravity along +x every centre leaves through x = L after sqrt((L - x0)/L) t*.
     const double edge = 12;
     const auto spheres = loose_spheres(edge);
-    const PackingFile file(spheres);
     Inputs inputs = small_cell(edge);
-    inputs["packing"] = file.word();
+    inputs["packing"] = packing_file;
     inputs["tilt"] = 90.0;
-    const Observations answer = run(inputs);
+    const Observations answer = run(inputs, packing_of(spheres));
     for (const auto& sample : answer.series.at("retention_series")) {
         double inside = 0;
         for (const auto& x : spheres) inside += sample.time <= std::sqrt((edge - x[0]) / edge) ? 1 : 0;
@@ -207,19 +218,11 @@ TEST(TpmsScene, TurnedPackingAndTurnedGravityAreTheSameCase) {
     for (const auto& x : packing.positions) turned.push_back({x[2], x[0], x[1]});
     Inputs inputs = small_cell(edge);
     inputs["end_time"] = 0.25;
-    Observations upright, lying;
-    {
-        const PackingFile file(packing.positions);
-        inputs["packing"] = file.word();
-        upright = run(inputs);
-    }
-    {
-        const PackingFile file(turned);
-        inputs["packing"] = file.word();
-        inputs["tilt"] = 90.0;
-        inputs["tilt_azimuth"] = 180.0;
-        lying = run(inputs);
-    }
+    inputs["packing"] = packing_file;
+    const Observations upright = run(inputs, packing_of(packing.positions));
+    inputs["tilt"] = 90.0;
+    inputs["tilt_azimuth"] = 180.0;
+    const Observations lying = run(inputs, packing_of(turned));
     EXPECT_EQ(upright.scalars.at("particles"), lying.scalars.at("particles"));
     EXPECT_EQ(upright.scalars.at("retention"), lying.scalars.at("retention"));
     const auto& a = upright.series.at("velocity_series");
@@ -337,8 +340,8 @@ TEST(TpmsScene, ImpossibleQuestionsGetASentence) {
     inputs["vibration_frequency"] = 6e4;
     EXPECT_THAT(refusal(inputs), HasSubstr("at least twenty time steps"));
     inputs = small_cell(8);
-    inputs["packing"] = "file:" + std::string(32, '0') + ":/no/such/packing.csv";
-    EXPECT_THAT(refusal(inputs), HasSubstr("cannot read /no/such/packing.csv"));
+    inputs["packing"] = packing_file;
+    EXPECT_EQ(refusal(inputs), "packing: the contents of /nowhere/packing.csv are not given");
 }
 
 TEST(TpmsScene, VibrationFreesAJammedCell) {

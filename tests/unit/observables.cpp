@@ -72,6 +72,14 @@ TEST(Structures, AreCountedOncePerBand) {
     EXPECT_EQ(structures(cell_counts(cloud, cube, n), n), 2);
 }
 
+// With one particle in twenty cells every particle is far above twice the mean.
+TEST(Structures, AreUndefinedForTooFewParticles) {
+    const int n = 10;
+    EXPECT_TRUE(std::isnan(structures(cell_counts(random_cloud(20, 3), cube, n), n)));
+    EXPECT_TRUE(std::isnan(structures(cell_counts(random_cloud(499, 3), cube, n), n)));
+    EXPECT_EQ(structures(cell_counts(random_cloud(500, 3), cube, n), n), 0);
+}
+
 TEST(FormationTime, IsWhenTheSeriesStaysNearItsEnd) {
     const std::vector<double> t = {0, 1, 2, 3, 4, 5};
     const std::vector<double> k = {0, 0.95, 0.5, 0.91, 0.99, 1};

@@ -16,6 +16,7 @@ constexpr std::size_t blocks = 10;       // of the measured flux, 5 mm of travel
 constexpr double layer_thickness = 0.5;  // of the velocity profile, in diameters
 constexpr double profile_reach = 6;      // ahead of the blade, in diameters
 constexpr double relief_pitch = 0.25;    // in diameters
+constexpr double most_bare = 0.5;        // share of the base beyond which what lies on it is no layer
 
 }  // namespace
 
@@ -151,7 +152,10 @@ void Experiment::observe_flux(Observations& into) const {
     const std::size_t last = behind_.size() - 1;
     into.scalars["mfr"] =
         flux_scale() * (behind_[last] - behind_[first]) / (time_of_sample(last) - time_of_sample(first));
-    into.scalars["mfr_standard_error"] = observables::block_standard_error(flux, blocks);
+    // Where nothing has passed, the blocks have no spread, and that says nothing of the error.
+    const bool passed = std::ranges::any_of(flux, [](double value) { return value != 0; });
+    if (const double error = observables::block_standard_error(flux, blocks); passed && !std::isnan(error))
+        into.scalars["mfr_standard_error"] = error;
     double mean = 0;
     for (std::size_t k = first; k <= last; ++k) mean += under_[k];
     mean /= static_cast<double>(last - first + 1);
@@ -182,8 +186,9 @@ void Experiment::observe_layer(Observations& into) const {
     const observables::Relief relief(state, from, to, study_.width, relief_pitch * study_.diameter);
     into.scalars["packing_fraction"] =
         observables::solid_volume(state, from, to) / ((to - from) * study_.width * study_.gap);
-    into.scalars["layer_roughness"] = relief.roughness() / study_.diameter;
     into.scalars["empty_share"] = relief.empty_share();
+    // Single particles on the bare base deviate from its height the less, the fewer they are: not a smooth layer.
+    if (relief.empty_share() <= most_bare) into.scalars["layer_roughness"] = relief.roughness() / study_.diameter;
 }
 
 double Experiment::progress() const {

@@ -98,7 +98,8 @@ void Record::observe(Observations& into) const {
     const double random = observables::random_accumulation(last_.size(), sampling_total());
     into.scalars["accumulation"] = k_.back();
     into.scalars["accumulation_excess"] = (k_.back() - random) / (1 - random);
-    into.scalars["structures"] = observables::structures(observables::cell_counts(last_, cube, n), n);
+    const double structures = observables::structures(observables::cell_counts(last_, cube, n), n);
+    if (!std::isnan(structures)) into.scalars["structures"] = structures;
     const double scatter = observables::random_accumulation_deviation(last_.size(), sampling_total());
     const double formation = observables::formation_time(times_, k_, scatter);
     if (std::isfinite(formation)) into.scalars["formation_time"] = formation;

@@ -155,24 +155,31 @@ std::vector<ObservableSpec> tpms_discharge_observables() {
          Shape::scalar},
         {"outlet_diameter", "particle diameters",
          "largest round opening in the lower face between the surfaces of wall particles", Shape::scalar},
-        {"peak_velocity", "sqrt(2 g L)", "largest speed along gravity in the cell, at any sample", Shape::scalar},
-        {"max_overlap", "particle diameters", "largest overlap after any step", Shape::scalar},
-        {"max_force", "m 9.81 m/s2", "largest contact force, at any sample", Shape::scalar},
+        {"peak_velocity", "sqrt(2 g L)",
+         "largest speed along gravity in the cell, at any sample; 0: nothing moved along it", Shape::scalar},
+        {"max_overlap", "particle diameters", "largest overlap after any step; 0: nothing touched", Shape::scalar},
+        {"max_force", "m 9.81 m/s2", "largest contact force, at any sample; 0: nothing touched", Shape::scalar},
         {"particles", "1", "mobile particles at the start", Shape::scalar},
         {"wall_particles", "1", "frozen particles of the shell", Shape::scalar},
         {"retention_series", "1", "retention every 0.0165 sqrt(2 L/g)", Shape::series, time},
-        {"velocity_series", "sqrt(2 g L)", "largest speed along gravity in the cell", Shape::series, time},
+        {"velocity_series", "sqrt(2 g L)", "largest speed along gravity in the cell; undefined while it is empty",
+         Shape::series, time},
         {"mobile_series", "1", "mobile particles not yet gone (two diameters outside the cell) over those at the start",
          Shape::series, time},
         {"at_rest_series", "1", "those in the cell slower than 0.001 sqrt(2 g L) over those at the start",
          Shape::series, time},
         {"overlap_histogram", "1",
-         "share of contacts per bin of overlap, twenty bins per decade, every 0.165 sqrt(2 L/g); below 1e-6: the first",
+         "share of contacts per bin of overlap, twenty bins per decade, every 0.165 sqrt(2 L/g); below 1e-6: the "
+         "first; none "
+         "where nothing touches",
          Shape::profile, "overlap (particle diameters)"},
         {"force_histogram", "1",
-         "share of contacts per bin of force, twenty bins per decade, every 0.165 sqrt(2 L/g); below 1e-3: the first",
+         "share of contacts per bin of force, twenty bins per decade, every 0.165 sqrt(2 L/g); below 1e-3: the first; "
+         "none "
+         "where nothing touches",
          Shape::profile, "force (m 9.81 m/s2)"},
-        {"retained_profile", "1", "retention of twenty layers along z at the end; bin: z/L", Shape::profile, "z/L"},
+        {"retained_profile", "1", "retention of those of twenty layers along z that held powder; bin: z/L",
+         Shape::profile, "z/L"},
     };
 }
 

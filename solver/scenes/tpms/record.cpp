@@ -83,7 +83,7 @@ void TpmsRecord::observe(Observations& into) const {
         velocity.push_back({.time = t, .value = speed});
         mobile.push_back({.time = t, .value = static_cast<double>(moment.mobile) / start});
         at_rest.push_back({.time = t, .value = static_cast<double>(moment.at_rest) / start});
-        peak = std::max(peak, speed);
+        if (moment.in_cell > 0) peak = std::max(peak, speed);
     }
     const auto add_bins = [&](const char* name, const std::vector<Bin>& bins) {
         auto& series = into.series[name];

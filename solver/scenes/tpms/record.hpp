@@ -16,7 +16,7 @@ namespace grainsweep {
 struct Moment {
     std::int64_t step = 0;
     std::int64_t in_cell = 0;  ///< mobile centres in the cell
-    double fastest_down = 0;   ///< in the cell, along gravity, m/s
+    double fastest_down = 0;   ///< in the cell, along gravity, m/s; 0: none moves along it; NaN: the cell is empty
     std::int64_t mobile = 0;   ///< not yet gone
     std::int64_t at_rest = 0;  ///< in the cell, slower than quiet_speed
 };
