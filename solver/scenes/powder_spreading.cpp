@@ -104,8 +104,9 @@ std::vector<ObservableSpec> observables_of_spreading() {
     return {
         {"mfr", "1",
          "mass flow rate under the blade over that of the swept gap filled solid: (M(t2) - M(t1))/(t2 - t1)"
-         "/(W gap v rho), M the mass of the centres behind the front face, t1 at 2/7 of the travel, t2 where the sweep "
-         "ended"},
+         "/(W gap v rho), M the mass of the centres behind the front face, with those that left the box there, t1 at "
+         "2/7 "
+         "of the travel, t2 where the sweep ended"},
         {"mfr_window", "1",
          "mass between the planes of rear and front face and below the gap over that of the slot filled "
          "solid, W gap thickness rho; mean of the samples from t1 to t2"},
@@ -125,7 +126,7 @@ std::vector<ObservableSpec> observables_of_spreading() {
          "root mean square deviation of the height of the spread layer's surface, seen from above "
          "on a grid of D/4, over the diameter; undefined where empty_share is above one half: there is no layer"},
         {"empty_share", "1", "share of the same grid that no particle covers"},
-        {"particles", "1", "particles present"},
+        {"particles", "1", "particles present at the end: those that left the box through its open faces are not"},
         {"vx_profile", "m/s",
          "mean velocity along the blade's motion in the 12 layers of thickness D/2 above the gap, "
          "within 6 D ahead of the front face, from t1 to t2, undefined where there was no particle; bin: top of the "
@@ -133,7 +134,8 @@ std::vector<ObservableSpec> observables_of_spreading() {
          Shape::profile, "top of the layer over the gap (D)"},
         {"vx_unevenness", "1",
          "root mean square second difference of vx_profile from layer to layer, over the speed of the blade: 0 for a "
-         "profile that rises evenly; undefined where no three neighbouring layers have a velocity"},
+         "profile that rises evenly; undefined where no three neighbouring layers hold a "
+         "particle per sample on average"},
         {"flux_series", "1", "mfr of each 1/140 of the travel; time since the blade started", Shape::series,
          "time since the blade started (s)"},
     };

@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 using namespace grainsweep;
 
@@ -59,7 +61,9 @@ void expect_equal(const Observations& a, const Observations& b) {
 }  // namespace
 
 TEST(PowderSpreading, MeasuresWhatItDeclares) {
-    const auto scene = make(small_case());
+    Inputs inputs = small_case();
+    inputs["layer_area"] = 4e-4;  // enough for a heap ahead of the blade
+    const auto scene = make(inputs);
     const auto seen = finish(*scene);
     for (const auto& o : spreading().observables) {
         if (o.shape == Shape::scalar) {
@@ -114,6 +118,45 @@ TEST(PowderSpreading, ScatteredParticlesHaveNoRoughness) {
     }
     EXPECT_GE(layers, 1);
     EXPECT_GE(scattered, 2);
+}
+
+// A thin layer is thrown about: one particle in flight crosses many layers of the profile at one velocity.
+TEST(PowderSpreading, ParticlesInFlightAreNoEvenProfile) {
+    const auto thin = finish(*make(small_case(), 5));
+    int seen = 0;
+    for (const auto& sample : thin.series.at("vx_profile")) seen += std::isnan(sample.value) ? 0 : 1;
+    EXPECT_GE(seen, 3);
+    EXPECT_FALSE(thin.scalars.contains("vx_unevenness")) << thin.scalars.at("vx_unevenness");
+}
+
+// Frictionless powder runs out under a high blade and over the edge of the box: it has passed all the same.
+TEST(PowderSpreading, PowderThatLeftTheBoxHasPassedTheBlade) {
+    const Inputs inputs = with({{"friction", 0},
+                                {"restitution", 1},
+                                {"diameter", 0.003},
+                                {"gap", 0.02},
+                                {"speed", 0.2},
+                                {"width", 4},
+                                {"settle_time", 0.05}});
+    const auto scene = make(inputs);
+    const auto ahead = [&](double travel) {
+        double count = 0, farthest = 0;
+        for (const auto& x : scene->snapshot().positions) {
+            count += x[0] >= 0.015 + travel ? 1 : 0;
+            farthest = std::max(farthest, x[0]);
+        }
+        EXPECT_LT(farthest, 0.28) << "none has left ahead of the blade";
+        return count;
+    };
+    scene->advance(0.05 + 0.02 / 0.2 + 1e-9);  // at or one step beyond t1
+    const double before = ahead(0.02);
+    const auto seen = finish(*scene);
+    const double passed = before - ahead(0.07);
+    EXPECT_LT(seen.scalars.at("particles"), 320);  // of 340
+    const double volume = std::numbers::pi / 6 * std::pow(0.003, 3);
+    const double expected = passed * volume / (0.012 * 0.02 * 0.05);
+    EXPECT_GT(expected, 0.01);
+    EXPECT_NEAR(seen.scalars.at("mfr"), expected, 2 * volume / (0.012 * 0.02 * 0.05) + 0.01 * expected);
 }
 
 TEST(PowderSpreading, SlicesDoNotChangeTheAnswer) {

@@ -11,7 +11,7 @@ namespace grainsweep::spreading {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr std::uint64_t checkpoint_format = 0x6772'6e73'7370'0002ULL;  // "grnssp", version 2
+constexpr std::uint64_t checkpoint_format = 0x6772'6e73'7370'0003ULL;  // "grnssp", version 3
 constexpr std::size_t blocks = 10;       // of the measured flux, 5 mm of travel each by default
 constexpr double layer_thickness = 0.5;  // of the velocity profile, in diameters
 constexpr double profile_reach = 6;      // ahead of the blade, in diameters
@@ -30,6 +30,7 @@ Experiment::Experiment(const Study& study, std::uint64_t seed, const dem::Method
         const double d = 2 * sphere.radius / study_.diameter;
         volume_.push_back(d * d * d);
     }
+    place_.assign(volume_.size(), Place::ahead);
     if (shared) engine_ = settled_before(setup, method);
     if (engine_) {
         step_ = study_.settle_steps;
@@ -98,10 +99,25 @@ void Experiment::start_sweep() {
     sample();
 }
 
+/// A particle that has left the box is on the side of the front face where it was last: the open faces are further
+/// from the blade than anything moves between two samples.
+void Experiment::count_left(double front) {
+    std::size_t k = 0;  // of the state, in which ids ascend
+    for (std::size_t id = 0; id < place_.size(); ++id) {
+        if (k < state_.id.size() && static_cast<std::size_t>(state_.id[k]) == id) {
+            place_[id] = state_.position[k++][0] < front ? Place::behind : Place::ahead;
+        } else {
+            if (place_[id] == Place::behind) left_behind_ += volume_[id];
+            place_[id] = Place::left;
+        }
+    }
+}
+
 void Experiment::sample() {
     const double time = time_of_sample(behind_.size());
     engine_->state(state_);
-    behind_.push_back(observables::sum_behind(state_, volume_, study_.front(time)));
+    count_left(study_.front(time));
+    behind_.push_back(observables::sum_behind(state_, volume_, study_.front(time)) + left_behind_);
     under_.push_back(observables::sum_under(state_, volume_, study_.rear(time), study_.front(time), study_.gap));
     if (static_cast<std::int64_t>(behind_.size()) > first_measured_sample)
         profile_.add(state_, study_.front(time), study_.front(time) + profile_reach * study_.diameter, study_.gap,
@@ -165,14 +181,18 @@ void Experiment::observe_flux(Observations& into) const {
     into.scalars["mfr_thesis"] = mass / (slot * study_.speed);
 
     std::vector<double> velocity;
+    // Ahead of the blade lies powder only where layers hold a particle per sample on average: one thrown up crosses
+    // several at the same velocity, which is no even profile.
+    std::size_t filled = 0, most_filled = 0;  // neighbouring layers
     auto& profile = into.series["vx_profile"];
     for (std::size_t k = 0; k < profile_layers; ++k) {
         const auto n = profile_.samples[k];
+        filled = n > static_cast<std::int64_t>(last - first) ? filled + 1 : 0;
+        most_filled = std::max(most_filled, filled);
         velocity.push_back(n > 0 ? profile_.sum[k] / static_cast<double>(n) : nan);
         profile.push_back({.time = nan, .bin = layer_thickness * static_cast<double>(k + 1), .value = velocity[k]});
     }
-    if (const double bends = observables::unevenness(velocity); !std::isnan(bends))
-        into.scalars["vx_unevenness"] = bends / study_.speed;
+    if (most_filled >= 3) into.scalars["vx_unevenness"] = observables::unevenness(velocity) / study_.speed;
 }
 
 void Experiment::observe_layer(Observations& into) const {
@@ -211,6 +231,8 @@ void Experiment::save(Bytes& into) const {
     out.put(end_sample_);
     out.put(behind_);
     out.put(under_);
+    out.put(place_);
+    out.put(left_behind_);
     out.put(profile_.sum);
     out.put(profile_.samples);
     out.put(engine);
@@ -228,6 +250,8 @@ void Experiment::restore(std::span<const std::byte> from) {
     in.get(end_sample_);
     in.get(behind_);
     in.get(under_);
+    in.get(place_);
+    in.get(left_behind_);
     in.get(profile_.sum);
     in.get(profile_.samples);
     in.get(engine);

@@ -40,6 +40,8 @@ private:
     void end_settling();
     void start_sweep();
     void sample();
+    /// Adds to left_behind_ what has left the box since the last sample, and notes the place of what is there.
+    void count_left(double front);
     void observe_flux(Observations& into) const;
     void observe_layer(Observations& into) const;
 
@@ -51,8 +53,11 @@ private:
     double borrowed_particle_steps_ = 0;  // another case's work on the bed
     std::int64_t end_sample_ = sweep_samples;
     std::vector<double> volume_;  // by id, of the sphere of diameter D
-    std::vector<double> behind_;  // volume behind the front face, by sample
+    std::vector<double> behind_;  // volume behind the front face, by sample, with what left the box there
     std::vector<double> under_;   // volume under the blade and below the gap, by sample
+    enum class Place : char { ahead, behind, left };
+    std::vector<Place> place_;  // by id: of the front face at the last sample, or out of the box
+    double left_behind_ = 0;    // volume that left the box behind the front face
     observables::VelocityProfile profile_{profile_layers};
     dem::State state_;  // scratch of sample()
 };
