@@ -87,6 +87,12 @@ struct Campaign {
     [[nodiscard]] const SceneInfo& scene() const { return *space.scene; }
 };
 
+/// Brings the factors, and the design's options that are given factor by factor, into `order`. Returns whether that
+/// changed anything; where `order` does not name exactly these factors nothing is changed.
+bool reorder_factors(Campaign& campaign, std::span<const std::string> order);
+/// "a, b, c".
+[[nodiscard]] std::string factor_list(const ParameterSpace& space);
+
 /// Decides whether a candidate point belongs to the campaign: the `where` clause.
 using Filter = std::function<bool(const Inputs&)>;
 

@@ -121,12 +121,16 @@ int exit_code(Ending ending, const schedule::Plan::Tally& tally) {
 }  // namespace
 
 RunReport run_campaign(const RunRequest& request) {
-    const campaign::Campaign campaign = campaign::read_campaign(request.config);
-    const auto placed = campaign::asked_in(request.config, [&] {
-        auto cases = campaign::unfold(campaign, store::make_filter(campaign.where, campaign::filter_names(campaign)));
-        (void)campaign::forecast(campaign.scene(), cases);  // refuses impossible cases before anything is made
-        return cases;
-    });
+    campaign::Campaign campaign = campaign::read_campaign(request.config);
+    const auto unfolded = [&] {
+        return campaign::asked_in(request.config, [&] {
+            const auto filter = store::make_filter(campaign.where, campaign::filter_names(campaign));
+            auto cases = campaign::unfold(campaign, filter);
+            (void)campaign::forecast(campaign.scene(), cases);  // refuses impossible cases before anything is made
+            return cases;
+        });
+    };
+    auto placed = unfolded();
 
     const auto& launcher = campaign.execution.launcher;
     if (!launcher.empty() && !workers::Pool::can_start(launcher.front()))
@@ -141,6 +145,13 @@ RunReport run_campaign(const RunRequest& request) {
     artefacts.replace_extension(".artefacts");
 
     store::Store store(database, store::Store::Mode::create);
+    const std::size_t workers = worker_count(campaign, request);
+    ProgressLine line(request.quiet, workers);
+    if (campaign::reorder_factors(campaign, store.factor_order(campaign.name))) {
+        line.note(fmt::format("note: the factors of '{}' keep the order in which they are stored: {}", campaign.name,
+                              campaign::factor_list(campaign.space)));
+        placed = unfolded();
+    }
     const auto states = campaign::asked_in(request.config, [&] { return store.enrol(campaign, placed, provenance()); });
     const auto judge = make_judge(campaign, store, placed);
     Questions questions = collect(campaign, placed, states);
@@ -152,10 +163,8 @@ RunReport run_campaign(const RunRequest& request) {
     schedule::Plan plan(std::move(questions.cases), questions.histories, std::move(questions.predicted),
                         std::move(questions.places), rules);
 
-    const std::size_t workers = worker_count(campaign, request);
     workers::Pool pool(
         {worker_command(campaign, artefacts, request.path), workers, campaign.limits.wall_seconds, build_version()});
-    ProgressLine line(request.quiet, workers);
     store::ArtefactFolder folder(artefacts);
     schedule::Watchers watchers;
     watchers.progress = [&](const schedule::Progress& progress) { line.update(progress); };

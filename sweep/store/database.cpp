@@ -218,26 +218,25 @@ Connection::Connection(const std::filesystem::path& file, Access access) {
         execute("PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON; PRAGMA cache_size = -65536");
         return;
     }
-    handle_.reset(open(file.c_str(), SQLITE_OPEN_READONLY));
+    // SQLite opens to read only what the system lets it only read. Where it may write, the last reader to close removes
+    // the write-ahead log and its shared memory, also those of a writer that died.
+    handle_.reset(open(file.c_str(), SQLITE_OPEN_READWRITE));
     configure();
-    const auto beside = [&](const char* ending) {
+    execute("PRAGMA query_only = ON");
+    const auto waits = [&](const char* ending) {
         auto name = file;
-        return std::filesystem::exists(name += ending);
+        std::error_code none;
+        const auto size = std::filesystem::file_size(name += ending, none);
+        return !none && size > 0;
     };
     try {
         probe();
     } catch (const BrokenWorld&) {
         const int code = sqlite3_extended_errcode(handle_.get());
-        if (code == SQLITE_READONLY_ROLLBACK) {
-            // A writer died in mid-commit: its journal has to be rolled back before anyone can read.
-            Connection(file, Access::write).probe();
-            probe();
-            return;
-        }
         // A write-ahead database needs its shared-memory file beside it. Where that cannot be made and no journal
         // is waiting, nobody writes either.
         const bool closed_folder = (code & 0xff) == SQLITE_CANTOPEN || (code & 0xff) == SQLITE_READONLY;
-        if (!closed_folder || beside("-wal") || beside("-journal")) throw;
+        if (!closed_folder || waits("-wal") || waits("-journal")) throw;
         handle_.reset(open(uri(file, "immutable=1").c_str(), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI));
         configure();
     }

@@ -127,8 +127,9 @@ public:
     enum class Access { write, read };
     enum class Journal { write_ahead, rollback };
 
-    /// write: makes the file where absent, synchronous FULL. read: the file is never written; a file in a folder
-    /// nobody may write to is read as it lies.
+    /// write: makes the file where absent, synchronous FULL. read: no statement changes anything; opening recovers and
+    /// closing brings home what a dead writer left in its journal, where the file may be written. A file in a folder
+    /// that cannot be written is read as it lies.
     Connection(const std::filesystem::path& file, Access access);
     [[nodiscard]] static Connection in_memory();
 

@@ -4,6 +4,7 @@
 #include "sweep/store/moment.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
@@ -257,9 +258,9 @@ void store_provenance(Store::Impl& archive, const Campaign& campaign, std::int64
     if (archive.provenance && archive.provenance_campaign == key) return;  // the same run, its design refined
     archive.db.run(
         "INSERT INTO provenance (campaign_id, version, \"commit\", compiler, flags, instruction_path, processor, host, "
-        "start, campaign_text, campaign_hash) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+        "start, campaign_text, campaign_hash, process) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
         key, by.version, by.commit, by.compiler, by.flags, by.instruction_path, by.processor, by.host, utc_now(),
-        campaign.text, campaign::content_hash(campaign.text));
+        campaign.text, campaign::content_hash(campaign.text), std::int64_t{getpid()});
     archive.provenance = archive.db.last_row();
     archive.provenance_campaign = key;
 }

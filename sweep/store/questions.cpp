@@ -112,6 +112,15 @@ std::vector<CampaignRecord> Store::campaigns() const {
     return records;
 }
 
+std::vector<std::string> Store::factor_order(std::string_view campaign) const {
+    std::vector<std::string> names;
+    auto rows = impl_->db.ask("SELECT factors FROM campaign WHERE name = ?", campaign);
+    if (!rows.next()) return names;
+    std::istringstream lines(rows.get<std::string>(0));
+    for (std::string line; std::getline(lines, line);) names.push_back(line.substr(0, line.find(' ')));
+    return names;
+}
+
 std::optional<campaign::Case> Store::find_case(std::string_view id_or_prefix) const {
     std::string prefix(id_or_prefix);
     std::ranges::transform(prefix, prefix.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });

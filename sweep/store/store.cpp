@@ -8,9 +8,12 @@
 #include "sweep/store/schema.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <cstdint>
 #include <fstream>
 #include <stdexcept>
@@ -26,6 +29,11 @@ constexpr std::int64_t application = 0x67737770;  // "gswp" in the file's header
 std::int64_t pragma(const Connection& db, std::string_view name) {
     auto statement = db.prepare(fmt::format("PRAGMA {}", name));
     return statement.step() ? statement.get<std::int64_t>(0) : 0;
+}
+
+std::string host_name() {
+    std::array<char, 256> name{};
+    return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "?";
 }
 
 std::uint32_t big_endian(const char* bytes) {
@@ -95,10 +103,33 @@ void migrate(Connection& db, const std::filesystem::path& file) {
     transaction.commit();
 }
 
+/// "process 4711 on node3 since 2026-01-01T12:00:00Z", as far as the archive knows who writes: the last run that
+/// recorded itself, unless it has ended and another one is about to.
+std::string holder_of(const std::filesystem::path& file) {
+    try {
+        const Connection db(file, Connection::Access::read);
+        auto rows = db.ask("SELECT process, host, start FROM provenance ORDER BY provenance_id DESC LIMIT 1");
+        if (!rows.next() || rows.is_null(0)) return {};
+        const auto process = rows.get<std::int64_t>(0);
+        const auto host = rows.get<std::string>(1);
+        const bool ended = host == host_name() && kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH;
+        return ended ? "" : fmt::format("process {} on {} since {}", process, host, rows.get<std::string_view>(2));
+    } catch (const BrokenWorld&) {  // the file is not whole yet
+        return {};
+    }
+}
+
+[[noreturn]] void refuse_second_writer(const std::filesystem::path& file) {
+    const std::string holder = holder_of(file);
+    throw BrokenWorld(fmt::format("database '{}': {} is writing to it; one run at a time", file.string(),
+                                  holder.empty() ? "another run" : "the run of " + holder));
+}
+
 std::unique_ptr<Store::Impl> open_to_write(const std::filesystem::path& file, Store::Disk disk) {
     std::error_code ignored;
     if (std::filesystem::exists(file, ignored)) check_readable(file);
-    std::optional<WriterLock> lock(std::in_place, file);
+    auto lock = WriterLock::take(file);
+    if (!lock) refuse_second_writer(file);
     Connection db(file, Connection::Access::write);
     (void)schema_version(db, file);  // before anything is changed in a stranger's file
     const bool network = disk == Store::Disk::network || (disk == Store::Disk::found_out && on_network(file));
@@ -113,10 +144,8 @@ std::unique_ptr<Store::Impl> open_to_read(const std::filesystem::path& file) {
     const std::int64_t version = schema_version(db, file);
     if (version == 0)
         throw WrongQuestion(fmt::format("'{}' is empty: no campaign has been run into it.", file.string()));
-    if (version < static_cast<std::int64_t>(schema_migrations().size())) {
-        throw WrongQuestion(fmt::format("'{}' has the older schema {}; `grainsweep run` into it brings it up to date.",
-                                        file.string(), version));
-    }
+    // An older schema is read as it is, and brought up to date by the next run: migrations so far added what no
+    // question needs.
     return std::make_unique<Store::Impl>(file, std::nullopt, std::move(db));
 }
 

@@ -1,9 +1,9 @@
 // The archive: every result of every campaign in one SQLite file. The only file that speaks SQL.
 //
-// One writer: an advisory lock on FILE.lock, which dies with its holder (the empty file stays). Readers go on beside
-// it. WAL, synchronous FULL; on network file systems a rollback journal, synchronous FULL. A result is on disk before
-// it is shown: callers write inside group() and show what the group held only after it returned. A Store belongs to
-// one thread.
+// One writer: an advisory lock on the file itself, which ends with its holder. Readers go on beside it, and the last
+// one to close the file, reader or writer, leaves nothing beside it. WAL, synchronous FULL; on network file systems a
+// rollback journal, synchronous FULL. A result is on disk before it is shown: callers write inside group() and show
+// what the group held only after it returned. A Store belongs to one thread.
 #pragma once
 
 #include "sweep/campaign/campaign.hpp"
@@ -91,8 +91,8 @@ public:
     /// A network disk gets a rollback journal instead of a write-ahead log; which it is, statfs(2) knows.
     enum class Disk { found_out, local, network };
     /// create: makes the file and its schema where absent, takes the writer's lock (a second writer is
-    /// refused with a sentence naming the first); read: never writes. Throws BrokenWorld, or WrongQuestion
-    /// when the file is no grainsweep database.
+    /// refused with a sentence naming the first) and brings an older schema up to date; read: changes no content and
+    /// no schema. Throws BrokenWorld, or WrongQuestion when the file is no grainsweep database.
     Store(const std::filesystem::path& file, Mode mode, Disk disk = Disk::found_out);
     ~Store();
     Store(Store&&) noexcept;
@@ -122,6 +122,9 @@ public:
 
     // Questions
     [[nodiscard]] std::vector<CampaignRecord> campaigns() const;
+    /// The names of a campaign's factors in the order that fixes the dimensions of its design; empty where there is
+    /// no campaign of that name.
+    [[nodiscard]] std::vector<std::string> factor_order(std::string_view campaign) const;
     /// Throws WrongQuestion where several cases begin so.
     [[nodiscard]] std::optional<campaign::Case> find_case(std::string_view id_or_prefix) const;
     [[nodiscard]] std::vector<LoggedAttempt> attempts(std::string_view case_id) const;

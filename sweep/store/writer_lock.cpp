@@ -1,11 +1,9 @@
 #include "sweep/store/writer_lock.hpp"
 
 #include "sweep/store/broken_world.hpp"
-#include "sweep/store/moment.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/vfs.h>
 #include <unistd.h>
 
@@ -14,70 +12,43 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
-#include <string>
 #include <utility>
 
 namespace grainsweep::store {
 
 namespace {
 
-std::string host() {
-    std::array<char, 256> name{};
-    return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "?";
-}
+// Far above the bytes at 2^30 that SQLite locks, and above any size a database has.
+constexpr off_t locked_byte = off_t{1} << 61U;
 
-std::string boot() {
-    std::string id = "?";
-    std::ifstream("/proc/sys/kernel/random/boot_id") >> id;
-    return id;
+[[noreturn]] void fail(const std::filesystem::path& database, const char* what, int number) {
+    throw BrokenWorld(fmt::format("database '{}': {}: {}", database.string(), what, std::strerror(number)));
 }
 
 }  // namespace
 
-WriterLock::WriterLock(const std::filesystem::path& database) {
-    // Through links, so that two names of one database share the lock.
-    auto file = std::filesystem::weakly_canonical(database);
-    file += ".lock";
-    descriptor_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (descriptor_ < 0) {
-        throw BrokenWorld(fmt::format("database '{}': its lock '{}' cannot be made: {}", database.string(),
-                                      file.string(), std::strerror(errno)));
-    }
-    if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
-        const int number = errno;
-        std::array<char, 512> text{};
-        const auto length = pread(descriptor_, text.data(), text.size(), 0);
-        close(std::exchange(descriptor_, -1));
-        if (number != EWOULDBLOCK) {
-            throw BrokenWorld(
-                fmt::format("database '{}': this file system gives no locks ({}); keep the database on one "
-                            "that does",
-                            database.string(), std::strerror(number)));
-        }
-        const std::string holder(text.data(), length > 0 ? static_cast<std::size_t>(length) : 0);
-        throw BrokenWorld(
-            fmt::format("database '{}': {} is writing to it; one run at a time", database.string(),
-                        holder.empty() ? "another run" : "the run of " + holder.substr(0, holder.find('\n'))));
-    }
-    // For people: the lock itself is the kernel's.
-    const std::string text = fmt::format("process {} on {} since {}\nboot {}\n", getpid(), host(), utc_now(), boot());
-    if (ftruncate(descriptor_, 0) != 0 ||
-        pwrite(descriptor_, text.data(), text.size(), 0) != static_cast<ssize_t>(text.size())) {
-        const int number = errno;
-        close(std::exchange(descriptor_, -1));
-        throw BrokenWorld(fmt::format("database '{}': its lock '{}' cannot be written: {}", database.string(),
-                                      file.string(), std::strerror(number)));
-    }
+// A lock of an open file description (F_OFD_SETLK) rather than of the process: SQLite's own locks belong to the
+// process, and those of one kind never release those of the other. The descriptor outlives the connection to the
+// database, because closing it would release what SQLite holds.
+std::optional<WriterLock> WriterLock::take(const std::filesystem::path& database) {
+    const int descriptor = open(database.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    if (descriptor < 0) fail(database, "cannot be opened to write", errno);
+    struct flock range {};
+    range.l_type = F_WRLCK;
+    range.l_whence = SEEK_SET;
+    range.l_start = locked_byte;
+    range.l_len = 1;
+    if (fcntl(descriptor, F_OFD_SETLK, &range) == 0) return WriterLock(descriptor);
+    const int number = errno;
+    close(descriptor);
+    if (number == EAGAIN || number == EACCES) return std::nullopt;
+    fail(database, "this file system gives no locks; keep the database on one that does", number);
 }
 
 WriterLock::WriterLock(WriterLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
 
 WriterLock::~WriterLock() {
-    if (descriptor_ < 0) return;
-    // The file stays: removing it would let two writers lock two files of one name.
-    [[maybe_unused]] const int emptied = ftruncate(descriptor_, 0);
-    close(descriptor_);
+    if (descriptor_ >= 0) close(descriptor_);
 }
 
 bool is_network_file_system(long magic) {

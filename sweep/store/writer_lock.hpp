@@ -1,20 +1,23 @@
-// One writer per database: an advisory lock of the operating system on a file beside it. It goes with its
-// holder, however the holder dies, so no lock is ever stale and none is removed by hand.
+// One writer per database: a lock of the operating system on the database file itself. It goes with its holder,
+// however the holder dies, and leaves no file behind. All names of a file (links, other paths) share it.
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 namespace grainsweep::store {
 
 class WriterLock {
 public:
-    /// Throws BrokenWorld naming the holder (process, host, since when) where another one writes.
-    explicit WriterLock(const std::filesystem::path& database);
+    /// Takes the lock, making an empty file where there is none; nothing where another one holds it. Throws
+    /// BrokenWorld where the file cannot be opened to write or its file system gives no locks.
+    [[nodiscard]] static std::optional<WriterLock> take(const std::filesystem::path& database);
     WriterLock(WriterLock&& other) noexcept;
     WriterLock& operator=(WriterLock&&) = delete;
     ~WriterLock();
 
 private:
+    explicit WriterLock(int descriptor) : descriptor_(descriptor) {}
     int descriptor_ = -1;
 };
 

@@ -9,7 +9,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
+#include <string>
+#include <vector>
 
 namespace grainsweep::tests {
 namespace {
@@ -17,6 +20,7 @@ namespace {
 using campaign::WrongQuestion;
 using store::BrokenWorld;
 using store::Store;
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 void write(const std::filesystem::path& file, std::string_view text) {
@@ -74,20 +78,91 @@ TEST(StoreFiles, AFolderThatIsMissingIsABrokenWorld) {
     EXPECT_THAT(sentence<BrokenWorld>(folder.path() / "no" / "a.db", Store::Mode::create), HasSubstr("No such file"));
 }
 
+std::vector<std::string> names_in(const Folder& folder) {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+        names.push_back(entry.path().filename().string());
+    std::ranges::sort(names);
+    return names;
+}
+
 TEST(StoreFiles, TheSecondWriterIsToldWhoTheFirstIs) {
     const Folder folder;
     const auto link = folder / "link.db";
+    const auto hard_link = folder / "hard.db";
     {
-        const Store first(folder / "a.db", Store::Mode::create);
+        Store first(folder / "a.db", Store::Mode::create);
+        EXPECT_THAT(sentence<BrokenWorld>(folder / "a.db", Store::Mode::create),
+                    HasSubstr("another run is writing to it; one run at a time"));
         std::filesystem::create_symlink(folder / "a.db", link);
+        std::filesystem::create_hard_link(folder / "a.db", hard_link);
+        const auto campaign = small_campaign("c");
+        first.enrol(campaign, small_design(campaign, 3), here());
         for (const auto& name : {folder / "a.db", link}) {
             EXPECT_THAT(sentence<BrokenWorld>(name, Store::Mode::create),
-                        AllOf(HasSubstr("process " + std::to_string(getpid())), HasSubstr("since"),
+                        AllOf(HasSubstr("process " + std::to_string(getpid()) + " on a host"), HasSubstr("since"),
                               HasSubstr("one run at a time")));
         }
+        // Under another name the journal of the first is not found, and the lock is.
+        EXPECT_THAT(sentence<BrokenWorld>(hard_link, Store::Mode::create), HasSubstr("one run at a time"));
         EXPECT_EQ(sentence<BrokenWorld>(folder / "a.db", Store::Mode::read), "opened");
     }
     EXPECT_EQ(sentence<BrokenWorld>(folder / "a.db", Store::Mode::create), "opened") << "the lock goes with its holder";
+}
+
+TEST(StoreFiles, WriterAndReadersLeaveOneFile) {
+    const Folder folder;
+    {
+        Store writer(folder / "a.db", Store::Mode::create);
+        const auto campaign = small_campaign("c");
+        writer.enrol(campaign, small_design(campaign, 3), here());
+        EXPECT_THAT(names_in(folder), ElementsAre("a.db", "a.db-shm", "a.db-wal"));
+    }
+    EXPECT_THAT(names_in(folder), ElementsAre("a.db"));
+    { const Store reader(folder / "a.db", Store::Mode::read); }
+    EXPECT_THAT(names_in(folder), ElementsAre("a.db"));
+}
+
+TEST(StoreFiles, AReaderChangesNothing) {
+    const Folder folder;
+    { const Store writer(folder / "a.db", Store::Mode::create); }
+    store::Connection reader(folder / "a.db", store::Connection::Access::read);
+    EXPECT_THROW(reader.execute("DELETE FROM campaign"), BrokenWorld);
+    EXPECT_THROW(reader.execute("CREATE TABLE t (x)"), BrokenWorld);
+}
+
+/// The schema of version 1, with what was enrolled.
+void take_back_to_version_1(const std::filesystem::path& file) {
+    store::Connection db(file, store::Connection::Access::write);
+    db.execute("DROP INDEX campaign_case_by_case; ALTER TABLE provenance DROP COLUMN process; PRAGMA user_version = 1");
+}
+
+TEST(StoreFiles, AnOlderSchemaIsReadAsItIsAndBroughtUpToDateByTheNextRun) {
+    const Folder folder;
+    const auto file = folder / "a.db";
+    const auto campaign = small_campaign("c");
+    const auto cases = small_design(campaign, 3);
+    {
+        Store store(file, Store::Mode::create);
+        store.enrol(campaign, cases, here());
+        settle(store, cases[1].question, 1);
+    }
+    const std::string before = dump_of(Store(file, Store::Mode::read));
+    take_back_to_version_1(file);
+    const std::string indexed = "SELECT count(*) FROM sqlite_schema WHERE name = 'campaign_case_by_case'";
+    {
+        const Store store(file, Store::Mode::read);
+        EXPECT_EQ(dump_of(store), before);
+        EXPECT_EQ(only_cell(store, "SELECT count(*) FROM c JOIN series USING (case_id)"), "0");
+        EXPECT_EQ(only_cell(store, indexed), "0");
+    }
+    {
+        Store store(file, Store::Mode::create);
+        EXPECT_EQ(store.enrol(campaign, cases, here())[1].outcome, campaign::Outcome::completed);
+    }
+    const Store store(file, Store::Mode::read);
+    EXPECT_EQ(dump_of(store), before);
+    EXPECT_EQ(only_cell(store, indexed), "1");
 }
 
 TEST(StoreFiles, TheJournalFitsTheFileSystem) {

@@ -49,6 +49,28 @@ TEST_F(StoreQuery, AViewOfTheCampaignsNameHasTheColumnsOfTheContract) {
     for (const std::size_t hole : {5u, 7u, 10u}) EXPECT_EQ(text_of(table.rows[3][hole]), "NULL");
 }
 
+// Without the index every case of the view was compared with every place of the campaign.
+TEST_F(StoreQuery, AJoinOfACampaignWithSeriesLooksEachCaseUp) {
+    for (const char* join : {"ON s.case_id = c.case_id",
+                             "ON s.point = c.point AND s.replicate = c.replicate AND "
+                             "s.campaign = 'first'",
+                             "ON s.campaign = 'first' AND s.point = c.point"}) {
+        const auto plan =
+            store.query("EXPLAIN QUERY PLAN SELECT * FROM first AS c JOIN series AS s " + std::string(join));
+        int scans = 0;
+        bool of_places = false;
+        for (const auto& row : plan.rows) {
+            const auto step = text_of(row.back());
+            scans += step.find("SCAN") == std::string::npos ? 0 : 1;
+            // One search by the campaign alone is the loop over the view; a second one inside it is the defect.
+            const bool all_places = step.find("SEARCH p USING PRIMARY KEY (campaign_id=?)") != std::string::npos;
+            EXPECT_FALSE(all_places && of_places) << join;
+            of_places = of_places || all_places;
+        }
+        EXPECT_LE(scans, 1) << join;
+    }
+}
+
 TEST_F(StoreQuery, AFactorAtItsDefaultIsShown) {
     auto second = small_campaign("second", 3);
     second.space.factors[2] = {"response", campaign::Levels{{std::string("sum"), std::string("ishigami")}}};
