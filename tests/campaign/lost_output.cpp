@@ -1,4 +1,5 @@
 // Progress and summary may find no reader and no disk: the campaign goes on and ends with its own exit code.
+#include "tests/support/places.hpp"
 #include "tests/support/process.hpp"
 
 #include <gtest/gtest.h>
@@ -65,20 +66,22 @@ TEST_F(LostOutput, ClosedDescriptorsAreNotTheDatabases) {
 
 // Everything but a campaign still says that its output did not arrive.
 TEST_F(LostOutput, AnAnswerThatDoesNotArriveIsNoSuccess) {
-    const auto ended =
-        Process({"/bin/bash", "-c", R"("$@" 1>&-)", "bash", GRAINSWEEP_EXECUTABLE, "dump", "calm.db"}, folder.path())
-            .wait();
+    const auto ended = Process({"/bin/bash", "-c", R"("$@" 1>&-)", "bash", grainsweep::tests::executable().string(),
+                                "dump", "calm.db"},
+                               folder.path())
+                           .wait();
     EXPECT_EQ(ended.code, 3);
     EXPECT_NE(ended.err.find("standard output cannot be written"), std::string::npos) << ended.err;
 }
 
 TEST_F(LostOutput, AClosedTerminalIsSurvived) {
+    const std::string program = grainsweep::tests::executable().string();
     int terminal = -1;
     const pid_t boss = ::forkpty(&terminal, nullptr, nullptr, nullptr);
     ASSERT_GE(boss, 0);
     if (boss == 0) {
         if (::chdir(folder.path().c_str()) != 0) ::_exit(126);
-        ::execl(GRAINSWEEP_EXECUTABLE, GRAINSWEEP_EXECUTABLE, "run", "c.json", "-j", "1", nullptr);
+        ::execl(program.c_str(), program.c_str(), "run", "c.json", "-j", "1", nullptr);
         ::_exit(127);
     }
     std::array<char, 256> seen{};
