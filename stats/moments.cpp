@@ -139,7 +139,7 @@ Summary Moments::summary(Middle middle) const {
         s.mean = minimum_;
         return s;  // no spread: the shape is undefined
     }
-    // m4 and m2 bound m3, so these two tell whether anything was lost.
+    // m4 and m2 bound m3, so these two show whether anything was lost.
     const bool variance_sound = sound(sums.m2);
     const bool shape_sound = variance_sound && sound(sums.m4) && std::isfinite(sums.m3);
     s.representable = variance_sound && shape_sound && std::isfinite(s.mean);

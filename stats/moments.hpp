@@ -54,7 +54,7 @@ struct Middle {
     [[nodiscard]] double median() const;
 };
 
-/// Accumulates values; forgets them. Everything but the median.
+/// Accumulates values without keeping them. Everything but the median.
 class Moments {
 public:
     /// Non-finite values are counted and left out.

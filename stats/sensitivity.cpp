@@ -14,7 +14,7 @@ namespace grainsweep::stats {
 namespace {
 
 constexpr std::size_t stretches = 8;
-constexpr std::size_t nobody = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t no_index = std::numeric_limits<std::size_t>::max();
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
 double square(double x) {
@@ -87,7 +87,7 @@ RadialEstimates radial_estimates(const RadialRows& base, std::size_t left_out) {
     Moments moments;
     double n = 0;
     for (std::size_t k = 0; k < base.rows.size(); ++k) {
-        if (left_out != nobody && base.stretch_of(k) == left_out) continue;
+        if (left_out != no_index && base.stretch_of(k) == left_out) continue;
         const auto row = base.rows[k];
         const double a = row[0];
         const double b = row[1];
@@ -150,7 +150,7 @@ SaltelliIndices saltelli_indices(std::span<const double> values, std::size_t dim
             ++indices.excluded;
     }
     indices.count = static_cast<std::int64_t>(base.rows.size());
-    const RadialEstimates all = radial_estimates(base, nobody);
+    const RadialEstimates all = radial_estimates(base, no_index);
     std::vector<RadialEstimates> parts;
     if (base.rows.size() >= 2 * stretches)
         for (std::size_t g = 0; g < stretches; ++g) parts.push_back(radial_estimates(base, g));
@@ -173,11 +173,11 @@ namespace {
 
 /// The factor in which two points differ.
 std::size_t moved_factor(std::span<const double> before, std::span<const double> after, std::size_t step) {
-    std::size_t moved = nobody;
+    std::size_t moved = no_index;
     for (std::size_t j = 0; j < before.size(); ++j) {
         if (before[j] == after[j]) continue;
-        if (moved != nobody) moved = before.size();
-        if (moved == nobody) moved = j;
+        if (moved != no_index) moved = before.size();
+        if (moved == no_index) moved = j;
     }
     if (moved >= before.size())
         throw std::invalid_argument("between points " + std::to_string(step - 1) + " and " + std::to_string(step) +

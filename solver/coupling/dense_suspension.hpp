@@ -1,4 +1,4 @@
-// Fluid and particles that take each other's space, advanced together:
+// Fluid and particles that exclude each other's volume, advanced together:
 //   1. forces of the particles on the fluid at their predicted middle positions (levels.hpp, force form), less what
 //      the particles do to each other
 //   2. the fluid step for the volume flux of both (shared_space.hpp)
@@ -101,7 +101,7 @@ public:
 private:
     using FaceVectors = flow::FaceVectors;
 
-    // What particle p feels of the fluid in this step.
+    // The fluid at particle p in this step.
     struct Around {
         const DenseSuspension& all;
         double vibration;

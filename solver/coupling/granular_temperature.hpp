@@ -25,7 +25,7 @@ struct Straining {
     flow::Field shear, expansion;
 
     explicit Straining(const flow::Grid& grid) : shear(grid), expansion(grid) {}
-    /// One-sided beside cells thinner than `thinnest`, whose particles have no mean velocity to speak of.
+    /// One-sided beside cells thinner than `thinnest`, which have too few particles for a mean velocity.
     void measure(const flow::Grid& grid, const flow::Field& fraction, const std::array<flow::Field, 3>& mean_velocity,
                  double thinnest);
 };

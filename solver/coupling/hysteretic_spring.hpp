@@ -1,4 +1,4 @@
-// The hysteretic linear spring: a normal contact force that forgets no energy it has taken (Walton & Braun 1986,
+// The hysteretic linear spring: a normal contact force with a stiffer branch of unloading (Walton & Braun 1986,
 // doi 10.1122/1.549893).
 //
 // Loading follows K_l s, unloading and reloading the stiffer K_u = K_l/e^2, never above the first nor below 1e-3 of it:
@@ -19,7 +19,7 @@ namespace grainsweep::coupling {
 
 using geometry::Vec3;
 
-/// What a contact remembers.
+/// History of a contact.
 struct SpringMemory {
     double overlap = 0;
     double force = 0;

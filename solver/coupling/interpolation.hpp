@@ -13,7 +13,7 @@
 //
 // Beside a no-slip wall, closer than h/2, trilinear keeps the shear and compresses what turns there, solenoidal keeps
 // the volume and slips (tests/unit/coupling_interpolation.cpp has both in closed form). Particles that touch walls with
-// their centres dwell there: thermovibration run 21 (uniform 40^3, W/Omega = 0.45 h), t = 0.32, four clouds of scatter
+// their centres stay there: thermovibration run 21 (uniform 40^3, W/Omega = 0.45 h), t = 0.32, four clouds of scatter
 // 0.006: K on 10^3 cells is 0.249 trilinear, 0.264 solenoidal; a normal velocity quadratic in the wall's cell, which
 // keeps shear and volume within h/2, lies between (0.259, six clouds).
 #pragma once
@@ -79,7 +79,7 @@ struct Solenoidal {
     }
 };
 
-/// Where a particle stands: weights along the three axes for faces (own) and for centres (across).
+/// Interpolation weights at a place: along the three axes for faces (own) and for centres (across).
 template <class Kernel>
 class Footing {
 public:

@@ -1,6 +1,6 @@
-// How much particles and fluid know of each other. A level is a type; what it does not do is not compiled.
+// Levels of coupling between particles and fluid. A level is a type; what it does not do is not compiled.
 //
-// One-way: the fluid does not feel the particles.
+// One-way: the particles do not act on the fluid.
 //
 // Two-way, force form: each particle acts on the fluid with the opposite of what the fluid does to it beyond the
 // hydrostatic pressure. With F the sum of drag, added mass and pressure-gradient force, the particle's own equation
@@ -35,7 +35,7 @@ struct OneWay {
 };
 
 /// One-way in a fluid that is its own mirror image in x: only the half x < 0 of the flow exists, closed by a plane of
-/// symmetry (FreeSlip), and particles beyond it feel the image.
+/// symmetry (FreeSlip), and particles beyond it take the mirrored values.
 struct OneWayMirrored {
     static constexpr bool acts_on_fluid = false;
     static constexpr bool mirrored = true;
@@ -44,7 +44,7 @@ struct OneWayMirrored {
         x[0] = -std::abs(x[0]);
         return x;
     }
-    /// What a particle at x feels, from what its image below the plane does.
+    /// Fluid values at x from those at its image below the plane.
     static void turn(const Vec3& x, Surroundings& around) {
         if (!(x[0] > 0)) return;
         around.velocity[0] = -around.velocity[0];
@@ -99,7 +99,7 @@ public:
         if constexpr (Form::per_fluid_volume) solid_ = flow::face_vectors(grid);
     }
 
-    /// Acceleration of the fluid by the particles standing at `feet` (a Footing each), at vibration s.
+    /// Acceleration of the fluid by the particles at `feet` (a Footing each), at vibration s.
     template <class Feet>
     const flow::FaceVectors& source(const Feet& feet, double vibration) {
         FaceDeposit::clear(source_);
@@ -123,7 +123,7 @@ public:
         return source_;
     }
 
-    /// What particle p did in this step, before any wall touched it.
+    /// Motion of particle p in this step, before it touched any wall.
     void remember(std::size_t p, const Vec3& rate) { rate_[p] = rate; }
     [[nodiscard]] const std::vector<Vec3>& rates() const { return rate_; }
     [[nodiscard]] const MomentumBudget& budget() const { return budget_; }

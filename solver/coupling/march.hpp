@@ -1,6 +1,6 @@
-// A cloud moved through one time step, a block of particles at a time: where each stands is found first, then what it
-// feels is gathered, and the equation of motion is solved for the block in vectors (motion.hpp). No particle knows of
-// the blocks: the same bits one by one.
+// A cloud moved through one time step, a block of particles at a time: the place of each on the grid is found first,
+// then the fluid there is gathered, and the equation of motion is solved for the block in vectors (motion.hpp). Blocks
+// change no bit: the same as one by one.
 #pragma once
 
 #include "solver/coupling/cloud.hpp"

@@ -39,7 +39,7 @@ struct Sphere {
     }
 };
 
-/// What the sphere feels in the middle of a step.
+/// The fluid at the sphere in the middle of a step.
 struct Surroundings {
     Vec3 velocity{};       ///< u
     Vec3 acceleration{};   ///< Du/Dt

@@ -1,4 +1,4 @@
-// Four-way coupling without springs: in a viscous fluid a contact is where two spheres cannot go on.
+// Four-way coupling without springs: in a viscous fluid a contact only stops the approach of two spheres.
 //
 // Collision Stokes numbers far below 10 allow no rebound (Joseph et al. 2001, doi 10.1017/S0022112001003470), so after
 // each step overlaps are removed by sweeps over the pairs, half by each partner and wholly at walls, and the velocity
@@ -64,14 +64,14 @@ public:
     }
     void settle(Cloud&, const Walls&, SolidsVolume&) {}
 
-    void save(std::vector<std::byte>&) const {}  // remembers nothing
+    void save(std::vector<std::byte>&) const {}  // there is no history
     void restore(std::span<const std::byte>&) {}
 
 private:
-    // tau(p) is asked only of particles that were moved.
+    // tau(p) is evaluated only for particles that were moved.
     template <class Tau>
     void separate(Cloud& cloud, double time_step, Tau tau, std::vector<Vec3>& handed) {
-        if (!remove_overlaps(cloud)) return;  // the run will say so
+        if (!remove_overlaps(cloud)) return;  // the run reports it
         stiffness_.assign(cloud.size(), 0);
         force_.assign(cloud.size(), Vec3{});
         const auto stiffness = [&](std::uint32_t p) {

@@ -18,8 +18,8 @@
 
 namespace grainsweep::coupling {
 
-/// Particles that do not touch: moved, handed over, turned back by walls. push(p): force per volume besides the
-/// fluid's.
+/// Particles that do not touch: moved, their reaction transmitted, turned back by walls. push(p): force per volume
+/// besides the fluid's.
 template <class Motion, class Around, class Push>
 void advance_free(Cloud& cloud, const Motion& motion, const Walls& walls, const Around& around, Push push,
                   std::vector<Vec3>& handed) {
@@ -59,7 +59,7 @@ public:
             for (int i = 1; i <= grid.cells(d); ++i) smallest_ = std::min(smallest_, grid[d].width(i));
     }
 
-    /// Advances every particle; `around(p)` is what it feels of the fluid, where it is standing at feet[p].
+    /// Advances every particle; `around(p)` is the fluid at its place on the grid, feet[p].
     /// handed[p]: the stress less the inertia of the particle, per volume.
     template <class Motion, class Feet, class Around>
     void move(Cloud& cloud, const Motion& motion, const Walls& walls, SolidsVolume& solids, const Feet& feet,
@@ -98,7 +98,7 @@ public:
 
 private:
     // The stress is divided by the fraction that the particles themselves have on a face, and spread and gathered as
-    // that was deposited: the sum over the particles is that of -grad p_s over the faces, which no one loses.
+    // that was deposited: the sum over the particles is that of -grad p_s over the faces, of which nothing is lost.
     template <class Feet>
     void find_stress(const Cloud& cloud, SolidsVolume& solids, const Feet& feet, double dt) {
         stressed_ = solids.largest_fraction() > thinnest_;

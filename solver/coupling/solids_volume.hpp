@@ -14,7 +14,7 @@
 
 namespace grainsweep::coupling {
 
-/// The fraction that a particle alone makes where it stands, far from walls: v_p/(2 pi w^2)^(3/2), with the width of a
+/// The fraction that a particle alone makes at its place, far from walls: v_p/(2 pi w^2)^(3/2), with the width of a
 /// linear deposit in a mean cell where that is wider; no less than spread over the whole box.
 [[nodiscard]] double lone_fraction(const flow::Grid& grid, double particle_volume, double kernel_width);
 
@@ -25,9 +25,9 @@ public:
 
     /// phi_p of particles that start from `positions` (inside the box), ghosts filled.
     void start(std::span<const Vec3> positions);
-    /// phi_p of the same particles now standing at `positions`; the last word before `carry` counts.
+    /// phi_p of the same particles now at `positions`; the last call before `carry` counts.
     void place(std::span<const Vec3> positions);
-    /// j of the particles that went in dt from where they started or were last carried to, to where they stand
+    /// j of the particles that went in dt from where they started or were last carried to, to where they are now
     /// (the shortest way along periodic axes).
     void carry(double dt);
     /// Mean of a particle property over the particles of a cell, weighted like phi_p: sum v_p w q / sum v_p w;
@@ -42,8 +42,8 @@ public:
     [[nodiscard]] double largest_fraction() const;
 
 private:
-    // Where particles stand. Weights of two neighbouring cells per axis, `first` and the one after, the first in
-    // 0 ... n+1 (folded later): found once, though three readers ask.
+    // Places of the particles. Weights of two neighbouring cells per axis, `first` and the one after, the first in
+    // 0 ... n+1 (folded later): found once for three uses.
     struct Standing {
         std::vector<Vec3> position;
         std::vector<std::array<AxisWeights<2>, 3>> weights;

@@ -66,7 +66,7 @@ void SpringContacts::find_active(const Cloud& freely_moved) {
     for (std::size_t p = 0; p < path.size(); ++p) {
         path[p] = freely_moved.position[p] - position_[p];
         const double length = norm_of(path[p]);
-        if (!std::isfinite(length) || length > 0.25) {  // not a state to look for contacts in; the run will say so
+        if (!std::isfinite(length) || length > 0.25) {  // no state to look for contacts in; the run reports it
             contacts_.clear();
             return;
         }

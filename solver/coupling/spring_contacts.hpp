@@ -6,8 +6,8 @@
 // can meet something in it, and only those, are advanced in sub-steps of a twentieth of a contact, forces taken in
 // the middle of each (leapfrog), drag relaxing exponentially inside with the factor of the slip at the beginning.
 //
-// Who can meet: pairs whose gap is smaller than their relative free path, particles whose free path reaches a wall,
-// and whoever those could then hit. Everybody else goes the free path of motion.hpp.
+// Candidates: pairs whose gap is smaller than their relative free path, particles whose free path reaches a wall,
+// and those that either could then hit. All others go the free path of motion.hpp.
 #pragma once
 
 #include "solver/coupling/cloud.hpp"
@@ -35,7 +35,7 @@ public:
     /// under an impact at the slip speed it causes, and whose contacts do not outlast a step.
     [[nodiscard]] static double stiffness(const Sphere& sphere, double overlap, double time_step);
 
-    /// Advances every particle; `around(p)` is what it feels of the fluid, around.rotation(x) half its vorticity.
+    /// Advances every particle; `around(p)` is the fluid at its place, around.rotation(x) half its vorticity.
     /// handed[p]: force of the contacts less the inertia of the particle, per volume.
     template <class Motion, class Feet, class Around>
     void move(Cloud& cloud, const Motion& motion, const Walls&, SolidsVolume&, const Feet&, const Around& around,
@@ -88,7 +88,7 @@ private:
     double mass_, inertia_, rotation_drag_;  // effective mass (xi + 1/2) v_p; (2/5) xi v_p R^2; 8 pi Pr R^3
     std::vector<Vec3> position_, velocity_;  // before the step
     std::vector<Vec3> spin_;
-    std::vector<std::int64_t> idle_;  // steps since a particle last met anything: its spin relaxes meanwhile
+    std::vector<std::int64_t> idle_;  // steps since a particle last touched anything: its spin relaxes meanwhile
     std::vector<Surroundings> surroundings_;
     std::vector<Active> active_;
     std::vector<std::uint32_t> slot_;  // per particle, index among the active ones + 1, or 0

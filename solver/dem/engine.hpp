@@ -1,9 +1,9 @@
-// What a DEM calculation is asked, and the coarse door to whatever computes it.
+// The setup of a DEM calculation, and the interface of the engines that compute it.
 //
-// Velocity Verlet over spheres with translational and rotational freedom (house signs: overlap > 0 in
-// contact, n points from j or wall to i, the computed force acts on i). The door is virtual but wide: one
-// call runs many steps. Behind it stand a clear double-precision engine and fast mixed-precision ones, each
-// instantiated for the laws a case needs; make_engine chooses once per case.
+// Velocity Verlet over spheres with translational and rotational freedom (signs: overlap > 0 in contact,
+// n points from j or wall to i, the computed force acts on i). The interface is virtual but coarse: one call
+// runs many steps. It has a clear double-precision engine and fast mixed-precision ones, each instantiated
+// for the laws a case needs; make_engine chooses once per case.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ using Vec3 = std::array<double, 3>;
 /// equal spheres: sjkr pi R d (LIGGGHTS 3.8 `sjkr`), sjkr2 2 pi R d, paper pi R d/4 (Gupta, eq. 15 as printed).
 enum class CohesionArea { sjkr, sjkr2, paper };
 
-/// What Coulomb's limit sees: the contact force without the cohesive part, or the net normal force.
+/// The force in Coulomb's limit: the contact force without the cohesive part, or the net normal force.
 enum class FrictionLimit { contact, net };
 
 /// One material for particles and walls.
@@ -61,7 +61,7 @@ struct Domain {
     std::array<bool, 3> periodic{};
 };
 
-/// Infinite frictional plane; particles live on the side the unit normal points to.
+/// Infinite frictional plane; particles are on the side the unit normal points to.
 struct Plane {
     Vec3 point{};
     Vec3 normal{0, 0, 1};
@@ -80,8 +80,8 @@ struct Blade {
 using Wall = std::variant<Plane, Blade>;
 
 /// Everything frozen, the walls and the domain together are a vessel that is shaken: its displacement is
-/// amplitude sin(2 pi frequency t), t since the start. Positions and velocities at the door, those of the start too,
-/// are told in the vessel's frame, where frozen spheres rest and shaking is a body force (solver/dem/shaking.hpp).
+/// amplitude sin(2 pi frequency t), t since the start. Positions and velocities in this interface, those of the start
+/// too, are in the vessel's frame, where frozen spheres rest and shaking is a body force (solver/dem/shaking.hpp).
 struct Shaking {
     Vec3 amplitude{};      ///< m
     double frequency = 0;  ///< Hz; a period lasts at least twenty time steps
@@ -118,7 +118,7 @@ struct State {
     std::vector<char> mobile;
 };
 
-/// A contact of the present state: what the laws answer at the velocities of the full step, with the tangential
+/// A contact of the present state: the response of the laws at the velocities of the full step, with the tangential
 /// displacement that the contact has by now. The force normal_force normal + tangential_force acts on `first`, its
 /// reaction on `second`. (A step uses the velocities of the half step before: a damping force differs by O(dt).)
 struct ContactForce {
@@ -135,7 +135,7 @@ struct ContactForce {
 struct Work {
     std::int64_t steps = 0;
     double particle_steps = 0;  ///< mobile particles times steps
-    double resting_steps = 0;   ///< of these, of particles asleep (Method::rest_speed)
+    double resting_steps = 0;   ///< of these, of particles at rest (Method::rest_speed)
     double pair_visits = 0;     ///< list entries evaluated
     std::int64_t rebuilds = 0;
     std::map<std::string, double, std::less<>> seconds;  ///< by phase, where measured
@@ -148,9 +148,9 @@ public:
     Engine& operator=(const Engine&) = delete;
     virtual ~Engine() = default;
 
-    /// Advances by `steps` time steps; stops at once when the state becomes untrustworthy (fault()).
+    /// Advances by `steps` time steps; stops at once when the state is no longer sound (fault()).
     virtual void run(std::int64_t steps) = 0;
-    /// New walls: wall time starts at 0, wall histories are forgotten, particle histories stay; forces are
+    /// New walls: wall time starts at 0, wall histories are dropped, particle histories stay; forces are
     /// recomputed once without touching histories.
     virtual void set_walls(std::vector<Wall> walls) = 0;
     /// Removes particles by id; absent ids are ignored.
@@ -166,7 +166,7 @@ public:
     virtual void forget_peak_overlap() = 0;
     /// Every touching pair with a mobile partner, and every wall touched; the order depends on the state only.
     virtual void contacts(std::vector<ContactForce>& into) const = 0;
-    /// What, where, when the state became untrustworthy; empty: it is sound.
+    /// What became unsound, where and when; empty: the state is sound.
     [[nodiscard]] virtual const std::string& fault() const = 0;
     [[nodiscard]] virtual Work work() const = 0;
     /// Everything: an engine made from the same Setup and Method and restored continues bit for bit.

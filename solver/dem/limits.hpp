@@ -1,4 +1,4 @@
-// Beyond these a state is no longer trusted: the case is reported unstable instead of answered.
+// Beyond these limits a state is not sound: the case is reported unstable and has no result.
 #pragma once
 
 namespace grainsweep::dem {

@@ -82,7 +82,8 @@ std::unique_ptr<Engine> make_engine(const Setup& setup, const Method& method) {
     require(not_negative(method.rest_speed), "the rest speed must not be negative");
     if (method.rest_speed > 0) {
         require(is_still(setup.shaking), "powder in a vessel that is shaken never rests: no rest speed");
-        require(geometry::norm(setup.gravity) > 0, "a rest speed needs gravity: weight is what tells who is pushed");
+        require(geometry::norm(setup.gravity) > 0,
+                "a rest speed needs gravity: net forces are compared with the weight");
         for (const Wall& wall : setup.walls)
             require(std::holds_alternative<Plane>(wall), "powder among blades has no rest speed");
     }

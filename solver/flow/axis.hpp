@@ -44,12 +44,12 @@ public:
     /// Distance of the two cell centres beside face f, f = 1 ... n+1.
     [[nodiscard]] double spacing(int f) const { return centre(f) - centre(f - 1); }
 
-    /// The reciprocals of both, kept for those who interpolate.
+    /// The reciprocals of both, kept for interpolation.
     [[nodiscard]] double per_width(int i) const { return per_width_[static_cast<std::size_t>(i)]; }
     [[nodiscard]] double per_spacing(int f) const { return per_spacing_[static_cast<std::size_t>(f)]; }
 
     /// Cell of a position; positions outside, and what is no number, go to a cell at an end. A table and no logarithm:
-    /// bins finer than the smallest cell know the first cell they may lie in.
+    /// bins finer than the smallest cell hold the first cell they may lie in.
     [[nodiscard]] int cell_at(double x) const {
         const double bin = (x - low_) * bins_per_length_;
         const auto last = static_cast<double>(first_cell_.size() - 1);

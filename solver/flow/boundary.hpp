@@ -41,7 +41,7 @@ struct Ghost {
 /// How one field continues beyond both sides of one axis.
 struct Edge {
     bool periodic = false;
-    bool on_faces = false;  ///< the field lives on the faces of this axis: its outermost values are on the sides
+    bool on_faces = false;  ///< the field is on the faces of this axis: its outermost values are on the sides
     std::array<Ghost, 2> ghost{};
 };
 using Edges = std::array<Edge, 3>;

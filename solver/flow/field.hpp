@@ -50,7 +50,7 @@ private:
     std::vector<double> values_;
 };
 
-/// A vector on the faces: component d lives on the faces of direction d.
+/// A vector on the faces: component d is on the faces of direction d.
 using FaceVectors = std::array<Field, 3>;
 
 [[nodiscard]] inline FaceVectors face_vectors(const Grid& grid) {

@@ -1,4 +1,4 @@
-// Heat in a flow, and what it does to it: equation (3) of flow.hpp and the force B theta s(t) e_g of equation (2).
+// Heat in a flow, and the force it exerts: equation (3) of flow.hpp and the force B theta s(t) e_g of equation (2).
 // Adams-Bashforth convection, Crank-Nicolson diffusion factored by direction.
 #pragma once
 

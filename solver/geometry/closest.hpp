@@ -1,4 +1,4 @@
-// The closest point of a boundary, as a sphere sees it: how far, and in which direction it pushes.
+// The closest point of a boundary to the centre of a sphere: its distance, and the direction of its normal force.
 #pragma once
 
 #include "solver/geometry/vector.hpp"

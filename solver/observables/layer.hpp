@@ -1,4 +1,4 @@
-// What is seen of a powder under and behind a blade: pure functions of a state.
+// What is measured of a powder under and behind a blade: pure functions of a state.
 //
 // x is the blade's direction, y across, z up; lengths in m. A particle is where its centre is, unless its surface is
 // meant. Counting, not averaging over volumes cut by planes: what LIGGGHTS post-processing and Wu (2020) do.

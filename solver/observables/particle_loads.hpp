@@ -1,4 +1,4 @@
-// What contacts do to each particle: for pictures, and for asking where the chains of force run.
+// Contact loads of each particle: for pictures, and for following chains of force.
 #pragma once
 
 #include "solver/dem/engine.hpp"

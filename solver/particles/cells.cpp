@@ -39,7 +39,7 @@ void Cells::lay_grids(std::span<const Vec3> position, std::span<const std::uint3
             smallest = std::min(smallest, radii.each[i]);
         }
     }
-    for (std::size_t k = 0; k < 3; ++k) {  // open directions: no cells where nobody is
+    for (std::size_t k = 0; k < 3; ++k) {  // open directions: no cells where there are no particles
         if (domain.periodic[k]) continue;
         double least = domain.high[k];
         double most = domain.low[k];

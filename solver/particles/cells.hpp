@@ -3,7 +3,7 @@
 // Particles fall into levels by size, the radii of one level within a factor of two; each level has its own
 // grid whose cells are at least as wide as the reach of a pair whose larger partner belongs to the level:
 //     edge >= 2 R_max(level) + skin.
-// Whoever seeks partners of that level therefore looks at 27 cells, however small he is himself. The sorted
+// The partners of that level are therefore within 27 cells of a particle, whatever its own size. The sorted
 // order is (level from small to large, cell, previous order); equal spheres make one level.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What touching pairs remember, stored in the order of the neighbour list.
+// Contact histories of touching pairs, stored in the order of the neighbour list.
 //
 // When the list is rebuilt and the particles are sorted anew, a memory follows its pair; antisymmetric
 // quantities (measured from j to i) change sign when i and j swap.

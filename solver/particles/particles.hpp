@@ -16,7 +16,7 @@ namespace grainsweep::particles {
 
 using geometry::Vec3;
 
-/// A column nobody needs.
+/// Type of a column that is not needed.
 struct Absent {};
 
 template <bool needed, class T>

@@ -14,7 +14,7 @@ using Vec3 = std::array<double, 3>;
 
 constexpr int most_tries = 100'000;
 
-/// Boxes that remember which spheres reach into them, so that a try looks only at what it could touch.
+/// Boxes with the spheres that reach into them, so that a try is compared only with what it could touch.
 class Boxes {
 public:
     Boxes(const Tray& tray, double edge) : tray_(tray) {
@@ -93,8 +93,7 @@ std::vector<Vec3> random_addition(const Tray& tray, std::span<const double> radi
             }
             placed = free(centres[i]);
         }
-        if (!placed)
-            throw std::invalid_argument("the layer has no room for all its particles: make layer_area smaller");
+        if (!placed) throw std::invalid_argument("the layer cannot hold all its particles: make layer_area smaller");
         boxes.every(centres[i], r, [i](std::vector<std::size_t>& present) {
             present.push_back(i);
             return true;

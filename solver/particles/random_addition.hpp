@@ -18,7 +18,7 @@ struct Tray {
 };
 
 /// Centres, in the order of `radii`. A sphere's tries are drawn from (seed, its index): pure and the same everywhere.
-/// Throws std::invalid_argument where a sphere finds no room in a hundred thousand tries or is wider than half the
+/// Throws std::invalid_argument where a sphere fits nowhere in a hundred thousand tries or is wider than half the
 /// period.
 [[nodiscard]] std::vector<std::array<double, 3>> random_addition(const Tray& tray, std::span<const double> radii,
                                                                  std::uint64_t seed);

@@ -62,8 +62,8 @@ std::vector<ParameterSpec> parameters() {
          "which settled bed; 0: another one for each case and replicate; n: the n-th one, settled once for all cases "
          "of the same powder and time step, whatever gap, speed and blade, and kept beside the database. Cases then "
          "differ by where the blade starts, up to one diameter before the layer, and share what is particular to the "
-         "bed, 8 to 31 % of the variance of mfr between seeds and a third of packing_fraction's: replicates tell the "
-         "error too small by so much, comparisons over one bed are the sharper for it",
+         "bed, 8 to 31 % of the variance of mfr between seeds and a third of packing_fraction's: replicates "
+         "underestimate the error by so much, and comparisons over one bed are more precise by as much",
          std::int64_t{0},
          Interval{0, 9.0e15},
          {{"settle_time", Condition::nonzero, {}}}},

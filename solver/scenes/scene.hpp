@@ -19,7 +19,7 @@ namespace grainsweep {
 
 using Bytes = std::vector<std::byte>;
 
-/// Why a state can no longer be trusted: what, where, when. Empty reason: healthy.
+/// Why a state is no longer sound: what, where, when. Empty reason: sound.
 struct Health {
     std::string reason;
     [[nodiscard]] bool stable() const { return reason.empty(); }

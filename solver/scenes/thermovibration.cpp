@@ -67,8 +67,7 @@ std::vector<ParameterSpec> parameters() {
         real("stokes", "1", "Stokes number (2/9)(R/L)^2", 3.1e-6, between(1e-12, 2.2e-3), {with_particles}),
         whole("particles", "number of particles; 0: the flow alone", 3150, between(0, 1e6)),
         word("coupling",
-             "how much particles and fluid know of each other: the fluid's force; also the particles' on the fluid; "
-             "also "
+             "forces between fluid and particles: the fluid's on the particles; also the particles' on the fluid; also "
              "their volume, with solids pressure from an algebraic (ddpm) or transported (ddpm_ktgf) granular "
              "temperature; or with resolved contacts (cfd_dem)",
              {"one_way", "two_way", "ddpm", "ddpm_ktgf", "cfd_dem"}, {with_particles}),

@@ -4,8 +4,9 @@
 // A random close packing fills the cube [0, L]^3; spheres with |f| <= C are frozen as the cell's wall, those of
 // the kept side start at rest, the rest is deleted (geometry/tpms.hpp). At t = 0 gravity acts. All six faces are
 // open; a sphere whose centre is more than two diameters outside the cell is gone. The answer is the retention:
-// mobile centres in the cell over those at the start. Time is told in t* = sqrt(2 L/g), speed in sqrt(2 g L).
-// A vibrating cell is seen from inside: places and speeds are those in the cell, in which the powder starts at rest.
+// mobile centres in the cell over those at the start. Times are in t* = sqrt(2 L/g), speeds in sqrt(2 g L).
+// The frame is that of the cell, also of a vibrating one: places and speeds are those in the cell, in which the powder
+// starts at rest.
 //
 // Work that cannot matter is not done: frozen spheres that no mobile one can touch while overlaps stay below
 // a tenth of a diameter are dropped (particles/reach.hpp), a larger one at any step is reported unstable; a case ends
@@ -258,7 +259,7 @@ void TpmsDischarge::restore(std::span<const std::byte> from) {
     engine_->state(state_);
 }
 
-/// As the cell sees it; wall spheres that nothing can touch are not there.
+/// In the frame of the cell; wall spheres that nothing can touch are not there.
 Snapshot TpmsDischarge::snapshot() const {
     return picture_of(*engine_);
 }
@@ -296,7 +297,7 @@ SceneInfo tpms_discharge_scene() {
         const auto filling = particles::fill_tpms(packing, shell, 1 - most_overlap);
         if (filling.mobile.empty())
             throw std::invalid_argument(
-                "the shell leaves no room for a mobile particle: make it thinner or the edge longer");
+                "the shell leaves no space for a mobile particle: make it thinner or the edge longer");
         // A wall particle stands half a diameter out of the shell on either side.
         const double outlet = std::max(0.0, geometry::outlet_diameter(shell) - 1);
         const double fraction =

@@ -1,4 +1,4 @@
-// The window between office and workshop: plain values, std only.
+// Plain values that campaigns and scenes exchange; standard library only.
 //
 // A scene declares what it takes (ParameterSpec) and what it measures (ObservableSpec); a case is a map
 // from parameter names to values (Inputs). Everything is in SI units unless a unit is named.
@@ -65,7 +65,7 @@ struct FileWord {
 using Files = std::map<std::string, std::string, std::less<>>;
 
 /// When a parameter matters: only if `other` can be (is_zero / non-zero / one of `words`).
-/// A campaign that gives a parameter which no case of it can feel is refused.
+/// A campaign that gives a parameter without effect on any of its cases is refused.
 struct Relevance {
     enum class Condition { zero, nonzero, is_word };
     std::string other;

@@ -1,5 +1,5 @@
-// Powder at rest that is not advanced: who sleeps, who wakes, and that nothing is lost meanwhile. The plain path beside
-// it is the same engine without a rest speed.
+// Powder at rest that is not advanced: which particles rest, which are advanced again, and that nothing is lost. The
+// plain path beside it is the same engine without a rest speed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -98,8 +98,8 @@ double weight(const dem::Setup& s, double radius) {
     return dem::sphere_mass(radius, s.material.density) * norm(s.gravity);
 }
 
-/// Share of the mobile particles that sleep during the next step.
-double asleep(dem::Engine& engine) {
+/// Share of the mobile particles that rest during the next step.
+double at_rest(dem::Engine& engine) {
     const dem::Work before = engine.work();
     engine.run(1);
     const dem::Work after = engine.work();
@@ -110,7 +110,7 @@ constexpr std::int64_t settling = 60000;
 
 }  // namespace
 
-TEST(FastResting, APileFallsAsleepAndCarriesItsWeight) {
+TEST(FastResting, APileComesToRestAndCarriesItsWeight) {
     for (const auto path : paths())
         for (const bool cohesive : {false, true})
             for (const double spread : {0.0, 0.05}) {
@@ -119,7 +119,7 @@ TEST(FastResting, APileFallsAsleepAndCarriesItsWeight) {
                 const auto engine = make_mixed_engine(setup, path, 0, slow);
                 engine->run(spread == 0 ? settling : 3 * settling);  // unequal ones roll about longer
                 ASSERT_EQ(engine->fault(), "");
-                EXPECT_EQ(asleep(*engine), 1);
+                EXPECT_EQ(at_rest(*engine), 1);
                 const double overlap = engine->largest_overlap();
                 std::vector<Vec3> force(setup.spheres.size());
                 double deepest = 0;
@@ -142,21 +142,21 @@ TEST(FastResting, APileFallsAsleepAndCarriesItsWeight) {
             }
 }
 
-TEST(FastResting, MemoriesComeBackAsTheyWere) {
+TEST(FastResting, HistoriesComeBackAsTheyWere) {
     for (const auto path : paths()) {
         const dem::Setup setup = pile(true);
         const auto engine = make_mixed_engine(setup, path, 0, slow);
         engine->run(settling);
-        ASSERT_EQ(asleep(*engine), 1);
+        ASSERT_EQ(at_rest(*engine), 1);
         const auto before = contacts_of(*engine);
-        engine->set_walls(setup.walls);  // wakes everybody, moves nobody
+        engine->set_walls(setup.walls);  // all are advanced again, none is moved
         const auto after = contacts_of(*engine);
         ASSERT_EQ(before.size(), after.size());
         double friction = 0;
         for (std::size_t k = 0; k < before.size(); ++k) {
-            if (before[k].second < 0) continue;  // new walls remember nothing
-            // Memories are single precision numbers, 6e-8 apart. Velocities pass through a full step and back: of zero
-            // 1e-14 m/s may remain, which dashpots feel.
+            if (before[k].second < 0) continue;  // new walls have no histories
+            // Histories are single precision numbers, 6e-8 apart. Velocities pass through a full step and back: of zero
+            // 1e-14 m/s may remain, on which dashpots act.
             const double allowed = 1e-9 * weight(setup, 0.5 * d);
             EXPECT_NEAR(before[k].normal_force, after[k].normal_force, allowed);
             EXPECT_LE(norm(before[k].tangential_force - after[k].tangential_force), allowed);
@@ -166,30 +166,30 @@ TEST(FastResting, MemoriesComeBackAsTheyWere) {
     }
 }
 
-TEST(FastResting, AFallingSphereWakesThePileAndBouncesAsFromOneAwake) {
+TEST(FastResting, AFallingSphereBouncesAsFromAPileThatIsAdvanced) {
     for (const auto path : paths()) {
         dem::Setup setup = pile();
         setup.spheres.push_back({{2.7 * d, 2.9 * d, 9 * d}, {}, {}, 0.5 * d, true});
-        const auto waking = make_mixed_engine(setup, path, 0, slow), awake = make_mixed_engine(setup, path);
+        const auto resting = make_mixed_engine(setup, path, 0, slow), advanced = make_mixed_engine(setup, path);
         const auto last = setup.spheres.size() - 1;
-        for (auto* engine : {waking.get(), awake.get()}) engine->run(17000);
-        EXPECT_GT(asleep(*waking), 0.7);  // those the sphere comes near wake already
-        awake->run(1);
-        const double impact = -state_of(*awake).velocity[last][2];
-        for (auto* engine : {waking.get(), awake.get()}) engine->run(1000);  // 0.35 ms after it bounced
-        const dem::State a = state_of(*waking), b = state_of(*awake);
+        for (auto* engine : {resting.get(), advanced.get()}) engine->run(17000);
+        EXPECT_GT(at_rest(*resting), 0.7);  // those the sphere comes near are advanced already
+        advanced->run(1);
+        const double impact = -state_of(*advanced).velocity[last][2];
+        for (auto* engine : {resting.get(), advanced.get()}) engine->run(1000);  // 0.35 ms after it bounced
+        const dem::State a = state_of(*resting), b = state_of(*advanced);
         EXPECT_GT(impact, 0.3);
         EXPECT_GT(b.velocity[last][2], 0.2 * impact);
         EXPECT_LT(norm(a.velocity[last] - b.velocity[last]), 0.01 * impact);
         EXPECT_LT(norm(a.position[last] - b.position[last]), 0.01 * d);
-        EXPECT_LT(asleep(*waking), 0.8);
-        waking->run(settling);
-        EXPECT_EQ(waking->fault(), "");
-        EXPECT_GT(asleep(*waking), 0.9);
+        EXPECT_LT(at_rest(*resting), 0.8);
+        resting->run(settling);
+        EXPECT_EQ(resting->fault(), "");
+        EXPECT_GT(at_rest(*resting), 0.9);
     }
 }
 
-TEST(FastResting, ABridgeWithoutItsSupportWakesAndFalls) {
+TEST(FastResting, ABridgeWithoutItsSupportFalls) {
     dem::Setup s;
     s.material = test::steel_like();
     s.material.friction = 0.5;
@@ -200,29 +200,29 @@ TEST(FastResting, ABridgeWithoutItsSupportWakesAndFalls) {
     for (int k = 0; k < 3; ++k) s.spheres.push_back({{0, 0, (0.54 + 1.001 * k) * d}, {}, {}, 0.5 * d, true});
     s.walls = {};
     for (const auto path : paths()) {
-        const auto waking = make_mixed_engine(s, path, 0, slow), awake = make_mixed_engine(s, path);
-        for (auto* engine : {waking.get(), awake.get()}) engine->run(20000);
-        ASSERT_EQ(asleep(*waking), 1);
-        awake->run(1);
+        const auto resting = make_mixed_engine(s, path, 0, slow), advanced = make_mixed_engine(s, path);
+        for (auto* engine : {resting.get(), advanced.get()}) engine->run(20000);
+        ASSERT_EQ(at_rest(*resting), 1);
+        advanced->run(1);
         const std::vector<std::int32_t> support{0, 1};
-        for (auto* engine : {waking.get(), awake.get()}) engine->remove(support), engine->run(5000);
-        const dem::State a = state_of(*waking), b = state_of(*awake);
+        for (auto* engine : {resting.get(), advanced.get()}) engine->remove(support), engine->run(5000);
+        const dem::State a = state_of(*resting), b = state_of(*advanced);
         for (std::size_t i = 2; i < a.id.size(); ++i) {
             EXPECT_LT(b.position[i][2], s.spheres[i + 2].position[2] - 0.1 * d);
-            // It wakes up to 128 steps late, when the other falls at g t.
+            // It is advanced up to 128 steps late, when the other falls at g t.
             const double late = 128 * s.time_step, time = 5000 * s.time_step;
             EXPECT_LT(norm(a.position[i] - b.position[i]), 2 * 9.81 * late * time);
         }
     }
 }
 
-TEST(FastResting, ACheckpointWithSleepersContinuesBitForBit) {
+TEST(FastResting, ACheckpointOfPowderAtRestContinuesBitForBit) {
     for (const auto path : paths()) {
         dem::Setup setup = pile(true);
         setup.spheres.push_back({{2.7 * d, 2.9 * d, 12 * d}, {}, {}, 0.5 * d, true});
         const auto whole = make_mixed_engine(setup, path, 0, slow), resumed = make_mixed_engine(setup, path, 0, slow);
         whole->run(17000);
-        ASSERT_GT(asleep(*whole), 0.5);
+        ASSERT_GT(at_rest(*whole), 0.5);
         std::vector<std::byte> bytes, again;
         whole->save(bytes);
         resumed->restore(bytes);
@@ -238,7 +238,7 @@ TEST(FastResting, ACheckpointWithSleepersContinuesBitForBit) {
     }
 }
 
-TEST(FastResting, WhereNobodyIsSlowTheLawsAreThePlainOnes) {
+TEST(FastResting, WhereNoneIsSlowTheLawsAreThePlainOnes) {
     for (const auto path : paths())
         for (const double spread : {0.0, 0.1}) {
             const dem::Setup setup = test::boxed_lattice(4, 3, spread, 3);

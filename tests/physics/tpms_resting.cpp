@@ -64,12 +64,12 @@ TEST(TpmsResting, SlicesAndCheckpointsDoNotChangeTheAnswer) {
     }
 }
 
-TEST(TpmsResting, ContactsOfPowderAsleepAreSeen) {
-    const auto plain = end_of(jammed_cell(0)), asleep = end_of(jammed_cell(1e-3));
+TEST(TpmsResting, ContactsOfPowderAtRestAreReported) {
+    const auto plain = end_of(jammed_cell(0)), resting = end_of(jammed_cell(1e-3));
     // Two realisations: a few of the 400 particles leave or stay by chance.
     EXPECT_GT(plain.second, 0.8);
-    EXPECT_NEAR(asleep.second, plain.second, 0.05);
-    EXPECT_NEAR(asleep.first, plain.first, 0.05 * plain.first);
+    EXPECT_NEAR(resting.second, plain.second, 0.05);
+    EXPECT_NEAR(resting.first, plain.first, 0.05 * plain.first);
 }
 
 TEST(TpmsResting, NotInACellThatVibrates) {

@@ -331,7 +331,7 @@ TEST(TpmsScene, ImpossibleQuestionsGetASentence) {
     inputs = small_cell(8);
     inputs["cell"] = std::string("diamond");
     inputs["shell"] = 3.9;
-    EXPECT_THAT(refusal(inputs), HasSubstr("leaves no room for a mobile particle"));
+    EXPECT_THAT(refusal(inputs), HasSubstr("leaves no space for a mobile particle"));
     inputs = small_cell(8);
     inputs["time_step"] = 1e-5;
     EXPECT_THAT(refusal(inputs), HasSubstr("Rayleigh time"));

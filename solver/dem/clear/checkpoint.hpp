@@ -1,4 +1,4 @@
-// State of the clear engine: seen in order of id, and written so that it continues bit for bit.
+// State of the clear engine: reported in order of id, and written so that it continues bit for bit.
 //
 // The order of particles and of the neighbour list decides the order of sums, so both are part of a checkpoint.
 #pragma once

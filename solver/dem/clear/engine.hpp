@@ -24,7 +24,7 @@ namespace grainsweep::dem::clear {
 
 using particles::Needs;
 
-/// Particles that may touch one wall before the next rebuild, ascending, and what they remember of it.
+/// Particles that may touch one wall before the next rebuild, ascending, and their contact histories.
 template <Needs needs>
 struct WallContacts {
     Wall wall;

@@ -1,4 +1,4 @@
-// Forces of the clear engine: who touches whom, and what the laws say.
+// Forces of the clear engine: touching pairs and walls, and the laws applied to them.
 //
 // Torque on both partners: -(R - d/2) n x F_t, for the contact point lies in the middle of the overlap.
 #pragma once
@@ -84,10 +84,10 @@ void ClearEngine<Laws, case_needs>::evaluate() {
         report_contacts();
 }
 
-/// List entries of some particles that touch, in list order; contacts that ended are forgotten on the way.
+/// List entries of some particles that touch, in list order; histories of contacts that ended are dropped.
 ///
-/// Whether a pair on the list touches is hard to predict for a processor, so it is not asked as a question: every
-/// entry is written, and kept by moving on.
+/// Whether a pair on the list touches is hard to predict for a processor, so there is no branch: every entry
+/// is written, and kept by advancing the end of the list.
 template <class Laws, Needs case_needs>
 std::size_t ClearEngine<Laws, case_needs>::find_touching(std::size_t first, std::size_t last) {
     touching_.resize(std::max<std::size_t>(touching_.size(), list_.end(last - 1) - list_.begin(first)));

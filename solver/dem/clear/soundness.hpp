@@ -1,4 +1,4 @@
-// Watch over the clear engine: states nobody should trust are reported with what, where and when (limits.hpp).
+// Checks of the clear engine: states beyond the limits are reported with what, where and when (limits.hpp).
 #pragma once
 
 #include "solver/dem/clear/forces.hpp"
@@ -12,10 +12,10 @@
 
 namespace grainsweep::dem::clear {
 
-/// Steps between two looks at the energy: often enough to name the time, rare enough to cost nothing.
+/// Steps between two checks of the energy: often enough to name the time, rare enough to cost nothing.
 inline constexpr std::int64_t energy_interval = 128;
 
-/// Every position a number, nobody faster than anything here could have made him. Reports and repairs otherwise.
+/// Every position is a number, every speed within what the case can produce. Reports and repairs otherwise.
 template <class Laws, Needs case_needs>
 bool ClearEngine<Laws, case_needs>::sound() {
     for (std::size_t i = 0; i < p_.size(); ++i) {
@@ -89,7 +89,7 @@ void ClearEngine<Laws, case_needs>::check_energy() {
     lowest_energy_ = std::min(lowest_energy_, balance);
 }
 
-/// The first fault stays: what follows from it explains nothing.
+/// The first fault stays: later ones follow from it.
 template <class Laws, Needs case_needs>
 void ClearEngine<Laws, case_needs>::report(const std::string& what, std::size_t i) {
     if (!fault_.empty()) return;

@@ -74,7 +74,7 @@ struct Columns {
     Column<std::int32_t> column[3];
     Column<float> column_radius, column_mobile;
     Column<std::int32_t> cell_start, cell_of, place;  ///< place: where a particle went, -1: removed
-    Column<std::int32_t> awake, awake_before;         ///< where anybody is held, see Field
+    Column<std::int32_t> awake, awake_before;         ///< where some are held, see Field
     Column<std::int32_t> owner;  ///< old contact of an outer pair, plus one; negative: first and second changed places
 
     Column<WallShape> walls;
@@ -89,7 +89,7 @@ struct Columns {
     /// Makes room for `pairs` in both lists.
     void hold_pairs(std::size_t pairs);
     void hold_wall_contacts(std::size_t contacts);
-    /// Lists who is advanced: all but those of whom is_held(index) is true.
+    /// Lists the particles that are advanced: all but those with is_held(index).
     template <class IsHeld>
     void list_awake(Field& f, IsHeld is_held) {
         const auto n = static_cast<std::size_t>(f.count);

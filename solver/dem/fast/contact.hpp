@@ -62,7 +62,7 @@ GRAINSWEEP_LANES V3 operator*(V3 a, F b) {
     return {a.x * b, a.y * b, a.z * b};
 }
 
-/// What geometry and motion say about one contact per lane.
+/// Kinematics of one contact per lane.
 struct Meeting {
     M touching;
     V3 normal;
@@ -76,7 +76,7 @@ struct Meeting {
     F turning_mass;  ///< sum of 1/(m R^2); likewise
 };
 
-/// What a contact remembers.
+/// History of a contact.
 struct Memory {
     V3 tangential, rolling;
 };

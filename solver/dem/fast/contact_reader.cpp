@@ -51,7 +51,7 @@ ContactReader::Memory ContactReader::memory(const float* const* column, std::int
     return m;
 }
 
-/// Completes a touch whose geometry is known and appends what the laws say of it.
+/// Completes a touch whose geometry is known and appends the response of the laws.
 template <Partner partner>
 void ContactReader::add(Touch<partner> t, std::int32_t i, std::int32_t second, const Vec3& velocity, const Vec3& turn,
                         const Vec3& turning, Memory memory, std::vector<ContactForce>& into) const {

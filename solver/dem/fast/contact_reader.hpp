@@ -1,7 +1,7 @@
 // Contacts of the mixed engine's present state, in SI and double precision, by the laws of the clear engine.
 //
 // Positions are the exact integers that forces are computed from, springs those the last step left. Not part of a
-// step: this is read when somebody asks.
+// step: evaluated on request only.
 #pragma once
 
 #include <span>
@@ -32,13 +32,13 @@ struct StoredEnergy {
 
 class ContactReader {
 public:
-    /// All views must outlive the reader; `motions` in the order of the records, empty where only energy is asked.
+    /// All views must outlive the reader; `motions` in the order of the records, empty where only energy is wanted.
     ContactReader(const Material& material, const Room& room, const Field& field, const std::int32_t* id,
                   std::span<const Motion> motions, std::int32_t width, std::span<const ParkedContact> parked = {});
 
     /// Gives a contact of two particles at rest its overlap, force and torques.
     void stand_still(ParkedContact& contact) const;
-    /// Appends the touching pairs, in list order, then those that wait.
+    /// Appends the touching pairs, in list order, then the parked ones.
     void pairs(std::vector<ContactForce>& into) const;
     /// Appends the particles that touch wall number w at time t since the walls were set.
     void wall(const Wall& wall, std::size_t w, double time, std::vector<ContactForce>& into) const;

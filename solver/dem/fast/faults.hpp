@@ -1,4 +1,4 @@
-// Why a state is not trusted any more, in one sentence: what, where and when. Called once, when it happened.
+// Why a state is not sound any more, in one sentence: what, where and when. Called once, when it happened.
 #pragma once
 
 #include <string>
@@ -19,7 +19,7 @@ struct SoundOverlaps {
 /// largest_sound_swing d = (swing^2 m*/(2 E* dt^2))^2/R*. Of all contacts those of the smallest sphere come first.
 [[nodiscard]] SoundOverlaps sound_overlaps(const Setup& setup);
 
-/// What a description needs to see.
+/// Input of a description.
 struct Sight {
     const Field& field;
     const std::int32_t* id;

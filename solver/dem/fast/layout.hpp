@@ -49,10 +49,10 @@ struct alignas(32) Force {
     float torque[4];
 };
 
-/// Numbers a contact remembers: tangential displacement, and with rolling resistance the rolling moment.
+/// Numbers of a contact history: tangential displacement, and with rolling resistance the rolling moment.
 constexpr std::int32_t histories_at_most = 6;
 
-/// A contact of two particles neither of which is advanced, with what it says while both stand still.
+/// A contact of two particles neither of which is advanced, with its force while both stand still.
 struct ParkedContact {
     std::int32_t first, second;  ///< indices of the records
     float history[histories_at_most];
@@ -85,7 +85,7 @@ struct Constants {
     float neck_square;       ///< ... per d^2
     float wall_linear;       ///< cohesive force on a wall per R d
     float wall_square;       ///< ... per d^2
-    float net_limit;         ///< 1: Coulomb's limit sees the cohesive force, 0: it does not
+    float net_limit;         ///< 1: Coulomb's limit has the cohesive force, 0: it does not
     float rolling;           ///< 2.25 mu_r^2 4/3 E*
     float rolling_friction;  ///< mu_r
     float rolling_damping;   ///< 2 eta_r sqrt(7/5): the dashpot over sqrt(k_r/sum of 1/(m R^2))
@@ -129,8 +129,8 @@ struct Field {
     Record* records;
     Residual* residuals;
     Force* forces;
-    /// Particles that are advanced, in order, and how many of them come before each; on the others, frozen or asleep,
-    /// what acts adds up. Null, and never read, where nobody is held.
+    /// Particles that are advanced, in order, and how many of them come before each; on the others, frozen or at
+    /// rest, forces add up. Null, and never read, where all are advanced.
     const std::int32_t* awake;
     const std::int32_t* awake_before;  ///< count+1
 
@@ -146,7 +146,7 @@ struct Field {
     std::int32_t histories;  ///< columns in use: 3, or 6 with rolling resistance
     float* history[histories_at_most];
     float* history_next[histories_at_most];
-    float history_step;  ///< 1: the step displaces the tangential springs, 0: it only looks
+    float history_step;  ///< 1: the step displaces the tangential springs, 0: forces only
 
     // Outer list, sorted by the first particle.
     Place* outer_first;
@@ -197,7 +197,7 @@ struct Needs {
     bool friction;
     enum class Cohesion : std::int32_t { none, lens, general } cohesion;  ///< lens: sjkr, friction blind to it
     bool rolling;
-    bool resting;  ///< particles at rest may fall asleep
+    bool resting;  ///< particles at rest may be left unadvanced
     /// Whether some particles are not advanced.
     [[nodiscard]] constexpr bool holds() const { return frozen || resting; }
 };

@@ -38,7 +38,7 @@ void MixedEngine::run(std::int64_t steps) {
         if (!fault_.empty()) return;
         place_walls(field_, walls_, room_, wall_time());
         make_lists();
-        const bool look = watch_.due(work_.steps);  // at a state of the full step, so nobody moves on before
+        const bool look = watch_.due(work_.steps);  // at a state of the full step, so particles are not advanced before
         advanced = s + 1 < steps && !look;
         begin_tally();
         kernels_->walls(field_, tally_);
@@ -66,7 +66,7 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
                 largest_skin_);
         const std::int32_t before = field_.count;
         rebuild(field_, columns_, *kernels_, room_, removed, needs_.resting ? &resting_ : nullptr, drift_.steps);
-        columns_.forces.clear(size());  // what waited there belonged to the old order
+        columns_.forces.clear(size());  // what was carried over belongs to the old order
         if (field_.count < before) watch_.forget_balance();
         list_awake();
         drift_.outer = 0;
@@ -85,7 +85,7 @@ void MixedEngine::list_awake() {
     if (needs_.holds()) columns_.list_awake(field_, [this](std::int32_t i) { return is_frozen(i) || is_asleep(i); });
 }
 
-/// Books the displacement of the step just made.
+/// Adds the displacement of the step just made.
 void MixedEngine::account_travel() {
     double square = 0;
     float fastest = 0;
@@ -147,7 +147,7 @@ double MixedEngine::half_spin_change(std::int32_t i, int a) const {
     return 0.5 * static_cast<double>(field_.forces[i].torque[a]) * static_cast<double>(r.inverse_mass) / inertia;
 }
 
-/// Moves the stored half-step velocities to the full step, and forgets the forces.
+/// Moves the stored half-step velocities to the full step, and clears the forces.
 void MixedEngine::full_step_velocities() {
     for (std::int32_t i = 0; i < field_.count; ++i) {
         Record& r = field_.records[i];

@@ -2,10 +2,10 @@
 //
 //   mixed_engine.cpp      the start: spheres and walls in the engine's units
 //   mixed_stepping.cpp    time steps, and when the lists are made anew
-//   mixed_reading.cpp     what is told of a state, in SI: particles, contacts, energy
+//   mixed_reading.cpp     a state in SI: particles, contacts, energy
 //   mixed_checkpoint.cpp  a state to bytes and back
 //
-// Elsewhere know it as an Engine only (mixed_engine.hpp).
+// Elsewhere it is used as an Engine only (mixed_engine.hpp).
 #pragma once
 
 #include <algorithm>
@@ -77,7 +77,7 @@ private:
     [[nodiscard]] Sight sight() const {
         return {field_, columns_.id.data(), room_.scale, smallest_diameter_, sound_, work_.steps};
     }
-    /// Of all pairs, over the smaller diameter; those that wait keep theirs.
+    /// Of all pairs, over the smaller diameter; parked contacts keep theirs.
     [[nodiscard]] float overlap() const { return std::max(tally_.overlap, resting_.overlap()); }
     [[nodiscard]] bool is_frozen(std::int32_t particle) const { return !(field_.records[particle].inverse_mass > 0); }
     [[nodiscard]] bool is_asleep(std::int32_t particle) const {

@@ -96,8 +96,8 @@ struct Faces {
     }
 };
 
-/// Says in `place` where everyone goes, for now 0 (stays) or -1 (left through a face, or listed); returns how many
-/// stay.
+/// Marks in `place` which particles stay (0) and which are removed (-1: left through a face, or listed); returns the
+/// number that stay.
 std::int32_t take_out(const Field& f, Columns& c, const Room& room, std::span<const std::int32_t> ids) {
     std::vector<std::int32_t> gone(ids.begin(), ids.end());
     std::sort(gone.begin(), gone.end());
@@ -208,7 +208,7 @@ std::int32_t find_owners(const Field& f, Columns& c, const Kernels& kernels) {
     return contacts;
 }
 
-/// Puts the contacts that wait behind the others, for some will be needed, and lets Resting choose.
+/// Appends the parked contacts to the live ones, of which they may become part, and decides anew what rests.
 void choose_sleepers(Field& f, Columns& c, const Room& room, Resting& resting, std::int32_t contacts) {
     auto at = static_cast<std::size_t>(contacts);
     for (int a = 0; a < c.histories; ++a) c.history[a].hold(at + resting.parked().size() + spare);

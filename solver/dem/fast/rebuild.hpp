@@ -12,7 +12,7 @@ namespace grainsweep::dem::fast {
 
 class Resting;
 
-/// Fixed facts a rebuild needs.
+/// Geometry and range of the lists.
 struct Room {
     Domain domain;
     Scale scale;
@@ -21,7 +21,7 @@ struct Room {
 
 /// Removes particles beyond open faces and those listed in `ids`, sorts the rest by cell, makes the outer list and
 /// the wall lists and carries all histories over. The inner list is left to refresh.
-/// `resting`: chooses anew who sleeps, after `steps` steps since the last rebuild; null where nobody may.
+/// `resting`: decides anew which particles rest, `steps` steps after the last rebuild; null where none may.
 void rebuild(Field& field, Columns& columns, const Kernels& kernels, const Room& room,
              std::span<const std::int32_t> ids, Resting* resting, std::int64_t steps);
 

@@ -11,13 +11,13 @@ namespace grainsweep::dem::fast {
 
 namespace {
 
-/// Steps of quiet before sleep: a steady net force would have been noticed if it made this much of them faster than the
-/// rest speed.
+/// Steps for which a particle must have been slow: a steady net force would have made it faster than the rest speed
+/// meanwhile.
 constexpr std::int64_t quiet_time = 256;
-/// Net force, of the weight, that wakes.
+/// Net force, of the weight, above which a particle is advanced again.
 constexpr double imbalance = 0.5;
-/// What is faster than the rest speed by this factor deals blows, felt through so many layers behind those in reach.
-constexpr double blow = 30;
+/// Impacts of what is faster than the rest speed by this factor reach so many layers behind those in reach.
+constexpr double impact_factor = 30;
 constexpr int layers = 2;
 
 double square(const float* v) {
@@ -34,7 +34,7 @@ void stop(Record& r, Residual& residual) {
     for (int a = 0; a < 3; ++a) r.velocity[a] = r.spin[a] = r.surface[a] = residual.velocity[a] = 0;
 }
 
-/// The same contact seen from its other particle.
+/// The same contact with its particles exchanged.
 void turn_round(ParkedContact& p) {
     for (float& s : p.history) s = -s;
     for (float& force : p.force) force = -force;
@@ -106,9 +106,9 @@ void Resting::follow(const Field& f, const Columns& c) {
     }
 }
 
-/// Who moves, and for how long the others have not.
+/// Which particles move, and for how long the others have not.
 void Resting::observe(const Field& f) {
-    const double slow = speed_ * speed_, fast = blow * blow * slow;
+    const double slow = speed_ * speed_, fast = impact_factor * impact_factor * slow;
     stirs_.assign(held_.size(), 0);
     for (std::size_t i = 0; i < held_.size(); ++i) {
         if (held_[i] != 0) continue;
@@ -121,7 +121,7 @@ void Resting::observe(const Field& f) {
     }
 }
 
-/// Whom that keeps awake: all in reach, and layer by layer what touches them.
+/// What that keeps advanced: all in reach, and layer by layer what touches them.
 void Resting::spread(const Field& f, const Columns& c) {
     const auto pairs = static_cast<std::size_t>(f.outer_count);
     stirred_.assign(held_.size(), 0);

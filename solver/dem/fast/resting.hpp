@@ -1,16 +1,16 @@
-// Powder at rest: who falls asleep, who wakes, and the contacts between sleepers that wait meanwhile.
+// Powder at rest: particles that are not advanced, and the contacts between them, which are parked meanwhile.
 //
-// A sleeper is not advanced, and pairs of two that are not advanced are not listed: they cost nothing but their part
-// of a rebuild. For everybody else a sleeper is the partner it was, of the same mass. Decided at every rebuild:
+// A pair of two that are not advanced is not listed: they cost nothing but their part of a rebuild. To all others a
+// particle at rest is the partner it was, of the same mass. Decided at every rebuild:
 //
-//   sleeps   who has been slower than the rest speed, v and |w| R, for 256 steps, with nobody faster in reach of the
-//            outer list: nothing that moves can touch a sleeper before the next rebuild. Around what is 30 times
-//            faster two more layers of contacts stay awake, to take up its blows
-//   wakes    when somebody faster comes into that reach, or when the net force on it, or the net torque over R,
-//            averaged since the last rebuild, exceeds half its weight
+//   rests     what has been slower than the rest speed, v and |w| R, for 256 steps, with nothing faster in reach of the
+//             outer list: nothing that moves can touch it before the next rebuild. Around what is 30 times faster two
+//             more layers of contacts stay advanced, to take up its impact
+//   advanced  again, when something faster comes into that reach, or the net force on it, or the net torque over R,
+//             averaged since the last rebuild, exceeds half its weight
 //
-// Neglected are thus a net force below half the weight, creep slower than the rest speed, and what a blow does to the
-// fourth layer: the rebound from a pile asleep differs by 1 % (with the two layers fewer: by 17 %).
+// Neglected are thus a net force below half the weight, creep slower than the rest speed, and the effect of an impact
+// on the fourth layer: the rebound from a pile at rest differs by 1 % (with the two layers fewer: by 17 %).
 #pragma once
 
 #include <cstddef>
@@ -26,31 +26,31 @@
 
 namespace grainsweep::dem::fast {
 
-/// Steps after which lists are made anew though nothing else asks for it, so that sleepers are looked at.
+/// Steps after which lists are made anew though nothing else requires it, so that particles at rest are checked.
 inline constexpr std::int64_t rest_interval = 128;
 
 class Resting {
 public:
-    /// rest_speed: m/s; 0: nobody ever sleeps.
+    /// rest_speed: m/s; 0: all particles are always advanced.
     Resting(const Setup& setup, const Scale& scale, double rest_speed);
 
     [[nodiscard]] bool wanted() const { return speed_ > 0; }
     [[nodiscard]] bool holds(std::int32_t particle) const { return held_[static_cast<std::size_t>(particle)] != 0; }
-    /// Nobody sleeps from the next rebuild on.
+    /// All are advanced from the next rebuild on.
     void wake_all(const Field& f);
-    /// The contacts that wait, by index of the records.
+    /// The parked contacts, by index of the records.
     [[nodiscard]] std::span<const ParkedContact> parked() const { return parked_; }
     [[nodiscard]] std::int64_t sleepers() const { return sleepers_; }
     /// Largest overlap among them, over the smaller diameter.
     [[nodiscard]] float overlap() const { return overlap_; }
 
     // The parts of a rebuild, in this order.
-    /// Before particles are sorted: whom the forces of the last `steps` steps have pushed.
+    /// Before particles are sorted: which of them the forces of the last `steps` steps have pushed.
     void weigh(const Field& f, std::int64_t steps);
-    /// After they are sorted: everything here follows columns.place.
+    /// After they are sorted: everything here is put in the order of columns.place.
     void follow(const Field& f, const Columns& c);
-    /// After contacts have found their pairs in the outer list (columns.owner; waiting ones number from `live` on):
-    /// who sleeps from now on. Pairs nobody of whom is advanced leave the list, their contacts wait.
+    /// After contacts have found their pairs in the outer list (columns.owner; parked ones number from `live` on):
+    /// what rests from now on. Pairs neither of which is advanced leave the list, their contacts are parked.
     void choose(Field& f, Columns& c, const Room& room, std::int32_t live);
 
     /// Everything that changes.
@@ -74,7 +74,7 @@ private:
     double speed_ = 0;    ///< engine's units
     double gravity_ = 0;  ///< change of velocity per step
 
-    std::vector<std::uint8_t> held_;    ///< 1: frozen or asleep
+    std::vector<std::uint8_t> held_;    ///< 1: frozen or at rest
     std::vector<std::uint16_t> quiet_;  ///< steps for which a particle has been slow
     std::vector<ParkedContact> parked_;
     std::int64_t sleepers_ = 0;
@@ -83,8 +83,8 @@ private:
     // Of one rebuild.
     std::int64_t steps_ = 0;
     std::vector<std::uint8_t> pushed_;
-    std::vector<std::uint8_t> stirs_;    ///< layers that a particle keeps awake: none, those in reach, more
-    std::vector<std::uint8_t> stirred_;  ///< layers left when the motion of others arrives
+    std::vector<std::uint8_t> stirs_;    ///< layers that a particle keeps advanced: none, those in reach, more
+    std::vector<std::uint8_t> stirred_;  ///< layers left where the motion of others reaches
     std::vector<ParkedContact> before_;
 };
 

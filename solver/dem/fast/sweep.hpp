@@ -250,7 +250,7 @@ GRAINSWEEP_LANES void advance_one(const Field& f, std::int32_t i, Stepper& s) {
     const F8 old = load8(r.velocity);
     const F8 now = old + change;
     const F8 lost = change - (now - old);
-    // What rounding drops of the spin waits as a torque for the next step; a rebuild forgets it.
+    // What rounding drops of the spin is kept as a torque for the next step; a rebuild drops it.
     F4 waiting = broadcast4(0.0f);
     if constexpr (Law::friction) {
         float inertia = 0.1f;  // 0.4 m R^2, diameter and mass 1

@@ -41,7 +41,7 @@ double Watch::kinetic(const Moment& now) const {
     return energy;
 }
 
-/// Books the work of gravity since the last look.
+/// Adds the work of gravity since the last check.
 void Watch::fall(const Moment& now) {
     const Scale& s = now.room.scale;
     double work = 0;

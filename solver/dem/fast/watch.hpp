@@ -1,9 +1,9 @@
-// Watch over the mixed engine's speeds and energy, as over the clear one's (dem/limits.hpp).
+// Checks of the mixed engine's speeds and energy, as of the clear one's (dem/limits.hpp).
 //
 // Energy minus the work of gravity and of moving walls must not grow: contacts store or dissipate. The sum is made in
-// double precision every energy_interval steps; looking costs about as much as seven steps. Work of gravity is that
-// over the displacements since the last look, which knows no difference between a period and the next: looks come early
-// enough that nobody covers a quarter of a period between two of them where gravity acts along one. A vessel that is
+// double precision every energy_interval steps; a check costs about as much as seven steps. Work of gravity is that
+// over the displacements since the last check, which are known up to whole periods: checks come early enough that no
+// particle covers a quarter of a period between two of them where gravity acts along one. A vessel that is
 // shaken is not balanced, for the work of shaking would take the momentum of every step.
 #pragma once
 
@@ -21,10 +21,10 @@
 
 namespace grainsweep::dem::fast {
 
-/// Steps between two looks at the energy.
+/// Steps between two checks of the energy.
 inline constexpr std::int64_t energy_interval = 1024;
 
-/// What a look sees: the state at a full step.
+/// Input of a check: the state at a full step.
 struct Moment {
     const Field& field;
     const Room& room;
@@ -37,11 +37,11 @@ class Watch {
 public:
     Watch(const Setup& setup, const Scale& scale);
 
-    /// Learns the largest speed anything here could reach, from the state of the start or with new walls.
+    /// Sets the largest speed that can occur, from the state of the start or with new walls.
     void learn(const Moment& now, std::span<const Wall> walls);
-    /// Books a step by the largest component of its velocities, engine's units.
+    /// Adds a step by the largest component of its velocities, engine's units.
     void book_travel(double fastest);
-    /// Books work of the walls on the particles, engine's units.
+    /// Adds work of the walls on the particles, engine's units.
     void book_push(double work) { work_of_walls_ += work * energy_unit_; }
     /// Particles left: their energy is gone.
     void forget_balance() { lowest_energy_ = std::numeric_limits<double>::infinity(); }
@@ -81,8 +81,8 @@ private:
     double lowest_energy_ = std::numeric_limits<double>::infinity();  ///< J
     double work_of_walls_ = 0, work_of_gravity_ = 0;                  ///< J
     double speed_limit_ = std::numeric_limits<double>::infinity();
-    double covered_ = 0;        ///< at most, since the last look, in lengths
-    std::vector<Place3> seen_;  ///< positions of the last look, by id
+    double covered_ = 0;        ///< at most, since the last check, in lengths
+    std::vector<Place3> seen_;  ///< positions of the last check, by id
 };
 
 }  // namespace grainsweep::dem::fast

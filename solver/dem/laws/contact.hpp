@@ -1,4 +1,4 @@
-// A contact: laws that speak one after the other. What one of them needs, the contact needs.
+// A contact: laws applied one after the other. It needs what any of them needs.
 #pragma once
 
 #include "solver/dem/laws/touch.hpp"
@@ -10,12 +10,12 @@
 
 namespace grainsweep::dem {
 
-/// What a pair must remember for these needs.
+/// The history a pair has under these needs.
 template <particles::Needs needs>
 using MemoryFor = std::conditional_t<needs.rolling_history, particles::TangentialAndRolling,
                                      std::conditional_t<needs.tangential_history, Vec3, NoMemory>>;
 
-/// A law's own part of it.
+/// The part of it that belongs to a law.
 template <class Law, class Memory>
 [[nodiscard]] auto& part_of(Memory& memory) {
     if constexpr (!std::is_same_v<std::remove_const_t<Memory>, particles::TangentialAndRolling>)
@@ -26,8 +26,8 @@ template <class Law, class Memory>
         return memory.tangential;
 }
 
-/// A law may say that the memory of a pair outlives a separation: until the neighbour list is rebuilt, and beyond if
-/// the pair touches again at that moment. Ours do not.
+/// A law may declare that the history of a pair outlives a separation: until the neighbour list is rebuilt, and beyond
+/// if the pair touches again at that moment. None here does.
 template <class Law>
 inline constexpr bool remembers_separation = requires {
     requires Law::remembers_separation;

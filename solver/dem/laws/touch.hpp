@@ -1,6 +1,6 @@
-// What a contact law sees of one touching pair, and what it answers.
+// Kinematics of one touching pair, the input of contact laws, and their response.
 //
-// House signs: overlap d > 0, unit normal n from j (or wall) to i, v = v_i - v_j at the contact; the computed
+// Signs: overlap d > 0, unit normal n from j (or wall) to i, v = v_i - v_j at the contact; the computed
 // force acts on i, its reaction on j.
 #pragma once
 
@@ -30,7 +30,7 @@ struct Touch {
     double rolling_inertia = 0;   ///< 1/(1/I_i + 1/I_j), I = 7/5 m R^2 about the contact, kg m2; likewise
 };
 
-/// Sum of what the laws said so far. Laws speak in their order: friction sees what stands here before it.
+/// Sum of the laws applied so far, in their order: Coulomb's limit takes the normal force of those before it.
 struct Response {
     double normal = 0;  ///< along n, N; positive repels
     Vec3 tangential{};  ///< N

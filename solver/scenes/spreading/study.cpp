@@ -18,8 +18,8 @@ namespace {
 
 constexpr double first_gate = 0.015;     // m
 constexpr double beyond_travel = 0.020;  // m, from the end of the travel to the second gate
-constexpr double room_behind = 0.075;    // m, from the first gate to the open face
-constexpr double room_ahead = 0.195;     // m, from the second gate to the open face
+constexpr double space_behind = 0.075;   // m, from the first gate to the open face
+constexpr double space_ahead = 0.195;    // m, from the second gate to the open face
 constexpr double blade_top = 0.150;      // m: nothing jumps over it
 constexpr double domain_top = 0.160;     // m
 constexpr double spacing = 1.1;          // of the lattice, in diameters
@@ -80,7 +80,7 @@ double start_height(const Study& s) {
     return (2 * jitter + spacing * layers) * s.diameter;
 }
 
-/// What may hit what, at most: particles thrown ahead by the blade fall back on it; everybody falls once.
+/// Largest expected impact speed: particles thrown ahead by the blade fall back on it; all fall once at the start.
 double fastest_impact(const Study& s) {
     const double shaking = 2 * std::numbers::pi * s.vibration_frequency * s.vibration_amplitude;
     return std::max(2 * std::hypot(s.speed, shaking), start_velocity + std::sqrt(2 * s.gravity * start_height(s)));
@@ -98,7 +98,7 @@ void lay_out(Study& s) {
     s.lattice_x = static_cast<std::int64_t>((layer_length(s) - 2 * jitter * s.diameter) / (spacing * s.diameter));
     s.lattice_y = static_cast<std::int64_t>(s.width / (spacing * s.diameter));
     require(s.lattice_x >= 1 && layer_length(s) >= 2 * s.sizes.largest() * s.diameter,
-            text("a layer of %.4g m has no room for particles of diameter %.4g m: make travel longer", layer_length(s),
+            text("a layer of %.4g m cannot hold particles of diameter %.4g m: make travel longer", layer_length(s),
                  s.diameter));
     require(2 * s.sizes.largest() * s.diameter <= s.width,
             text("the largest particles, %.4g diameters, are wider than half the width of %.4g diameters: make width "
@@ -110,23 +110,23 @@ void lay_out(Study& s) {
     require(s.gap < blade_top, text("a gap of %.4g m lies above the top of the blade at %.4g m", s.gap, blade_top));
 }
 
-/// Every input but those the powder cannot feel before the blade starts; the time step, which may follow from some of
+/// Every input but those without effect before the blade starts; the time step, which may follow from some of
 /// them, as it is.
 std::string key_of_bed(const Inputs& inputs, const Study& s) {
-    static const std::set<std::string, std::less<>> unfelt = {"gap",
-                                                              "speed",
-                                                              "vibration_amplitude",
-                                                              "vibration_frequency",
-                                                              "blade_thickness",
-                                                              "blade_edge_radius",
-                                                              "time_step",
-                                                              "time_step_fraction",
-                                                              "standard_error"};
+    static const std::set<std::string, std::less<>> without_effect = {"gap",
+                                                                      "speed",
+                                                                      "vibration_amplitude",
+                                                                      "vibration_frequency",
+                                                                      "blade_thickness",
+                                                                      "blade_edge_radius",
+                                                                      "time_step",
+                                                                      "time_step_fraction",
+                                                                      "standard_error"};
     std::string key = "powder_spreading: settled bed\nrevision=" + std::to_string(revision) +
                       "\npath=" + std::string(instruction_path()) +
                       text("\ntime step=%.17g\nsteps=%.17g\n", s.time_step, static_cast<double>(s.settle_steps));
     for (const auto& [name, value] : inputs) {
-        if (unfelt.contains(name)) continue;
+        if (without_effect.contains(name)) continue;
         key += name + "=";
         if (const auto* word = std::get_if<std::string>(&value)) key += *word;
         if (const auto* count = std::get_if<std::int64_t>(&value)) key += std::to_string(*count);
@@ -255,7 +255,7 @@ dem::Setup settling(const Study& s, std::uint64_t seed) {
     const double second_gate = first_gate + layer_length(s);
     dem::Setup setup;
     setup.domain = {
-        {first_gate - room_behind, 0, -0.001}, {second_gate + room_ahead, s.width, domain_top}, {false, true, false}};
+        {first_gate - space_behind, 0, -0.001}, {second_gate + space_ahead, s.width, domain_top}, {false, true, false}};
     setup.material = s.material;
     setup.gravity = {0, 0, -s.gravity};
     setup.time_step = s.time_step;

@@ -72,7 +72,7 @@ Question::Question(const Inputs& inputs)
     const double filled = static_cast<double>(particles) * sphere().volume();
     if (dense() && filled > 0.6)
         throw std::invalid_argument("particles = " + std::to_string(particles) + " fill " + shortest(filled) +
-                                    " of the cube; there is room for 0.6 (fewer, or a smaller stokes)");
+                                    " of the cube; at most 0.6 can be filled (fewer, or a smaller stokes)");
     if (coupling == "cfd_dem" && contact == "spring") {
         const coupling::SpringContacts contacts(sphere(), walls(), spring(), 0);
         if (contacts.substeps(step()) > most_substeps)

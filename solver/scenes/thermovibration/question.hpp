@@ -48,7 +48,7 @@ struct Question {
     /// Standard deviation of the kernel over which particles are spread (coupling/spreading.hpp).
     [[nodiscard]] double kernel() const { return kernel_width * 2 * sphere().radius(); }
     [[nodiscard]] coupling::Walls walls() const;
-    /// Random; without overlaps where contacts are resolved. Throws std::invalid_argument where there is no room.
+    /// Random; without overlaps where contacts are resolved. Throws std::invalid_argument where they do not fit.
     [[nodiscard]] coupling::Cloud cloud(std::uint64_t seed) const;
     /// Particles take space from the fluid: every level above two_way.
     [[nodiscard]] bool dense() const { return coupling != "one_way" && coupling != "two_way"; }

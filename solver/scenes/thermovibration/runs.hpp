@@ -20,7 +20,7 @@ namespace grainsweep::thermovibration {
 
 using Drag = coupling::SchillerNaumann;
 
-/// Reasons not to trust the state after a step: Courant numbers above 1, values that are no numbers, particles that
+/// Why the state is not sound after a step: Courant numbers above 1, values that are no numbers, particles that
 /// cross more than a cell in a step, cells fuller of particles than spheres can fill them. Empty: none.
 [[nodiscard]] std::string fault(const flow::Flow<flow::Boussinesq>& fluid, double time);
 [[nodiscard]] std::string fault(const coupling::Cloud& cloud, double time_step, double cell, double time);
