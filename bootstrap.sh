@@ -24,7 +24,7 @@ program_packages=(
 )
 test_packages=(
     libgtest-dev=/usr/include/gtest/gtest.h libgmock-dev=/usr/include/gmock/gmock.h
-    sqlite3=/usr/bin/sqlite3
+    sqlite3=/usr/bin/sqlite3 chromium=/usr/bin/chromium
 )
 
 present() {  # PACKAGE=FILE[:LIBRARY]

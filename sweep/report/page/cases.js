@@ -31,7 +31,7 @@ function filterOf(expression, column) {
 function caseColumns(model) {
   const ofVariable = (variable) => (variable.levels.length > 0
     ? { title: variable.name, unit: "", meaning: variable.meaning, text: (row) => textOf(variable, row), missing: () => false, sort: (row) => variable.values[row] }
-    : { title: variable.name, unit: variable.unit === "1" ? "" : variable.unit, meaning: variable.meaning, number: (row) => variable.values[row], text: (row) => show(variable.values[row], 6),
+    : { title: variable.name, unit: variable.unit === "1" ? "" : unitText(variable.unit), meaning: variable.meaning, number: (row) => variable.values[row], text: (row) => show(variable.values[row], 5),
       missing: (row) => !Number.isFinite(variable.values[row]), sort: (row) => variable.values[row] });
   const word = (title, meaning, text) => ({ title, unit: "", meaning, text, missing: () => false, sort: text });
   return [...model.places.map(ofVariable), word("outcome", "how the case ended", model.outcome), ...model.factors.map(ofVariable), ...model.responses.map(ofVariable),
@@ -44,7 +44,7 @@ function caseTable(model, filtered) {
   const widths = columns.map((column) => {
     let longest = Math.max(column.title.length + 2, column.unit.length + 1, 6);
     for (let k = 0; k < Math.min(60, model.rows); ++k) longest = Math.max(longest, column.text(Math.floor((k * model.rows) / Math.min(60, model.rows))).length);
-    return Math.min(22, longest) * 7.6 + 18;
+    return Math.min(24, longest) * 8 + 26;
   });
   const count = el("span", { class: "quiet" }), body = el("tbody"), above = el("td", { colspan: columns.length }), under = el("td", { colspan: columns.length });
   const arrows = columns.map(() => el("span", { class: "arrow" }));

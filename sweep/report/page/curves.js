@@ -41,6 +41,7 @@ function curveFigure(model, family) {
       self.chart.data.datasets.forEach((set, k) => Object.assign(set, look(k, tones)));
       self.chart.update("none");
     }
+    all.hidden = alone.size === 0;
     names.forEach((name, k) => {
       const tone = tones.of(factor().values[family.curves[k].row]);
       name.firstChild.style.background = tone;
@@ -51,15 +52,24 @@ function curveFigure(model, family) {
   const point = (k) => { if (k !== pointed) { pointed = k; dress(); } };
   const keep = (k) => { if (alone.has(k)) alone.delete(k); else alone.add(k); pointed = -1; dress(); };
   const order = family.curves.map((_, k) => k).sort((a, b) => factor().values[family.curves[a].row] - factor().values[family.curves[b].row]);
-  const names = family.curves.map((curve, k) => el("button", { type: "button", class: "name", title: "click to keep this curve alone", mouseenter: () => point(k), mouseleave: () => point(-1), click: () => keep(k) }, el("i"), el("span", {}, curve.label)));
+  const names = family.curves.map((curve, k) => el("button", { type: "button", class: "name", title: "click to keep this curve alone", mouseenter: () => point(k), mouseleave: () => point(-1), click: () => keep(k) }, el("i"), el("span")));
   const list = el("div", { class: "names" });
   const sortNames = () => {
     order.sort((a, b) => factor().values[family.curves[a].row] - factor().values[family.curves[b].row]);
     list.replaceChildren(...order.map((k) => names[k]));
+    // The factor that colours comes first, the others small behind it.
+    const first = factor(), shown = quantity(first), others = model.factors.filter((f) => f !== first);
+    const words = (f, row) => (f.levels.length > 0 ? f.levels[f.values[row]] : quantity(f).says(f.values[row]));
+    names.forEach((name, k) => {
+      const { row } = family.curves[k], rest = others.map((f) => `${f.name} ${words(f, row)}`);
+      name.lastChild.replaceChildren(el("b", {}, first.levels.length > 0 ? words(first, row) : shown.says(first.values[row])), " ", el("small", {}, rest.join(", ")));
+      name.title = [`${first.name} ${words(first, row)}`, ...rest].join("\n");
+    });
   };
   const recolour = (value) => { settings.by = chosen.curvesBy = value; sortNames(); self.redraw(); dress(); };
+  const all = el("button", { type: "button", class: "plain", hidden: true, click: () => { alone.clear(); dress(); } }, "Show all");
   const controls = el("div", { class: "controls" }, choice("colour", model.factors.map((f) => [f.name, titled(f)]), settings.by, recolour),
-    el("span", { class: "quiet" }, model.factors.map((f) => f.name).join(", ")));
+    all);
   const self = figure(titled(family), family.meaning + (family.at === null ? "" : `; at time ${show(family.at)}`), build, { tall: true, controls, below: list });
   self.canvas.addEventListener("mouseleave", () => point(-1));
   sortNames();

@@ -59,7 +59,9 @@ function show(x, digits) {
 }
 
 function plural(n, word) { return `${n} ${word}${n === 1 ? "" : "s"}`; }
-function unitOf(thing) { return thing.unit && thing.unit !== "1" ? ` (${thing.unit})` : ""; }
+// J/m3 as J/m³, sqrt(2 L/g) as it is.
+function unitText(unit) { return unit.replace(/([A-Za-z])(-?[2-6])(?![\d.])/g, (_, letter, digits) => letter + digits.replace(/\d/g, (d) => superscript[d]).replace("-", "⁻")); }
+function unitOf(thing) { return thing.unit && thing.unit !== "1" ? ` (${unitText(thing.unit)})` : ""; }
 function titled(thing) { return thing.name + unitOf(thing); }
 function textOf(variable, row) {
   const x = variable.values[row];
@@ -74,10 +76,10 @@ const prefixed = /^(m|s|N|Pa|J|W|Hz)(\/[A-Za-z0-9^]+)?$/;
 function scaleFor(unit, numbers) {
   let largest = 0;
   for (const x of numbers) if (Number.isFinite(x) && Math.abs(x) > largest) largest = Math.abs(x);
-  const plain = { factor: 1, unit: unit === "1" ? "" : unit };
+  const plain = { factor: 1, unit: unit === "1" ? "" : unitText(unit) };
   if (!prefixed.test(unit) || largest === 0 || (largest >= 0.1 && largest < 1e4)) return plain;
   const exponent = Math.max(-9, Math.min(9, 3 * Math.floor(Math.log10(largest * (1 + 1e-9)) / 3)));
-  return { factor: 10 ** -exponent, unit: prefixes[exponent] + unit };
+  return { factor: 10 ** -exponent, unit: prefixes[exponent] + unitText(unit) };
 }
 
 // A variable as an axis shows it: numbers times `factor`, and its title.

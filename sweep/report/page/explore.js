@@ -111,6 +111,12 @@ function scatter(model, factor, bins, response) {
 
 // ---- maps over two factors
 
+// Black or white, which is the more readable on a colour (relative luminance of WCAG 2).
+function inkOn(hex) {
+  const [r, g, b] = [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16) / 255).map((c) => (c <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
+  return 0.2126 * r + 0.7152 * g + 0.0722 * b > 0.2 ? "#10161b" : "#ffffff";
+}
+
 function cellsOf(factor, rows) {
   if (factor.levels.length > 0) return { edges: factor.levels.map((_, i) => i - 0.5).concat(factor.levels.length - 0.5), of: (x) => x };
   const distinct = [...new Set(rows.map((row) => factor.values[row]))].sort((a, b) => a - b);
@@ -128,7 +134,7 @@ function cellsOf(factor, rows) {
 
 // Mean, its standard error and the number of cases, cell by cell.
 function cellMeans(model, a, b, response) {
-  const rows = keptRows(model).filter((row) => row < model.campaign.settled && [a, b, response].every((one) => Number.isFinite(one.values[row])));
+  const rows = keptRows(model).filter((row) => [a, b, response].every((one) => Number.isFinite(one.values[row])));
   const across = cellsOf(a, rows), up = cellsOf(b, rows), cells = new Map();
   for (const row of rows) {
     const i = across.of(a.values[row]), j = up.of(b.values[row]), key = `${i} ${j}`, y = response.values[row];
@@ -168,6 +174,14 @@ function factorMap(model, observable) {
           const y0 = scales.y.getPixelForValue(up.of(map.up[cell.j])), y1 = scales.y.getPixelForValue(up.of(map.up[cell.j + 1]));
           ctx.fillStyle = tones.of(of(cell));
           ctx.fillRect(x0 + 0.5, y1 + 0.5, x1 - x0 - 1, y0 - y1 - 1);
+          if (x1 - x0 < 78 || y0 - y1 < 34) continue;
+          ctx.fillStyle = inkOn(ctx.fillStyle);
+          ctx.textAlign = "center";
+          ctx.font = "12px system-ui, sans-serif";
+          const error = cell.pure === null ? cell.error : cell.pure;
+          ctx.fillText(`${show(value.of(cell.mean), 3)}${error === null ? "" : " ± " + show(value.of(error), 2)}`, (x0 + x1) / 2, (y0 + y1) / 2 - 1);
+          ctx.font = "10.5px system-ui, sans-serif";
+          ctx.fillText(plural(cell.count, "case"), (x0 + x1) / 2, (y0 + y1) / 2 + 13);
         }
         ctx.restore();
       },
@@ -192,6 +206,7 @@ function factorMap(model, observable) {
   const change = (key) => (value) => { view[key] = value; self.redraw(); };
   const factors = model.factors.map((factor) => [factor.name, titled(factor)]);
   const controls = el("div", { class: "controls" }, choice("across", factors, view.a, change("a")), choice("up", factors, view.b, change("b")), choice("shown", offered, view.shows, change("shows")));
-  const self = figure(`Map of ${response.name}`, "", build, { height: 400, controls });
+  const says = `In the cells: mean ± standard error (${observable.pure_error === null ? "of the values in the cell" : "by the scatter of single runs, pure error"}), number of cases.`;
+  const self = figure(`Map of ${response.name}`, says, build, { height: 420, controls });
   return self;
 }

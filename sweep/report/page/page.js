@@ -12,7 +12,7 @@ function heading(campaign) {
     plural(campaign.factors.length, "factor"),
     campaign.replicates > 1 ? plural(campaign.replicates, "repeat") + " of each point" : null,
     campaign.where ? `where ${campaign.where}` : null].filter(Boolean);
-  const ranges = campaign.factors.map((f) => [f.name, f.unit,
+  const ranges = campaign.factors.map((f) => [f.name, f.unit === "1" ? "" : unitText(f.unit),
     f.levels.length > 0 ? f.levels.join(", ") : `${show(f.low)} to ${show(f.high)}${f.log ? ", logarithmic" : ""}`, f.meaning]);
   return [el("h1", {}, campaign.name), el("p", { class: "says" }, parts.join(" · ")),
     campaign.summary ? el("p", {}, campaign.summary) : null,
@@ -25,10 +25,12 @@ function heading(campaign) {
         el("p", { class: "says" }, "Design: ", el("code", {}, campaign.design_text))))];
 }
 
+// Figures over every finished case of a campaign that is not at its end: shown, and marked.
 function provisionalMark(history) {
   if (!history.provisional) return null;
-  const says = typeof history.provisional === "string" ? history.provisional : "over all finished cases of a campaign that goes on: they still move with which cases happen to be finished";
-  return el("div", { class: "verdict provisional" }, el("b", {}, "Provisional figures: "), says);
+  const { points, count } = history.provisional;
+  return el("div", { class: "verdict provisional" }, el("b", {}, "Provisional: "),
+    `figures over all finished cases (${plural(count, "value")} of ${plural(points, "point")}) still move with which cases happen to be finished; they are not judged and not to be quoted.`);
 }
 
 function verdict(history) {
@@ -37,10 +39,11 @@ function verdict(history) {
 }
 
 function distributionSection(response, sample, other) {
-  const columns = [["statistic"], [response.history.provisional ? "value (provisional)" : "value", "number"]].concat(other ? [[campaignTitle(other.model.campaign), "number"]] : []);
-  const rows = statistics.map(([name, title]) => [title, response.history.statistics[name].text].concat(other ? [other.response.history.statistics[name].text] : []));
+  const { provisional } = response.history;
+  const columns = [["statistic"], ["value", "number"]].concat(provisional ? [["provisional", "number provisional"]] : [], other ? [[campaignTitle(other.model.campaign), "number"]] : []);
+  const rows = statistics.map(([name, title]) => [title, response.history.statistics[name].text].concat(provisional ? [provisional.statistics[name]] : [], other ? [other.response.history.statistics[name].text] : []));
   const says = response.meaning ? `${titled(response)}: ${response.meaning}` : titled(response);
-  return section("response", "Response", says, verdict(response.history), provisionalMark(response.history), el("div", { class: "grid wide" }, histogram(response, other && other.response),
+  return section("response", "Response", says, verdict(response.history), provisionalMark(response.history), el("div", { class: "grid wide" }, response.histogram.counts.length > 0 ? histogram(response, other && other.response) : null,
     el("div", { class: "card" }, el("h3", {}, "Moments"),
       el("p", { class: "says" }, `over ${plural(response.history.count, "value")}` + (sample ? ", with 95 % errors" : "") +
         (response.history.excluded > 0 ? `; ${plural(response.history.excluded, "case")} without a value left out` : "")),
@@ -68,7 +71,7 @@ function influenceSection(response) {
   const { influence } = response, n = "number";
   const figuresOf = { morris: (f) => [f.mu_star_text, f.sigma], saltelli: (f) => [f.first_text, f.total_text], given_data: (f) => [f.first_text] }[influence.method];
   const titles = { morris: [["mu*", n], ["sigma", n]], saltelli: [["first order", n], ["total", n]], given_data: [["first order", n]] }[influence.method];
-  const columns = [["factor"], ...titles, ["trend"], ["rank correlation", n]];
+  const columns = [["factor"], ...titles, ["trend", "sign"], ["rank correlation", n]];
   const rows = influence.factors.map((f) => [f.name, ...figuresOf(f), trendSigns[f.trend] || "", f.rank_text]);
   const says = influence.method === "morris" ? "Change of the response when a factor moves over its range."
     : "Share of the variance of the response that a factor explains alone" + (influence.method === "saltelli" ? ", and with all its interactions." : ".");
@@ -160,14 +163,18 @@ function render() {
     page.append(el("p", { class: "overlaid" }, other ? ["Blue: ", el("b", {}, campaignTitle(campaign)), "; orange: ", el("b", { class: "second" }, name)] : `${name} has no values of ${response ? response.name : "this response"}.`));
   }
   let parts = null;
+  const values = response ? model.responses[chosen.observable].values : [];
   if (response && response.history.count > 0) {
     if (!chosen.view.x) firstView(model, response);
     parts = explorerSections(model, response, other);
     page.append(...[distributionSection(response, campaign.sample, other), momentsSection(campaign, response, other), effectsSection(model, response, other),
       influenceSection(response), parts.explore, parts.maps, parts.listed, parts.small, curvesSection(model), extremesSection(campaign, response)].filter(Boolean));
+  } else if (values.some(Number.isFinite)) {  // answers, but none of the gapless beginning
+    if (!chosen.view.x) firstView(model, response);
+    parts = explorerSections(model, response, other);
+    page.append(...[distributionSection(response, campaign.sample, other), parts.explore, parts.maps, parts.listed, curvesSection(model)].filter(Boolean));
   } else {
-    page.append(el("p", {}, campaign.curves.completed === 0 ? "No case has an answer yet."
-      : `${plural(campaign.curves.completed, "case")} of ${campaign.rows} have an answer, but not all repeats of the first point: statistics are over the gapless beginning of the design.`));
+    page.append(el("p", {}, "No case has an answer yet."));
     const cases = caseTable(model, () => {});
     parts = { paint: cases.paint };
     page.append(...[section("cases", "Cases", "Every case.", cases.node), curvesSection(model)].filter(Boolean));

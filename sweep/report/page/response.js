@@ -82,7 +82,7 @@ function effect(factor, bins, response, range, others) {
     return {
       type: "line",
       data: { datasets: [line(bins, "one")].concat(others ? [line(others, "two")] : []) },
-      options: { scales: { x: variableAxis(factor), y: axis(up.title, { suggestedMin: up.of(range.low), suggestedMax: up.of(range.high) }) },
+      options: { scales: { x: variableAxis(factor), y: axis(up.title, { min: up.of(range.low), max: up.of(range.high) }) },
         plugins: { tooltip: { callbacks: {
           title: (items) => { const x = items[0].dataset.bins[items[0].dataIndex][0]; return factor.levels.length > 0 ? factor.levels[x] : `${factor.name} ${across.says(x)}`; },
           label: (item) => {
