@@ -2,7 +2,7 @@
 # Makes the pictures of README and docs anew: runs the program and opens its pages in headless Chromium.
 #   tests/pictures/make.sh [NAME]...       all, or some of: spreading cell bands report
 # PROGRAM (build/grainsweep) and CHROMIUM (chromium) may be given in the environment. The pictures go to docs/pictures,
-# less than 150 kB each. A minute of computing on two cores.
+# less than 150 kB each. Two minutes of computing.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 program=${PROGRAM:-$here/build/grainsweep}
@@ -42,22 +42,24 @@ report() {
 
 # Powder under the blade, halfway through the sweep.
 spreading() {
-    "$program" solve "$here/configs/quickstart.json" --set diameter=0.002 --set gap=0.004 --set width=20 --watch spreading.html
-    shoot "spreading.html#t=0.75" spreading 900 420 1
+    "$program" solve "$here/configs/quickstart.json" --set diameter=0.002 --set gap=0.004 --set width=40 --watch spreading.html
+    shoot "spreading.html#t=0.93" spreading 900 640 0.85
 }
 
 # Powder leaving a Gyroid cell at a fifth of the study's size.
 cell() {
     "$program" solve "$here/configs/gupta_quick.json" --set cell=gyroid --set cohesion=25000 --set edge=30 --set gravity=32.7 \
         --set end_time=2 --watch cell.html
-    shoot "cell.html#t=0.4" cell 900 520 1
+    shoot "cell.html#t=0.4" cell 900 640 0.8
 }
 
-# Bands of particles at the side walls of the vibrated cube.
+# Particles gathered at two side walls of the vibrated cube, seen along x, without the slice of the flow.
 bands() {
-    "$program" solve "$here/configs/lappa2024_run29.json" --set coupling=one_way --set end_time=0.3 --set cells=20 \
+    "$program" solve "$here/configs/lappa2024_run29.json" --set coupling=two_way --set end_time=0.5 --set cells=20 \
         --set steps_per_period=16 --watch bands.html
-    shoot "bands.html#t=1" bands 900 520 1
+    sed -i "s#</body>#<script>{ const p = grainsweepWatch.player; p.chooseSlice(-1); p.look('side'); p.camera.turn(0.15, 0.12); \
+p.show(59); }</script></body>#" bands.html
+    shoot bands.html bands 900 640 0.85
 }
 
 if [ $# -eq 0 ]; then set -- spreading cell bands report; fi
