@@ -21,7 +21,7 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr double monotone_share = 0.9;
-constexpr std::size_t most_pieces = 15;
+constexpr std::size_t most_pieces = 15, most_coefficients = 160;
 
 /// One row per design point from 0 on: coordinates and the mean over its repeats; NaN where the point was filtered
 /// out, failed or is not there. What designs made of blocks need.
@@ -47,13 +47,13 @@ Grid grid_of(const Responses& responses, const ResponseColumn& response) {
     return grid;
 }
 
-/// A level is a bin of its own, and so is a coordinate of a lattice; else so many bins that each has 16 cases.
-std::size_t bins_for(const FactorColumn& factor, bool lattice, std::size_t settled, std::int64_t cases) {
+/// A level is a bin of its own, and so is a coordinate of a lattice; else so many bins that each has 16 points.
+std::size_t bins_for(const FactorColumn& factor, bool lattice, std::size_t settled, std::int64_t points) {
     if (lattice || !factor.continuous()) {
         const auto judged = std::span(factor.values).first(settled);
         return std::max<std::size_t>(2, std::set<double>(judged.begin(), judged.end()).size());
     }
-    return std::clamp<std::size_t>(static_cast<std::size_t>(cases) / 16, 4, 16);
+    return std::clamp<std::size_t>(static_cast<std::size_t>(points) / 16, 4, 16);
 }
 
 /// The binned index of a lattice with replicates without the part that scatter gives to the means, and the half-width
@@ -93,21 +93,50 @@ std::vector<double> numbers_of(const std::vector<std::string>& levels) {
     return numbers;
 }
 
-Trend trend_of(const FactorColumn& factor, const std::vector<double>& levels, std::span<const double> values) {
+/// Variance of a value about the mean of its bin, for want of a better one; of a lattice the scatter of single runs.
+double variance_in_bins(const Responses& responses, const stats::PureError& pure, std::span<const EffectBin> bins,
+                        std::span<const double> values) {
+    if (responses.campaign.design == "lattice") return pure.freedom > 0 ? pure.variance : 0;
+    double squares = 0, n = 0;
+    for (const double value : values) {
+        if (!std::isfinite(value)) continue;
+        squares += value * value;
+        n += 1;
+    }
+    for (const auto& bin : bins) squares -= static_cast<double>(bin.count) * bin.mean * bin.mean;
+    const double freedom = n - static_cast<double>(bins.size());
+    return freedom > 0 ? std::max(0.0, squares / freedom) : none;
+}
+
+/// The response bends where its binned means leave the best rising and the best falling curve by more than scatter
+/// explains: a sum of squares beyond three standard deviations of a chi-squared variable.
+Trend trend_of(const FactorColumn& factor, const std::vector<double>& levels, const Responses& responses,
+               const stats::PureError& pure, std::span<const double> response) {
+    double centre = 0, count = 0;
+    for (const double value : response)
+        if (std::isfinite(value)) centre += (value - centre) / ++count;
+    std::vector<double> values(response.begin(), response.end());
+    for (double& value : values) value -= centre;
     auto bins = main_effect(factor, values, {});
+    if (bins.size() < 2) return Trend::unknown;
     if (!levels.empty())
         std::ranges::sort(bins, {}, [&](const auto& bin) { return levels[static_cast<std::size_t>(bin.at)]; });
     std::vector<double> means, negated, weights;
+    double between = 0;
     for (const auto& bin : bins) {
         means.push_back(bin.mean);
         negated.push_back(-bin.mean);
         weights.push_back(static_cast<double>(bin.count));
+        between += static_cast<double>(bin.count) * bin.mean * bin.mean;
     }
-    if (means.size() < 2) return Trend::unknown;
     const double rising = stats::rising_share(means, weights), falling = stats::rising_share(negated, weights);
-    if (std::isnan(rising)) return Trend::unknown;
-    if (rising >= monotone_share) return Trend::rises;
-    return falling >= monotone_share ? Trend::falls : Trend::bends;
+    const double scatter = variance_in_bins(responses, pure, bins, values);
+    if (std::isnan(rising) || std::isnan(scatter)) return Trend::unknown;
+    const double freedom = static_cast<double>(bins.size() - 1);
+    const double best = std::max(rising, falling);
+    if (best < monotone_share && between * (1 - best) > scatter * (freedom + 3 * std::sqrt(2 * freedom)))
+        return Trend::bends;
+    return rising > falling ? Trend::rises : Trend::falls;
 }
 
 /// Rank correlations, and trends where the factor has an influence that can be told from none.
@@ -135,11 +164,12 @@ void add_trends(Influence& influence, const Responses& responses, const Response
             continue;
         }
         // What the scatter of independent points gives the bins of a sample; a lattice has its errors from replicates.
-        const auto cases = static_cast<double>(std::max<std::int64_t>(1, influence.used));
-        const double in_bins = responses.campaign.design == "lattice" ? 0 : static_cast<double>(found.bins - 1) / cases;
+        const auto points = static_cast<double>(std::max<std::int64_t>(1, influence.split.points));
+        const double in_bins =
+            responses.campaign.design == "lattice" ? 0 : static_cast<double>(found.bins - 1) / points;
         const double noise = std::isfinite(found.first.half_width) ? std::max(in_bins, found.first.half_width) : 1e-9;
         const bool seen = found.first.value > noise || std::abs(rank.value) > rank.half_width;
-        if (seen) found.trend = trend_of(factor, levels, values);
+        if (seen) found.trend = trend_of(factor, levels, responses, influence.split.pure, values);
     }
 }
 
@@ -155,8 +185,9 @@ stats::VarianceSplit split_of(const Responses& responses, const ResponseColumn& 
         const auto& factor = responses.factors[j];
         for (std::size_t row = 0; row < responses.settled; ++row) coordinates[j].push_back(factor.coordinate(row));
         const bool levels = lattice || !factor.continuous();
-        factors.push_back({coordinates[j], factor.continuous() || !numbers_of(factor.levels).empty(),
-                           levels ? 0 : std::clamp<std::size_t>(count / (5 * d), 2, most_pieces)});
+        factors.push_back(
+            {coordinates[j], factor.continuous() || !numbers_of(factor.levels).empty(),
+             levels ? 0 : std::clamp<std::size_t>(count / (5 * d), 2, std::min(most_pieces, most_coefficients / d))});
     }
     return stats::split_variance(points, factors, values, sample_parts(responses).labels, lattice);
 }
@@ -164,13 +195,13 @@ stats::VarianceSplit split_of(const Responses& responses, const ResponseColumn& 
 void add_given_data(Influence& influence, const Responses& responses, const ResponseColumn& response) {
     const bool lattice = responses.campaign.design == "lattice";
     const auto values = responses.judged(response);
-    const auto cases = std::ranges::count_if(values, [](double x) { return std::isfinite(x); });
+    const std::int64_t points = influence.split.points;  // replicates add nothing to how well a sample covers the range
     const auto labels = sample_parts(responses).labels;
     std::size_t most_bins = 0;
     for (std::size_t j = 0; j < responses.factors.size(); ++j) {
         const auto& factor = responses.factors[j];
         auto& found = influence.factors[j];
-        found.bins = bins_for(factor, lattice, responses.settled, cases);
+        found.bins = bins_for(factor, lattice, responses.settled, points);
         const auto coordinates = std::span(factor.values).first(responses.settled);
         const auto indices = stats::first_order_indices(coordinates, 1, values, labels, found.bins);
         found.first = indices.first[0];
@@ -190,9 +221,9 @@ void add_given_data(Influence& influence, const Responses& responses, const Resp
         influence.notes.emplace_back(
             "a lattice of single runs gives its indices without errors: compare campaigns of growing levels");
     } else if (influence.used > 0) {
-        const double floor = static_cast<double>(most_bins - 1) / static_cast<double>(influence.used);
+        const double floor = static_cast<double>(most_bins - 1) / static_cast<double>(points);
         influence.notes.push_back(
-            fmt::format("with {} cases in {} bins an index below about {:.2g} cannot be told from zero", influence.used,
+            fmt::format("with {} points in {} bins an index below about {:.2g} cannot be told from zero", points,
                         most_bins, floor));
     }
 }
@@ -257,6 +288,15 @@ std::string_view to_string(Trend trend) {
     return "";
 }
 
+namespace {
+
+std::string share_text(const stats::SensitivityIndex& share) {
+    const bool told = !(share.value <= share.half_width) && share.value > 0;
+    return told ? index_text(share) : fmt::format("not told from zero ({})", index_text(share));
+}
+
+}  // namespace
+
 std::string unexplained_text(const Influence& influence) {
     const auto& split = influence.split;
     if (!std::isfinite(split.unexplained.value)) {
@@ -266,20 +306,22 @@ std::string unexplained_text(const Influence& influence) {
                          std::sqrt(split.pure.variance), split.pure.freedom)
                    : "";
     }
+    if (split.unexplained.value < 1e-9 && !(split.scatter.value > 0))
+        return "main effects together explain all of the variance of single runs";
     const auto text = fmt::format("main effects together explain {} of the variance of single runs; unexplained {}",
                                   index_text(split.main_effects), index_text(split.unexplained));
     if (std::isfinite(split.scatter.value)) {
         return fmt::format(
-            "{}: interactions {}, scatter of single runs {} (standard deviation {:.3g}, pure error of {} "
-            "degrees of freedom)",
-            text, index_text(split.interactions), index_text(split.scatter), std::sqrt(split.pure.variance),
+            "{}: interactions {}, scatter of single runs {} (standard deviation {:.3g}, pure error of {} degrees of "
+            "freedom)",
+            text, share_text(split.interactions), share_text(split.scatter), std::sqrt(split.pure.variance),
             split.pure.freedom);
     }
     if (std::isfinite(split.pairs.value)) {
         return fmt::format(
-            "{}: interactions of two factors {}, scatter of single runs and higher interactions {}; "
-            "replicates would tell these apart",
-            text, index_text(split.pairs), index_text(split.remainder));
+            "{}: interactions of two factors {}, scatter of single runs and higher interactions {}; replicates would "
+            "tell these apart",
+            text, share_text(split.pairs), share_text(split.remainder));
     }
     return text + ": interactions and scatter of single runs, which replicates would tell apart";
 }

@@ -1,6 +1,6 @@
 // Which factor moves a response, from the values a campaign has: what `sensitivity` and the page show.
 //
-//   any design    first-order indices by binning: 16 bins of equal count, fewer below 256 cases; a level, and a
+//   any design    first-order indices by binning: 16 bins of equal count, fewer below 256 points; a level, and a
 //                 coordinate of a lattice, is a bin of its own
 //   saltelli      the same, and total indices by Jansen 1999
 //   morris        elementary effects per unit of the range: mu*, sigma (indices would mean nothing on so few points)

@@ -512,6 +512,18 @@ TEST_F(Study, TrendsSayWhichWayTheResponseGoes) {
     EXPECT_THAT(table.columns, ElementsAre("factor", "first order", "trend", "rank correlation"));
 }
 
+// A weak straight effect under much scatter has binned means that go up and down: no bend.
+TEST_F(Study, ScatterOfBinnedMeansIsNoBend) {
+    std::uint64_t count = 0;
+    const auto straight = [&](const Inputs& inputs) { return disturbed(0.5 * input(inputs, "x1"), 0.4, 21, ++count); };
+    for (int k = 0; k < 10; ++k) {
+        const auto name = "c" + std::to_string(k);
+        answer_by(store, halton(name, 640, R"(, "seed": )" + std::to_string(k + 1)), straight);
+        const auto responses = ask(name);
+        EXPECT_EQ(influence_of(responses, responses.observable("y")).factors[0].trend, report::Trend::rises) << name;
+    }
+}
+
 TEST_F(Study, AReplicatedLatticeHasErrorsOfItsIndices) {
     std::uint64_t count = 0;
     answer_by(store, R"({"campaign": "c", "scene": "rehearsal", "replicates": 4, "factors": [
@@ -527,6 +539,8 @@ TEST_F(Study, AReplicatedLatticeHasErrorsOfItsIndices) {
     EXPECT_LT(x1.half_width, 0.1);
     EXPECT_LT(x2.half_width, 0.05);
     EXPECT_THAT(influence.notes, Contains(HasSubstr("pure error, 108 degrees of freedom")));
+    EXPECT_EQ(influence.factors[0].trend, report::Trend::rises);
+    EXPECT_THAT(unexplained_text(influence), HasSubstr("interactions not told from zero"));
 }
 
 }  // namespace

@@ -21,17 +21,25 @@ function variableChoices(model, more) {
 
 function named(model, name) { return model.variables.find((variable) => variable.name === name); }
 
+// A variable on a logarithmic axis: numbers that are not positive have no place on it.
+function onLogAxis(variable) {
+  if (variable.log || variable.levels.length > 0) return variable;
+  const values = Float64Array.from(variable.values, (x) => (x > 0 ? x : NaN));
+  return Object.assign({}, variable, { values, log: true, low: undefined, high: undefined });
+}
+
 const dotSize = (count) => (count > 4000 ? 1.5 : count > 600 ? 2 : count > 150 ? 2.6 : 3.4);
 
 function explorer(model, other) {
   const view = chosen.view;
   let drawn = 0;
   const datasets = () => {
-    const x = named(model, view.x), y = named(model, view.y), by = view.by ? named(model, view.by) : null;
+    const placed = (name, log) => (log ? onLogAxis(named(model, name)) : named(model, name));
+    const x = placed(view.x, view.logX), y = placed(view.y, view.logY), by = view.by ? named(model, view.by) : null;
     const [across, up] = [quantity(x), quantity(y)];
     const rows = keptRows(model).filter((row) => Number.isFinite(x.values[row]) && Number.isFinite(y.values[row]) && (!by || Number.isFinite(by.values[row])));
     const point = (row) => ({ x: across.of(x.values[row]) + spread(x, row), y: up.of(y.values[row]) + spread(y, row), row });
-    const radius = dotSize(rows.length), base = { borderWidth: 0, pointRadius: radius, pointHoverRadius: radius + 2, clip: 6 };
+    const radius = dotSize(rows.length), base = { parsing: false, borderWidth: 0, pointRadius: radius, pointHoverRadius: radius + 2, clip: 6 };
     drawn = rows.length;
     const tones = by ? colouring(by, by.values) : null;
     let sets;
@@ -69,7 +77,7 @@ function explorer(model, other) {
         onHover: (event, hits) => { event.native.target.style.cursor = hits.length > 0 ? "pointer" : "default"; },
         plugins: {
           colourBar: bar ? { tones } : {}, ring: { at },
-          legend: { display: sets.length > 1, position: "bottom", labels: { color: colour("ink"), usePointStyle: true, boxWidth: 8 } },
+          legend: { display: sets.length > 1, position: "bottom", labels: { color: colour("ink"), usePointStyle: true, boxWidth: 6, boxHeight: 6 } },
           tooltip: { callbacks: { label: (item) => {
             const row = item.raw.row;
             if (row === undefined) return item.dataset.label;
@@ -82,7 +90,9 @@ function explorer(model, other) {
   const note = el("p", { class: "says" });
   const tell = () => { note.textContent = `${plural(drawn, "case")}` + (model.keep ? `, those that pass the filters of the table below` : "") + ". Click a point to see its case."; };
   const change = (key) => (value) => { view[key] = value; self.redraw(); tell(); };
-  const controls = el("div", { class: "controls" }, choice("across", variableChoices(model), view.x, change("x")), choice("up", variableChoices(model), view.y, change("y")),
+  const tick = (label, key) => el("label", { class: "choice" }, el("input", { type: "checkbox", checked: view[key], change: (event) => change(key)(event.target.checked) }), label);
+  const controls = el("div", { class: "controls" }, choice("across", variableChoices(model), view.x, change("x")), tick("logarithmic", "logX"),
+    choice("up", variableChoices(model), view.y, change("y")), tick("logarithmic", "logY"),
     choice("colour", variableChoices(model, [["", "none"]]), view.by, change("by")));
   const self = figure("Cases", "", build, { height: 420, controls, below: note });
   drawn = datasets().sets.reduce((sum, set) => sum + (set.data.length > 0 && set.data[0].row !== undefined ? set.data.length : 0), 0);

@@ -155,6 +155,22 @@ function configured(build) {
 }
 
 let figures = [];
+
+// What is not in view is drawn while the browser has nothing else to do, a figure at a time.
+const whenIdle = window.requestIdleCallback || ((work) => setTimeout(work, 50));
+let idling = false;
+function drawTheRest() {
+  if (idling) return;
+  idling = true;
+  whenIdle(() => {
+    idling = false;
+    const next = figures.find((one) => !one.chart);
+    if (!next) return;
+    next.draw();
+    drawTheRest();
+  });
+}
+
 const inView = new IntersectionObserver((entries) => {
   for (const entry of entries) if (entry.isIntersecting) entry.target.figure.draw();
 }, { rootMargin: "300px" });
@@ -166,7 +182,15 @@ function figure(title, says, build, more) {
   const box = el("div", { class: tall ? "figure tall" : "figure", style: height ? `height: ${height}px` : null }, canvas);
   const self = { canvas, chart: null, title,
     draw() { if (!self.chart) self.chart = new Chart(canvas, configured(build)); return self.chart; },
-    redraw() { if (self.chart) { self.chart.destroy(); self.chart = null; self.draw(); } },
+    // Out of view it is drawn when it comes into view.
+    redraw() {
+      if (!self.chart) return;
+      self.chart.destroy();
+      self.chart = null;
+      const { top, bottom } = box.getBoundingClientRect();
+      if (bottom > -300 && top < window.innerHeight + 300) self.draw();
+      else { inView.unobserve(box); inView.observe(box); drawTheRest(); }
+    },
     drop() { inView.unobserve(box); if (self.chart) self.chart.destroy(); self.chart = null; } };
   const saver = (kind, work) => el("button", { type: "button", class: "save", title: `Save this figure as ${kind}`, click: () => work(self, build) }, kind);
   self.node = el("figure", { class: "card" },

@@ -182,6 +182,7 @@ function render() {
   page.append(...[failuresSection(campaign), provenanceSection(campaign)].filter(Boolean));
   parts.paint();
   navigation();
+  setTimeout(drawTheRest, 600);  // what the reader sees comes first
 }
 
 function fillObservables() {

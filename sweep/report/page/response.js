@@ -14,7 +14,8 @@ function histogram(response, other) {
   return figure("Distribution", says, () => {
     const height = (part, n) => (second ? n / part.total : n);
     const centres = own.counts.map((_, i) => shown.of(own.low + (i + 0.5) * own.width));
-    const steps = second ? second.counts.flatMap((n, i) => [0, 1].map((side) => ({ x: shown.of(second.low + (i + side) * second.width), y: height(second, n) * (own.width / second.width || 1) }))) : [];
+    const edge = (x) => ({ x: shown.of(x), y: 0 });
+    const steps = second ? [edge(second.low), ...second.counts.flatMap((n, i) => [0, 1].map((side) => ({ x: shown.of(second.low + (i + side) * second.width), y: height(second, n) * (own.width / second.width || 1) }))), edge(second.high)] : [];
     const low = Math.min(...parts.map((p) => p.low)), high = Math.max(...parts.map((p) => p.high));
     return {
       type: "bar",
@@ -23,7 +24,7 @@ function histogram(response, other) {
         .concat(second ? [{ type: "line", data: steps, borderColor: colour("two"), borderWidth: 2, pointRadius: 0, pointHitRadius: 0 }] : []) },
       options: {
         scales: { x: axis(shown.title, high > low ? { type: "linear", min: shown.of(low), max: shown.of(high), offset: false } : { type: "linear", offset: true }),
-          y: axis(second ? "share of the cases" : "cases", { beginAtZero: true }) },
+          y: axis(second ? "share of the cases per bar" : "cases", { beginAtZero: true }) },
         plugins: { tooltip: { filter: (item) => item.datasetIndex === 0, callbacks: {
           title: (items) => (items.length > 0 ? `${shown.says(own.low + items[0].dataIndex * own.width)} to ${shown.says(own.low + (items[0].dataIndex + 1) * own.width)}` : ""),
           label: (item) => plural(own.counts[item.dataIndex], "case") } } },
