@@ -29,7 +29,11 @@ function filterOf(expression, column) {
 }
 
 function caseColumns(model) {
-  const ofVariable = (variable) => (variable.levels.length > 0
+  const numbers = (variable) => variable.levels.map(Number);
+  const words = (variable) => variable.levels.length > 0 && numbers(variable).some(Number.isNaN);
+  const ofLevels = (variable, levels) => ({ title: variable.name, unit: variable.unit === "1" ? "" : unitText(variable.unit), meaning: variable.meaning, number: (row) => levels[variable.values[row]],
+    text: (row) => textOf(variable, row), missing: () => false, sort: (row) => levels[variable.values[row]] });
+  const ofVariable = (variable) => (variable.levels.length > 0 && !words(variable) ? ofLevels(variable, numbers(variable)) : variable.levels.length > 0
     ? { title: variable.name, unit: "", meaning: variable.meaning, text: (row) => textOf(variable, row), missing: () => false, sort: (row) => variable.values[row] }
     : { title: variable.name, unit: variable.unit === "1" ? "" : unitText(variable.unit), meaning: variable.meaning, number: (row) => variable.values[row], text: (row) => show(variable.values[row], 5),
       missing: (row) => !Number.isFinite(variable.values[row]), sort: (row) => variable.values[row] });

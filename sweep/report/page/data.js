@@ -58,6 +58,13 @@ function show(x, digits) {
   return size !== 0 && (size >= 1e5 || size < 1e-3) ? x.toExponential(precision - 2) : String(Number(x.toPrecision(precision)));
 }
 
+// The error to two digits, the value to the same place.
+function withError(x, error) {
+  if (!Number.isFinite(error) || !(error > 0)) return show(x);
+  const place = 1 - Math.floor(Math.log10(error));
+  return place < 0 || place > 6 ? `${show(x)} ± ${show(error, 2)}` : `${x.toFixed(place)} ± ${error.toFixed(place)}`;
+}
+
 function plural(n, word) { return `${n} ${word}${n === 1 ? "" : "s"}`; }
 // J/m3 as J/m³, sqrt(2 L/g) as it is.
 function unitText(unit) { return unit.replace(/([A-Za-z])(-?[2-6])(?![\d.])/g, (_, letter, digits) => letter + digits.replace(/\d/g, (d) => superscript[d]).replace("-", "⁻")); }

@@ -189,7 +189,7 @@ function factorMap(model, observable) {
           ctx.textAlign = "center";
           ctx.font = "12px system-ui, sans-serif";
           const error = cell.pure === null ? cell.error : cell.pure;
-          ctx.fillText(`${show(value.of(cell.mean), 3)}${error === null ? "" : " ± " + show(value.of(error), 2)}`, (x0 + x1) / 2, (y0 + y1) / 2 - 1);
+          ctx.fillText(error === null ? show(value.of(cell.mean), 3) : withError(value.of(cell.mean), value.of(error)), (x0 + x1) / 2, (y0 + y1) / 2 - 1);
           ctx.font = "10.5px system-ui, sans-serif";
           ctx.fillText(plural(cell.count, "case"), (x0 + x1) / 2, (y0 + y1) / 2 + 13);
         }

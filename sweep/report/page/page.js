@@ -45,7 +45,7 @@ function distributionSection(response, sample, other) {
   const says = response.meaning ? `${titled(response)}: ${response.meaning}` : titled(response);
   return section("response", "Response", says, verdict(response.history), provisionalMark(response.history), el("div", { class: "grid wide" }, response.histogram.counts.length > 0 ? histogram(response, other && other.response) : null,
     el("div", { class: "card" }, el("h3", {}, "Moments"),
-      el("p", { class: "says" }, `over ${plural(response.history.count, "value")}` + (sample ? ", with 95 % errors" : "") +
+      el("p", { class: "says" }, (response.history.count > 0 ? `over ${plural(response.history.count, "value")}` : "no value counts yet") + (sample && response.history.count > 0 ? ", with 95 % errors" : "") +
         (response.history.excluded > 0 ? `; ${plural(response.history.excluded, "case")} without a value left out` : "")),
       table(columns, rows))));
 }

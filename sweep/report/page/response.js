@@ -51,7 +51,7 @@ function moment(campaign, history, other, [name, title]) {
           marker: { at: campaign.stopped_at !== null ? campaign.stopped_at : history.converged_at, label: campaign.stopped_at !== null ? "stopped" : "converged" },
           tooltip: { filter: (item) => item.datasetIndex % 3 === 0, callbacks: {
             title: (items) => (items.length > 0 ? plural(items[0].parsed.x, "point") : ""),
-            label: (item) => `${show(item.parsed.y)} ± ${show(item.dataset.errorsOf[item.dataIndex])}` } },
+            label: (item) => withError(item.parsed.y, item.dataset.errorsOf[item.dataIndex]) } },
         },
       },
     };
@@ -88,7 +88,7 @@ function effect(factor, bins, response, range, others) {
           title: (items) => { const x = items[0].dataset.bins[items[0].dataIndex][0]; return factor.levels.length > 0 ? factor.levels[x] : `${factor.name} ${across.says(x)}`; },
           label: (item) => {
             const [, mean, error, count, pure] = item.dataset.bins[item.dataIndex];
-            return [`${up.says(mean)}` + (error === null ? "" : ` ± ${up.says(error)}`) + `, ${plural(count, "case")}`].concat(
+            return [(error === null ? show(up.of(mean)) : withError(up.of(mean), up.of(error))) + (up.unit ? ` ${up.unit}` : "") + `, ${plural(count, "case")}`].concat(
               pure === null ? [] : [`scatter of single runs alone: ± ${up.says(pure)}`]);
           } } } } },
     };
