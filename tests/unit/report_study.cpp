@@ -512,6 +512,25 @@ TEST_F(Study, TrendsSayWhichWayTheResponseGoes) {
     EXPECT_THAT(table.columns, ElementsAre("factor", "first order", "trend", "rank correlation"));
 }
 
+// Listed points are no sample: whiskers come from replicates alone.
+TEST_F(Study, AListedCampaignHasItsVarianceExplained) {
+    std::string rows;
+    for (int i = 0; i < 40; ++i)
+        rows += (i == 0 ? "[" : ", [") + std::to_string(i % 8 / 8.0) + ", " + std::to_string(i / 40.0) + "]";
+    answer_by(
+        store,
+        R"({"campaign": "c", "scene": "rehearsal", "replicates": 2, "factors": [{"name": "x1", "between": [0, 1]}, {"name": "x2", "between": [0, 1]}],
+        "design": {"kind": "list", "rows": [)" +
+            rows + "]}}",
+        [](const Inputs& inputs) { return input(inputs, "x1") - 3 * input(inputs, "x2"); });
+    const auto responses = ask("c");
+    const auto& y = responses.observable("y");
+    const auto influence = influence_of(responses, y);
+    EXPECT_NEAR(influence.split.main_effects.value, 1, 1e-6);
+    EXPECT_EQ(influence.split.pure.variance, 0);
+    EXPECT_EQ(effect_errors(responses, y).source, report::EffectErrors::Source::pure_error);
+}
+
 // A weak straight effect under much scatter has binned means that go up and down: no bend.
 TEST_F(Study, ScatterOfBinnedMeansIsNoBend) {
     std::uint64_t count = 0;
