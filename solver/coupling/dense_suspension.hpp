@@ -35,7 +35,7 @@ public:
           space_(fluid_.grid(), fluid_.sides(), fluid_.viscosity()),
           deposit_(fluid_.grid(), fluid_.sides(), kernel_width, Kernel::hats),
           solids_(fluid_.grid(), fluid_.sides(), motion.sphere().volume(), kernel_width),
-          handed_(cloud_.size(), Vec3{}),
+          transmitted_(cloud_.size(), Vec3{}),
           source_(flow::face_vectors(fluid_.grid())),
           flux_before_(source_),
           velocity_(source_),
@@ -48,15 +48,15 @@ public:
     void step() {
         const double dt = fluid_.time_step();
         const double s = vibration_.at(fluid_.time() + 0.5 * dt);
-        feet_.clear();
-        for (std::size_t p = 0; p < cloud_.size(); ++p) feet_.push_back(foot(p));
+        stencils_.clear();
+        for (std::size_t p = 0; p < cloud_.size(); ++p) stencils_.push_back(stencil(p));
         find_source(s, dt);
         fluid_.step(source_, solids_.fraction());
         fluid_.midpoint(velocity_, acceleration_);
         const FaceVectors& flux = solids_.flux();
         space_.interstitial(velocity_, flux, solids_.fraction(), between_);
         flux_before_ = flux;
-        interaction_.move(cloud_, motion_, walls_, solids_, feet_, Around{*this, s}, handed_);
+        interaction_.move(cloud_, motion_, walls_, solids_, stencils_, Around{*this, s}, transmitted_);
         solids_.place(cloud_.position);
         interaction_.settle(cloud_, walls_, solids_);
         solids_.carry(dt);
@@ -78,7 +78,7 @@ public:
         fluid_.save(into);
         flow::append_bytes<Vec3>(into, cloud_.position);
         flow::append_bytes<Vec3>(into, cloud_.velocity);
-        flow::append_bytes<Vec3>(into, handed_);
+        flow::append_bytes<Vec3>(into, transmitted_);
         for (std::size_t d = 0; d < 3; ++d) {
             flow::append_bytes<double>(into, solids_.flux()[d].values());
             flow::append_bytes<double>(into, flux_before_[d].values());
@@ -89,7 +89,7 @@ public:
         fluid_.restore(from);
         flow::take_bytes<Vec3>(from, cloud_.position);
         flow::take_bytes<Vec3>(from, cloud_.velocity);
-        flow::take_bytes<Vec3>(from, handed_);
+        flow::take_bytes<Vec3>(from, transmitted_);
         for (std::size_t d = 0; d < 3; ++d) {
             flow::take_bytes<double>(from, solids_.flux()[d].values());
             flow::take_bytes<double>(from, flux_before_[d].values());
@@ -106,7 +106,7 @@ private:
         const DenseSuspension& all;
         double vibration;
         [[nodiscard]] Surroundings operator()(std::size_t p) const {
-            return {all.feet_[p].gather(all.between_), all.feet_[p].gather(all.acceleration_), vibration, {}};
+            return {all.stencils_[p].gather(all.between_), all.stencils_[p].gather(all.acceleration_), vibration, {}};
         }
         /// rot u/2 at x by differences over a diameter, or what of it is inside the box.
         [[nodiscard]] Vec3 rotation(const Vec3& x) const {
@@ -119,8 +119,8 @@ private:
                 high[e] += r;
                 low = all.walls_.clipped(low);
                 high = all.walls_.clipped(high);
-                const Vec3 below = all.footing(low).gather(all.between_);
-                const Vec3 above = all.footing(high).gather(all.between_);
+                const Vec3 below = all.stencil_at(low).gather(all.between_);
+                const Vec3 above = all.stencil_at(high).gather(all.between_);
                 const double apart = all.walls_.periodic[e] ? 2 * r : high[e] - low[e];
                 for (std::size_t d = 0; d < 3; ++d) slope[e][d] = (above[d] - below[d]) / apart;
             }
@@ -129,13 +129,13 @@ private:
         }
     };
 
-    [[nodiscard]] Footing<Kernel> footing(const Vec3& x) const { return {fluid_.grid(), walls_.periodic, x}; }
+    [[nodiscard]] Stencil<Kernel> stencil_at(const Vec3& x) const { return {fluid_.grid(), walls_.periodic, x}; }
     // At the predicted middle of the step.
-    [[nodiscard]] Footing<Kernel> foot(std::size_t p) const {
+    [[nodiscard]] Stencil<Kernel> stencil(std::size_t p) const {
         Vec3 x = cloud_.position[p];
         const double half = 0.5 * fluid_.time_step();
         for (std::size_t d = 0; d < 3; ++d) x[d] += half * cloud_.velocity[p][d];
-        return footing(walls_.clipped(x));
+        return stencil_at(walls_.clipped(x));
     }
 
     void find_source(double vibration, double dt) {
@@ -146,10 +146,10 @@ private:
         budget_ = {0, static_cast<double>(cloud_.size()) * sphere.volume() * drive};
         for (std::size_t p = 0; p < cloud_.size(); ++p) {
             Vec3 force;
-            for (std::size_t d = 0; d < 3; ++d) force[d] = sphere.volume() * handed_[p][d];
+            for (std::size_t d = 0; d < 3; ++d) force[d] = sphere.volume() * transmitted_[p][d];
             force[axis] += sphere.volume() * drive;
             budget_.given += force[axis];
-            feet_[p].scatter(force, source_);
+            stencils_[p].scatter(force, source_);
         }
         deposit_.spread(source_);
         const FaceVectors& flux = solids_.flux();
@@ -169,11 +169,11 @@ private:
     FaceDeposit deposit_;
     SolidsVolume solids_;
     MomentumBudget budget_;
-    std::vector<Vec3> handed_;  // per volume: force of other particles and walls less inertia, in the last step
+    std::vector<Vec3> transmitted_;  // per volume: force of other particles and walls less inertia, in the last step
     FaceVectors source_, flux_before_;
     FaceVectors velocity_, acceleration_;
     FaceVectors between_ = flow::face_vectors(fluid_.grid());  // velocity of the fluid between the particles
-    std::vector<Footing<Kernel>> feet_;
+    std::vector<Stencil<Kernel>> stencils_;
 };
 
 }  // namespace grainsweep::coupling

@@ -81,9 +81,9 @@ struct Solenoidal {
 
 /// Interpolation weights at a place: along the three axes for faces (own) and for centres (across).
 template <class Kernel>
-class Footing {
+class Stencil {
 public:
-    Footing(const flow::Grid& grid, const std::array<bool, 3>& periodic, const Vec3& x) {
+    Stencil(const flow::Grid& grid, const std::array<bool, 3>& periodic, const Vec3& x) {
         for (int d = 0; d < 3; ++d) {
             const auto m = static_cast<std::size_t>(d);
             const auto place = Kernel::find(grid[d], x[m]);

@@ -99,22 +99,22 @@ public:
         if constexpr (Form::per_fluid_volume) solid_ = flow::face_vectors(grid);
     }
 
-    /// Acceleration of the fluid by the particles at `feet` (a Footing each), at vibration s.
-    template <class Feet>
-    const flow::FaceVectors& source(const Feet& feet, double vibration) {
+    /// Acceleration of the fluid by the particles with these stencils, at vibration s.
+    template <class Stencils>
+    const flow::FaceVectors& source(const Stencils& stencils, double vibration) {
         FaceDeposit::clear(source_);
         budget_ = {0, static_cast<double>(rate_.size()) * sphere_.volume() * (sphere_.density_ratio - 1) *
                           sphere_.acceleration * vibration};
         for (std::size_t p = 0; p < rate_.size(); ++p) {
             const Vec3 force = Form::force_on_fluid(sphere_, rate_[p], vibration);
             budget_.given += force[static_cast<std::size_t>(sphere_.direction)];
-            feet[p].scatter(force, source_);
+            stencils[p].scatter(force, source_);
         }
         deposit_.spread(source_);
         if constexpr (Form::per_fluid_volume) {
             FaceDeposit::clear(solid_);
             const double v = sphere_.volume();
-            for (const auto& foot : feet) foot.scatter({v, v, v}, solid_);
+            for (const auto& stencil : stencils) stencil.scatter({v, v, v}, solid_);
             deposit_.spread(solid_);
             for (std::size_t d = 0; d < 3; ++d)
                 for (std::size_t m = 0; m < source_[d].size(); ++m)

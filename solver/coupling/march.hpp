@@ -13,21 +13,21 @@
 
 namespace grainsweep::coupling {
 
-/// `order` names the particles; stand(p) -> its Footing in the middle of the step; feel(p, footing) -> Surroundings;
+/// `order` names the particles; locate(p) -> its Stencil in the middle of the step; gather(p, stencil) -> Surroundings;
 /// moved(p, velocity before) follows the step of particle p. vibration: s(t) in the middle of the step, of all.
-template <class Drag, class Order, class Stand, class Feel, class Moved>
-void march(Cloud& cloud, const Motion<Drag>& motion, double vibration, const Order& order, Stand stand, Feel feel,
+template <class Drag, class Order, class Locate, class Gather, class Moved>
+void march(Cloud& cloud, const Motion<Drag>& motion, double vibration, const Order& order, Locate locate, Gather gather,
            Moved moved) {
     Lanes lanes;
-    std::vector<decltype(stand(order[0]))> feet;
-    feet.reserve(Lanes::size);
+    std::vector<decltype(locate(order[0]))> stencils;
+    stencils.reserve(Lanes::size);
     for (std::size_t start = 0; start < order.size(); start += Lanes::size) {
         const std::size_t count = std::min(Lanes::size, order.size() - start);
-        feet.clear();
-        for (std::size_t i = 0; i < count; ++i) feet.push_back(stand(order[start + i]));
+        stencils.clear();
+        for (std::size_t i = 0; i < count; ++i) stencils.push_back(locate(order[start + i]));
         for (std::size_t i = 0; i < count; ++i) {
             const std::size_t p = order[start + i];
-            const Surroundings around = feel(p, feet[i]);
+            const Surroundings around = gather(p, stencils[i]);
             for (std::size_t d = 0; d < 3; ++d) {
                 lanes.position[d][i] = cloud.position[p][d];
                 lanes.velocity[d][i] = cloud.velocity[p][d];
@@ -49,10 +49,10 @@ void march(Cloud& cloud, const Motion<Drag>& motion, double vibration, const Ord
 }
 
 /// ... and turned back by walls after `moved`.
-template <class Drag, class Order, class Stand, class Feel, class Moved>
+template <class Drag, class Order, class Locate, class Gather, class Moved>
 void march(Cloud& cloud, const Motion<Drag>& motion, const Walls& walls, double vibration, const Order& order,
-           Stand stand, Feel feel, Moved moved) {
-    march(cloud, motion, vibration, order, stand, feel, [&](std::size_t p, const Vec3& before) {
+           Locate locate, Gather gather, Moved moved) {
+    march(cloud, motion, vibration, order, locate, gather, [&](std::size_t p, const Vec3& before) {
         moved(p, before);
         walls.apply(cloud.position[p], cloud.velocity[p]);
     });

@@ -28,7 +28,7 @@ int PackingLimit::restore(std::vector<Vec3>& positions, const Walls& walls, Soli
             fill_ghosts(shift_[m], grid_, edges_[m]);
         }
         for (Vec3& x : positions) {
-            const Vec3 shift = Footing<Trilinear>(grid_, walls.periodic, x).gather(shift_);
+            const Vec3 shift = Stencil<Trilinear>(grid_, walls.periodic, x).gather(shift_);
             if (shift[0] == 0 && shift[1] == 0 && shift[2] == 0) continue;
             for (std::size_t d = 0; d < 3; ++d) x[d] += shift[d];
             x = walls.clipped(walls.inside(x));

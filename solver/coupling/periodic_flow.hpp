@@ -78,18 +78,18 @@ public:
 
     /// Velocity and acceleration at a particle at `phase`.
     template <class Kernel>
-    [[nodiscard]] Surroundings at(const Footing<Kernel>& foot, double phase) const {
+    [[nodiscard]] Surroundings at(const Stencil<Kernel>& stencil, double phase) const {
         const double c = std::cos(phase);
         const double s = std::sin(phase);
-        return at(foot, {1, c, s, c * c - s * s, 2 * s * c});
+        return at(stencil, {1, c, s, c * c - s * s, 2 * s * c});
     }
     /// The same with the basis functions 1, cos, sin, cos 2, sin 2 of the phase at hand.
     template <class Kernel>
-    [[nodiscard]] Surroundings at(const Footing<Kernel>& foot, const std::array<double, terms>& basis) const {
+    [[nodiscard]] Surroundings at(const Stencil<Kernel>& stencil, const std::array<double, terms>& basis) const {
         Surroundings around;
-        component<0>(foot, basis, around);
-        component<1>(foot, basis, around);
-        component<2>(foot, basis, around);
+        component<0>(stencil, basis, around);
+        component<1>(stencil, basis, around);
+        component<2>(stencil, basis, around);
         return around;
     }
 
@@ -105,12 +105,12 @@ private:
     using Node = std::array<Four, 3>;  // velocity, then acceleration; two places are free
 
     template <int D, class Kernel>
-    void component(const Footing<Kernel>& foot, const std::array<double, terms>& basis, Surroundings& around) const {
+    void component(const Stencil<Kernel>& stencil, const std::array<double, terms>& basis, Surroundings& around) const {
         Four first{};
         Four second{};
         Four third{};
         const Node* const nodes = amplitudes_[D].data();
-        foot.template visit<D>(shape_, [&](std::ptrdiff_t at, double weight) {
+        stencil.template visit<D>(shape_, [&](std::ptrdiff_t at, double weight) {
             const Node& node = nodes[at];
             const auto w = static_cast<float>(weight);
             first += w * node[0];

@@ -51,16 +51,16 @@ class ProjectedContacts {
 public:
     ProjectedContacts(const Sphere& sphere, const Walls& walls);
 
-    template <class Motion, class Feet, class Around>
-    void move(Cloud& cloud, const Motion& motion, const Walls&, SolidsVolume&, const Feet&, const Around& around,
-              std::vector<Vec3>& handed) {
+    template <class Motion, class Stencils, class Around>
+    void move(Cloud& cloud, const Motion& motion, const Walls&, SolidsVolume&, const Stencils&, const Around& around,
+              std::vector<Vec3>& transmitted) {
         before_ = cloud.velocity;
         surroundings_.resize(cloud.size());
         march_all(
             cloud, motion, around.vibration, [&](std::size_t p) { return surroundings_[p] = around(p); },
             [](std::size_t, const Vec3&) {});
         const auto tau = [&](std::size_t p) { return motion.step_relaxation(before_[p], surroundings_[p]); };
-        separate(cloud, motion.time_step(), tau, handed);
+        separate(cloud, motion.time_step(), tau, transmitted);
     }
     void settle(Cloud&, const Walls&, SolidsVolume&) {}
 
@@ -70,7 +70,7 @@ public:
 private:
     // tau(p) is evaluated only for particles that were moved.
     template <class Tau>
-    void separate(Cloud& cloud, double time_step, Tau tau, std::vector<Vec3>& handed) {
+    void separate(Cloud& cloud, double time_step, Tau tau, std::vector<Vec3>& transmitted) {
         if (!remove_overlaps(cloud)) return;  // the run reports it
         stiffness_.assign(cloud.size(), 0);
         force_.assign(cloud.size(), Vec3{});
@@ -92,7 +92,7 @@ private:
         const double inertia = density_ratio_ / time_step;
         for (std::size_t p = 0; p < cloud.size(); ++p) {
             for (std::size_t d = 0; d < 3; ++d)
-                handed[p][d] = force_[p][d] - inertia * (cloud.velocity[p][d] - before_[p][d]);
+                transmitted[p][d] = force_[p][d] - inertia * (cloud.velocity[p][d] - before_[p][d]);
             cloud.position[p] = walls_.clipped(cloud.position[p]);
         }
     }

@@ -22,16 +22,16 @@ namespace grainsweep::coupling {
 /// besides the fluid's.
 template <class Motion, class Around, class Push>
 void advance_free(Cloud& cloud, const Motion& motion, const Walls& walls, const Around& around, Push push,
-                  std::vector<Vec3>& handed) {
+                  std::vector<Vec3>& transmitted) {
     const double inertia = motion.sphere().density_ratio / motion.time_step();
     const auto pushed = [&](std::size_t p) {
         Surroundings here = around(p);
-        here.other = handed[p] = push(p);
+        here.other = transmitted[p] = push(p);
         return here;
     };
     march_all(cloud, motion, around.vibration, pushed, [&](std::size_t p, const Vec3& before) {
         Vec3& v = cloud.velocity[p];
-        for (std::size_t d = 0; d < 3; ++d) handed[p][d] -= inertia * (v[d] - before[d]);
+        for (std::size_t d = 0; d < 3; ++d) transmitted[p][d] -= inertia * (v[d] - before[d]);
         walls.apply(cloud.position[p], v);
     });
 }
@@ -59,21 +59,21 @@ public:
             for (int i = 1; i <= grid.cells(d); ++i) smallest_ = std::min(smallest_, grid[d].width(i));
     }
 
-    /// Advances every particle; `around(p)` is the fluid at its place on the grid, feet[p].
-    /// handed[p]: the stress less the inertia of the particle, per volume.
-    template <class Motion, class Feet, class Around>
-    void move(Cloud& cloud, const Motion& motion, const Walls& walls, SolidsVolume& solids, const Feet& feet,
-              const Around& around, std::vector<Vec3>& handed) {
+    /// Advances every particle; `around(p)` is the fluid at stencils[p].
+    /// transmitted[p]: the stress less the inertia of the particle, per volume.
+    template <class Motion, class Stencils, class Around>
+    void move(Cloud& cloud, const Motion& motion, const Walls& walls, SolidsVolume& solids, const Stencils& stencils,
+              const Around& around, std::vector<Vec3>& transmitted) {
         stepped_ = true;
-        find_stress(cloud, solids, feet, motion.time_step());
+        find_stress(cloud, solids, stencils, motion.time_step());
         const double most = 0.1 * smallest_ / (mobility_ * motion.time_step());
         const auto push = [&](std::size_t p) {
             if (!stressed_) return Vec3{};
-            Vec3 force = feet[p].gather(stress_);
+            Vec3 force = stencils[p].gather(stress_);
             for (double& component : force) component = std::clamp(component, -most, most);
             return force;
         };
-        advance_free(cloud, motion, walls, around, push, handed);
+        advance_free(cloud, motion, walls, around, push, transmitted);
     }
 
     /// After walls: the packing limit. `solids` is left at the final positions.
@@ -99,8 +99,8 @@ public:
 private:
     // The stress is divided by the fraction that the particles themselves have on a face, and spread and gathered as
     // that was deposited: the sum over the particles is that of -grad p_s over the faces, of which nothing is lost.
-    template <class Feet>
-    void find_stress(const Cloud& cloud, SolidsVolume& solids, const Feet& feet, double dt) {
+    template <class Stencils>
+    void find_stress(const Cloud& cloud, SolidsVolume& solids, const Stencils& stencils, double dt) {
         stressed_ = solids.largest_fraction() > thinnest_;
         if (!stressed_) {
             temperature_.rest(solids);
@@ -115,7 +115,7 @@ private:
             pressure_.values()[m] = a > thinnest_ ? grains_.pressure(a) * temperature_.values().values()[m] : 0;
         }
         FaceDeposit::clear(stress_);
-        for (const auto& foot : feet) foot.scatter({volume_, volume_, volume_}, stress_);
+        for (const auto& stencil : stencils) stencil.scatter({volume_, volume_, volume_}, stress_);
         deposit_.spread(stress_);
         for (int d = 0; d < 3; ++d) {
             flow::Field& stress = stress_[static_cast<std::size_t>(d)];
@@ -154,11 +154,11 @@ private:
 
 /// Particles that do nothing to each other: the volume they take from the fluid alone.
 struct NoInteraction {
-    template <class Motion, class Feet, class Around>
-    void move(Cloud& cloud, const Motion& motion, const Walls& walls, SolidsVolume&, const Feet&, const Around& around,
-              std::vector<Vec3>& handed) {
+    template <class Motion, class Stencils, class Around>
+    void move(Cloud& cloud, const Motion& motion, const Walls& walls, SolidsVolume&, const Stencils&,
+              const Around& around, std::vector<Vec3>& transmitted) {
         advance_free(
-            cloud, motion, walls, around, [](std::size_t) { return Vec3{}; }, handed);
+            cloud, motion, walls, around, [](std::size_t) { return Vec3{}; }, transmitted);
     }
     void settle(Cloud&, const Walls&, SolidsVolume&) {}
     void save(std::vector<std::byte>&) const {}

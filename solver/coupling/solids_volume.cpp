@@ -51,15 +51,15 @@ int SolidsVolume::inside(int d, int cell) const {
 
 void SolidsVolume::start(std::span<const Vec3> positions) {
     place(positions);
-    stood_ = stand_;
+    placed_before_ = placed_;
 }
 
 void SolidsVolume::place(std::span<const Vec3> positions) {
-    stand_.position.assign(positions.begin(), positions.end());
-    stand_.weights.clear();
+    placed_.position.assign(positions.begin(), positions.end());
+    placed_.weights.clear();
     std::fill(fraction_.values().begin(), fraction_.values().end(), 0.0);
     for (const Vec3& x : positions) {
-        std::array<AxisWeights<2>, 3>& w = stand_.weights.emplace_back();
+        std::array<AxisWeights<2>, 3>& w = placed_.weights.emplace_back();
         std::array<std::array<std::ptrdiff_t, 2>, 3> cell{};  // offsets
         for (int d = 0; d < 3; ++d) {
             const double along = x[at(d)];
@@ -80,7 +80,7 @@ void SolidsVolume::place(std::span<const Vec3> positions) {
 void SolidsVolume::mean(std::span<const Vec3> property, std::array<flow::Field, 3>& into) {
     for (auto& field : into) std::fill(field.values().begin(), field.values().end(), 0.0);
     for (std::size_t p = 0; p < property.size(); ++p) {
-        const std::array<AxisWeights<2>, 3>& w = stand_.weights[p];
+        const std::array<AxisWeights<2>, 3>& w = placed_.weights[p];
         std::array<std::array<std::ptrdiff_t, 2>, 3> cell{};  // offsets
         for (int d = 0; d < 3; ++d)
             for (int a = 0; a < 2; ++a) cell[at(d)][at(a)] = inside(d, w[at(d)].first + a) * fraction_.stride(d);
@@ -104,15 +104,15 @@ void SolidsVolume::mean(std::span<const Vec3> property, std::array<flow::Field, 
 }
 
 void SolidsVolume::fill(int d, std::size_t p, Shares& shares) const {
-    const double before = stood_.position[p][at(d)];
-    const double after = stand_.position[p][at(d)];
+    const double before = placed_before_.position[p][at(d)];
+    const double after = placed_.position[p][at(d)];
     const bool periodic = edges_[at(d)].periodic;
     int periods = 0;
     if (periodic) {  // the image of `after` nearest to `before`
         periods = static_cast<int>(std::round((before - after) / grid_[d].length()));
     }
-    AxisWeights<2> from = stood_.weights[p][at(d)];
-    AxisWeights<2> to = stand_.weights[p][at(d)];
+    AxisWeights<2> from = placed_before_.weights[p][at(d)];
+    AxisWeights<2> to = placed_.weights[p][at(d)];
     if (!periodic) {  // all of a share beyond a wall belongs to the cell at the wall
         const int n = grid_.cells(d);
         for (AxisWeights<2>* w : {&from, &to}) {
@@ -162,14 +162,14 @@ void SolidsVolume::carry_along(const std::array<Shares, 3>& shares, double scale
 void SolidsVolume::carry(double dt) {
     FaceDeposit::clear(flux_);
     std::array<Shares, 3> shares;
-    for (std::size_t p = 0; p < stand_.position.size(); ++p) {
+    for (std::size_t p = 0; p < placed_.position.size(); ++p) {
         for (int d = 0; d < 3; ++d) fill(d, p, shares[at(d)]);
         const double scale = particle_volume_ / dt;
         carry_along<0>(shares, scale);
         carry_along<1>(shares, scale);
         carry_along<2>(shares, scale);
     }
-    stood_ = stand_;
+    placed_before_ = placed_;
     for (int d = 0; d < 3; ++d) over_faces_[at(d)].densities(flux_[at(d)], scratch_);
 }
 

@@ -44,7 +44,7 @@ public:
 private:
     // Places of the particles. Weights of two neighbouring cells per axis, `first` and the one after, the first in
     // 0 ... n+1 (folded later): found once for three uses.
-    struct Standing {
+    struct Placement {
         std::vector<Vec3> position;
         std::vector<std::array<AxisWeights<2>, 3>> weights;
     };
@@ -64,7 +64,7 @@ private:
     Spreading over_cells_;
     std::vector<Spreading> over_faces_;
     Spreading::Scratch scratch_;
-    Standing stood_, stand_;  // when last carried; now
+    Placement placed_before_, placed_;  // when last carried; now
     flow::Field fraction_;
     flow::FaceVectors flux_;
 };

@@ -180,10 +180,10 @@ void SpringContacts::push(Contact& contact, const Cloud& cloud, double h) {
         contact.memory = {};
 }
 
-void SpringContacts::advance_active(Cloud& cloud, double time_step, std::vector<Vec3>& handed) {
+void SpringContacts::advance_active(Cloud& cloud, double time_step, std::vector<Vec3>& transmitted) {
     for (std::size_t p = 0; p < cloud.size(); ++p) {
         if (slot_[p] != 0) continue;
-        handed[p] = (-sphere_.density_ratio / time_step) * (cloud.velocity[p] - velocity_[p]);
+        transmitted[p] = (-sphere_.density_ratio / time_step) * (cloud.velocity[p] - velocity_[p]);
         walls_.apply(cloud.position[p], cloud.velocity[p]);
         ++idle_[p];
     }
@@ -233,7 +233,7 @@ void SpringContacts::advance_active(Cloud& cloud, double time_step, std::vector<
     const double share = 1 / (sphere_.volume() * static_cast<double>(count));
     for (const Active& one : active_) {
         const std::uint32_t p = one.particle;
-        handed[p] = share * one.total - (sphere_.density_ratio / time_step) * (cloud.velocity[p] - velocity_[p]);
+        transmitted[p] = share * one.total - (sphere_.density_ratio / time_step) * (cloud.velocity[p] - velocity_[p]);
         cloud.position[p] = walls_.clipped(cloud.position[p]);
     }
 }

@@ -36,10 +36,10 @@ public:
     [[nodiscard]] static double stiffness(const Sphere& sphere, double overlap, double time_step);
 
     /// Advances every particle; `around(p)` is the fluid at its place, around.rotation(x) half its vorticity.
-    /// handed[p]: force of the contacts less the inertia of the particle, per volume.
-    template <class Motion, class Feet, class Around>
-    void move(Cloud& cloud, const Motion& motion, const Walls&, SolidsVolume&, const Feet&, const Around& around,
-              std::vector<Vec3>& handed) {
+    /// transmitted[p]: force of the contacts less the inertia of the particle, per volume.
+    template <class Motion, class Stencils, class Around>
+    void move(Cloud& cloud, const Motion& motion, const Walls&, SolidsVolume&, const Stencils&, const Around& around,
+              std::vector<Vec3>& transmitted) {
         begin(cloud);
         march_all(
             cloud, motion, around.vibration, [&](std::size_t p) { return surroundings_[p] = around(p); },
@@ -49,7 +49,7 @@ public:
             one.tau = motion.relaxation(surroundings_[one.particle].velocity, velocity_[one.particle]);
             one.rotation = around.rotation(position_[one.particle]);
         }
-        advance_active(cloud, motion.time_step(), handed);
+        advance_active(cloud, motion.time_step(), transmitted);
     }
     void settle(Cloud&, const Walls&, SolidsVolume&) {}
 
@@ -76,7 +76,7 @@ private:
     void begin(const Cloud& cloud);
     void find_active(const Cloud& freely_moved);
     void list_contacts(const std::vector<Pair>& pairs, double reach);
-    void advance_active(Cloud& cloud, double time_step, std::vector<Vec3>& handed);
+    void advance_active(Cloud& cloud, double time_step, std::vector<Vec3>& transmitted);
     void push(Contact& contact, const Cloud& cloud, double h);
     void touch(Contact& contact, const Vec3& n, double overlap, const Vec3& relative, double h);
 

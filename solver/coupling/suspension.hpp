@@ -33,23 +33,23 @@ public:
         const double dt = fluid_.time_step();
         const double s = vibration_.at(fluid_.time() + 0.5 * dt);
         if constexpr (Level::acts_on_fluid) {
-            feet_.clear();
-            for (std::size_t p = 0; p < cloud_.size(); ++p) feet_.push_back(foot(p));
-            fluid_.step(level_.source(feet_, s));
+            stencils_.clear();
+            for (std::size_t p = 0; p < cloud_.size(); ++p) stencils_.push_back(stencil(p));
+            fluid_.step(level_.source(stencils_, s));
         } else {
             fluid_.step();
         }
         if (cloud_.size() == 0) return;
         fluid_.midpoint(velocity_, acceleration_);
         const auto& order = order_.of(cloud_, fluid_.grid());
-        const auto gathered = [&](std::size_t /*p*/, const Footing<Kernel>& at) {
+        const auto gathered = [&](std::size_t /*p*/, const Stencil<Kernel>& at) {
             return Surroundings{at.gather(velocity_), at.gather(acceleration_), s, {}};
         };
         const auto unheeded = [](std::size_t, const Vec3&) {};
         if constexpr (Level::acts_on_fluid) {
             march(
                 cloud_, motion_, walls_, s, order, [](std::size_t p) { return p; },
-                [&](std::size_t p, std::size_t /*itself*/) { return gathered(p, feet_[p]); },
+                [&](std::size_t p, std::size_t /*itself*/) { return gathered(p, stencils_[p]); },
                 [&](std::size_t p, const Vec3& before) {
                     const Vec3& v = cloud_.velocity[p];
                     level_.remember(p, {(v[0] - before[0]) / dt, (v[1] - before[1]) / dt, (v[2] - before[2]) / dt});
@@ -58,9 +58,9 @@ public:
             march(
                 cloud_, motion_, walls_, s, order,
                 [&](std::size_t p) {
-                    return Footing<Kernel>(fluid_.grid(), walls_.periodic, Level::below(predicted(p)));
+                    return Stencil<Kernel>(fluid_.grid(), walls_.periodic, Level::below(predicted(p)));
                 },
-                [&](std::size_t p, const Footing<Kernel>& at) {
+                [&](std::size_t p, const Stencil<Kernel>& at) {
                     Surroundings around = gathered(p, at);
                     Level::turn(predicted(p), around);
                     return around;
@@ -68,7 +68,7 @@ public:
                 unheeded);
         } else {
             march(
-                cloud_, motion_, walls_, s, order, [&](std::size_t p) { return foot(p); }, gathered, unheeded);
+                cloud_, motion_, walls_, s, order, [&](std::size_t p) { return stencil(p); }, gathered, unheeded);
         }
     }
 
@@ -99,7 +99,9 @@ private:
         for (std::size_t d = 0; d < 3; ++d) x[d] += half * cloud_.velocity[p][d];
         return walls_.clipped(x);
     }
-    [[nodiscard]] Footing<Kernel> foot(std::size_t p) const { return {fluid_.grid(), walls_.periodic, predicted(p)}; }
+    [[nodiscard]] Stencil<Kernel> stencil(std::size_t p) const {
+        return {fluid_.grid(), walls_.periodic, predicted(p)};
+    }
 
     flow::Flow<Heat> fluid_;
     flow::Vibration vibration_;
@@ -109,7 +111,7 @@ private:
     Level level_;
     flow::FaceVectors velocity_, acceleration_;
     VisitOrder order_;
-    std::vector<Footing<Kernel>> feet_;  // levels that act on the fluid only
+    std::vector<Stencil<Kernel>> stencils_;  // levels that act on the fluid only
 };
 
 }  // namespace grainsweep::coupling

@@ -80,7 +80,7 @@ void resolve_accuracy(ParameterSpace& space, std::string_view accuracy) {
     for (const auto& [name, value] : setting->second) {
         if (!given.contains(name) && find_factor(space, name) == nullptr) space.fixed[name] = value;
     }
-    // Only now, with all of them in place, can be told which matter.
+    // Only now, with all of them in place, is it known which matter.
     for (const auto& [name, value] : setting->second) {
         const auto* parameter = space.scene->find_parameter(name);
         const bool ours = !given.contains(name) && find_factor(space, name) == nullptr;

@@ -1,7 +1,7 @@
 // Whether the statistics of the campaign are good enough: values in, verdict out.
 //
 // Only gapless beginnings of the design are judged, block by block, so the verdict does not depend on the
-// number of workers or on who finished first. A block is `block` design points; those that the `where` clause
+// number of workers or on the order of finishing. A block is `block` design points; those that the `where` clause
 // filtered out contribute nothing. A case without an answer (unstable, rejected, given up) is left out and
 // counted. The rules and their errors: stats/convergence.hpp.
 #pragma once
@@ -51,7 +51,7 @@ private:
     std::vector<double> values_;
     std::unordered_map<campaign::CaseId, std::vector<std::size_t>> places_;
     std::size_t fed_ = 0;     ///< placed cases the statistics have seen
-    std::size_t judged_ = 0;  ///< blocks told
+    std::size_t judged_ = 0;  ///< blocks judged
     std::string verdict_;
 };
 

@@ -63,7 +63,7 @@ std::filesystem::path file_of(const std::filesystem::path& folder, std::string_v
     return folder / (campaign::content_hash(key) + ".artefact");
 }
 
-/// What killed processes left half written: nobody writes one file for a day.
+/// What killed processes left half written: no file takes a day to write.
 void sweep_leftovers(const std::filesystem::path& folder) {
     const auto yesterday = std::filesystem::file_time_type::clock::now() - std::chrono::hours(24);
     std::error_code ignored;

@@ -3,7 +3,7 @@
 //
 //     case ID scene=NAME revision=N seed=N outcome=WORD
 //       NAME = VALUE                      inputs that differ from the scene's defaults
-//       message TEXT                      why: skipped, unstable, rejected (a crash speaks of the machine)
+//       message TEXT                      why: skipped, unstable, rejected (a crash is of the machine)
 //       scalar NAME = VALUE
 //       series NAME K time bin value      "-" where undefined
 //     campaign NAME scene=NAME revision=N seed=N design=KIND [stopped_at=N]

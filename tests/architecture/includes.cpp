@@ -1,4 +1,4 @@
-// The include rules of the house: every #include of every file is read, and a forbidden one fails.
+// The include rules: every #include of every file is read, and a forbidden one fails.
 #include "tests/support/places.hpp"
 
 #include <gtest/gtest.h>
@@ -57,9 +57,9 @@ std::vector<Include> all_includes() {
     return includes;
 }
 
-/// Room -> the prefixes of ours it may include.
+/// Folder -> the prefixes of ours it may include.
 struct Rule {
-    std::string room;
+    std::string folder;
     std::vector<std::string> may;
 };
 
@@ -118,14 +118,14 @@ const std::vector<Library>& libraries() {
     return table;
 }
 
-TEST(House, EveryRoomKnowsOnlyWhomItMay) {
+TEST(Architecture, EveryFolderIncludesOnlyWhatItMay) {
     const auto includes = all_includes();
     ASSERT_GT(includes.size(), 100U);
     for (const auto& include : includes) {
         if (!include.ours) continue;
         const auto rule = std::ranges::find_if(
-            rules(), [&](const Rule& candidate) { return include.file.starts_with(candidate.room); });
-        ASSERT_NE(rule, rules().end()) << include.file << " is in no room of the house";
+            rules(), [&](const Rule& candidate) { return include.file.starts_with(candidate.folder); });
+        ASSERT_NE(rule, rules().end()) << include.file << " is in no folder of the rules";
         EXPECT_TRUE(starts_with_any(include.target, rule->may)) << include.file << " includes " << include.target;
     }
 }
@@ -136,7 +136,7 @@ std::string scene_of(const std::string& file) {
     return inside.has_parent_path() ? inside.begin()->string() : inside.stem().string();
 }
 
-TEST(House, ScenesDoNotKnowScenes) {
+TEST(Architecture, ScenesDoNotIncludeScenes) {
     for (const auto& include : all_includes()) {
         if (!include.ours || !include.file.starts_with("solver/scenes/") ||
             !include.target.starts_with("solver/scenes/")) {
@@ -150,7 +150,7 @@ TEST(House, ScenesDoNotKnowScenes) {
     }
 }
 
-TEST(House, LibrariesStayWhereTheyBelong) {
+TEST(Architecture, LibrariesStayWhereTheyBelong) {
     for (const auto& include : all_includes()) {
         if (include.ours) continue;
         for (const auto& library : libraries()) {
@@ -164,7 +164,7 @@ TEST(House, LibrariesStayWhereTheyBelong) {
     }
 }
 
-TEST(House, NoDrawersAndNoEndlessFiles) {
+TEST(Architecture, NoFileIsNamedForNothingOrEndless) {
     for (const auto& path : sources({"stats", "solver", "sweep", "tests"})) {
         const std::string stem = path.stem().string();
         for (const char* drawer : {"util", "utils", "common", "helper", "helpers", "manager", "core", "misc"}) {

@@ -136,7 +136,7 @@ void rebuild(const Options& o, const dem::Setup& bed) {
         double least = 1e300;
         for (int k = 0; k < 20; ++k) {
             const double start = processor_seconds();
-            engine->remove({});  // nobody, but lists and forces anew
+            engine->remove({});  // none, but lists and forces anew
             least = std::min(least, processor_seconds() - start);
         }
         std::printf(

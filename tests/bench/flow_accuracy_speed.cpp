@@ -155,8 +155,8 @@ void interpolate(const char* name, int cells, double clustering) {
     const double cost = milliseconds(3, [&] {
         square = 0;
         for (const auto& x : cloud.position) {
-            const coupling::Footing<Kernel> foot(grid, {}, x);
-            const double off = (foot.gather(field)[1] - exact(x[2], t)) / peak;
+            const coupling::Stencil<Kernel> stencil(grid, {}, x);
+            const double off = (stencil.gather(field)[1] - exact(x[2], t)) / peak;
             square += off * off / 3150;
         }
     });

@@ -139,11 +139,11 @@ int main(int argc, char** argv) {
         const double c = std::cos(phase);
         const double s = std::sin(phase);
         const std::array<double, 5> basis{1, c, s, c * c - s * s, 2 * s * c};
-        using Foot = coupling::Footing<coupling::Trilinear>;
+        using Stencil = coupling::Stencil<coupling::Trilinear>;
         coupling::march(
             carried, motion, box, std::sin(phase), order.of(carried, grid),
-            [&](std::size_t p) { return Foot(grid, box.periodic, box.clipped(carried.position[p])); },
-            [&](std::size_t, const Foot& foot) { return periodic.at(foot, basis); },
+            [&](std::size_t p) { return Stencil(grid, box.periodic, box.clipped(carried.position[p])); },
+            [&](std::size_t, const Stencil& stencil) { return periodic.at(stencil, basis); },
             [](std::size_t, const coupling::Vec3&) {});
     });
     return 0;

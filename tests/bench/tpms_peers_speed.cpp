@@ -3,7 +3,7 @@
 //   bench_tpms_peers [--edge N] [--case NAME]
 //
 // Schwarz-P without cohesion and jammed at k_c = 35 kJ/m3, Gyroid at 35 kJ/m3; edge 30 diameters, shell 2, gravity
-// 9.81 x 100/30 as the reference's scaling, to 6.1 t*. LIGGGHTS writes nothing on the way and is told to leave pairs
+// 9.81 x 100/30 as the reference's scaling, to 6.1 t*. LIGGGHTS writes nothing on the way and is set to leave pairs
 // of wall spheres out. Ours: `grainsweep solve` as a user runs it, packing read from a file, ended when the powder has
 // settled; the same with powder at rest left alone (rest_speed 0.001, which is not the default), and with the time step
 // of "fast"; the engine alone over all steps, with every wall sphere kept; and that one divided by the particle steps.

@@ -228,7 +228,7 @@ TEST(Commands, PathForcesTheInstructionSetOfParticles) {
             in_folder(folder, {"query", database, "SELECT instruction_path FROM provenance", "--format", "json"}).out);
         ASSERT_EQ(rows.size(), 1U);
         EXPECT_EQ(rows[0]["instruction_path"], recorded);
-        // The worker computed with the path it was told, and a replay takes the one of the archive by itself.
+        // The worker computed with the path it was given, and a replay takes the one of the archive by itself.
         const auto id = answer["case_id"].get<std::string>();
         const auto again = in_folder(folder, {"replay", database, id, "--format", "json"});
         EXPECT_EQ(again.code, 0) << again.out;

@@ -54,7 +54,7 @@ std::string dump(const std::filesystem::path& db, const Folder& folder) {
     return ended.out;
 }
 
-/// The dump of a campaign nobody disturbed.
+/// The dump of an undisturbed campaign.
 std::string undisturbed(const Folder& folder, const std::string& workers) {
     const auto db = folder / ("calm" + workers + ".db");
     const auto ended = run_program({"run", (folder / "c.json").string(), "--db", db.string(), "-j", workers, "--quiet"},

@@ -1,4 +1,4 @@
-// A worker that hears nothing ends itself; one that was stopped together with its boss has missed nothing.
+// A worker that receives nothing ends by itself; one that was stopped together with its boss has missed nothing.
 #include "tests/support/process.hpp"
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ TEST(Lease, TimeSpentStoppedDoesNotCountSilenceDoes) {
     for (const pid_t pid : pair) ::kill(pid, SIGSTOP);
     std::this_thread::sleep_for(4s);
     ::kill(*told, SIGCONT);
-    std::this_thread::sleep_for(300ms);  // a boss speaks every ten seconds, not at once
+    std::this_thread::sleep_for(300ms);  // a boss sends every ten seconds, not at once
     ::kill(*boss, SIGCONT);
     std::this_thread::sleep_for(1200ms);
     EXPECT_TRUE(alive());

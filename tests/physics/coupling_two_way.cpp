@@ -107,7 +107,7 @@ TEST(TwoWay, APointForceIsAStokeslet) {
     auto fluid = still_fluid(grid, sides, 1, 1e-3);
     FaceDeposit deposit(grid, sides, width);
     flow::FaceVectors force = flow::face_vectors(grid);
-    Footing<Trilinear>(grid, {true, true, true}, x).scatter({0, 1, 0}, force);
+    Stencil<Trilinear>(grid, {true, true, true}, x).scatter({0, 1, 0}, force);
     deposit.spread(force);
     for (int s = 0; s < 300; ++s) fluid.step(force);  // the slowest mode decays as exp(-4 pi^2 t)
     const double drift = fluid.time();                // of the whole box, which nothing holds
@@ -133,7 +133,7 @@ TEST(TwoWay, APointForceIsAStokeslet) {
     EXPECT_NEAR(self, 1 / (3 * std::pow(pi, 1.5) * std::sqrt(2.0) * width) - 2.8373 / (6 * pi), 0.01 * self);
     for (const Vec3& apart : {Vec3{}, Vec3{0, 0.12, 0}, Vec3{0.12, 0, 0}, Vec3{0.1, 0.1, 0}, Vec3{0.2, 0.1, -0.15}}) {
         const Vec3 at{x[0] + apart[0], x[1] + apart[1], x[2] + apart[2]};
-        const Vec3 found = Footing<Trilinear>(grid, {true, true, true}, at).gather(fluid.velocity());
+        const Vec3 found = Stencil<Trilinear>(grid, {true, true, true}, at).gather(fluid.velocity());
         const Vec3 expected = exact(at);
         for (std::size_t d = 0; d < 3; ++d)
             EXPECT_NEAR(found[d] - (d == 1 ? drift : 0), expected[d], 0.02 * self) << apart[0] << ' ' << apart[1];

@@ -14,7 +14,7 @@ using tests::state_of;
 
 namespace {
 
-/// A dense cluster falling into itself: no walls, everybody flies towards the middle.
+/// A dense cluster falling into itself: no walls, all fly towards the middle.
 dem::Setup imploding_cluster(double ratio) {
     auto setup = tests::boxed_gas(216, 0.1, ratio, 4);
     setup.walls.clear();

@@ -4,7 +4,7 @@
 // only if the pair does not overlap in the positions of that moment: one that met again in between goes on with the old
 // displacement. (Its contact models clear a separated pair only within `contact_distance_factor` times the sum of the
 // radii, by default 1.) Walls forget at separation. What a pair remembers there thus depends on the skin; ours forgets
-// at separation, as LIGGGHTS does when told to rebuild at every step: then the engine as it is agrees to 4e-11
+// at separation, as LIGGGHTS does when it rebuilds at every step: then the engine as it is agrees to 4e-11
 // diameters at step 2000. To follow the default deck the comparison runs the engine with LIGGGHTS's memory and skin.
 #include "solver/dem/clear/combinations.hpp"
 #include "solver/dem/engine.hpp"
@@ -97,7 +97,7 @@ TEST(DemSettling, FollowsLiggghtsParticleByParticle) {
     }
 }
 
-// Ours, which forgets at separation, differs only where somebody touched twice.
+// Here histories end at separation: that differs only where particles touched twice.
 TEST(DemSettling, ForgettingAtSeparationMattersToFew) {
     const auto table = tests::read_table(tests::reference("spreading/mini_settle.csv"));
     const auto engine = dem::make_engine(mini_scene(), {});

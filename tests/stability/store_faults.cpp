@@ -1,4 +1,4 @@
-// The N-th write, sync, truncation or removal fails, N = 1, 2, ...: the program hears of it as BrokenWorld, the
+// The N-th write, sync, truncation or removal fails, N = 1, 2, ...: the program gets it as BrokenWorld, the
 // archive stays whole, what was shown is there, and running again ends with the same text.
 #include "tests/support/failing_disk.hpp"
 #include "tests/support/whole_campaign.hpp"
@@ -41,7 +41,7 @@ TEST_P(StoreFaults, EveryFaultIsReportedAndSurvived) {
         whole.run(file, [](std::size_t) {});
         ASSERT_EQ(dump_of(store::Store(file, store::Store::Mode::read)), expected) << "fault " << n;
     }
-    EXPECT_GT(reported, 20) << "of " << n << " faults; those while closing have nobody to hear them";
+    EXPECT_GT(reported, 20) << "of " << n << " faults; those while closing cannot be reported";
 }
 
 std::string kind_name(const testing::TestParamInfo<StoreFaults::ParamType>& kind) {

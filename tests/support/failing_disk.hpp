@@ -1,4 +1,4 @@
-// A disk under SQLite that fails when told to, and remembers every write and sync so that any loss of power
+// A disk under SQLite that fails on demand, and records every write and sync so that any loss of power
 // can be played back.
 #pragma once
 

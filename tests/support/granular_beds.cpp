@@ -75,7 +75,7 @@ dem::Setup settled_bed(const BedOptions& o) {
     move_on(falling, o.settle_time);
     for (std::size_t i = 0; i < s.spheres.size(); ++i) {
         dem::Sphere& p = s.spheres[i] = falling.spheres[i];
-        p.mobile = p.position[2] > 1.4 * d;  // thick enough to let nobody through
+        p.mobile = p.position[2] > 1.4 * d;  // thick enough to let no particle through
         if (!p.mobile) p.velocity = p.angular_velocity = {};
     }
     return s;

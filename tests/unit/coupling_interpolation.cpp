@@ -39,7 +39,7 @@ flow::Flow<flow::NoHeat> projected(const Grid& grid, const flow::Sides& sides) {
 
 template <class Kernel>
 Vec3 gather(const Grid& grid, const std::array<bool, 3>& wraps, const flow::FaceVectors& field, const Vec3& x) {
-    return Footing<Kernel>(grid, wraps, x).gather(field);
+    return Stencil<Kernel>(grid, wraps, x).gather(field);
 }
 
 template <class Kernel>
@@ -223,10 +223,10 @@ TYPED_TEST(EveryKernel, ScatterIsTheTransposeOfGather) {
         flow::FaceVectors spread = fluid.velocity();
         deposit.spread_transposed(spread);
         for (std::uint64_t p = 0; p < 200; ++p) {
-            const Footing<TypeParam> foot(grid, periodic_axes(sides), random_place(grid, p));
+            const Stencil<TypeParam> stencil(grid, periodic_axes(sides), random_place(grid, p));
             const Vec3 force{1.3, -0.7, 2.1};
             flow::FaceVectors onto = flow::face_vectors(grid);
-            foot.scatter(force, onto);
+            stencil.scatter(force, onto);
             deposit.spread(onto);
             double power = 0;
             for (int d = 0; d < 3; ++d) {
@@ -241,7 +241,7 @@ TYPED_TEST(EveryKernel, ScatterIsTheTransposeOfGather) {
                             power += onto[m](i, j, k) * volume * fluid.velocity()[m](i, j, k);
                         }
             }
-            const Vec3 v = foot.gather(spread);
+            const Vec3 v = stencil.gather(spread);
             EXPECT_NEAR(power, force[0] * v[0] + force[1] * v[1] + force[2] * v[2], 1e-13);
         }
     }

@@ -46,13 +46,13 @@ TEST(PeriodicFlow, GivesBackWhatItKeepsAtEveryPhase) {
         period.add(phase, samples, field_at(grid, phase, 1, 1), field_at(grid, phase, 1, 2));
     }
     const PeriodicFlow periodic(grid, period);
-    const Footing<Trilinear> foot(grid, {}, {0.13, -0.21, 0.37});
+    const Stencil<Trilinear> stencil(grid, {}, {0.13, -0.21, 0.37});
     // Five amplitudes of up to a half, kept, weighted and summed in single precision.
     constexpr double rounded = 5 * 0.5 * 4 * 6e-8;
     for (const double phase : {0.0, 0.1, 2.0, 6.0}) {
-        const auto around = periodic.at(foot, phase);
-        const Vec3 velocity = foot.gather(field_at(grid, phase, 0, 1));
-        const Vec3 acceleration = foot.gather(field_at(grid, phase, 0, 2));
+        const auto around = periodic.at(stencil, phase);
+        const Vec3 velocity = stencil.gather(field_at(grid, phase, 0, 1));
+        const Vec3 acceleration = stencil.gather(field_at(grid, phase, 0, 2));
         for (std::size_t d = 0; d < 3; ++d) {
             EXPECT_NEAR(around.velocity[d], velocity[d], rounded);
             EXPECT_NEAR(around.acceleration[d], acceleration[d], rounded);
@@ -71,9 +71,9 @@ TEST(PeriodicFlow, IsTheSameAfterAStay) {
     std::span<const std::byte> from(bytes);
     found.restore(from);
     EXPECT_TRUE(from.empty());
-    const Footing<Solenoidal> foot(grid, {}, {0.1, 0.2, 0.3});
-    EXPECT_EQ(kept.at(foot, 1.0).velocity, found.at(foot, 1.0).velocity);
-    EXPECT_EQ(kept.at(foot, 1.0).acceleration, found.at(foot, 1.0).acceleration);
+    const Stencil<Solenoidal> stencil(grid, {}, {0.1, 0.2, 0.3});
+    EXPECT_EQ(kept.at(stencil, 1.0).velocity, found.at(stencil, 1.0).velocity);
+    EXPECT_EQ(kept.at(stencil, 1.0).acceleration, found.at(stencil, 1.0).acceleration);
     std::span<const std::byte> half(bytes.data(), bytes.size() / 2);
     EXPECT_THROW(found.restore(half), std::invalid_argument);
 }

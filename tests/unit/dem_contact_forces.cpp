@@ -188,7 +188,7 @@ TEST(ContactForcesOfBothEngines, Agree) {
         engine->run(600);
         ASSERT_EQ(engine->fault(), "");
         for (ContactForce c : contacts_of(*engine)) {
-            if (c.second > c.first) {  // who comes first is the engine's business
+            if (c.second > c.first) {  // which comes first is left to the engine
                 std::swap(c.first, c.second);
                 c.normal = -1.0 * c.normal;
                 c.tangential_force = -1.0 * c.tangential_force;
@@ -200,10 +200,10 @@ TEST(ContactForcesOfBothEngines, Agree) {
     ASSERT_EQ(found[0].size(), found[1].size());
     EXPECT_TRUE(std::ranges::any_of(found[0], [](const auto& entry) { return entry.first.second < 0; }));  // walls
     double largest = 0;
-    for (const auto& [who, c] : found[1]) largest = std::max(largest, std::abs(c.normal_force));
-    for (const auto& [who, a] : found[0]) {
-        ASSERT_TRUE(found[1].contains(who)) << who.first << " " << who.second;
-        const ContactForce& b = found[1].at(who);
+    for (const auto& [ids, c] : found[1]) largest = std::max(largest, std::abs(c.normal_force));
+    for (const auto& [ids, a] : found[0]) {
+        ASSERT_TRUE(found[1].contains(ids)) << ids.first << " " << ids.second;
+        const ContactForce& b = found[1].at(ids);
         // Paths have drifted apart by 600 steps of rounding.
         EXPECT_NEAR(a.overlap / 1e-3, b.overlap / 1e-3, 1e-6);
         EXPECT_NEAR(a.normal_force / largest, b.normal_force / largest, 1e-3);

@@ -33,7 +33,7 @@ TEST(Layer, SumsOverCentres) {
     EXPECT_EQ(sum_under(s, each, 1, 2, 3), 1);
     EXPECT_EQ(sum_under(s, each, 1, 2.1, 4), 3);
     EXPECT_NEAR(solid_volume(s, 0.5, 2), 2 * std::numbers::pi / 6, 1e-15);
-    // What is carried belongs to the id, whoever is gone.
+    // What is carried belongs to the id, whichever particles are gone.
     dem::State fewer = s;
     fewer.id = {0, 2, 5, 7};
     const std::vector<double> carried = {1, 90, 10, 90, 90, 100, 90, 1000};

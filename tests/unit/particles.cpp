@@ -36,7 +36,7 @@ constexpr Needs spinning{
 constexpr Needs sized{
     .spin = false, .tangential_history = false, .sizes = true, .frozen = true, .rolling_history = false};
 
-// Touching a column that nobody needs does not compile.
+// Using a column that is not needed does not compile.
 static_assert(!HasTorque<Particles<Needs{}>> && !HasRadius<Particles<Needs{}>> && !HasMobile<Particles<Needs{}>>);
 static_assert(HasTorque<Particles<spinning>> && !HasRadius<Particles<spinning>>);
 static_assert(!HasTorque<Particles<sized>> && HasRadius<Particles<sized>> && HasMobile<Particles<sized>>);

@@ -1,4 +1,4 @@
-// Keyed files: whole or absent, whatever happened to them and whoever writes them at once.
+// Keyed files: whole or absent, whatever happened to them and however many processes write them at once.
 #include "sweep/store/artefacts.hpp"
 #include "sweep/store/broken_world.hpp"
 #include "tests/support/archive.hpp"

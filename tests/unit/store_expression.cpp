@@ -1,4 +1,4 @@
-// The `where` clause: true, false, NULL; what it may not do; what a slip of the pen is told.
+// The `where` clause: true, false, NULL; what it may not do; the sentence for a misspelling.
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/store/expression.hpp"
 

@@ -132,7 +132,7 @@ private:
     // soundness.hpp
     [[nodiscard]] bool sound();
     void check_energy();
-    void learn_speed_limit();
+    void set_speed_limit();
     void report(const std::string& what, std::size_t i);
     void report_contacts();
 

@@ -35,7 +35,7 @@ bool ClearEngine<Laws, case_needs>::sound() {
             report(text, i);
         } else if (speed > speed_limit_) {
             std::snprintf(text, sizeof text,
-                          "a particle moves at %.4g m/s, faster than anything here allows (%.4g m/s)", speed,
+                          "a particle moves at %.4g m/s, above the most this case can produce (%.4g m/s)", speed,
                           speed_limit_);
             report(text, i);
         }
@@ -44,7 +44,7 @@ bool ClearEngine<Laws, case_needs>::sound() {
 }
 
 template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::learn_speed_limit() {
+void ClearEngine<Laws, case_needs>::set_speed_limit() {
     double start = 0;
     double lightest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < p_.size(); ++i) {

@@ -66,7 +66,7 @@ ClearEngine<Laws, case_needs>::ClearEngine(const Setup& setup, const Method& met
     }
     for (const auto& wall : setup.walls) walls_.push_back({wall, {}, {}, {}});
     rebuild();
-    learn_speed_limit();
+    set_speed_limit();
     evaluate<false>();
 }
 
@@ -239,7 +239,7 @@ void ClearEngine<Laws, case_needs>::set_walls(std::vector<Wall> walls) {
     lowest_energy_ = std::numeric_limits<double>::infinity();
     if (!fault_.empty()) return;
     rebuild();
-    learn_speed_limit();
+    set_speed_limit();
     evaluate<false>();
 }
 

@@ -40,8 +40,8 @@ void Columns::bind(Field& f) const {
     f.outer_reach = outer_reach.data();
     f.outer_touching = outer_touching.data();
     f.row = row.data();
-    f.awake = awake.data();
-    f.awake_before = awake_before.data();
+    f.advanced = advanced.data();
+    f.advanced_before = advanced_before.data();
     f.histories = histories;
     for (int a = 0; a < histories_at_most; ++a) {
         f.history[a] = history[a].data();

@@ -74,7 +74,7 @@ struct Columns {
     Column<std::int32_t> column[3];
     Column<float> column_radius, column_mobile;
     Column<std::int32_t> cell_start, cell_of, place;  ///< place: where a particle went, -1: removed
-    Column<std::int32_t> awake, awake_before;         ///< where some are held, see Field
+    Column<std::int32_t> advanced, advanced_before;   ///< where some are held, see Field
     Column<std::int32_t> owner;  ///< old contact of an outer pair, plus one; negative: first and second changed places
 
     Column<WallShape> walls;
@@ -91,16 +91,16 @@ struct Columns {
     void hold_wall_contacts(std::size_t contacts);
     /// Lists the particles that are advanced: all but those with is_held(index).
     template <class IsHeld>
-    void list_awake(Field& f, IsHeld is_held) {
+    void list_advanced(Field& f, IsHeld is_held) {
         const auto n = static_cast<std::size_t>(f.count);
-        awake.hold(n);
-        awake_before.hold(n + 1);
+        advanced.hold(n);
+        advanced_before.hold(n + 1);
         std::int32_t count = 0;
         for (std::int32_t i = 0; i < f.count; ++i) {
-            awake_before[static_cast<std::size_t>(i)] = count;
-            if (!is_held(i)) awake[static_cast<std::size_t>(count++)] = i;
+            advanced_before[static_cast<std::size_t>(i)] = count;
+            if (!is_held(i)) advanced[static_cast<std::size_t>(count++)] = i;
         }
-        awake_before[n] = count;
+        advanced_before[n] = count;
         bind(f);
     }
     /// What a sweep wrote becomes what the next one reads.

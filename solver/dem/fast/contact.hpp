@@ -26,7 +26,7 @@ struct Law {
     static constexpr Cohesion neck = Neck;
     static constexpr bool cohesive = Neck != Cohesion::none;
     static constexpr bool rolling = Rolling;
-    static constexpr bool held = Held;  ///< some particles are not advanced: Field::awake lists the others
+    static constexpr bool held = Held;  ///< some particles are not advanced: Field::advanced lists the others
     static constexpr int histories = Rolling ? 6 : 3;
     static_assert(!Rolling || (Unequal && Friction), "rolling resistance is part of the general kernel only");
 };

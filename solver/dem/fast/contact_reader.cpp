@@ -19,9 +19,10 @@ ContactReader::Laws ContactReader::laws_of(const Material& m) {
     return {{hertz(m), before, mindlin(m, 0), rolling_resistance(m, 0), after}};
 }
 
-ContactReader::ContactReader(const Material& material, const Room& room, const Field& field, const std::int32_t* id,
-                             std::span<const Motion> motions, std::int32_t width, std::span<const ParkedContact> parked)
-    : room_(room),
+ContactReader::ContactReader(const Material& material, const ListSpace& space, const Field& field,
+                             const std::int32_t* id, std::span<const Motion> motions, std::int32_t width,
+                             std::span<const ParkedContact> parked)
+    : space_(space),
       field_(field),
       id_(id),
       motions_(motions),
@@ -30,16 +31,16 @@ ContactReader::ContactReader(const Material& material, const Room& room, const F
       laws_(laws_of(material)) {}
 
 double ContactReader::radius(std::int32_t i) const {
-    return static_cast<double>(field_.records[i].radius) * room_.scale.length;
+    return static_cast<double>(field_.records[i].radius) * space_.scale.length;
 }
 
 double ContactReader::mass(std::int32_t i) const {
     const double inverse = static_cast<double>(field_.records[i].inverse_mass);
-    return inverse > 0 ? room_.scale.mass / inverse : std::numeric_limits<double>::infinity();
+    return inverse > 0 ? space_.scale.mass / inverse : std::numeric_limits<double>::infinity();
 }
 
 ContactReader::Memory ContactReader::memory(const float* const* column, std::int64_t at) const {
-    const Scale& scale = room_.scale;
+    const Scale& scale = space_.scale;
     Memory m;
     for (std::size_t axis = 0; axis < 3; ++axis)
         m.tangential[axis] = static_cast<double>(column[axis][at]) * scale.length;
@@ -69,7 +70,7 @@ bool ContactReader::touches(std::int32_t i, std::int32_t j, Touch<Partner::parti
     for (std::size_t axis = 0; axis < 3; ++axis)  // the difference of two positions is that of the nearest images
         branch[axis] = static_cast<std::int32_t>(static_cast<std::uint32_t>(a.position[axis]) -
                                                  static_cast<std::uint32_t>(b.position[axis])) *
-                       room_.scale.unit[axis];
+                       space_.scale.unit[axis];
     t.radius_i = radius(i);
     t.radius_j = radius(j);
     const double reach = t.radius_i + t.radius_j;
@@ -125,7 +126,7 @@ void ContactReader::stand_still(ParkedContact& contact) const {
     std::vector<ContactForce> one;
     add(t, contact.first, contact.second, {}, {}, {}, memory(contact), one);
     const ContactForce& c = one.front();
-    const Scale& s = room_.scale;
+    const Scale& s = space_.scale;
     const double unit = s.mass * s.length / (s.time * s.time);
     const Vec3 force = c.normal_force * c.normal + c.tangential_force;
     const Vec3 turn = cross(c.tangential_force, c.normal);  // n x (-F_t)
@@ -156,9 +157,9 @@ void ContactReader::for_each_at_wall(const Wall& wall, std::size_t w, double tim
             if (i >= field_.count) continue;  // fills the segment up
             Vec3 x{};
             for (std::size_t axis = 0; axis < 3; ++axis)
-                x[axis] = room_.scale.centre[axis] + field_.records[i].position[axis] * room_.scale.unit[axis];
-            if (room_.domain.periodic[0]) {  // the image nearest to the wall
-                const double period = room_.domain.high[0] - room_.domain.low[0];
+                x[axis] = space_.scale.centre[axis] + field_.records[i].position[axis] * space_.scale.unit[axis];
+            if (space_.domain.periodic[0]) {  // the image nearest to the wall
+                const double period = space_.domain.high[0] - space_.domain.low[0];
                 x[0] -= period * std::nearbyint((x[0] - middle) / period);
             }
             const Closest closest = shape.closest(x);
@@ -173,7 +174,7 @@ void ContactReader::for_each_at_wall(const Wall& wall, std::size_t w, double tim
         }
     };
     if (const auto* plane = std::get_if<Plane>(&wall)) {
-        each_near(shape_at(*plane, time), room_.scale.centre[0]);  // no plane cuts a periodic axis
+        each_near(shape_at(*plane, time), space_.scale.centre[0]);  // no plane cuts a periodic axis
     } else {
         const Bar bar = shape_at(std::get<Blade>(wall), time);
         each_near(bar, (bar.rear + bar.front) / 2);

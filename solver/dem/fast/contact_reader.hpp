@@ -33,7 +33,7 @@ struct StoredEnergy {
 class ContactReader {
 public:
     /// All views must outlive the reader; `motions` in the order of the records, empty where only energy is wanted.
-    ContactReader(const Material& material, const Room& room, const Field& field, const std::int32_t* id,
+    ContactReader(const Material& material, const ListSpace& space, const Field& field, const std::int32_t* id,
                   std::span<const Motion> motions, std::int32_t width, std::span<const ParkedContact> parked = {});
 
     /// Gives a contact of two particles at rest its overlap, force and torques.
@@ -67,7 +67,7 @@ private:
     void add(Touch<partner> t, std::int32_t i, std::int32_t second, const Vec3& velocity, const Vec3& turn,
              const Vec3& turning, Memory memory, std::vector<ContactForce>& into) const;
 
-    const Room& room_;
+    const ListSpace& space_;
     const Field& field_;
     const std::int32_t* id_;
     std::span<const Motion> motions_;

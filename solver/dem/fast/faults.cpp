@@ -14,7 +14,7 @@ namespace grainsweep::dem::fast {
 
 namespace {
 
-std::string where_and_when(const Sight& s, std::int32_t i) {
+std::string where_and_when(const FaultView& s, std::int32_t i) {
     char text[200];
     double x[3];
     for (int a = 0; a < 3; ++a) {
@@ -48,7 +48,7 @@ SoundOverlaps sound_overlaps(const Setup& setup) {
     return {limit(0.5), limit(1)};
 }
 
-std::string describe_fast_particle(const Sight& s) {
+std::string describe_fast_particle(const FaultView& s) {
     std::int32_t worst = 0;
     double most = -1;
     for (std::int32_t i = 0; i < s.field.count; ++i)
@@ -63,7 +63,7 @@ std::string describe_fast_particle(const Sight& s) {
     return text + where_and_when(s, worst);
 }
 
-std::string describe_faster_than(const Sight& s, double limit) {
+std::string describe_faster_than(const FaultView& s, double limit) {
     std::int32_t worst = 0;
     double most = -1;
     for (std::int32_t i = 0; i < s.field.count; ++i) {
@@ -75,17 +75,17 @@ std::string describe_faster_than(const Sight& s, double limit) {
     }
     if (!(most > limit)) return {};
     char text[160];
-    std::snprintf(text, sizeof text, "a particle moves at %.4g m/s, faster than anything here allows (%.4g m/s)", most,
-                  limit);
+    std::snprintf(text, sizeof text, "a particle moves at %.4g m/s, above the most this case can produce (%.4g m/s)",
+                  most, limit);
     return text + where_and_when(s, worst);
 }
 
-std::string describe(const Sight& s, const std::string& what, std::int32_t i) {
+std::string describe(const FaultView& s, const std::string& what, std::int32_t i) {
     return what + where_and_when(s, i);
 }
 
 /// Looks for the pair again, by the positions the forces were computed at or one step later.
-std::string describe_overlap(const Sight& s, const Tally& tally) {
+std::string describe_overlap(const FaultView& s, const Tally& tally) {
     double most = 0;
     std::int32_t first = 0, second = -1;
     for (std::int32_t k = 0; k < s.field.inner_count; ++k) {

@@ -20,7 +20,7 @@ struct SoundOverlaps {
 [[nodiscard]] SoundOverlaps sound_overlaps(const Setup& setup);
 
 /// Input of a description.
-struct Sight {
+struct FaultView {
     const Field& field;
     const std::int32_t* id;
     const Scale& scale;
@@ -29,11 +29,11 @@ struct Sight {
     std::int64_t steps;
 };
 
-[[nodiscard]] std::string describe_fast_particle(const Sight& sight);
+[[nodiscard]] std::string describe_fast_particle(const FaultView& view);
 /// Empty where no particle moves faster than `limit` (m/s).
-[[nodiscard]] std::string describe_faster_than(const Sight& sight, double limit);
+[[nodiscard]] std::string describe_faster_than(const FaultView& view, double limit);
 /// `what` is wrong, with particle number `i` of the records.
-[[nodiscard]] std::string describe(const Sight& sight, const std::string& what, std::int32_t i);
-[[nodiscard]] std::string describe_overlap(const Sight& sight, const Tally& tally);
+[[nodiscard]] std::string describe(const FaultView& view, const std::string& what, std::int32_t i);
+[[nodiscard]] std::string describe_overlap(const FaultView& view, const Tally& tally);
 
 }  // namespace grainsweep::dem::fast

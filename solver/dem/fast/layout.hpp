@@ -131,8 +131,8 @@ struct Field {
     Force* forces;
     /// Particles that are advanced, in order, and how many of them come before each; on the others, frozen or at
     /// rest, forces add up. Null, and never read, where all are advanced.
-    const std::int32_t* awake;
-    const std::int32_t* awake_before;  ///< count+1
+    const std::int32_t* advanced;
+    const std::int32_t* advanced_before;  ///< count+1
 
     // Inner list: pairs that may touch before the next refresh, sorted by the first particle.
     Place* inner_first;

@@ -14,7 +14,7 @@ void MixedEngine::pass(Self& self, Archive& archive) {
     archive.value(self.field_.outer_count);
     archive.value(self.drift_);
     archive.value(self.inner_skin_);
-    archive.value(self.room_.skin);
+    archive.value(self.space_.skin);
     archive.value(self.tally_);
     archive.value(self.peak_overlap_);
     Watch::pass(self.watch_, archive);
@@ -54,7 +54,7 @@ void MixedEngine::pass(Self& self, Archive& archive) {
 /// Of the case, the same at every step.
 Seal MixedEngine::seal() const {
     Constants constants = field_.constants;
-    for (std::size_t a = 0; a < 3; ++a) constants.gravity[a] = gravity_in_steps(gravity_[a], room_.scale);
+    for (std::size_t a = 0; a < 3; ++a) constants.gravity[a] = gravity_in_steps(gravity_[a], space_.scale);
     return make_seal(constants, *kernels_, needs_, shaking_, rest_speed_);
 }
 
@@ -77,8 +77,8 @@ void MixedEngine::restore(std::span<const std::byte> from) {
     columns_.hold_pairs(static_cast<std::size_t>(std::max(field_.outer_count, field_.inner_count)) + spare);
     columns_.hold_wall_contacts(size());
     columns_.bind(field_);
-    list_awake();
-    place_walls(field_, walls_, room_, wall_time());
+    list_advanced();
+    place_walls(field_, walls_, space_, wall_time());
     if (shaken_) shake();
 }
 

@@ -18,7 +18,7 @@ constexpr std::size_t many_particles = 40000;
 }  // namespace
 
 MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, double rest_speed)
-    : room_{setup.domain, make_scale(setup), 0.3F},
+    : space_{setup.domain, make_scale(setup), 0.3F},
       material_(setup.material),
       gravity_(setup.gravity),
       shaking_(setup.shaking),
@@ -28,22 +28,22 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
       kernels_(&kernels_of(path, needs_)),
       walls_(setup.walls),
       sound_(sound_overlaps(setup)),
-      watch_(setup, room_.scale),
-      resting_(setup, room_.scale, rest_speed),
+      watch_(setup, space_.scale),
+      resting_(setup, space_.scale, rest_speed),
       adapts_skin_(!(skin > 0)) {
     check_walls(walls_);
     for (std::size_t a = 0; a < 3; ++a)  // a pair must not meet across both ends of a period
         if (setup.domain.periodic[a]) {
-            const double period = (setup.domain.high[a] - setup.domain.low[a]) / room_.scale.length;
+            const double period = (setup.domain.high[a] - setup.domain.low[a]) / space_.scale.length;
             largest_skin_ = std::min(largest_skin_, static_cast<float>(0.5 * period - 1));
         }
-    if (skin > 0) room_.skin = static_cast<float>(skin / room_.scale.length);
-    room_.skin = std::min(room_.skin, largest_skin_);
-    field_.constants = make_constants(setup, room_.scale);
+    if (skin > 0) space_.skin = static_cast<float>(skin / space_.scale.length);
+    space_.skin = std::min(space_.skin, largest_skin_);
+    field_.constants = make_constants(setup, space_.scale);
     columns_.histories = needs_.rolling ? histories_at_most : 3;
     load(setup);
     restart_forces();
-    learn_limits();
+    set_limits();
 }
 
 void MixedEngine::load(const Setup& setup) {
@@ -54,7 +54,7 @@ void MixedEngine::load(const Setup& setup) {
     columns_.bind(field_);
     field_.count = static_cast<std::int32_t>(n);
     field_.read_ahead = n > many_particles ? 1 : 0;
-    const Scale& s = room_.scale;
+    const Scale& s = space_.scale;
     const bool all_periodic = setup.domain.periodic[0] && setup.domain.periodic[1] && setup.domain.periodic[2];
     box_includes_rest_ = !all_periodic || needs_.frozen || needs_.resting;
     for (std::size_t i = 0; i < n; ++i) {
@@ -94,11 +94,11 @@ void MixedEngine::check_walls(const std::vector<Wall>& walls) const {
             const double norm = std::hypot(plane->normal[0], plane->normal[1], plane->normal[2]);
             if (!(norm > 0) || !std::isfinite(norm)) throw std::invalid_argument("a plane's normal must not be zero");
             for (std::size_t a = 0; a < 3; ++a)
-                if (room_.domain.periodic[a] && std::abs(plane->normal[a]) > 1e-12 * norm)
+                if (space_.domain.periodic[a] && std::abs(plane->normal[a]) > 1e-12 * norm)
                     throw std::invalid_argument("a plane must not cut a periodic axis");
         } else {
             const auto& blade = std::get<Blade>(wall);
-            if (!(blade.thickness > 0) || !(blade.top > blade.bottom) || room_.domain.periodic[2])
+            if (!(blade.thickness > 0) || !(blade.top > blade.bottom) || space_.domain.periodic[2])
                 throw std::invalid_argument(
                     "a blade needs a positive thickness, its top above its bottom and an open z axis");
         }

@@ -27,7 +27,7 @@ void MixedEngine::state(State& into) const {
     into.position.resize(n), into.velocity.resize(n), into.angular_velocity.resize(n);
     into.radius.resize(n), into.mobile.resize(n);
     const std::vector<std::int32_t> order = by_id({columns_.id.data(), n});
-    const Scale& s = room_.scale;
+    const Scale& s = space_.scale;
     for (std::size_t k = 0; k < n; ++k) {
         const std::int32_t i = order[k];
         const Record& r = field_.records[i];
@@ -38,10 +38,10 @@ void MixedEngine::state(State& into) const {
         for (int a = 0; a < 3; ++a) {
             const auto axis = static_cast<std::size_t>(a);
             double x = s.centre[axis] + (r.position[a] + static_cast<double>(residual.position[a])) * s.unit[axis];
-            if (room_.domain.periodic[axis]) {
-                const double low = room_.domain.low[axis], period = room_.domain.high[axis] - low;
+            if (space_.domain.periodic[axis]) {
+                const double low = space_.domain.low[axis], period = space_.domain.high[axis] - low;
                 if (x < low) x += period;
-                if (x >= room_.domain.high[axis]) x -= period;
+                if (x >= space_.domain.high[axis]) x -= period;
             }
             into.position[k][axis] = x;
             into.velocity[k][axis] =
@@ -63,8 +63,8 @@ std::vector<Motion> MixedEngine::motions() const {
             const auto axis = static_cast<std::size_t>(a);
             m.velocity[axis] =
                 (static_cast<double>(r.velocity[a]) + static_cast<double>(residual.velocity[a]) + half_change(i, a)) *
-                room_.scale.speed();
-            m.spin[axis] = (static_cast<double>(r.spin[a]) + half_spin_change(i, a)) / room_.scale.time;
+                space_.scale.speed();
+            m.spin[axis] = (static_cast<double>(r.spin[a]) + half_spin_change(i, a)) / space_.scale.time;
         }
     }
     return all;
@@ -72,27 +72,27 @@ std::vector<Motion> MixedEngine::motions() const {
 
 void MixedEngine::contacts(std::vector<ContactForce>& into) const {
     const std::vector<Motion> now = motions();
-    const ContactReader reader(material_, room_, field_, columns_.id.data(), now, kernels_->width, resting_.parked());
+    const ContactReader reader(material_, space_, field_, columns_.id.data(), now, kernels_->width, resting_.parked());
     into.clear();
     reader.pairs(into);
     for (std::size_t w = 0; w < walls_.size(); ++w) reader.wall(walls_[w], w, wall_time(), into);
 }
 
 Moment MixedEngine::moment(std::span<const Motion> motions) const {
-    const ContactReader reader(material_, room_, field_, columns_.id.data(), {}, kernels_->width, resting_.parked());
-    return {field_, room_, columns_.id.data(), motions, reader.stored(walls_, wall_time())};
+    const ContactReader reader(material_, space_, field_, columns_.id.data(), {}, kernels_->width, resting_.parked());
+    return {field_, space_, columns_.id.data(), motions, reader.stored(walls_, wall_time())};
 }
 
-void MixedEngine::learn_limits() {
+void MixedEngine::set_limits() {
     const std::vector<Motion> now = motions();
-    watch_.learn(moment(now), walls_);
+    watch_.set_limit(moment(now), walls_);
 }
 
 void MixedEngine::check_energy() {
     const std::vector<Motion> now = motions();
     std::int32_t particle = 0;
-    const std::string what = watch_.look(moment(now), particle);
-    if (!what.empty()) fault_ = describe(sight(), what, particle);
+    const std::string what = watch_.check(moment(now), particle);
+    if (!what.empty()) fault_ = describe(view(), what, particle);
 }
 
 }  // namespace grainsweep::dem::fast

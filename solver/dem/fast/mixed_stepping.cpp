@@ -33,22 +33,22 @@ void MixedEngine::run(std::int64_t steps) {
         ++wall_steps_;
         if (shaken_) shake();
         work_.particle_steps += static_cast<double>(mobile_);
-        work_.resting_steps += static_cast<double>(resting_.sleepers());
+        work_.resting_steps += static_cast<double>(resting_.count());
         account_travel();
         if (!fault_.empty()) return;
-        place_walls(field_, walls_, room_, wall_time());
+        place_walls(field_, walls_, space_, wall_time());
         make_lists();
-        const bool look = watch_.due(work_.steps);  // at a state of the full step, so particles are not advanced before
-        advanced = s + 1 < steps && !look;
+        const bool checked = watch_.due(work_.steps);  // at a state of the full step, so particles are not advanced before
+        advanced = s + 1 < steps && !checked;
         begin_tally();
         kernels_->walls(field_, tally_);
-        watch_.book_push(tally_.wall_work);
+        watch_.add_wall_work(tally_.wall_work);
         kernels_->sweep(field_, advanced, tally_);
         columns_.swap_histories(field_);
         peak_overlap_ = std::max(peak_overlap_, overlap());
         work_.pair_visits += field_.inner_count;
-        if (too_deep()) fault_ = describe_overlap(sight(), tally_);
-        if (look && fault_.empty()) check_energy();
+        if (too_deep()) fault_ = describe_overlap(view(), tally_);
+        if (checked && fault_.empty()) check_energy();
     }
 }
 
@@ -56,19 +56,19 @@ void MixedEngine::run(std::int64_t steps) {
 /// above its skin and has lost at most the drift since; likewise the inner list.
 void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
     const bool rebuilt =
-        !(drift_.outer < static_cast<double>(room_.skin)) || (needs_.resting && drift_.steps >= rest_interval);
+        !(drift_.outer < static_cast<double>(space_.skin)) || (needs_.resting && drift_.steps >= rest_interval);
     if (!rebuilt && drift_.inner < static_cast<double>(inner_skin_)) return;
     if (rebuilt) {
         const double per_step = drift_.steps > 0 ? drift_.outer / static_cast<double>(drift_.steps) : 0.003;
         if (adapts_skin_)
-            room_.skin = std::min(
+            space_.skin = std::min(
                 static_cast<float>(std::clamp(std::sqrt(outer_balance * per_step), outer_skin_least, outer_skin_most)),
                 largest_skin_);
         const std::int32_t before = field_.count;
-        rebuild(field_, columns_, *kernels_, room_, removed, needs_.resting ? &resting_ : nullptr, drift_.steps);
+        rebuild(field_, columns_, *kernels_, space_, removed, needs_.resting ? &resting_ : nullptr, drift_.steps);
         columns_.forces.clear(size());  // what was carried over belongs to the old order
-        if (field_.count < before) watch_.forget_balance();
-        list_awake();
+        if (field_.count < before) watch_.restart_balance();
+        list_advanced();
         drift_.outer = 0;
         drift_.steps = 0;
         mobile_ = 0;
@@ -76,13 +76,14 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
         ++work_.rebuilds;
     }
     inner_skin_ = static_cast<float>(
-        std::clamp(std::sqrt(inner_balance * drift_.last_step), inner_skin_least, static_cast<double>(room_.skin)));
+        std::clamp(std::sqrt(inner_balance * drift_.last_step), inner_skin_least, static_cast<double>(space_.skin)));
     refresh(field_, columns_, *kernels_, inner_skin_, rebuilt);
     drift_.inner = 0;
 }
 
-void MixedEngine::list_awake() {
-    if (needs_.holds()) columns_.list_awake(field_, [this](std::int32_t i) { return is_frozen(i) || is_asleep(i); });
+void MixedEngine::list_advanced() {
+    if (needs_.holds())
+        columns_.list_advanced(field_, [this](std::int32_t i) { return is_frozen(i) || is_resting(i); });
 }
 
 /// Adds the displacement of the step just made.
@@ -102,10 +103,10 @@ void MixedEngine::account_travel() {
     drift_.outer += drift_.last_step;
     drift_.inner += drift_.last_step;
     if (field_.count > 0 && (!finite || !(fastest < static_cast<float>(travel_limit) * smallest_diameter_)))
-        fault_ = describe_fast_particle(sight());
+        fault_ = describe_fast_particle(view());
     else if (watch_.too_fast(static_cast<double>(fastest)))
-        fault_ = describe_faster_than(sight(), watch_.speed_limit());
-    watch_.book_travel(static_cast<double>(fastest));
+        fault_ = describe_faster_than(view(), watch_.speed_limit());
+    watch_.add_travel(static_cast<double>(fastest));
 }
 
 /// The velocities whose spread bounds relative displacements: particles', walls', and rest where something rests.
@@ -128,20 +129,21 @@ void MixedEngine::begin_tally() {
 
 /// Gives the constants the acceleration of the present step: gravity and the body force of shaking.
 void MixedEngine::shake() {
-    const Vec3 b = shaking_acceleration(shaking_, room_.scale.time, work_.steps);
-    for (std::size_t a = 0; a < 3; ++a) field_.constants.gravity[a] = gravity_in_steps(gravity_[a] + b[a], room_.scale);
+    const Vec3 b = shaking_acceleration(shaking_, space_.scale.time, work_.steps);
+    for (std::size_t a = 0; a < 3; ++a)
+        field_.constants.gravity[a] = gravity_in_steps(gravity_[a] + b[a], space_.scale);
 }
 
 /// Change of velocity over half a step by the forces at hand, engine's units.
 double MixedEngine::half_change(std::int32_t i, int a) const {
     const Record& r = field_.records[i];
-    if (!(r.inverse_mass > 0) || is_asleep(i)) return 0;
+    if (!(r.inverse_mass > 0) || is_resting(i)) return 0;
     return 0.5 * (static_cast<double>(field_.forces[i].force[a]) * static_cast<double>(r.inverse_mass) +
                   static_cast<double>(field_.constants.gravity[a]));
 }
 
 double MixedEngine::half_spin_change(std::int32_t i, int a) const {
-    if (is_asleep(i)) return 0;
+    if (is_resting(i)) return 0;
     const Record& r = field_.records[i];
     const double inertia = 0.4 * static_cast<double>(r.radius) * static_cast<double>(r.radius);
     return 0.5 * static_cast<double>(field_.forces[i].torque[a]) * static_cast<double>(r.inverse_mass) / inertia;
@@ -167,7 +169,7 @@ void MixedEngine::full_step_velocities() {
 /// Lists anew, forces at the present full-step velocities without touching histories, velocities then set back by
 /// half a step: a leapfrog whose first kick is a half one.
 void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
-    place_walls(field_, walls_, room_, wall_time());
+    place_walls(field_, walls_, space_, wall_time());
     drift_ = Drift{};
     make_lists(removed);
     begin_tally();
@@ -188,20 +190,20 @@ void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
             r.surface[a] = r.spin[a] * r.radius;
         }
     }
-    if (too_deep()) fault_ = describe_overlap(sight(), tally_);
+    if (too_deep()) fault_ = describe_overlap(view(), tally_);
 }
 
 void MixedEngine::set_walls(std::vector<Wall> walls) {
     check_walls(walls);
     full_step_velocities();
-    if (needs_.resting) resting_.wake_all(field_);
+    if (needs_.resting) resting_.advance_all(field_);
     walls_ = std::move(walls);
     wall_steps_ = 0;
     columns_.hold_particles(size(), walls_.size());
     columns_.bind(field_);
     for (std::size_t w = 0; w < walls_.size(); ++w) columns_.segments[w] = {0, 0};
     restart_forces();
-    learn_limits();
+    set_limits();
 }
 
 void MixedEngine::remove(std::span<const std::int32_t> ids) {

@@ -46,7 +46,7 @@ public:
     void set_walls(std::vector<Wall> walls) override;
     void remove(std::span<const std::int32_t> ids) override;
     [[nodiscard]] std::size_t size() const override { return static_cast<std::size_t>(field_.count); }
-    [[nodiscard]] double wall_time() const override { return static_cast<double>(wall_steps_) * room_.scale.time; }
+    [[nodiscard]] double wall_time() const override { return static_cast<double>(wall_steps_) * space_.scale.time; }
     void state(State& into) const override;
     [[nodiscard]] double largest_overlap() const override { return static_cast<double>(overlap()); }
     [[nodiscard]] double peak_overlap() const override { return static_cast<double>(peak_overlap_); }
@@ -63,31 +63,31 @@ private:
     void begin_tally();
     [[nodiscard]] std::vector<Motion> motions() const;
     [[nodiscard]] Moment moment(std::span<const Motion> motions) const;
-    void learn_limits();
+    void set_limits();
     void check_energy();
     void account_travel();
     void make_lists(std::span<const std::int32_t> removed = {});
-    void list_awake();
+    void list_advanced();
     void full_step_velocities();
     void restart_forces(std::span<const std::int32_t> removed = {});
     void shake();
     [[nodiscard]] Seal seal() const;
     [[nodiscard]] double half_change(std::int32_t particle, int axis) const;
     [[nodiscard]] double half_spin_change(std::int32_t particle, int axis) const;
-    [[nodiscard]] Sight sight() const {
-        return {field_, columns_.id.data(), room_.scale, smallest_diameter_, sound_, work_.steps};
+    [[nodiscard]] FaultView view() const {
+        return {field_, columns_.id.data(), space_.scale, smallest_diameter_, sound_, work_.steps};
     }
     /// Of all pairs, over the smaller diameter; parked contacts keep theirs.
     [[nodiscard]] float overlap() const { return std::max(tally_.overlap, resting_.overlap()); }
     [[nodiscard]] bool is_frozen(std::int32_t particle) const { return !(field_.records[particle].inverse_mass > 0); }
-    [[nodiscard]] bool is_asleep(std::int32_t particle) const {
+    [[nodiscard]] bool is_resting(std::int32_t particle) const {
         return needs_.resting && resting_.holds(particle) && !is_frozen(particle);
     }
     [[nodiscard]] bool too_deep() const { return tally_.overlap > sound_.pair || tally_.wall_overlap > sound_.wall; }
     template <class Self, class Archive>
     static void pass(Self& self, Archive& archive);
 
-    Room room_;
+    ListSpace space_;
     Material material_;
     Vec3 gravity_;
     Shaking shaking_;

@@ -46,14 +46,14 @@ struct Grid {
 
 /// Cells no smaller than a listed distance, few enough for the particles there are, the longest axis slowest so that
 /// neighbours lie close in memory.
-Grid make_grid(const Field& f, const Room& room) {
+Grid make_grid(const Field& f, const ListSpace& space) {
     Grid g;
-    const double cut = (1.0 + room.skin) * (1 + 1e-5);
+    const double cut = (1.0 + space.skin) * (1 + 1e-5);
     for (int a = 0; a < 3; ++a) {
         const double unit = f.constants.unit[a];
         Axis& axis = g.axis[a];
         double span = unit * 4294967296.0;
-        if (room.domain.periodic[static_cast<std::size_t>(a)]) {
+        if (space.domain.periodic[static_cast<std::size_t>(a)]) {
             axis.origin = 0x80000000U;
         } else {
             std::int32_t low = INT32_MAX, high = INT32_MIN;
@@ -82,11 +82,11 @@ Grid make_grid(const Field& f, const Room& room) {
 struct Faces {
     std::int32_t low[3], high[3];
 
-    explicit Faces(const Room& room) {
+    explicit Faces(const ListSpace& space) {
         for (std::size_t a = 0; a < 3; ++a) {
-            const bool open = !room.domain.periodic[a];
-            low[a] = open ? static_cast<std::int32_t>(room.scale.units(room.domain.low[a], a)) : INT32_MIN;
-            high[a] = open ? static_cast<std::int32_t>(room.scale.units(room.domain.high[a], a)) : INT32_MAX;
+            const bool open = !space.domain.periodic[a];
+            low[a] = open ? static_cast<std::int32_t>(space.scale.units(space.domain.low[a], a)) : INT32_MIN;
+            high[a] = open ? static_cast<std::int32_t>(space.scale.units(space.domain.high[a], a)) : INT32_MAX;
         }
     }
     [[nodiscard]] bool contain(const Record& r) const {
@@ -98,10 +98,10 @@ struct Faces {
 
 /// Marks in `place` which particles stay (0) and which are removed (-1: left through a face, or listed); returns the
 /// number that stay.
-std::int32_t take_out(const Field& f, Columns& c, const Room& room, std::span<const std::int32_t> ids) {
+std::int32_t take_out(const Field& f, Columns& c, const ListSpace& space, std::span<const std::int32_t> ids) {
     std::vector<std::int32_t> gone(ids.begin(), ids.end());
     std::sort(gone.begin(), gone.end());
-    const Faces faces(room);
+    const Faces faces(space);
     std::int32_t kept = 0;
     for (std::int32_t i = 0; i < f.count; ++i) {
         const auto k = static_cast<std::size_t>(i);
@@ -115,15 +115,15 @@ std::int32_t take_out(const Field& f, Columns& c, const Room& room, std::span<co
 }
 
 /// Sorts by cell and fills the columns the search reads. place maps old to new indices afterwards.
-void sort_particles(Field& f, Columns& c, const Room& room, std::int32_t kept) {
+void sort_particles(Field& f, Columns& c, const ListSpace& space, std::int32_t kept) {
     const auto before = static_cast<std::size_t>(f.count);
-    const Grid g = make_grid(f, room);
+    const Grid g = make_grid(f, space);
     const auto total = static_cast<std::size_t>(g.total());
     c.cell_start.hold(total + 2);
     c.cell_start.clear(total + 2);
     for (int a = 0; a < 3; ++a) {
         f.cells[a] = g.axis[g.order[a]].cells;
-        f.wraps[a] = room.domain.periodic[static_cast<std::size_t>(g.order[a])] ? 1 : 0;
+        f.wraps[a] = space.domain.periodic[static_cast<std::size_t>(g.order[a])] ? 1 : 0;
     }
     for (std::size_t i = 0; i < before; ++i) {
         if (c.place[i] < 0) continue;
@@ -159,10 +159,10 @@ void pad_pairs(const Field& f, Columns& c) {
     }
 }
 
-void find_pairs(Field& f, Columns& c, const Kernels& kernels, const Room& room) {
+void find_pairs(Field& f, Columns& c, const Kernels& kernels, const ListSpace& space) {
     for (;;) {
         f.outer_capacity = static_cast<std::int32_t>(c.outer_first.capacity()) - spare;
-        const std::int64_t found = kernels.search(f, room.skin);
+        const std::int64_t found = kernels.search(f, space.skin);
         if (found + spare <= f.outer_capacity) {
             f.outer_count = static_cast<std::int32_t>(found);
             break;
@@ -209,15 +209,15 @@ std::int32_t find_owners(const Field& f, Columns& c, const Kernels& kernels) {
 }
 
 /// Appends the parked contacts to the live ones, of which they may become part, and decides anew what rests.
-void choose_sleepers(Field& f, Columns& c, const Room& room, Resting& resting, std::int32_t contacts) {
+void update_resting(Field& f, Columns& c, const ListSpace& space, Resting& resting, std::int32_t contacts) {
     auto at = static_cast<std::size_t>(contacts);
     for (int a = 0; a < c.histories; ++a) c.history[a].hold(at + resting.parked().size() + spare);
     for (const ParkedContact& p : resting.parked()) {
         for (int a = 0; a < c.histories; ++a) c.history[a][at] = p.history[a];
         claim(f, c, p.first, p.second, static_cast<std::int32_t>(at++));
     }
-    resting.follow(f, c);
-    resting.choose(f, c, room, contacts);
+    resting.reorder(f, c);
+    resting.update(f, c, space, contacts);
     pad_pairs(f, c);
 }
 
@@ -265,8 +265,8 @@ void place_fillers(Field& f) {
     }
 }
 
-void place_walls(Field& f, const std::vector<Wall>& walls, const Room& room, double time) {
-    const Scale& s = room.scale;
+void place_walls(Field& f, const std::vector<Wall>& walls, const ListSpace& space, double time) {
+    const Scale& s = space.scale;
     for (std::size_t w = 0; w < walls.size(); ++w) {
         WallShape shape{};
         shape.record = f.count + 3 + static_cast<std::int32_t>(w);
@@ -287,8 +287,8 @@ void place_walls(Field& f, const std::vector<Wall>& walls, const Room& room, dou
             shape.bottom = (blade.bottom + lift - s.centre[2]) / s.length;
             shape.top = (blade.top + lift - s.centre[2]) / s.length;
             shape.edge_radius = std::min(blade.edge_radius, 0.5 * blade.thickness) / s.length;
-            if (room.domain.periodic[0]) {
-                shape.period = (room.domain.high[0] - room.domain.low[0]) / s.length;
+            if (space.domain.periodic[0]) {
+                shape.period = (space.domain.high[0] - space.domain.low[0]) / s.length;
                 shape.inverse_period = 1 / shape.period;
             }
             r.velocity[0] = static_cast<float>(blade.speed / s.speed());
@@ -307,7 +307,7 @@ double wall_gap(const Field& f, const WallShape& wall, std::int32_t particle) {
            static_cast<double>(r.radius);
 }
 
-void list_wall_contacts(Field& f, Columns& c, const Kernels& kernels, const Room& room, bool keep) {
+void list_wall_contacts(Field& f, Columns& c, const Kernels& kernels, const ListSpace& space, bool keep) {
     constexpr std::int32_t none = -1;
     std::int32_t n = 0;
     std::vector<std::int32_t> old_slot;
@@ -330,7 +330,7 @@ void list_wall_contacts(Field& f, Columns& c, const Kernels& kernels, const Room
             for (int a = 0; a < c.histories; ++a)
                 c.wall_history_next[a][k] = from == none ? 0 : c.wall_history[a][static_cast<std::size_t>(from)];
         };
-        const double near = static_cast<double>(room.skin) * (1 + 1e-5);
+        const double near = static_cast<double>(space.skin) * (1 + 1e-5);
         for (std::int32_t i = 0; i < f.count; ++i) {
             const Record& r = f.records[i];
             if (!(r.inverse_mass > 0)) continue;
@@ -355,22 +355,22 @@ void refresh(Field& f, Columns& c, const Kernels& kernels, float skin, bool mark
     f.inner_count = kernels.refresh(f, skin);
 }
 
-void rebuild(Field& f, Columns& c, const Kernels& kernels, const Room& room, std::span<const std::int32_t> ids,
+void rebuild(Field& f, Columns& c, const Kernels& kernels, const ListSpace& space, std::span<const std::int32_t> ids,
              Resting* resting, std::int64_t steps) {
-    if (resting != nullptr) resting->weigh(f, steps);
-    const std::int32_t kept = take_out(f, c, room, ids);
+    if (resting != nullptr) resting->compare_forces(f, steps);
+    const std::int32_t kept = take_out(f, c, space, ids);
     std::vector<Record> wall_records(f.records + f.count + 3, f.records + f.count + 3 + f.wall_count);
-    sort_particles(f, c, room, kept);
+    sort_particles(f, c, space, kept);
     place_fillers(f);
     for (std::int32_t w = 0; w < f.wall_count; ++w) {
         f.walls[w].record = f.count + 3 + w;
         f.records[f.walls[w].record] = wall_records[static_cast<std::size_t>(w)];
     }
-    find_pairs(f, c, kernels, room);
+    find_pairs(f, c, kernels, space);
     const std::int32_t contacts = find_owners(f, c, kernels);
-    if (resting != nullptr) choose_sleepers(f, c, room, *resting, contacts);
+    if (resting != nullptr) update_resting(f, c, space, *resting, contacts);
     carry_histories(f, c, kernels);
-    list_wall_contacts(f, c, kernels, room, true);
+    list_wall_contacts(f, c, kernels, space, true);
 }
 
 }  // namespace grainsweep::dem::fast

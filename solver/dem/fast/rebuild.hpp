@@ -12,8 +12,8 @@ namespace grainsweep::dem::fast {
 
 class Resting;
 
-/// Geometry and range of the lists.
-struct Room {
+/// The space that lists cover: domain, units and range.
+struct ListSpace {
     Domain domain;
     Scale scale;
     float skin;  ///< of the outer list, in largest diameters
@@ -22,7 +22,7 @@ struct Room {
 /// Removes particles beyond open faces and those listed in `ids`, sorts the rest by cell, makes the outer list and
 /// the wall lists and carries all histories over. The inner list is left to refresh.
 /// `resting`: decides anew which particles rest, `steps` steps after the last rebuild; null where none may.
-void rebuild(Field& field, Columns& columns, const Kernels& kernels, const Room& room,
+void rebuild(Field& field, Columns& columns, const Kernels& kernels, const ListSpace& space,
              std::span<const std::int32_t> ids, Resting* resting, std::int64_t steps);
 
 /// Makes the inner list from the outer one; histories stay as they are, in the same order.
@@ -30,10 +30,10 @@ void rebuild(Field& field, Columns& columns, const Kernels& kernels, const Room&
 void refresh(Field& field, Columns& columns, const Kernels& kernels, float skin, bool marked);
 
 /// Lists the particles near each wall. `keep`: histories follow their contacts; else they start at zero.
-void list_wall_contacts(Field& field, Columns& columns, const Kernels& kernels, const Room& room, bool keep);
+void list_wall_contacts(Field& field, Columns& columns, const Kernels& kernels, const ListSpace& space, bool keep);
 
 /// Gives the walls their shapes at time t (s) and their records the velocities (engine's units).
-void place_walls(Field& field, const std::vector<Wall>& walls, const Room& room, double time);
+void place_walls(Field& field, const std::vector<Wall>& walls, const ListSpace& space, double time);
 
 /// Gap between a particle and a wall, largest diameters; never more than the true one.
 [[nodiscard]] double wall_gap(const Field& field, const WallShape& wall, std::int32_t particle);

@@ -35,7 +35,7 @@ void stop(Record& r, Residual& residual) {
 }
 
 /// The same contact with its particles exchanged.
-void turn_round(ParkedContact& p) {
+void exchange(ParkedContact& p) {
     for (float& s : p.history) s = -s;
     for (float& force : p.force) force = -force;
     for (int a = 0; a < 3; ++a) std::swap(p.torque[0][a], p.torque[1][a]);
@@ -56,16 +56,16 @@ Resting::Resting(const Setup& setup, const Scale& scale, double rest_speed)
     quiet_.resize(held_.size());
 }
 
-void Resting::wake_all(const Field& f) {
+void Resting::advance_all(const Field& f) {
     for (std::size_t i = 0; i < held_.size(); ++i) held_[i] = is_mobile(f, i) ? 0 : 1;
     std::ranges::fill(quiet_, std::uint16_t{0});
 }
 
-void Resting::weigh(const Field& f, std::int64_t steps) {
+void Resting::compare_forces(const Field& f, std::int64_t steps) {
     steps_ = steps;
     const auto n = static_cast<std::size_t>(f.count);
     pushed_.assign(n, 0);
-    if (steps == 0 || sleepers_ == 0) return;
+    if (steps == 0 || count_ == 0) return;
     std::vector<std::array<double, 6>> sum(n);  // force and torque
     for (std::size_t i = 0; i < n; ++i)
         for (std::size_t a = 0; a < 3; ++a) {
@@ -94,7 +94,7 @@ void Resting::weigh(const Field& f, std::int64_t steps) {
     }
 }
 
-void Resting::follow(const Field& f, const Columns& c) {
+void Resting::reorder(const Field& f, const Columns& c) {
     const auto held = held_, pushed = pushed_;
     const auto quiet = quiet_;
     const auto n = static_cast<std::size_t>(f.count);
@@ -107,52 +107,52 @@ void Resting::follow(const Field& f, const Columns& c) {
 }
 
 /// Which particles move, and for how long the others have not.
-void Resting::observe(const Field& f) {
+void Resting::measure_motion(const Field& f) {
     const double slow = speed_ * speed_, fast = impact_factor * impact_factor * slow;
-    stirs_.assign(held_.size(), 0);
+    disturbs_.assign(held_.size(), 0);
     for (std::size_t i = 0; i < held_.size(); ++i) {
         if (held_[i] != 0) continue;
         const Record& r = f.records[i];
         const auto radius = static_cast<double>(r.radius);
         const double speed = std::max(square(r.velocity), radius * radius * square(r.spin));
-        if (speed > slow) stirs_[i] = speed > fast ? 1 + layers : 1;
+        if (speed > slow) disturbs_[i] = speed > fast ? 1 + layers : 1;
         const std::int64_t quiet = speed > slow ? 0 : std::min(quiet_[i] + steps_, quiet_time);
         quiet_[i] = static_cast<std::uint16_t>(quiet);
     }
 }
 
 /// What that keeps advanced: all in reach, and layer by layer what touches them.
-void Resting::spread(const Field& f, const Columns& c) {
+void Resting::spread_disturbance(const Field& f, const Columns& c) {
     const auto pairs = static_cast<std::size_t>(f.outer_count);
-    stirred_.assign(held_.size(), 0);
+    disturbed_.assign(held_.size(), 0);
     for (std::size_t o = 0; o < pairs; ++o) {
         const auto [i, j] = pair_at(c, o);
-        stirred_[i] = std::max(stirred_[i], stirs_[j]);
-        stirred_[j] = std::max(stirred_[j], stirs_[i]);
+        disturbed_[i] = std::max(disturbed_[i], disturbs_[j]);
+        disturbed_[j] = std::max(disturbed_[j], disturbs_[i]);
     }
     for (int layer = layers; layer > 0; --layer)
         for (std::size_t o = 0; o < pairs; ++o) {
             if (c.owner[o] == 0) continue;
             const auto [i, j] = pair_at(c, o);
-            if (stirred_[i] == layer + 1 && stirred_[j] < layer && is_mobile(f, i))
-                stirred_[j] = static_cast<std::uint8_t>(layer);
-            if (stirred_[j] == layer + 1 && stirred_[i] < layer && is_mobile(f, j))
-                stirred_[i] = static_cast<std::uint8_t>(layer);
+            if (disturbed_[i] == layer + 1 && disturbed_[j] < layer && is_mobile(f, i))
+                disturbed_[j] = static_cast<std::uint8_t>(layer);
+            if (disturbed_[j] == layer + 1 && disturbed_[i] < layer && is_mobile(f, j))
+                disturbed_[i] = static_cast<std::uint8_t>(layer);
         }
 }
 
 void Resting::decide(Field& f) {
-    sleepers_ = 0;
+    count_ = 0;
     for (std::size_t i = 0; i < held_.size(); ++i) {
         if (!is_mobile(f, i)) continue;
-        if (held_[i] != 0 && (pushed_[i] != 0 || stirred_[i] != 0)) {
+        if (held_[i] != 0 && (pushed_[i] != 0 || disturbed_[i] != 0)) {
             held_[i] = 0;
             quiet_[i] = 0;
-        } else if (held_[i] == 0 && quiet_[i] >= quiet_time && stirred_[i] == 0) {
+        } else if (held_[i] == 0 && quiet_[i] >= quiet_time && disturbed_[i] == 0) {
             held_[i] = 1;
             stop(f.records[i], f.residuals[i]);
         }
-        sleepers_ += held_[i];
+        count_ += held_[i];
     }
 }
 
@@ -165,7 +165,7 @@ ParkedContact Resting::parked_from(const Columns& c, const ContactReader& reader
         p = before_[static_cast<std::size_t>(from - live)];
     else
         for (int a = 0; a < c.histories; ++a) p.history[a] = c.history[a][static_cast<std::size_t>(from)];
-    if (owner < 0) turn_round(p);
+    if (owner < 0) exchange(p);
     const auto [i, j] = pair_at(c, pair);
     p.first = static_cast<std::int32_t>(i);
     p.second = static_cast<std::int32_t>(j);
@@ -173,11 +173,11 @@ ParkedContact Resting::parked_from(const Columns& c, const ContactReader& reader
     return p;
 }
 
-void Resting::choose(Field& f, Columns& c, const Room& room, std::int32_t live) {
-    observe(f);
-    spread(f, c);
+void Resting::update(Field& f, Columns& c, const ListSpace& space, std::int32_t live) {
+    measure_motion(f);
+    spread_disturbance(f, c);
     decide(f);
-    const ContactReader reader(material_, room, f, c.id.data(), {}, 1);
+    const ContactReader reader(material_, space, f, c.id.data(), {}, 1);
     before_.swap(parked_);
     parked_.clear();
     overlap_ = 0;

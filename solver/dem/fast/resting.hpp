@@ -37,21 +37,22 @@ public:
     [[nodiscard]] bool wanted() const { return speed_ > 0; }
     [[nodiscard]] bool holds(std::int32_t particle) const { return held_[static_cast<std::size_t>(particle)] != 0; }
     /// All are advanced from the next rebuild on.
-    void wake_all(const Field& f);
+    void advance_all(const Field& f);
     /// The parked contacts, by index of the records.
     [[nodiscard]] std::span<const ParkedContact> parked() const { return parked_; }
-    [[nodiscard]] std::int64_t sleepers() const { return sleepers_; }
+    /// Particles at rest.
+    [[nodiscard]] std::int64_t count() const { return count_; }
     /// Largest overlap among them, over the smaller diameter.
     [[nodiscard]] float overlap() const { return overlap_; }
 
     // The parts of a rebuild, in this order.
     /// Before particles are sorted: which of them the forces of the last `steps` steps have pushed.
-    void weigh(const Field& f, std::int64_t steps);
+    void compare_forces(const Field& f, std::int64_t steps);
     /// After they are sorted: everything here is put in the order of columns.place.
-    void follow(const Field& f, const Columns& c);
+    void reorder(const Field& f, const Columns& c);
     /// After contacts have found their pairs in the outer list (columns.owner; parked ones number from `live` on):
     /// what rests from now on. Pairs neither of which is advanced leave the list, their contacts are parked.
-    void choose(Field& f, Columns& c, const Room& room, std::int32_t live);
+    void update(Field& f, Columns& c, const ListSpace& space, std::int32_t live);
 
     /// Everything that changes.
     template <class Archive>
@@ -59,13 +60,13 @@ public:
         archive.list(self.held_);
         archive.list(self.quiet_);
         archive.list(self.parked_);
-        archive.value(self.sleepers_);
+        archive.value(self.count_);
         archive.value(self.overlap_);
     }
 
 private:
-    void observe(const Field& f);
-    void spread(const Field& f, const Columns& c);
+    void measure_motion(const Field& f);
+    void spread_disturbance(const Field& f, const Columns& c);
     void decide(Field& f);
     [[nodiscard]] ParkedContact parked_from(const Columns& c, const ContactReader& reader, std::size_t pair,
                                             std::int32_t live) const;
@@ -77,14 +78,14 @@ private:
     std::vector<std::uint8_t> held_;    ///< 1: frozen or at rest
     std::vector<std::uint16_t> quiet_;  ///< steps for which a particle has been slow
     std::vector<ParkedContact> parked_;
-    std::int64_t sleepers_ = 0;
+    std::int64_t count_ = 0;
     float overlap_ = 0;
 
     // Of one rebuild.
     std::int64_t steps_ = 0;
     std::vector<std::uint8_t> pushed_;
-    std::vector<std::uint8_t> stirs_;    ///< layers that a particle keeps advanced: none, those in reach, more
-    std::vector<std::uint8_t> stirred_;  ///< layers left where the motion of others reaches
+    std::vector<std::uint8_t> disturbs_;   ///< layers that a particle keeps advanced: none, those in reach, more
+    std::vector<std::uint8_t> disturbed_;  ///< layers left where the motion of others reaches
     std::vector<ParkedContact> before_;
 };
 

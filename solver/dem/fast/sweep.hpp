@@ -281,8 +281,8 @@ template <class Law>
 GRAINSWEEP_PHASE void advance_range(const Field& f, std::int32_t from, std::int32_t to, Tally& t) {
     Stepper s = stepper(f.constants, t);
     if constexpr (Law::held) {
-        for (std::int32_t k = f.awake_before[from]; k < f.awake_before[to]; ++k) {
-            const std::int32_t i = f.awake[k];
+        for (std::int32_t k = f.advanced_before[from]; k < f.advanced_before[to]; ++k) {
+            const std::int32_t i = f.advanced[k];
             if (f.read_ahead != 0) prefetch(f.residuals + i + 64);
             advance_one<Law>(f, i, s);
         }

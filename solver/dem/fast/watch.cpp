@@ -28,7 +28,7 @@ Watch::Watch(const Setup& setup, const Scale& scale)
 }
 
 double Watch::kinetic(const Moment& now) const {
-    const Scale& s = now.room.scale;
+    const Scale& s = now.space.scale;
     double energy = 0;
     for (std::int32_t i = 0; i < now.field.count; ++i) {
         const Record& r = now.field.records[i];
@@ -42,8 +42,8 @@ double Watch::kinetic(const Moment& now) const {
 }
 
 /// Adds the work of gravity since the last check.
-void Watch::fall(const Moment& now) {
-    const Scale& s = now.room.scale;
+void Watch::add_gravity_work(const Moment& now) {
+    const Scale& s = now.space.scale;
     double work = 0;
     for (std::int32_t i = 0; i < now.field.count; ++i) {
         const Record& r = now.field.records[i];
@@ -62,15 +62,15 @@ void Watch::fall(const Moment& now) {
     covered_ = 0;
 }
 
-void Watch::learn(const Moment& now, std::span<const Wall> walls) {
+void Watch::set_limit(const Moment& now, std::span<const Wall> walls) {
     double start = 0, lightest = std::numeric_limits<double>::infinity(), wall = 0, free_fall = 0;
     for (std::int32_t i = 0; i < now.field.count; ++i) {
         const Record& r = now.field.records[i];
         if (!(r.inverse_mass > 0)) continue;
         const Motion& m = now.motions[static_cast<std::size_t>(i)];
-        const double radius = static_cast<double>(r.radius) * now.room.scale.length;
+        const double radius = static_cast<double>(r.radius) * now.space.scale.length;
         start = std::max({start, norm(m.velocity), radius * norm(m.spin)});
-        lightest = std::min(lightest, now.room.scale.mass / static_cast<double>(r.inverse_mass));
+        lightest = std::min(lightest, now.space.scale.mass / static_cast<double>(r.inverse_mass));
     }
     for (const Wall& w : walls) wall = std::max(wall, fastest(w));
     for (std::size_t a = 0; a < 3; ++a)  // through the domain; without limit along a periodic axis
@@ -83,11 +83,11 @@ void Watch::learn(const Moment& now, std::span<const Wall> walls) {
     const double released = std::isfinite(lightest) ? std::sqrt(2 * active / lightest) : 0;
     speed_limit_ = largest_sound_speed_factor * (start + wall + shaking_speed_ + free_fall + released);
     work_of_walls_ = 0;
-    fall(now);
-    forget_balance();
+    add_gravity_work(now);
+    restart_balance();
 }
 
-void Watch::book_travel(double fastest_component) {
+void Watch::add_travel(double fastest_component) {
     covered_ += std::numbers::sqrt3 * fastest_component;
 }
 
@@ -99,8 +99,8 @@ bool Watch::due(std::int64_t steps) const {
     return balanced_ && (steps % energy_interval == 0 || covered_ > quarter_period_);
 }
 
-std::string Watch::look(const Moment& now, std::int32_t& particle) {
-    fall(now);
+std::string Watch::check(const Moment& now, std::int32_t& particle) {
+    add_gravity_work(now);
     const double motion = kinetic(now);
     const double active = motion + now.stored.squeezed;
     const double balance = motion + now.stored.sum - work_of_gravity_ - work_of_walls_;

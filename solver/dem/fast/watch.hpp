@@ -27,7 +27,7 @@ inline constexpr std::int64_t energy_interval = 1024;
 /// Input of a check: the state at a full step.
 struct Moment {
     const Field& field;
-    const Room& room;
+    const ListSpace& space;
     const std::int32_t* id;
     std::span<const Motion> motions;  ///< in the order of the records
     StoredEnergy stored;
@@ -38,19 +38,19 @@ public:
     Watch(const Setup& setup, const Scale& scale);
 
     /// Sets the largest speed that can occur, from the state of the start or with new walls.
-    void learn(const Moment& now, std::span<const Wall> walls);
+    void set_limit(const Moment& now, std::span<const Wall> walls);
     /// Adds a step by the largest component of its velocities, engine's units.
-    void book_travel(double fastest);
+    void add_travel(double fastest);
     /// Adds work of the walls on the particles, engine's units.
-    void book_push(double work) { work_of_walls_ += work * energy_unit_; }
+    void add_wall_work(double work) { work_of_walls_ += work * energy_unit_; }
     /// Particles left: their energy is gone.
-    void forget_balance() { lowest_energy_ = std::numeric_limits<double>::infinity(); }
+    void restart_balance() { lowest_energy_ = std::numeric_limits<double>::infinity(); }
 
     /// Whether the speed limit may be exceeded, judged by the largest component.
     [[nodiscard]] bool too_fast(double fastest) const;
     [[nodiscard]] bool due(std::int64_t steps) const;
     /// What is wrong and with which particle; empty: the balance is sound.
-    [[nodiscard]] std::string look(const Moment& now, std::int32_t& particle);
+    [[nodiscard]] std::string check(const Moment& now, std::int32_t& particle);
 
     [[nodiscard]] double speed_limit() const { return speed_limit_; }  ///< m/s
 
@@ -69,7 +69,7 @@ private:
     using Place3 = std::array<std::int32_t, 3>;
 
     [[nodiscard]] double kinetic(const Moment& now) const;
-    void fall(const Moment& now);
+    void add_gravity_work(const Moment& now);
 
     Vec3 gravity_;
     Domain domain_;

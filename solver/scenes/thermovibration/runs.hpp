@@ -248,17 +248,17 @@ private:
             for (std::size_t d = 0; d < 3; ++d) x[d] += 0.5 * dt * cloud_.velocity[p][d];
             return walls_.clipped(x);
         };
-        using Foot = coupling::Footing<Kernel>;
+        using Stencil = coupling::Stencil<Kernel>;
         coupling::march(
             cloud_, motion_, walls_, vibration, order_.of(cloud_, grid_),
             [&](std::size_t p) {
                 if constexpr (Level::mirrored)
-                    return Foot(grid_, walls_.periodic, Level::below(middle(p)));
+                    return Stencil(grid_, walls_.periodic, Level::below(middle(p)));
                 else
-                    return Foot(grid_, walls_.periodic, middle(p));
+                    return Stencil(grid_, walls_.periodic, middle(p));
             },
-            [&](std::size_t p, const Foot& foot) {
-                coupling::Surroundings around = flow_.at(foot, basis);
+            [&](std::size_t p, const Stencil& stencil) {
+                coupling::Surroundings around = flow_.at(stencil, basis);
                 if constexpr (Level::mirrored) Level::turn(middle(p), around);
                 return around;
             },
