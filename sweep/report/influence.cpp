@@ -239,6 +239,11 @@ void add_saltelli(Influence& influence, const Responses& responses, const Respon
     influence.excluded = indices.excluded;
     influence.notes.push_back(fmt::format("total indices from {} base rows; {} left out for want of a value",
                                           indices.count, indices.excluded));
+    const auto least = std::ranges::min_element(indices.total, {}, &stats::SensitivityIndex::value);
+    if (influence.split.pure.freedom == 0 && least != indices.total.end() && std::isfinite(least->value))
+        influence.notes.push_back(
+            fmt::format("every total index holds the scatter of single runs: its share is at most the smallest, {}",
+                        index_text(*least)));
 }
 
 void add_morris(Influence& influence, const Responses& responses, const ResponseColumn& response) {

@@ -274,6 +274,8 @@ TEST_F(Study, TotalIndicesFromSaltelliAndElementaryEffectsFromMorris) {
         EXPECT_NEAR(factor.total.value, 4.0 / 7, 0.03) << factor.factor;
     }
 
+    EXPECT_THAT(saltelli.notes, Contains(HasSubstr("every total index holds the scatter of single runs")));
+
     answer_by(store, R"({"campaign": "m", )" + factors + R"("design": {"kind": "morris", "trajectories": 12}})",
               [](const Inputs& inputs) { return linear(inputs); });
     responses = ask("m");
