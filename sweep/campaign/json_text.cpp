@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -59,6 +60,36 @@ std::pair<std::size_t, std::string> word_at(std::string_view text, std::size_t b
     return {start, std::string(text.substr(start, end - start))};
 }
 
+/// The last byte before `end` that is no white space; npos where there is none.
+std::size_t last_before(std::string_view text, std::size_t end) {
+    return text.substr(0, end).find_last_not_of(" \t\r\n");
+}
+
+/// What is written in other dialects of JSON and not in JSON, found where the parser stopped: where it begins, the
+/// characters, and what to write instead.
+struct Dialect {
+    std::size_t byte = 0;
+    std::string word;
+    std::string rule;
+};
+
+std::optional<Dialect> dialect_at(std::string_view text, std::size_t byte) {
+    if (byte >= text.size()) return std::nullopt;
+    // A comment: the parser stops within its first two bytes.
+    for (const std::size_t start : {byte, byte == 0 ? byte : byte - 1})
+        for (const std::string_view mark : {"//", "/*", "#"})
+            if (text.substr(start).starts_with(mark))
+                return Dialect{start, std::string(mark),
+                               "JSON has no comments; write \"notes\": \"...\", in any object"};
+    const std::size_t before = last_before(text, byte);
+    const bool closes = text[byte] == ']' || text[byte] == '}';
+    if (closes && before != std::string_view::npos && text[before] == ',')
+        return Dialect{before, ",",
+                       fmt::format("a trailing comma: JSON has none before '{}'; take it out", text[byte])};
+    if (text[byte] == '\'') return Dialect{byte, "'", "JSON has its texts and keys in double quotes"};
+    return std::nullopt;
+}
+
 /// Builds the document and knows where it stands.
 class Builder final : public nlohmann::json_sax<Json> {
 public:
@@ -92,6 +123,8 @@ public:
     bool parse_error(std::size_t position, const std::string& token,
                      const nlohmann::detail::exception& error) override {
         const std::string complaint = complaint_of(error.what());
+        if (const auto dialect = dialect_at(text_, position == 0 ? 0 : position - 1))
+            throw wrong_question(place_of(text_, dialect->byte), shown(dialect->word), dialect->rule);
         if (complaint.find("invalid string") != std::string::npos) {
             throw wrong_question(place_of(text_, position - 1), shown(token), "not JSON: " + complaint);
         }

@@ -1,5 +1,7 @@
 #include "sweep/campaign/wrong_question.hpp"
 
+#include "sweep/campaign/synonyms.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -52,7 +54,8 @@ WrongQuestion wrong_question(std::string_view where, std::string_view value, std
 
 std::string nearest_word(std::string_view word, std::span<const std::string> candidates) {
     if (word.empty() || word.size() > longest_word) return {};
-    std::string nearest;
+    std::string nearest = synonym_of(word, candidates);
+    if (!nearest.empty()) return nearest;
     std::size_t smallest = std::numeric_limits<std::size_t>::max();
     for (const auto& candidate : candidates) {
         const std::size_t distance = edit_distance(word, candidate);

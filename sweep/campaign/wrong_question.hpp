@@ -29,7 +29,8 @@ auto asked_in(const std::filesystem::path& file, const Ask& ask) {
     }
 }
 
-/// The candidate with the smallest edit distance to `word`, empty where none is near.
+/// What to suggest for `word`: the candidate it is a synonym of (synonyms.hpp), else the one with the smallest edit
+/// distance, empty where none is near.
 [[nodiscard]] std::string nearest_word(std::string_view word, std::span<const std::string> candidates);
 
 }  // namespace grainsweep::campaign

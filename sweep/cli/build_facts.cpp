@@ -32,6 +32,10 @@ std::string host_name() {
 
 }  // namespace
 
+std::string program_version() {
+    return GRAINSWEEP_VERSION;
+}
+
 std::string build_version() {
     return fmt::format("{} ({})", GRAINSWEEP_VERSION, GRAINSWEEP_COMMIT);
 }

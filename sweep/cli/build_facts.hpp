@@ -7,6 +7,8 @@
 
 namespace grainsweep::cli {
 
+/// Version, without the commit.
+[[nodiscard]] std::string program_version();
 /// Version and commit; "-modified" marks a tree with changes of its own.
 [[nodiscard]] std::string build_version();
 /// Version, commit, compiler, flags, instruction path, processor and host of this process.

@@ -21,6 +21,7 @@ struct Command {
     /// --format, which every command has; it is read when the action runs.
     std::function<Action(Parser& parser, const report::Format& format)> declare;
     bool hidden = false;
+    bool verbatim = false;  ///< its text is for programs too: never broken to fit a terminal
 };
 
 // One line per group of commands; each group has a file of its own.
@@ -30,6 +31,24 @@ struct Command {
 [[nodiscard]] std::vector<Command> study_commands();      // converge, sensitivity, report
 [[nodiscard]] std::vector<Command> solve_commands();      // solve
 [[nodiscard]] std::vector<Command> catalogue_commands();  // scenes, designs, schema
+[[nodiscard]] std::vector<Command> manual_commands();     // completion, manual
+
+/// All of them, in the order --help shows.
+[[nodiscard]] std::vector<Command> all_commands();
+
+/// One argument of a command, for what is generated from the table of commands.
+struct ArgumentInfo {
+    std::vector<std::string> names;  ///< "-o", "--output"; none: a place
+    std::string place;               ///< "CONFIG", "DB"; empty: an option
+    std::string value;               ///< what stands for its value; empty: a flag
+    std::string help;
+    bool required = false, repeated = false;
+};
+struct CommandInfo {
+    std::string name, summary;
+    std::vector<ArgumentInfo> arguments;  ///< --help among them
+};
+[[nodiscard]] std::vector<CommandInfo> describe(const std::vector<Command>& commands);
 
 /// The action of the command that the arguments name; for --help and --version, which print, one that does nothing
 /// more. Throws WrongQuestion with one sentence, and the nearest word, for arguments that no command has.

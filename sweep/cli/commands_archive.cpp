@@ -4,6 +4,7 @@
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/path_option.hpp"
 #include "sweep/cli/pictures.hpp"
+#include "sweep/cli/status_text.hpp"
 #include "sweep/store/store.hpp"
 #include "sweep/workers/compute.hpp"
 
@@ -110,13 +111,14 @@ int explain(const std::string& database, const std::string& id, Format format) {
     nlohmann::ordered_json inputs = nlohmann::ordered_json::object();
     for (const auto& [name, value] : question.inputs) inputs[name] = report::to_json(report::to_cell(value));
     if (format == Format::json) {
-        report::write(std::cout, nlohmann::ordered_json{{"case_id", question.id},
-                                                        {"scene", question.scene},
-                                                        {"revision", question.revision},
-                                                        {"seed", question.seed},
-                                                        {"inputs", inputs},
-                                                        {"attempts", report::to_json(table)},
-                                                        {"why", reason}});
+        report::write(std::cout, nlohmann::ordered_json{
+                                     {"case_id", question.id},
+                                     {"scene", question.scene},
+                                     {"revision", question.revision},
+                                     {"seed", report::to_json(Table::Cell{static_cast<std::int64_t>(question.seed)})},
+                                     {"inputs", inputs},
+                                     {"attempts", report::to_json(table)},
+                                     {"why", reason}});
         return 0;
     }
     std::cout << fmt::format("case {}\nscene {} revision {}, seed {}\n", question.id, question.scene, question.revision,
@@ -242,6 +244,7 @@ int replay(const std::string& database, const std::string& id, const PictureRequ
         if (!table.rows.empty()) report::write(std::cout, table, format);
         if (format == Format::text) std::cout << '\n' << verdict << '\n';
     }
+    say_pictures(pictures, question.scene, format == Format::text);
     return agrees ? 0 : 1;
 }
 
@@ -261,11 +264,16 @@ std::shared_ptr<Arguments> with_database(Parser& parser) {
 
 std::vector<Command> archive_commands() {
     return {
-        {"status", "counts by outcome, rate, time left",
+        {"status", "cases by outcome; rate in cases per second, time left in seconds (csv, json)",
          [](Parser& parser, const Format& format) -> Action {
              const auto arguments = with_database(parser);
              return [arguments, &format] {
-                 report::write(std::cout, Store(arguments->database, Store::Mode::read).status(), format);
+                 const Table status = Store(arguments->database, Store::Mode::read).status();
+                 if (format == Format::text) {
+                     write_status(std::cout, status);
+                 } else {
+                     report::write(std::cout, status, format);
+                 }
                  return 0;
              };
          },
@@ -317,7 +325,7 @@ std::vector<Command> archive_commands() {
                  return 0;
              };
          },
-         false},
+         false, true},
     };
 }
 

@@ -79,6 +79,30 @@ store::Table parameters_of(const SceneInfo& scene) {
     return table;
 }
 
+/// What a value may be, in one cell: "0 to 2", "above 0", "sjkr | paper".
+std::string allowed_text(const ParameterSpec& parameter) {
+    if (std::holds_alternative<Words>(parameter.bounds)) return std::get<std::string>(bound_cells(parameter)[2]);
+    const auto& bounds = std::get<Interval>(parameter.bounds);
+    const bool below = std::isfinite(bounds.low), above = std::isfinite(bounds.high);
+    const std::string low = (bounds.low_open ? "above " : "") + campaign::shortest(bounds.low);
+    const std::string high = (bounds.high_open ? "below " : "") + campaign::shortest(bounds.high);
+    if (below && above) return low + " to " + high;
+    if (below) return bounds.low_open ? low : "from " + low;
+    return above ? (bounds.high_open ? high : "up to " + high) : "any number";
+}
+
+/// The parameters for reading: fewer columns than parameters_of, which is for programs.
+store::Table parameter_lines(const SceneInfo& scene) {
+    store::Table table{{"parameter", "unit", "default", "allowed", "meaning"}, {}};
+    for (const auto& parameter : scene.parameters) {
+        const auto conditions = conditions_text(parameter);
+        table.rows.push_back({parameter.name, text_or_none(parameter.unit), campaign::to_text(parameter.default_value),
+                              allowed_text(parameter),
+                              parameter.meaning + (conditions.empty() ? "" : " (only if " + conditions + ")")});
+    }
+    return table;
+}
+
 store::Table observables_of(const SceneInfo& scene) {
     store::Table table{{"observable", "unit", "shape", "over", "meaning"}, {}};
     for (const auto& observable : scene.observables) {
@@ -140,7 +164,7 @@ void show_scene(const SceneInfo& scene, Format format) {
     if (format == Format::json) return report::write(std::cout, json_of(scene));
     if (format == Format::csv) return report::write(std::cout, parameters_of(scene), format);
     std::cout << fmt::format("{}, revision {}: {}\n\n", scene.name, scene.revision, scene.summary);
-    report::write(std::cout, parameters_of(scene), format);
+    report::write(std::cout, parameter_lines(scene), format);
     std::cout << '\n';
     report::write(std::cout, observables_of(scene), format);
     for (const auto& [name, inputs] : scene.accuracy) {
@@ -253,7 +277,8 @@ std::vector<Command> catalogue_commands() {
         listing("scenes", "what can be asked: parameters, units, bounds, defaults, observables", list_scenes),
         listing("designs", "how the points can be chosen: kinds and their options", list_designs),
         {"schema", "JSON Schema of a campaign file",
-         [](Parser&, const Format& format) -> Action { return [&format] { return print_schema(format); }; }, false},
+         [](Parser&, const Format& format) -> Action { return [&format] { return print_schema(format); }; }, false,
+         true},
     };
 }
 

@@ -91,7 +91,7 @@ Json json_of(const Campaign& campaign, std::span<const PlacedCase> cases, const 
         {"campaign", campaign.name}, {"scene", campaign.scene().name}, {"revision", campaign.scene().revision}};
     object["design"] = {{"kind", campaign.design}};
     for (const auto& [name, value] : campaign.request.options) object["design"][name] = json_of(value);
-    object["seed"] = campaign.seed;
+    object["seed"] = report::to_json(Cell{static_cast<std::int64_t>(campaign.seed)});
     object["replicates"] = campaign.replicates;
     object["points"] = points_kept(cases);
     object["cases"] = cost.places;

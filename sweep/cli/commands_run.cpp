@@ -15,6 +15,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -39,16 +40,19 @@ void show(const RunReport& report, Format format) {
                   << report.ending << '\n';
         return;
     }
+    std::error_code none;
+    const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(report.database, none));
     if (format == Format::json) {
         report::write(std::cout, nlohmann::ordered_json{{"campaign", report.campaign},
                                                         {"database", report.database.string()},
+                                                        {"bytes", bytes},
                                                         {"ending", report.ending},
                                                         {"exit_code", report.exit_code}});
         return;
     }
     report::write(std::cout,
-                  {{"campaign", "database", "ending", "exit_code"},
-                   {{report.campaign, report.database.string(), report.ending, std::int64_t{report.exit_code}}}},
+                  {{"campaign", "database", "bytes", "ending", "exit_code"},
+                   {{report.campaign, report.database.string(), bytes, report.ending, std::int64_t{report.exit_code}}}},
                   format);
 }
 

@@ -95,8 +95,10 @@ Json json_of(const Sample& sample) {
 }
 
 Json json_of(const campaign::Case& question, const CaseResult& result) {
-    Json object = {
-        {"scene", question.scene}, {"revision", question.revision}, {"case_id", question.id}, {"seed", question.seed}};
+    Json object = {{"scene", question.scene},
+                   {"revision", question.revision},
+                   {"case_id", question.id},
+                   {"seed", report::to_json(Cell{static_cast<std::int64_t>(question.seed)})}};
     object["instruction_path"] = instruction_path();
     object["inputs"] = Json::object();
     for (const auto& [name, value] : question.inputs) object["inputs"][name] = report::to_json(report::to_cell(value));
@@ -192,6 +194,7 @@ int solve(const SolveRequest& request, Format format) {
     if (format == Format::text) show_text(question, result);
     if (format == Format::csv) report::write(std::cout, table_of(question, result), format);
     if (format == Format::json) report::write(std::cout, json_of(question, result));
+    say_pictures(request.pictures, question.scene, format == Format::text);
     return result.outcome == Outcome::completed || result.outcome == Outcome::skipped ? 0 : 1;
 }
 
@@ -207,8 +210,11 @@ std::vector<Command> solve_commands() {
                                  "a parameter's value; factors not set take the middle of their range")
                      ->type_name("NAME=VALUE")
                      ->allow_extra_args(false);
-                 parser.add_option("--seed", request->seed, "seed of the case; default: as in the campaign")
-                     ->check(whole_number(0));
+                 parser
+                     .add_option("--seed", request->seed,
+                                 "seed of the case, as any command prints it; default: as in the campaign")
+                     ->check(whole_number(0))
+                     ->grouped_digits();
                  declare_pictures(parser, request->pictures);
                  declare_path(parser, request->path);
                  return [request, &format] {

@@ -1,6 +1,7 @@
 // converge, sensitivity, report: what the stored answers say.
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
+#include "sweep/report/file_size.hpp"
 #include "sweep/report/history.hpp"
 #include "sweep/report/influence.hpp"
 #include "sweep/report/page.hpp"
@@ -196,6 +197,10 @@ int write_report(const std::vector<std::string>& databases, std::string output, 
         sources.push_back({&stores.back(), fs::path(name).filename().string()});
     }
     const std::string& database = databases.front();
+    if (output == "-") {  // the page is the answer: nothing else goes there
+        report::write_page(std::cout, sources);
+        return 0;
+    }
     if (output.empty()) output = fs::path(database).filename().replace_extension(".html").string();
     for (const auto& name : databases) check_output(output, name);
     std::ostringstream stream;
@@ -204,7 +209,8 @@ int write_report(const std::vector<std::string>& databases, std::string output, 
     write_page(output, page);
     const auto size = static_cast<std::int64_t>(page.size());
     if (format == Format::text) {
-        std::cout << fmt::format("{} ({} kB): open it in a browser\n", output, (size + 999) / 1000);
+        std::cout << fmt::format("{} ({}): open it in a browser\n", output,
+                                 report::size_text(static_cast<std::uintmax_t>(size)));
     } else if (format == Format::json) {
         report::write(std::cout, Json{{"report", output}, {"bytes", size}});
     } else {
@@ -241,7 +247,8 @@ std::vector<Command> study_commands() {
              };
              const auto request = std::make_shared<Request>();
              parser.add_option("DB", request->database, "the database")->required();
-             parser.add_option("-o,--output", request->output, "the page; default: the database's name with .html");
+             parser.add_option("-o,--output", request->output,
+                               "the page; default: the database's name with .html; -: standard output");
              parser.add_option("--with", request->others,
                                "further databases whose campaigns are laid over those of the first");
              return [request, &format] {
@@ -250,7 +257,7 @@ std::vector<Command> study_commands() {
                  return write_report(databases, request->output, format);
              };
          },
-         false},
+         false, true},
     };
 }
 

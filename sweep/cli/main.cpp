@@ -1,4 +1,4 @@
-// The front door: the table of commands, and the only place where an exception ends.
+// The front door, and the only place where an exception ends.
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/store/store.hpp"
@@ -21,21 +21,6 @@ using namespace grainsweep;
 
 constexpr int wrong_question = 2;
 constexpr int broken_world = 3;
-
-std::vector<cli::Command> all_commands() {
-    std::vector<cli::Command> commands;
-    for (const auto& group : {
-             cli::plan_commands(),
-             cli::run_commands(),
-             cli::archive_commands(),
-             cli::study_commands(),
-             cli::solve_commands(),
-             cli::catalogue_commands(),
-         }) {
-        commands.insert(commands.end(), group.begin(), group.end());
-    }
-    return commands;
-}
 
 int complain(int code, const std::string& sentence) {
     std::cerr << "grainsweep: " << sentence << '\n';
@@ -69,7 +54,7 @@ int main(int argc, char** argv) {
     occupy_standard_descriptors();
     std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is a full disk: said, not died of
     try {
-        return flushed(cli::parse_command_line(all_commands(), argc, argv)());
+        return flushed(cli::parse_command_line(cli::all_commands(), argc, argv)());
     } catch (const campaign::WrongQuestion& error) {
         return complain(wrong_question, error.what());
     } catch (const std::exception& error) {  // BrokenWorld and what nobody foresaw

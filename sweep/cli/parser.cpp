@@ -2,12 +2,14 @@
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/command.hpp"
+#include "sweep/report/text_layout.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <charconv>
+#include <iostream>
 #include <memory>
 #include <string_view>
 #include <system_error>
@@ -48,10 +50,19 @@ void declare(CLI::App& app, const std::vector<Command>& commands, std::deque<Par
                                                   : "must be 'text', 'csv' or 'json', not '" + word + "'";
             })
             ->type_name("FORMAT");
+        const auto wide = std::make_shared<bool>(false);
+        if (!command.verbatim)
+            subcommand->add_flag("--wide", *wide, "text as wide as its tables, whatever the terminal");
         parsers.emplace_back(*subcommand);
-        subcommand->callback([&chosen, format, action = command.declare(parsers.back(), *format)] {
-            chosen = [format, action] { return action(); };  // the action refers to the format
-        });
+        subcommand->callback(
+            [&chosen, format, wide, verbatim = command.verbatim, action = command.declare(parsers.back(), *format)] {
+                chosen = [format, wide, verbatim, action] {  // the action refers to the format
+                    if (verbatim || *format != report::Format::text) return action();
+                    if (*wide) report::set_text_width(report::unlimited_width);
+                    const report::WrappedOutput wrapped(std::cout, report::text_width());
+                    return action();
+                };
+            });
     }
 }
 
@@ -77,6 +88,7 @@ std::string sentence_of(const CLI::ParseError& error, const CLI::App& app) {
         command = parser->get_name();
         for (const auto* option : parser->get_options()) {
             for (const auto& name : option->get_lnames()) known.push_back("--" + name);
+            for (const auto& name : option->get_snames()) known.push_back("-" + name);
         }
     }
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError) && !extras.empty()) {
@@ -120,6 +132,14 @@ Option* Option::allow_extra_args(bool allowed) {
     return this;
 }
 
+Option* Option::grouped_digits() {
+    option_->transform([](std::string word) {
+        std::erase(word, '_');
+        return word;
+    });
+    return this;
+}
+
 Option* Option::capture_default_str() {
     option_->capture_default_str();
     return this;
@@ -155,6 +175,31 @@ Option* Parser::add_option(const std::string& names, std::optional<std::uint64_t
 
 Option* Parser::add_flag(const std::string& names, bool& into, const std::string& help) {
     return &options_.emplace_back(app_->add_flag(names, into, help));
+}
+
+std::vector<CommandInfo> describe(const std::vector<Command>& commands) {
+    CLI::App app;
+    std::deque<Parser> parsers;
+    Action chosen;
+    declare(app, commands, parsers, chosen);
+    std::vector<CommandInfo> infos;
+    for (const auto& command : commands) {
+        if (command.hidden) continue;
+        auto& info = infos.emplace_back(CommandInfo{command.name, command.summary, {}});
+        for (const auto* option : app.get_subcommand(command.name)->get_options()) {
+            ArgumentInfo argument;
+            for (const auto& name : option->get_snames()) argument.names.push_back("-" + name);
+            for (const auto& name : option->get_lnames()) argument.names.push_back("--" + name);
+            argument.place = option->get_positional() ? option->get_name(true, false) : "";
+            argument.help = option->get_description();
+            argument.required = option->get_required();
+            argument.repeated = option->get_expected_max() > 1;
+            const bool takes_value = option->get_items_expected_max() > 0;
+            if (takes_value) argument.value = option->get_type_name().empty() ? "VALUE" : option->get_type_name();
+            info.arguments.push_back(std::move(argument));
+        }
+    }
+    return infos;
 }
 
 Action parse_command_line(const std::vector<Command>& commands, int argc, const char* const* argv) {

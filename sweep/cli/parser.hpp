@@ -38,6 +38,8 @@ public:
     Option* type_name(const std::string& word);
     /// Of a list: false takes one value each time the option is given.
     Option* allow_extra_args(bool allowed);
+    /// Digits may be grouped by underscores, as csv prints large numbers.
+    Option* grouped_digits();
     /// --help shows the value the variable has now.
     Option* capture_default_str();
 

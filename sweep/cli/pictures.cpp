@@ -1,11 +1,15 @@
 #include "sweep/cli/pictures.hpp"
 
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/report/file_size.hpp"
 #include "sweep/report/vtk_series.hpp"
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <iostream>
 #include <memory>
+#include <system_error>
 
 namespace grainsweep::cli {
 
@@ -28,6 +32,21 @@ workers::Camera camera(const PictureRequest& request, const std::string& scene) 
                     throw campaign::wrong_question("--vtk", "", fmt::format("scene '{}' shows no particles", scene));
                 series->add(snapshot, seen.time());
             }};
+}
+
+void say_pictures(const PictureRequest& request, const std::string& scene, bool on_standard_output) {
+    if (request.folder.empty()) return;
+    std::uintmax_t bytes = 0;
+    std::size_t files = 0;
+    std::error_code none;
+    for (const auto& entry : std::filesystem::directory_iterator(request.folder, none)) {
+        if (!entry.path().filename().string().starts_with(scene)) continue;
+        bytes += entry.file_size(none);
+        ++files;
+    }
+    (on_standard_output ? std::cout : std::cerr)
+        << fmt::format("pictures: {} files, {}; open {} in ParaView\n", files, report::size_text(bytes),
+                       report::VtkSeries(request.folder, scene).collection().string());
 }
 
 }  // namespace grainsweep::cli

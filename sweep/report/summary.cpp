@@ -1,5 +1,6 @@
 #include "sweep/report/summary.hpp"
 
+#include "sweep/report/file_size.hpp"
 #include "sweep/report/history.hpp"
 #include "sweep/report/table.hpp"
 
@@ -120,8 +121,8 @@ std::string closing_summary(const store::Store& store, const std::string& campai
         text << '\n';
         write(text, extremes_table(responses, *main, shown_extremes), Format::text);
     }
-    text << fmt::format("\ndatabase {0}; next: grainsweep report {0}, grainsweep query {0} \"SELECT * FROM {1}\"\n",
-                        database.string(), campaign);
+    text << fmt::format("\ndatabase {2}\nnext: grainsweep report {0}\n      grainsweep query {0} \"SELECT * FROM {1}\"\n",
+                        database.string(), campaign, named_with_size(database));
     return text.str();
 }
 

@@ -1,6 +1,8 @@
 #include "sweep/report/table.hpp"
 
 #include "sweep/campaign/case.hpp"
+#include "sweep/report/text_layout.hpp"
+#include "sweep/report/text_table.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -16,24 +18,6 @@ namespace {
 using Cell = store::Table::Cell;
 using Json = nlohmann::ordered_json;
 
-std::string in_text(const Cell& cell) {
-    if (const auto* whole = std::get_if<std::int64_t>(&cell)) return std::to_string(*whole);
-    if (const auto* real = std::get_if<double>(&cell)) return fmt::format("{:.6g}", *real == 0 ? 0 : *real);
-    if (std::holds_alternative<std::monostate>(cell)) return "";
-    std::string line;
-    for (const char c : std::get<std::string>(cell)) {
-        // A row stays a row, and no text of a database moves the cursor of a terminal.
-        if (c == '\n') {
-            line += "\\n";
-        } else if (static_cast<unsigned char>(c) < 0x20U || c == 0x7F) {
-            line += '?';
-        } else {
-            line += c;
-        }
-    }
-    return line;
-}
-
 std::string in_csv(const std::string& text) {
     if (!text.empty() && text.find_first_of(",\"\r\n") == std::string::npos) return text;
     std::string quoted = "\"";
@@ -41,42 +25,25 @@ std::string in_csv(const std::string& text) {
     return quoted + '"';
 }
 
+bool exact_in_a_double(std::int64_t whole) {
+    constexpr std::int64_t limit = std::int64_t{1} << 53U;
+    return whole >= -limit && whole <= limit;
+}
+
+/// 5_577_006_791_947_779_410: no reader takes it for a number and rounds it.
+std::string grouped(std::int64_t whole) {
+    std::string digits = std::to_string(whole);
+    const std::size_t first = digits.front() == '-' ? 1 : 0;
+    for (std::size_t at = digits.size(); at > first + 3;) digits.insert(at -= 3, "_");
+    return digits;
+}
+
 std::string in_csv(const Cell& cell) {
-    if (const auto* whole = std::get_if<std::int64_t>(&cell)) return std::to_string(*whole);
+    if (const auto* whole = std::get_if<std::int64_t>(&cell))
+        return exact_in_a_double(*whole) ? std::to_string(*whole) : grouped(*whole);
     if (const auto* real = std::get_if<double>(&cell)) return std::isnan(*real) ? "" : campaign::shortest(*real);
     if (std::holds_alternative<std::monostate>(cell)) return "";
     return in_csv(std::get<std::string>(cell));
-}
-
-/// Characters, not bytes.
-std::size_t width_of(const std::string& text) {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-}
-
-void write_text(std::ostream& out, const store::Table& table) {
-    std::vector<std::vector<std::string>> lines = {table.columns};
-    for (const auto& row : table.rows) {
-        auto& line = lines.emplace_back();
-        for (const auto& cell : row) line.push_back(in_text(cell));
-    }
-    const std::size_t columns = table.columns.size();
-    std::vector<std::size_t> widths(columns, 0);
-    std::vector<bool> numeric(columns, true);  // numbers are aligned to the right
-    for (std::size_t j = 0; j < columns; ++j) {
-        for (const auto& line : lines) widths[j] = std::max(widths[j], width_of(line[j]));
-        for (const auto& row : table.rows) numeric[j] = numeric[j] && !std::holds_alternative<std::string>(row[j]);
-    }
-    for (const auto& line : lines) {
-        std::string text;
-        for (std::size_t j = 0; j < columns; ++j) {
-            const std::string padding(widths[j] - width_of(line[j]), ' ');
-            if (j > 0) text += "  ";
-            text += numeric[j] ? padding + line[j] : line[j] + padding;
-        }
-        text.erase(text.find_last_not_of(' ') + 1);
-        out << text << '\n';
-    }
 }
 
 void write_csv(std::ostream& out, const store::Table& table) {
@@ -100,7 +67,7 @@ std::optional<Format> format_named(std::string_view word) {
 void write(std::ostream& out, const store::Table& table, Format format) {
     switch (format) {
         case Format::text:
-            return write_text(out, table);
+            return write_text(out, table, text_width());
         case Format::csv:
             return write_csv(out, table);
         case Format::json:
@@ -109,7 +76,8 @@ void write(std::ostream& out, const store::Table& table, Format format) {
 }
 
 Json to_json(const Cell& cell) {
-    if (const auto* whole = std::get_if<std::int64_t>(&cell)) return *whole;
+    if (const auto* whole = std::get_if<std::int64_t>(&cell))
+        return exact_in_a_double(*whole) ? Json(*whole) : Json(std::to_string(*whole));
     if (const auto* real = std::get_if<double>(&cell)) return std::isfinite(*real) ? Json(*real) : Json(nullptr);
     if (const auto* text = std::get_if<std::string>(&cell)) return *text;
     return nullptr;

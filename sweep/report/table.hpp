@@ -1,11 +1,13 @@
 // Rows for people and programs: one renderer for every command.
 //
-//   text  columns aligned, numbers to 6 digits; for reading
+//   text  columns aligned, numbers to 6 digits, no line wider than the terminal (text_table.hpp); for reading
 //   csv   cells quoted as in RFC 4180, lines ending in LF as shells want; an absent value is empty, an empty text is ""
 //   json  a list of objects, keys in column order, a name that is there again with _2; an absent value, NaN and
 //         infinity are null
 //
-// Numbers in csv and json are the shortest that read back as the same double.
+// Numbers in csv and json are the shortest that read back as the same double. Whole numbers beyond 2^53 (seeds) are
+// text there, because jq, R and spreadsheets read every number as a double: "5577006791947779410" in json,
+// 5_577_006_791_947_779_410 in csv, where only the characters say what is a number. --seed takes both.
 #pragma once
 
 #include "solver/scenes/values.hpp"

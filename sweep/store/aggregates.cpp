@@ -1,8 +1,11 @@
 #include "sweep/store/aggregates.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <stdexcept>
+#include <vector>
 
 namespace grainsweep::store {
 
@@ -62,14 +65,107 @@ std::optional<double> kurtosis(std::span<double> x) {
     return central_moment(x, 4) / (variance * variance);
 }
 
+std::optional<double> var_pop(std::span<double> x) {
+    return central_moment(x, 2);
+}
+
+std::optional<double> var_samp(std::span<double> x) {
+    if (x.size() < 2) return std::nullopt;
+    const auto n = static_cast<double>(x.size());
+    return central_moment(x, 2) * (n / (n - 1));
+}
+
+std::optional<double> stddev_samp(std::span<double> x) {
+    const auto variance = var_samp(x);
+    return variance ? std::optional(std::sqrt(*variance)) : std::nullopt;
+}
+
+/// Rows of two numbers as two columns.
+std::array<std::vector<double>, 2> columns_of(std::span<const double> rows) {
+    std::array<std::vector<double>, 2> columns;
+    for (std::size_t k = 0; k + 1 < rows.size(); k += 2) {
+        columns[0].push_back(rows[k]);
+        columns[1].push_back(rows[k + 1]);
+    }
+    return columns;
+}
+
+/// The p-quantile; `share` is the same for every row.
+std::optional<double> quantile_of(std::span<const double> rows, double whole, const char* rule) {
+    auto [x, shares] = columns_of(rows);
+    const double p = shares.front() / whole;
+    if (!(p >= 0 && p <= 1) || !all_equal(shares)) throw std::invalid_argument(rule);
+    std::ranges::sort(x);
+    const double place = p * static_cast<double>(x.size() - 1);
+    const auto below = static_cast<std::size_t>(place);
+    if (below + 1 >= x.size()) return x.back();
+    const double weight = place - static_cast<double>(below);
+    return weight == 0 ? x[below] : x[below] + weight * (x[below + 1] - x[below]);
+}
+
+std::optional<double> quantile(std::span<double> rows) {
+    return quantile_of(rows, 1, "quantile(x, p): p is one number from 0 to 1");
+}
+
+std::optional<double> percentile(std::span<double> rows) {
+    return quantile_of(rows, 100, "percentile(x, P): P is one number from 0 to 100");
+}
+
+double product_moment(std::span<const double> x, std::span<const double> y) {
+    const double mx = mean(x), my = mean(y);
+    double sum = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) sum += (x[k] - mx) * (y[k] - my);
+    return sum / static_cast<double>(x.size());
+}
+
+std::optional<double> covar_pop(std::span<double> rows) {
+    const auto [x, y] = columns_of(rows);
+    return product_moment(x, y);
+}
+
+std::optional<double> covar_samp(std::span<double> rows) {
+    const auto [x, y] = columns_of(rows);
+    if (x.size() < 2) return std::nullopt;
+    const auto n = static_cast<double>(x.size());
+    return product_moment(x, y) * (n / (n - 1));
+}
+
+std::optional<double> corr(std::span<double> rows) {
+    const auto [x, y] = columns_of(rows);
+    if (all_equal(x) || all_equal(y)) return std::nullopt;
+    const double spread = std::sqrt(central_moment(x, 2)) * std::sqrt(central_moment(y, 2));
+    return std::clamp(product_moment(x, y) / spread, -1.0, 1.0);
+}
+
+struct Aggregate {
+    const char* name;
+    int arguments;
+    std::optional<double> (*statistic)(std::span<double> rows);
+};
+
+constexpr std::array aggregates = {
+    Aggregate{"sd", 1, sd},
+    Aggregate{"stddev_pop", 1, sd},
+    Aggregate{"stddev", 1, stddev_samp},
+    Aggregate{"stddev_samp", 1, stddev_samp},
+    Aggregate{"var_pop", 1, var_pop},
+    Aggregate{"variance", 1, var_samp},
+    Aggregate{"var_samp", 1, var_samp},
+    Aggregate{"median", 1, median},
+    Aggregate{"quantile", 2, quantile},
+    Aggregate{"percentile", 2, percentile},
+    Aggregate{"corr", 2, corr},
+    Aggregate{"covar_pop", 2, covar_pop},
+    Aggregate{"covar_samp", 2, covar_samp},
+    Aggregate{"pearson_skewness", 1, pearson_skewness},
+    Aggregate{"g1", 1, g1},
+    Aggregate{"kurtosis", 1, kurtosis},
+};
+
 }  // namespace
 
 void add_statistics(Connection& connection) {
-    connection.add_aggregate("sd", sd);
-    connection.add_aggregate("median", median);
-    connection.add_aggregate("pearson_skewness", pearson_skewness);
-    connection.add_aggregate("g1", g1);
-    connection.add_aggregate("kurtosis", kurtosis);
+    for (const auto& [name, arguments, statistic] : aggregates) connection.add_aggregate(name, arguments, statistic);
 }
 
 }  // namespace grainsweep::store

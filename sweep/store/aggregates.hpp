@@ -1,12 +1,19 @@
 // Statistics SQLite does not have, for `grainsweep query`: SELECT median(mfr) FROM wu2020_lds.
 //
-// Definitions of Wu et al. 2020, eq. 18-21; all skip NULL.
-//   sd(x)                sqrt(sum (x - mean)^2 / N)
-//   median(x)            middle value, mean of the two middle ones for even N
+// All skip NULL; a row of two arguments where either is NULL.
+//   sd(x)                sqrt(sum (x - mean)^2 / N), and those of Wu et al. 2020, eq. 18-21, with it:
 //   pearson_skewness(x)  3 (mean - median) / sd
 //   g1(x)                sum (x - mean)^3 / (N sd^3)
 //   kurtosis(x)          sum (x - mean)^4 / (N sd^4): 3 for a normal distribution
-// The last three are NULL where all values are equal.
+//   stddev_pop(x), var_pop(x)           divide by N: stddev_pop is sd
+//   stddev(x), stddev_samp(x)           divide by N - 1, as in PostgreSQL, R and pandas; NULL for one value
+//   variance(x), var_samp(x)            their squares
+//   median(x)            middle value, mean of the two middle ones for even N
+//   quantile(x, p)       p from 0 to 1, linear between the sorted values at (N - 1) p (R's type 7)
+//   percentile(x, P)     quantile(x, P / 100)
+//   corr(x, y)           Pearson's correlation; NULL where x or y does not vary
+//   covar_pop(x, y), covar_samp(x, y)   covariance over N, over N - 1
+// Skewnesses and kurtosis are NULL where all values are equal.
 #pragma once
 
 #include "sweep/store/database.hpp"

@@ -334,21 +334,19 @@ struct Group {
     std::vector<double>* numbers = nullptr;  // made at the first row
 };
 
-void add_to_group(sqlite3_context* context, int, sqlite3_value** arguments) {
+void add_to_group(sqlite3_context* context, int count, sqlite3_value** arguments) {
     auto* group = static_cast<Group*>(sqlite3_aggregate_context(context, sizeof(Group)));
     if (group == nullptr) return sqlite3_result_error_nomem(context);
+    const std::span row(arguments, static_cast<std::size_t>(count));
+    for (auto* value : row) {
+        const int type = sqlite3_value_type(value);
+        if (type == SQLITE_NULL) return;
+        if (type != SQLITE_INTEGER && type != SQLITE_FLOAT)
+            return sqlite3_result_error(context, "a statistic is asked of numbers, this is a word", -1);
+    }
     try {
         if (group->numbers == nullptr) group->numbers = new std::vector<double>();
-        switch (sqlite3_value_type(arguments[0])) {
-            case SQLITE_NULL:
-                return;
-            case SQLITE_INTEGER:
-            case SQLITE_FLOAT:
-                group->numbers->push_back(sqlite3_value_double(arguments[0]));
-                return;
-            default:
-                return sqlite3_result_error(context, "a statistic is asked of numbers, this is a word", -1);
-        }
+        for (auto* value : row) group->numbers->push_back(sqlite3_value_double(value));
     } catch (const std::bad_alloc&) {
         sqlite3_result_error_nomem(context);
     }
@@ -359,8 +357,14 @@ void finish_group(sqlite3_context* context) {
     if (group == nullptr || group->numbers == nullptr) return sqlite3_result_null(context);
     const std::unique_ptr<std::vector<double>> numbers(std::exchange(group->numbers, nullptr));
     const auto statistic = reinterpret_cast<Statistic>(sqlite3_user_data(context));
-    const auto answer = numbers->empty() ? std::nullopt : statistic(*numbers);
-    answer ? sqlite3_result_double(context, *answer) : sqlite3_result_null(context);
+    try {
+        const auto answer = numbers->empty() ? std::nullopt : statistic(*numbers);
+        answer ? sqlite3_result_double(context, *answer) : sqlite3_result_null(context);
+    } catch (const std::bad_alloc&) {
+        sqlite3_result_error_nomem(context);
+    } catch (const std::invalid_argument& refused) {
+        sqlite3_result_error(context, refused.what(), -1);
+    }
 }
 
 }  // namespace
@@ -370,10 +374,17 @@ void Connection::authorize(Authorizer authorizer) const {
     sqlite3_set_authorizer(handle_.get(), authorizer_ ? call_authorizer : nullptr, authorizer_.get());
 }
 
-void Connection::add_aggregate(const char* name, Statistic statistic) {
-    check(handle_.get(),
-          sqlite3_create_function_v2(handle_.get(), name, 1, SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_INNOCUOUS,
-                                     reinterpret_cast<void*>(statistic), nullptr, add_to_group, finish_group, nullptr));
+void Connection::add_aggregate(const char* name, int arguments, Statistic statistic) {
+    check(handle_.get(), sqlite3_create_function_v2(
+                             handle_.get(), name, arguments, SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_INNOCUOUS,
+                             reinterpret_cast<void*>(statistic), nullptr, add_to_group, finish_group, nullptr));
+}
+
+std::vector<std::string> Connection::functions() const {
+    std::vector<std::string> names;
+    auto rows = prepare("SELECT DISTINCT name FROM pragma_function_list ORDER BY name");
+    while (rows.step()) names.push_back(rows.get<std::string>(0));
+    return names;
 }
 
 // --- Transaction

@@ -167,8 +167,12 @@ public:
 
     /// Every statement prepared from now on must please the authorizer; empty: all do.
     void authorize(Authorizer authorizer) const;
-    /// Adds an aggregate over the numbers of a group (NULL skipped); an empty answer is NULL.
-    void add_aggregate(const char* name, std::optional<double> (*statistic)(std::span<double> numbers));
+    /// Adds an aggregate over the rows of a group, each of `arguments` numbers, one row after another; a row with a
+    /// NULL is skipped, an empty answer is NULL. What the statistic throws (std::invalid_argument) refuses the
+    /// statement.
+    void add_aggregate(const char* name, int arguments, std::optional<double> (*statistic)(std::span<double> numbers));
+    /// The functions that statements may call.
+    [[nodiscard]] std::vector<std::string> functions() const;
 
 private:
     struct Close {

@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <string>
+#include <vector>
 
 namespace grainsweep::store {
 
@@ -14,8 +17,8 @@ namespace {
 /// What a question may do. ATTACH, BEGIN and most pragmas are read-only to SQLite, but no questions. Statements that
 /// write are told by sqlite3_stmt_readonly: table-valued functions (json_each) declare a table on the way.
 bool may(SqlAction action, std::string_view name) {
-    constexpr std::array pragmas = {"table_info", "table_xinfo", "table_list",
-                                    "index_list", "index_info",  "foreign_key_list"};
+    constexpr std::array pragmas = {"table_info", "table_xinfo",      "table_list",   "index_list",
+                                    "index_info", "foreign_key_list", "function_list"};
     switch (action) {
         case SqlAction::select:
         case SqlAction::recursive:
@@ -67,6 +70,81 @@ Table rows_of(const Connection& db, std::string_view sql) {
     return table;
 }
 
+std::vector<std::string> names_from(const Connection& db, std::string_view sql, const std::string& argument = {}) {
+    std::vector<std::string> names;
+    auto statement = db.prepare(sql);
+    if (!argument.empty()) statement.bind(1, argument);
+    while (statement.step()) names.push_back(statement.get<std::string>(0));
+    return names;
+}
+
+/// Campaigns first, then the fixed views, then tables.
+std::vector<std::string> tables_of(const Connection& db) {
+    return names_from(db,
+                      "SELECT name FROM sqlite_schema WHERE type IN ('view', 'table') AND name NOT LIKE 'sqlite_%' "
+                      "ORDER BY name NOT IN (SELECT name FROM campaign), type = 'table', name");
+}
+
+std::string listed(const std::vector<std::string>& names) {
+    std::string text;
+    for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text;
+}
+
+/// Whether the text names the word, as a word of its own.
+bool mentions(std::string_view sql, std::string_view word) {
+    const auto letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+    const auto same = [](char a, char b) {
+        return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
+    };
+    auto at = sql.begin();
+    while ((at = std::search(at, sql.end(), word.begin(), word.end(), same)) != sql.end()) {
+        const auto end = at + static_cast<std::ptrdiff_t>(word.size());
+        if ((at == sql.begin() || !letter(*(at - 1))) && (end == sql.end() || !letter(*end))) return true;
+        ++at;
+    }
+    return false;
+}
+
+/// What SQLite did not know, with the names there are and the nearest of them.
+campaign::WrongQuestion refusal_of_column(const Connection& db, std::string_view sql, std::string_view column) {
+    std::string_view plain = column;
+    if (const auto dot = plain.rfind('.'); dot != std::string_view::npos) plain.remove_prefix(dot + 1);
+    std::vector<std::string> near, elsewhere;
+    std::string rule = fmt::format("no such column: {}", column), holders;
+    for (const auto& table : tables_of(db)) {
+        const auto columns = names_from(db, "SELECT name FROM pragma_table_info(?)", table);
+        if (mentions(sql, table)) {
+            rule += fmt::format("; {} has {}", table, listed(columns));
+            near.insert(near.end(), columns.begin(), columns.end());
+        } else if (std::ranges::find(columns, plain) != columns.end()) {
+            elsewhere.push_back(table);
+        }
+    }
+    if (!elsewhere.empty()) rule += fmt::format("; '{}' is a column of {}", plain, listed(elsewhere));
+    const std::string quoted = fmt::format("\"{}\"", plain);
+    if (sql.find(quoted) != std::string_view::npos)
+        return campaign::wrong_question("SQL", {}, rule + "; a text stands in single quotes", std::string(plain));
+    return campaign::wrong_question("SQL", {}, rule, campaign::nearest_word(plain, near));
+}
+
+campaign::WrongQuestion refusal(const Connection& db, std::string_view sql, std::string_view words) {
+    const auto after = [&](std::string_view start) {
+        return words.starts_with(start) ? words.substr(start.size()) : std::string_view{};
+    };
+    if (const auto column = after("no such column: "); !column.empty()) {
+        return refusal_of_column(db, sql, column.substr(0, column.find(" - ")));  // newer SQLite adds advice
+    }
+    if (const auto table = after("no such table: "); !table.empty()) {
+        const auto tables = tables_of(db);
+        return campaign::wrong_question("SQL", {}, fmt::format("{}; there are {}", words, listed(tables)),
+                                        campaign::nearest_word(table, tables));
+    }
+    if (const auto function = after("no such function: "); !function.empty())
+        return campaign::wrong_question("SQL", {}, words, campaign::nearest_word(function, db.functions()));
+    return campaign::wrong_question("SQL", {}, words);
+}
+
 }  // namespace
 
 Table Store::query(std::string_view sql) const {
@@ -74,7 +152,7 @@ Table Store::query(std::string_view sql) const {
     try {
         return rows_of(impl_->db, sql);
     } catch (const RefusedSql& refused) {
-        throw campaign::wrong_question("SQL", {}, refused.words());
+        throw refusal(impl_->db, sql, refused.words());
     }
 }
 

@@ -137,8 +137,8 @@ public:
     /// One row per campaign: campaign, scene, cases, one count per outcome, waiting (no outcome yet), stopped_at,
     /// rate (answers per second of the last run), time_left (s, at that rate; NULL where none is known).
     [[nodiscard]] Table status() const;
-    /// One statement of read-only SQL: anything else throws WrongQuestion with SQLite's sentence. Beside SQLite's own
-    /// functions: sd, median, pearson_skewness, g1, kurtosis (aggregates.hpp).
+    /// One statement of read-only SQL: anything else throws WrongQuestion with SQLite's sentence, the names there are
+    /// and the nearest. Beside SQLite's own functions those of aggregates.hpp.
     [[nodiscard]] Table query(std::string_view sql) const;
     /// Canonical text of all results, line by line without line breaks: no times, attempts, hosts; equal for equal
     /// science. The form is described in dump.cpp.

@@ -269,13 +269,25 @@ TEST(CampaignText, WhatIsNoJsonIsRefusedWithItsPlace) {
               "line 1, column 10: got \"-Infinity\"; JSON has no NaN and no Infinity.");
     EXPECT_EQ(sentence_of("{\"seed\": 1e999}"),
               "line 1, column 10: got \"1e999\"; a number must be finite in double precision.");
-    EXPECT_EQ(sentence_of("// no\n{}"), "line 1, column 1: got \"/\"; not JSON: invalid literal.");
+    const std::string no_comments = "JSON has no comments; write \"notes\": \"...\", in any object.";
+    EXPECT_EQ(sentence_of("// no\n{}"), "line 1, column 1: got \"//\"; " + no_comments);
+    EXPECT_EQ(sentence_of("{\"seed\": 1, // no\n}"), "line 1, column 13: got \"//\"; " + no_comments);
+    EXPECT_EQ(sentence_of("{\"seed\": 1\n  # no\n}"), "line 2, column 3: got \"#\"; " + no_comments);
+    EXPECT_EQ(sentence_of("{/* no */\"seed\": 1}"), "line 1, column 2: got \"/*\"; " + no_comments);
+    EXPECT_EQ(sentence_of("{'seed': 1}"), "line 1, column 2: got \"'\"; JSON has its texts and keys in double quotes.");
     EXPECT_EQ(sentence_of("\xFF\xFE{\0}"),
               "line 1, column 1: got a UTF-16 byte-order mark; the file must be UTF-8 text.");
     EXPECT_EQ(sentence_of("{\"notes\": \"\xC3\x28\"}"),
               "line 1, column 13: got \"\\\"\\ufffd(\"; not JSON: invalid string: ill-formed UTF-8 byte.");
     EXPECT_EQ(sentence_of("{\"notes\": \"\\u0000\"}"),
               "$.notes: got \"\\u0000\"; a text must not contain the NUL character.");
+}
+
+TEST(CampaignText, ATrailingCommaIsCalledSo) {
+    EXPECT_EQ(sentence_of("{\"seed\": 1,}"),
+              "line 1, column 11: got \",\"; a trailing comma: JSON has none before '}'; take it out.");
+    EXPECT_EQ(sentence_of("{\"a\": [1, 2,\n\n ]}"),
+              "line 1, column 12: got \",\"; a trailing comma: JSON has none before ']'; take it out.");
 }
 
 TEST(CampaignText, AKeyThatIsThereTwiceIsRefusedWithItsPath) {

@@ -44,7 +44,7 @@ TEST(Table, CsvIsQuotedWhereItMustBe) {
               "plain,12,0.1\n"
               "\"a, \"\"b\"\"\nc\",,-1e-300\n"
               "\"\",-3,\n"
-              "µm,9007199254740993,0.3333333333333333\n");
+              "µm,9_007_199_254_740_993,0.3333333333333333\n");
 }
 
 TEST(Table, JsonIsOneValueWithKeysInOrder) {
@@ -55,12 +55,23 @@ TEST(Table, JsonIsOneValueWithKeysInOrder) {
     EXPECT_EQ(rows[1]["name"], "a, \"b\"\nc");
     EXPECT_TRUE(rows[1]["count"].is_null());
     EXPECT_TRUE(rows[2]["value"].is_null());
-    EXPECT_EQ(rows[3]["count"], 9007199254740993);
+    EXPECT_EQ(rows[3]["count"], "9007199254740993");
     EXPECT_EQ(rows[3]["value"].get<double>(), 1.0 / 3);
     EXPECT_EQ(written({{"a"}, {}}, Format::json), "[]\n");
     // A name that is there more than once loses no value.
     EXPECT_EQ(written({{"y", "y", "y_2", "y"}, {{1, 2, 3, 4}}}, Format::json),
               "[{\"y\":1,\"y_2\":2,\"y_2_2\":3,\"y_3\":4}]\n");
+}
+
+// jq, R and spreadsheets read every number as a double.
+TEST(Table, WholeNumbersThatNoDoubleHoldsAreText) {
+    const std::int64_t last = std::int64_t{1} << 53U;
+    const store::Table table{{"seed"}, {{last}, {last + 1}, {-last - 1}, {std::int64_t{5577006791947779410}}}};
+    EXPECT_EQ(written(table, Format::json),
+              "[{\"seed\":9007199254740992},{\"seed\":\"9007199254740993\"},{\"seed\":\"-9007199254740993\"},"
+              "{\"seed\":\"5577006791947779410\"}]\n");
+    EXPECT_EQ(written(table, Format::csv),
+              "seed\n9007199254740992\n9_007_199_254_740_993\n-9_007_199_254_740_993\n5_577_006_791_947_779_410\n");
 }
 
 TEST(Table, NumbersRoundTrip) {

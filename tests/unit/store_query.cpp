@@ -246,5 +246,51 @@ TEST_F(StoreQuery, ADumpOfAStoppedCampaignEndsWhereItStopped) {
     EXPECT_EQ(dump_of(store), dump_of(other));
 }
 
+TEST_F(StoreQuery, StatisticsAreTheirDefinitions) {
+    // x: 1, 2, 3, 4, 10; y: 2, 1, 4, 3, 7. Values by R 4.2: sd, var, quantile (type 7), cor, cov.
+    const std::string rows = " FROM (VALUES (1, 2), (2, 1), (3, 4), (4, 3), (10, 7), (NULL, 5), (6, NULL))";
+    const auto of = [&](const std::string& statistic) {
+        return std::stod(only_cell(store, "SELECT " + statistic + rows + " WHERE column1 IS NOT 6"));
+    };
+    EXPECT_DOUBLE_EQ(of("stddev(column1)"), 3.5355339059327378);
+    EXPECT_DOUBLE_EQ(of("stddev_samp(column1)"), 3.5355339059327378);
+    EXPECT_DOUBLE_EQ(of("variance(column1)"), 12.5);
+    EXPECT_DOUBLE_EQ(of("var_samp(column1)"), 12.5);
+    EXPECT_DOUBLE_EQ(of("stddev_pop(column1)"), std::sqrt(10.0));
+    EXPECT_DOUBLE_EQ(of("var_pop(column1)"), 10);
+    EXPECT_EQ(of("stddev_pop(column1)"), of("sd(column1)"));
+    EXPECT_DOUBLE_EQ(of("quantile(column1, 0)"), 1);
+    EXPECT_DOUBLE_EQ(of("quantile(column1, 0.3)"), 2.2);
+    EXPECT_DOUBLE_EQ(of("quantile(column1, 0.5)"), of("median(column1)"));
+    EXPECT_DOUBLE_EQ(of("quantile(column1, 1)"), 10);
+    EXPECT_DOUBLE_EQ(of("percentile(column1, 90)"), of("quantile(column1, 0.9)"));
+    EXPECT_DOUBLE_EQ(of("covar_samp(column1, column2)"), 7.5);
+    EXPECT_DOUBLE_EQ(of("covar_pop(column1, column2)"), 6);
+    EXPECT_NEAR(of("corr(column1, column2)"), 0.92144, 1e-5);
+    EXPECT_DOUBLE_EQ(of("corr(column1, -column1)"), -1);
+    EXPECT_EQ(only_cell(store, "SELECT corr(1, column2)" + rows), "NULL");
+    EXPECT_EQ(only_cell(store, "SELECT stddev(1)"), "NULL") << "one value has no sample deviation";
+    EXPECT_EQ(only_cell(store, "SELECT quantile(y, 0.5) FROM first"), "NULL");
+    EXPECT_THAT(refusal("SELECT quantile(column1, 1.5)" + rows), HasSubstr("p is one number from 0 to 1"));
+    EXPECT_THAT(refusal("SELECT quantile(column1, column2)" + rows), HasSubstr("p is one number from 0 to 1"));
+    EXPECT_THAT(refusal("SELECT percentile(column1, -1)" + rows), HasSubstr("P is one number from 0 to 100"));
+}
+
+TEST_F(StoreQuery, AnUnknownNameGetsThoseThereAreAndTheNearest) {
+    EXPECT_EQ(refusal("SELECT sequenc FROM first"),
+              "SQL: no such column: sequenc; first has point, sequence, replicate, case_id, seed, outcome, attempts, "
+              "wall_seconds, x1, x2, y. Did you mean 'sequence'?");
+    EXPECT_THAT(refusal("SELECT c.outcme FROM First AS c"), HasSubstr("Did you mean 'outcome'?"));
+    EXPECT_THAT(refusal("SELECT time FROM first"), HasSubstr("'time' is a column of series, observation"));
+    EXPECT_THAT(refusal("SELECT count(*) FROM first WHERE outcome = \"completed\""),
+                HasSubstr("a text stands in single quotes"));
+    EXPECT_EQ(refusal("SELECT * FROM frist"),
+              "SQL: no such table: frist; there are first, convergence_history, inputs, series, attempt, campaign, "
+              "campaign_case, case_input, convergence, observable, observation, parameter, provenance, sim_case. Did "
+              "you mean 'first'?");
+    EXPECT_EQ(refusal("SELECT stdev(y) FROM first"), "SQL: no such function: stdev. Did you mean 'stddev'?");
+    EXPECT_EQ(refusal("SELECT medain(y) FROM first"), "SQL: no such function: medain. Did you mean 'median'?");
+}
+
 }  // namespace
 }  // namespace grainsweep::tests

@@ -1,0 +1,67 @@
+// completion, manual: what is generated from the tables for shells and for man(1).
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/cli/command.hpp"
+#include "sweep/cli/completion.hpp"
+#include "sweep/cli/manual.hpp"
+
+#include <array>
+#include <iostream>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace grainsweep::cli {
+
+namespace {
+
+struct Shell {
+    const char* name;
+    std::string (*completion)(std::span<const CommandInfo>);
+};
+constexpr std::array shells = {Shell{"bash", bash_completion}, Shell{"zsh", zsh_completion}};
+
+std::string completion_for(const std::string& name) {
+    std::vector<std::string> known;
+    for (const auto& shell : shells) {
+        if (name == shell.name) return shell.completion(describe(all_commands()));
+        known.emplace_back(shell.name);
+    }
+    throw campaign::wrong_question("SHELL", name, "must be 'bash' or 'zsh'", campaign::nearest_word(name, known));
+}
+
+/// Text as it is; as one value where a program asks for one.
+void print(const std::string& column, const std::string& text, report::Format format) {
+    if (format == report::Format::text) {
+        std::cout << text;
+    } else {
+        report::write(std::cout, store::Table{{column}, {{text}}}, format);
+    }
+}
+
+}  // namespace
+
+std::vector<Command> manual_commands() {
+    return {
+        {"completion", "completion of the command line, as a script for a shell",
+         [](Parser& parser, const report::Format& format) -> Action {
+             const auto shell = std::make_shared<std::string>();
+             parser.add_option("SHELL", *shell, "bash or zsh")->required();
+             return [shell, &format] {
+                 print("completion", completion_for(*shell), format);
+                 return 0;
+             };
+         },
+         false, true},
+        {"manual", "the manual page, for man(1)",
+         [](Parser&, const report::Format& format) -> Action {
+             return [&format] {
+                 print("manual", manual_page(describe(all_commands())), format);
+                 return 0;
+             };
+         },
+         false, true},
+    };
+}
+
+}  // namespace grainsweep::cli

@@ -1,0 +1,27 @@
+// A table as aligned text that fits a width, by the first of these that is enough:
+//
+//   cells of text are wrapped, and headings after an underscore
+//   columns that say the same in every row are told in one line below
+//   case ids are shortened to their beginning, which every command takes
+//   three rows or fewer stand as records, a line per column
+//   columns are left out: whole numbers beyond 2^53 (seeds), how a case was computed (wall_seconds, attempts), then
+//   from the right; a line names them and says how to see them
+//
+// Numbers stand to the right and are never broken.
+#pragma once
+
+#include "sweep/store/store.hpp"
+
+#include <cstddef>
+#include <iosfwd>
+#include <string>
+
+namespace grainsweep::report {
+
+/// No line is longer than `width`.
+void write_text(std::ostream& out, const store::Table& table, std::size_t width);
+
+/// A cell on one line: numbers to 6 digits, control characters shown, nothing for an absent value.
+[[nodiscard]] std::string cell_text(const store::Table::Cell& cell);
+
+}  // namespace grainsweep::report
