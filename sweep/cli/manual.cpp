@@ -52,15 +52,12 @@ std::string italic(std::string_view text) {
 std::string section(std::string_view title) {
     return fmt::format(".SH {}\n", title);
 }
-std::string paragraph(const std::string& text) {
-    return ".PP\n" + text + "\n";
-}
 /// A tagged paragraph; both are troff already.
 std::string item(const std::string& tag, const std::string& text) {
     return ".TP\n" + tag + "\n" + text + "\n";
 }
 std::string example(std::string_view lines) {
-    return ".PP\n.nf\n.RS\n" + plain(lines) + "\n.RE\n.fi\n";
+    return ".nf\n.RS\n" + plain(lines) + "\n.RE\n.fi\n";
 }
 
 std::string tag_of(const ArgumentInfo& argument) {
@@ -99,9 +96,11 @@ std::string commands_section(std::span<const CommandInfo> commands) {
 
 std::string keys_section() {
     std::string text = section("CAMPAIGN FILE");
-    text += paragraph(
-        plain("One JSON object, SI units. Any object may have \"notes\", a text or a list of texts. grainsweep schema "
-              "prints its JSON Schema."));
+    text +=
+        plain(
+            "One JSON object, SI units. Any object may have \"notes\", a text or a list of texts. grainsweep schema "
+            "prints its JSON Schema.") +
+        "\n";
     const auto add = [&text](std::string_view title, std::span<const campaign::Key> keys) {
         text += fmt::format(".SS {}\n", title);
         for (const auto& key : keys) {
@@ -179,7 +178,8 @@ std::string manual_page(std::span<const CommandInfo> commands) {
                                    plain(program_version()));
     text += section("NAME") + "grainsweep \\- parameter sweeps of granular processes\n";
     text += section("SYNOPSIS");
-    for (const auto& command : commands) text += ".br\n" + bold("grainsweep") + " " + usage_of(command) + "\n";
+    for (const auto& command : commands)
+        text += (&command == &commands.front() ? "" : ".br\n") + bold("grainsweep") + " " + usage_of(command) + "\n";
     text += section("DESCRIPTION");
     text +=
         "From one JSON file to an answer: a scene is computed at the points of a design by worker processes, every "

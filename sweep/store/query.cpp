@@ -111,7 +111,7 @@ campaign::WrongQuestion refusal_of_column(const Connection& db, std::string_view
     std::string_view plain = column;
     if (const auto dot = plain.rfind('.'); dot != std::string_view::npos) plain.remove_prefix(dot + 1);
     std::vector<std::string> near, elsewhere;
-    std::string rule = fmt::format("no such column: {}", column), holders;
+    std::string rule = fmt::format("no such column: {}", column);
     for (const auto& table : tables_of(db)) {
         const auto columns = names_from(db, "SELECT name FROM pragma_table_info(?)", table);
         if (mentions(sql, table)) {

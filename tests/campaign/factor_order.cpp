@@ -69,9 +69,10 @@ TEST_F(FactorOrder, MovesTheLevelsOfALatticeWithTheirFactors) {
 }
 
 TEST_F(FactorOrder, MovesTheColumnsOfAList) {
-    const json campaign = campaign_of({{"kind", "list"}, {"rows", {{0.25, "sum"}, {0.5, "ishigami"}}}});
+    const json campaign =
+        campaign_of({{"kind", "list"}, {"rows", json::parse(R"([[0.25, "sum"], [0.5, "ishigami"]])")}});
     json turned = turned_round(campaign);
-    turned["design"]["rows"] = {{"sum", 0.25}, {"ishigami", 0.5}};
+    turned["design"]["rows"] = json::parse(R"([["sum", 0.25], ["ishigami", 0.5]])");
     expect_same(campaign, turned);
 }
 

@@ -110,7 +110,8 @@ zpty asked zsh -f -i
 zpty -w asked 'PS1=; PS2=; fpath=('$PWD' $fpath); autoload -U compinit; compinit -u -D; LISTMAX=0; bindkey "^I" list-choices; print ready-$((40+2))'
 zpty -r asked answer '*ready-42*'
 zpty -w -n asked $'grainsweep scenes \t'
-zpty -r asked answer '*)" + listed("scenes", "scene").back() + R"(*'
+zpty -r asked answer '*)" + listed("scenes", "scene").back() +
+                                R"(*'
 print -r -- "$answer"
 zpty -d asked
 )");
@@ -146,7 +147,10 @@ TEST_F(Shells, TheManualNamesEveryCommandSceneDesignAndOption) {
         const auto typeset = bash("groff -man -ww -Tutf8 -Kutf8 grainsweep.1");
         EXPECT_EQ(typeset.code, 0);
         EXPECT_EQ(typeset.err, "");
-        EXPECT_THAT(typeset.out, HasSubstr("thermovibration"));
+        EXPECT_THAT(typeset.out, HasSubstr("parameter sweeps of granular processes"));
     }
-    if (has("mandoc")) EXPECT_EQ(bash("mandoc -Tlint -Wwarning grainsweep.1").out, "");
+    if (has("mandoc")) {
+        EXPECT_EQ(bash("mandoc -Tlint -Wwarning grainsweep.1 | grep -v 'missing date'").out, "")
+            << "a page has no clock";
+    }
 }

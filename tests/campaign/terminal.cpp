@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -129,7 +130,7 @@ TEST_F(Terminal, FormatsForProgramsHaveNoWidth) {
 }
 
 TEST_F(Terminal, TheWidthIsThatOfTheTerminal) {
-    for (const unsigned short width : {60, 90}) {
+    for (const std::uint16_t width : {std::uint16_t{60}, std::uint16_t{90}}) {
         int terminal = -1;
         const winsize size{.ws_row = 24, .ws_col = width, .ws_xpixel = 0, .ws_ypixel = 0};
         const std::string program = grainsweep::tests::executable().string();
