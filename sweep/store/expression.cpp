@@ -162,7 +162,7 @@ campaign::Filter make_filter(std::string_view expression, std::span<const std::s
     }
     if (expression.find('\0') != std::string_view::npos)
         throw refusal("an expression with a NUL byte", "text is expected");
-    if (names.empty()) throw refusal(expression, "there is nothing it could speak about");
+    if (names.empty()) throw refusal(expression, "the campaign has no factor and no fixed value it could use");
     auto condition = std::make_shared<Condition>(expression, names);
     return [condition = std::move(condition)](const Inputs& inputs) { return condition->holds(inputs); };
 }

@@ -151,8 +151,8 @@ TEST(DemConservation, PeriodicFacesJoinAndOpenFacesRemove) {
     EXPECT_EQ(s.id, (std::vector<std::int32_t>{0, 1}));
     EXPECT_NEAR(s.velocity[0][0], -0.5, 1e-4);
     EXPECT_NEAR(s.velocity[1][0], 0.5, 1e-4);
-    const std::vector<std::int32_t> everybody = {1, 0, 77};
-    engine->remove(everybody);
+    const std::vector<std::int32_t> all_three = {1, 0, 77};
+    engine->remove(all_three);
     EXPECT_EQ(engine->size(), 0U);
     engine->run(10);
     EXPECT_EQ(engine->fault(), "");

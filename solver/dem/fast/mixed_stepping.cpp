@@ -38,7 +38,7 @@ void MixedEngine::run(std::int64_t steps) {
         if (!fault_.empty()) return;
         place_walls(field_, walls_, space_, wall_time());
         make_lists();
-        const bool checked = watch_.due(work_.steps);  // at a state of the full step, so particles are not advanced before
+        const bool checked = watch_.due(work_.steps);  // at the full step: no particle is advanced before
         advanced = s + 1 < steps && !checked;
         begin_tally();
         kernels_->walls(field_, tally_);
