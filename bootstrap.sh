@@ -78,7 +78,7 @@ build_program() {
     [ -e "$here/build/tests" ] && tests=ON
     (cd "$here" && configure release -DGRAINSWEEP_TESTS=$tests)
     [ -x "$here/build/grainsweep" ] || echo "building (about two minutes on two cores)" >&2
-    quiet "building" cmake --build "$here/build" -j "$jobs" --target grainsweep
+    quiet "building" cmake --build "$here/build" -j "$jobs" --target grainsweep command_documents
 }
 
 case ${1:-} in
