@@ -6,6 +6,7 @@
 #include "solver/dem/fast/mixed_engine.hpp"
 #include "solver/scenes/catalogue.hpp"
 #include "solver/scenes/spreading/experiment.hpp"
+#include "solver/scenes/spreading/warnings.hpp"
 
 namespace grainsweep {
 namespace {
@@ -187,6 +188,7 @@ SceneInfo powder_spreading_scene() {
         return std::make_unique<spreading::Experiment>(spreading::study_of(inputs), seed, method_of(inputs), artefacts);
     };
     info.estimate_cost = estimate_cost;
+    info.warnings = spreading::warnings_of;
     // No gap is proven to pass nothing over the whole range of stiffness, cohesion and speed: soft particles are
     // squeezed through gaps below their diameter.
     info.proven_answer = [](const Inputs&) -> std::optional<ProvenAnswer> { return std::nullopt; };

@@ -93,6 +93,9 @@ struct SceneInfo {
     std::function<double(const Inputs&)> estimate_cost;
     /// The answer, where it is proven without simulation; otherwise empty.
     std::function<std::optional<ProvenAnswer>(const Inputs&)> proven_answer;
+    /// What a user must know before asking this: at most one warning of a kind. Only for inputs that make() accepts;
+    /// may be empty.
+    std::function<std::vector<Warning>(const Inputs&)> warnings;
     /// What the n-th attempt really does, where that differs from what was asked: only the rehearsal, whose
     /// misbehaviour may be limited to the first attempts.
     std::function<Inputs(Inputs, std::int64_t attempt)> on_attempt;

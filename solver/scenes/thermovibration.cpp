@@ -12,6 +12,7 @@
 #include "solver/coupling/spring_contacts.hpp"
 #include "solver/scenes/catalogue.hpp"
 #include "solver/scenes/thermovibration/runs.hpp"
+#include "solver/scenes/thermovibration/warnings.hpp"
 
 #include <cmath>
 #include <type_traits>
@@ -259,6 +260,7 @@ SceneInfo thermovibration_scene() {
         {"fast", accuracy(20, 1.5, 16)}, {"balanced", accuracy(28, 1.5, 24)}, {"reference", accuracy(48, 1.5, 64)}};
     info.maker = make;
     info.estimate_cost = estimate_cost;
+    info.warnings = thermovibration::warnings_of;
     info.proven_answer = proven_answer;
     return info;
 }

@@ -22,6 +22,7 @@
 #include "solver/scenes/dem_picture.hpp"
 #include "solver/scenes/tpms/question.hpp"
 #include "solver/scenes/tpms/record.hpp"
+#include "solver/scenes/tpms/warnings.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -305,6 +306,7 @@ SceneInfo tpms_discharge_scene() {
         return std::make_unique<TpmsDischarge>(question, filling, outlet, fraction);
     };
     info.estimate_cost = estimate_cost;
+    info.warnings = tpms_discharge_warnings;
     info.proven_answer = [](const Inputs&) -> std::optional<ProvenAnswer> { return std::nullopt; };
     return info;
 }

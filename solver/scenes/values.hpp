@@ -116,6 +116,13 @@ struct Cost {
     std::map<std::string, double, std::less<>> phases;  ///< seconds by phase name
 };
 
+/// Inputs that make nonsense of one another although each is within its bounds: the case can be computed, and its
+/// answer says little.
+struct Warning {
+    std::string kind;      ///< one for all cases with the same trouble: "gap above the layer"
+    std::string sentence;  ///< with this case's numbers
+};
+
 /// An answer known without simulation, with the proof in words.
 struct ProvenAnswer {
     std::string reason;

@@ -60,6 +60,14 @@ struct Convergence {
     bool operator==(const Convergence&) const = default;
 };
 
+/// Checks that a campaign is divided into where it does not give a block, and the longest such block.
+inline constexpr std::int64_t checks_by_default = 8, longest_default_block = 400;
+/// Points between two checks where a campaign does not say: an eighth of its design at most, a multiple of its
+/// independent sequences, 400 at most and no less than `least`.
+[[nodiscard]] std::int64_t default_block(std::int64_t points, std::int64_t sequences, std::int64_t least);
+/// Fewest points of a block: 4 for each sequence under the rule 'replicates', else 4.
+[[nodiscard]] std::int64_t least_block(std::string_view rule, std::int64_t sequences);
+
 struct Limits {
     double wall_seconds = 0;  ///< per attempt; 0: none
     std::int64_t attempts = 3;
@@ -92,6 +100,12 @@ struct Campaign {
 bool reorder_factors(Campaign& campaign, std::span<const std::string> order);
 /// "a, b, c".
 [[nodiscard]] std::string factor_list(const ParameterSpace& space);
+/// Points the design numbers, those that `where` leaves out included. Throws std::invalid_argument where the design's
+/// options are impossible together.
+[[nodiscard]] std::int64_t candidates_of(const Campaign& campaign);
+/// Why the campaign can never be found to have converged, however its answers turn out; empty: it can, or it gives no
+/// rule.
+[[nodiscard]] std::string never_converges(const Campaign& campaign);
 
 /// Decides whether a candidate point belongs to the campaign: the `where` clause.
 using Filter = std::function<bool(const Inputs&)>;

@@ -2,6 +2,8 @@
 
 #include "sweep/campaign/wrong_question.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <stdexcept>
 #include <string_view>
@@ -9,6 +11,21 @@
 #include <utility>
 
 namespace grainsweep::campaign {
+
+namespace {
+
+void add_cautions(Forecast& total, const SceneInfo& scene, const PlacedCase& placed) {
+    for (auto& warning : scene.warnings(placed.question.inputs)) {
+        auto found = std::ranges::find(total.cautions, warning.kind, &Caution::kind);
+        if (found == total.cautions.end()) {
+            total.cautions.push_back({std::move(warning.kind), std::move(warning.sentence), placed.point, 0});
+            found = total.cautions.end() - 1;
+        }
+        ++found->questions;
+    }
+}
+
+}  // namespace
 
 Prediction predict(const SceneInfo& scene, const Inputs& inputs) {
     Prediction prediction;
@@ -29,6 +46,7 @@ Forecast forecast(const SceneInfo& scene, std::span<const PlacedCase> cases) {
         if (!seen.insert(placed.question.id).second) continue;
         ++total.questions;
         Prediction one = predict(scene, placed.question.inputs);
+        if (one.impossible.empty() && scene.warnings) add_cautions(total, scene, placed);
         if (!one.impossible.empty() && total.impossible++ == 0) {
             total.first_reason = std::move(one.impossible);
             total.first_point = placed.point;
@@ -37,9 +55,19 @@ Forecast forecast(const SceneInfo& scene, std::span<const PlacedCase> cases) {
         total.total_seconds += one.seconds;
         total.longest_seconds = std::max(total.longest_seconds, one.seconds);
     }
-    if (total.impossible == total.questions)
+    if (total.questions > 0 && total.impossible == total.questions)
         throw wrong_question("$", "", "no case of this campaign can be computed: " + total.first_reason);
     return total;
+}
+
+std::vector<std::string> warnings_of(const Campaign& campaign, const Forecast& forecast) {
+    std::vector<std::string> warnings;
+    for (const auto& caution : forecast.cautions) {
+        warnings.push_back(fmt::format("{}: {} of {} cases, first at point {}: {}", caution.kind, caution.questions,
+                                       forecast.questions, caution.first_point, caution.sentence));
+    }
+    if (auto never = never_converges(campaign); !never.empty()) warnings.push_back(std::move(never));
+    return warnings;
 }
 
 }  // namespace grainsweep::campaign

@@ -6,8 +6,17 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace grainsweep::campaign {
+
+/// A warning of the scene that some cases of a campaign draw.
+struct Caution {
+    std::string kind;
+    std::string sentence;  ///< of the first of them
+    std::int64_t first_point = 0;
+    std::int64_t questions = 0;  ///< how many draw it
+};
 
 struct Forecast {
     std::int64_t places = 0;      ///< cases as placed in the design
@@ -18,7 +27,12 @@ struct Forecast {
     std::int64_t first_point = 0;
     double total_seconds = 0;    ///< of one plain core
     double longest_seconds = 0;  ///< the most expensive question
+    std::vector<Caution> cautions;
 };
+
+/// What to warn of before a campaign runs, one sentence each: cautions with their counts, and a rule of convergence
+/// that cannot be met.
+[[nodiscard]] std::vector<std::string> warnings_of(const Campaign& campaign, const Forecast& forecast);
 
 /// What is known of a case before it is computed.
 struct Prediction {

@@ -112,7 +112,14 @@ std::span<const Key> convergence_keys() {
          {"mean", "sd", "skewness", "g1", "kurtosis"},
          json_list(standard.gates)},
         {"tolerance", "relative", Kind::number, false, {0, 1, true, true}, {}, fmt::format("{}", standard.tolerance)},
-        {"block", "points between two checks", Kind::whole, false, {4, 1e9}, {}, std::to_string(standard.block)},
+        {"block",
+         "points between two checks; without it an eighth of the design's points, at most 400, a multiple of the "
+         "random sequences with at least 4 points for each",
+         Kind::whole,
+         false,
+         {4, 1e9},
+         {},
+         {}},
         {"stop", "whether a converged campaign starts no further case", Kind::flag, false, {}, {}, "true"},
     };
     return keys;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace grainsweep::campaign {
 
@@ -26,35 +27,38 @@ std::string read_observable(const Cursor& place, const SceneInfo& scene) {
     return place.word(scalars);
 }
 
-/// Independently scrambled sequences that advance together; 1 where there is none.
-std::int64_t random_sequences(const Campaign& campaign) {
-    const auto& options = campaign.request.options;
-    const auto sequences = options.find("sequences");
-    if (campaign.design != "halton" || sequences == options.end()) return 1;
-    return campaign.request.word("scramble") == "random" ? campaign.request.count("sequences") : 1;
-}
-
 void check_rule(const Section& section, const Convergence& convergence, const Campaign& campaign) {
     const std::string path = path_of(section.place().path(), "rule");
     const std::string got = fmt::format("\"{}\"{}", convergence.rule, section.find("rule") ? "" : " by default");
-    const std::int64_t sequences = random_sequences(campaign);
+    const std::int64_t sequences = designs::independent_sequences(campaign.design, campaign.request);
     if (convergence.rule != "replicates") {
-        if (campaign.design != "lattice") return;
+        if (designs::design_named(campaign.design).beginning != designs::Beginning::corner) return;
         throw wrong_question(path, got,
-                             "the points of a lattice come in no useful order, so blocks of them tell nothing; compare "
-                             "lattices campaign by campaign or take a halton design");
+                             fmt::format("the points of a {0} come in no useful order, so blocks of them tell nothing; "
+                                         "compare campaigns of that design or take a halton design",
+                                         campaign.design));
     }
     if (sequences < fewest_sequences) {
         throw wrong_question(
             path, got,
-            fmt::format("this rule needs a halton design with \"scramble\": \"random\" and "
+            fmt::format("this rule needs a halton or sobol design with \"scramble\": \"random\" and "
                         "\"sequences\" of at least {} (8 is good); any_change and all_change need none",
                         fewest_sequences));
     }
-    if (convergence.block < 4 * sequences) {
+    if (section.find("block") && convergence.block < least_block(convergence.rule, sequences)) {
         throw wrong_question(path_of(section.place().path(), "block"), std::to_string(convergence.block),
                              fmt::format("must give each of the {} sequences at least 4 points", sequences));
     }
+}
+
+std::int64_t block_by_default(const Convergence& convergence, const Campaign& campaign) {
+    const std::int64_t sequences = designs::independent_sequences(campaign.design, campaign.request);
+    std::int64_t points = 0;
+    try {
+        points = candidates_of(campaign);
+    } catch (const std::invalid_argument&) {  // unfolding the design says what is wrong with it
+    }
+    return default_block(points, sequences, least_block(convergence.rule, sequences));
 }
 
 }  // namespace
@@ -76,6 +80,7 @@ Convergence read_convergence(const Cursor& place, const Campaign& campaign) {
         }
     }
     check_rule(section, convergence, campaign);
+    if (!section.find("block")) convergence.block = block_by_default(convergence, campaign);
     return convergence;
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace grainsweep::campaign {
@@ -55,6 +56,35 @@ private:
 };
 
 }  // namespace
+
+std::int64_t candidates_of(const Campaign& campaign) {
+    return designs::design_named(campaign.design).size(campaign.request);
+}
+
+std::int64_t least_block(std::string_view rule, std::int64_t sequences) {
+    constexpr std::int64_t fewest = 4;
+    return rule == "replicates" ? fewest * sequences : fewest;
+}
+
+std::int64_t default_block(std::int64_t points, std::int64_t sequences, std::int64_t least) {
+    const std::int64_t part = std::min(points / checks_by_default, longest_default_block);
+    return std::max(least, part - part % sequences);
+}
+
+std::string never_converges(const Campaign& campaign) {
+    if (!campaign.convergence) return {};
+    const std::int64_t points = candidates_of(campaign);
+    const auto& [observable, rule, gates, tolerance, block, stop] = *campaign.convergence;
+    if (block > points)
+        return fmt::format("convergence can never be checked: a block is {} points, and the design has {}", block,
+                           points);
+    if (2 * block > points)
+        return fmt::format(
+            "convergence can never be found: the rule '{}' needs two checks, and with a block of {} the {} points of "
+            "the design give one",
+            rule, block, points);
+    return {};
+}
 
 void check_design(const Campaign& campaign) {
     (void)sample(campaign);

@@ -5,6 +5,7 @@
 #include "sweep/cli/path_option.hpp"
 #include "sweep/cli/pictures.hpp"
 #include "sweep/cli/status_text.hpp"
+#include "sweep/report/history.hpp"
 #include "sweep/store/store.hpp"
 #include "sweep/workers/compute.hpp"
 
@@ -29,6 +30,60 @@ campaign::Case require_case(const Store& archive, const std::string& id) {
     auto found = archive.find_case(id);
     if (!found) throw campaign::wrong_question("CASE", id, "is no case of this database, nor the beginning of one");
     return *std::move(found);
+}
+
+// ---- status -------------------------------------------------------------------------------------------------
+
+/// What the counts of a campaign do not say: whether it has converged by its rule.
+struct Standing {
+    std::optional<bool> converged;  ///< none: no rule
+    std::string verdict;
+};
+
+Standing standing_of(const Store& archive, const store::CampaignRecord& record) {
+    if (!record.convergence) return {};
+    const auto& observable = record.convergence->observable;
+    const auto responses = report::read_response(archive, record, observable);
+    const auto history = report::history_of(responses, responses.observable(observable));
+    return {history.converged, history.verdict};
+}
+
+int status(const std::string& database, Format format) {
+    const Store archive(database, Store::Mode::read);
+    Table table = archive.status();
+    const auto records = archive.campaigns();  // one row each, in the same order
+    std::vector<Standing> standings;
+    for (const auto& record : records) standings.push_back(standing_of(archive, record));
+    if (format == Format::json) {
+        auto rows = report::to_json(table);
+        for (std::size_t k = 0; k < standings.size(); ++k) {
+            rows[k]["converged"] = report::to_json(standings[k].converged);
+            rows[k]["verdict"] = standings[k].converged ? nlohmann::ordered_json(standings[k].verdict) : nullptr;
+        }
+        report::write(std::cout, rows);
+        return 0;
+    }
+    const bool text = format == Format::text;
+    for (const char* name : {text ? "convergence" : "converged", text ? "extent" : "verdict"})
+        table.columns.emplace_back(name);
+    for (std::size_t k = 0; k < standings.size(); ++k) {
+        const auto& [converged, verdict] = standings[k];
+        auto& row = table.rows[k];
+        if (text) {
+            const auto note = report::extent_note(records[k]);
+            row.push_back(converged ? Table::Cell{records[k].convergence->observable + ": " + verdict} : Table::Cell{});
+            row.push_back(note.empty() ? Table::Cell{} : Table::Cell{note});
+        } else {
+            row.push_back(converged ? Table::Cell{std::int64_t{*converged}} : Table::Cell{});
+            row.push_back(converged ? Table::Cell{verdict} : Table::Cell{});
+        }
+    }
+    if (text) {
+        write_status(std::cout, table);
+    } else {
+        report::write(std::cout, table, format);
+    }
+    return 0;
 }
 
 // ---- explain ------------------------------------------------------------------------------------------------
@@ -264,18 +319,12 @@ std::shared_ptr<Arguments> with_database(Parser& parser) {
 
 std::vector<Command> archive_commands() {
     return {
-        {"status", "cases by outcome; rate in cases per second, time left in seconds (csv, json)",
+        {"status",
+         "cases by outcome, whether the campaign has converged; rate in cases per second, time left in seconds (csv, "
+         "json)",
          [](Parser& parser, const Format& format) -> Action {
              const auto arguments = with_database(parser);
-             return [arguments, &format] {
-                 const Table status = Store(arguments->database, Store::Mode::read).status();
-                 if (format == Format::text) {
-                     write_status(std::cout, status);
-                 } else {
-                     report::write(std::cout, status, format);
-                 }
-                 return 0;
-             };
+             return [arguments, &format] { return status(arguments->database, format); };
          },
          false},
         {"explain", "every attempt of a case, and why it will or will not run",

@@ -4,14 +4,19 @@
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/progress.hpp"
+#include "sweep/report/history.hpp"
+#include "sweep/store/campaign_name.hpp"
 #include "sweep/store/expression.hpp"
+#include "sweep/store/store.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <set>
 
 namespace grainsweep::cli {
@@ -86,15 +91,54 @@ std::int64_t points_kept(std::span<const PlacedCase> cases) {
     return static_cast<std::int64_t>(points.size());
 }
 
-Json json_of(const Campaign& campaign, std::span<const PlacedCase> cases, const campaign::Forecast& cost) {
+/// What a plan shows beside the campaign itself.
+struct Outlook {
+    std::vector<PlacedCase> cases;
+    campaign::Forecast cost;
+    std::int64_t candidates = 0;
+    std::vector<std::string> warnings;
+    std::string database;                         ///< that has the campaign already; empty: none
+    std::optional<store::CampaignRecord> stored;  ///< as it stands there, with what is asked now
+    std::int64_t finished = 0;                    ///< of the cases, in the database
+};
+
+/// The design and, where `archive` is there, what it has of it. Factors take the order in which they are stored, as
+/// they do in a run.
+Outlook outlook_of(Campaign& campaign, const store::Store* archive) {
+    store::check_campaign_name(campaign.name);
+    if (archive != nullptr) campaign::reorder_factors(campaign, archive->factor_order(campaign.name));
+    Outlook outlook;
+    outlook.cases = campaign::unfold(campaign, store::make_filter(campaign.where, campaign::filter_names(campaign)));
+    outlook.cost = campaign::forecast(campaign.scene(), outlook.cases);
+    outlook.candidates = campaign::candidates_of(campaign);
+    outlook.warnings = campaign::warnings_of(campaign, outlook.cost);
+    if (archive == nullptr) return outlook;
+    outlook.finished = archive->settled(outlook.cases);
+    outlook.stored = archive->stored(campaign);
+    if (outlook.stored) outlook.stored->asked = {outlook.candidates, campaign.replicates};
+    return outlook;
+}
+
+Json json_of(const Campaign& campaign, const Outlook& outlook) {
+    const auto& [cases, cost, candidates, warnings, database, stored, finished] = outlook;
     Json object = {
         {"campaign", campaign.name}, {"scene", campaign.scene().name}, {"revision", campaign.scene().revision}};
     object["design"] = {{"kind", campaign.design}};
     for (const auto& [name, value] : campaign.request.options) object["design"][name] = json_of(value);
     object["seed"] = report::to_json(Cell{static_cast<std::int64_t>(campaign.seed)});
     object["replicates"] = campaign.replicates;
+    object["candidates"] = candidates;
+    object["dropped"] = candidates - points_kept(cases);
     object["points"] = points_kept(cases);
     object["cases"] = cost.places;
+    object["finished"] = finished;
+    object["stored"] = nullptr;
+    if (stored) {
+        object["stored"] = {{"database", database},
+                            {"candidates", stored->stored.candidates},
+                            {"replicates", stored->stored.replicates}};
+    }
+    object["warnings"] = warnings;
     object["questions"] = cost.questions;
     object["proven"] = cost.proven;
     object["impossible"] = cost.impossible;
@@ -112,7 +156,9 @@ std::string seconds_text(double seconds) {
     return seconds < 60 ? fmt::format("{:.2g} s", seconds) : duration(seconds);
 }
 
-void show_text(const Campaign& campaign, std::span<const PlacedCase> cases, const campaign::Forecast& cost) {
+void show_text(const Campaign& campaign, const Outlook& outlook) {
+    const auto& cost = outlook.cost;
+    const std::span<const PlacedCase> cases = outlook.cases;
     const auto& scene = campaign.scene();
     std::cout << fmt::format("campaign   {}: {} (revision {})\n", campaign.name, scene.name, scene.revision);
     std::cout << fmt::format("design     {}", campaign.design);
@@ -121,8 +167,12 @@ void show_text(const Campaign& campaign, std::span<const PlacedCase> cases, cons
     }
     std::cout << fmt::format(", seed {}\n", campaign.seed);
     if (!campaign.where.empty()) std::cout << fmt::format("where      {}\n", campaign.where);
-    std::cout << fmt::format("points     {}\nreplicates {}\ncases      {}", points_kept(cases), campaign.replicates,
-                             cost.places);
+    const std::int64_t points = points_kept(cases);
+    std::cout << fmt::format("points     {}", points);
+    if (points < outlook.candidates)
+        std::cout << fmt::format(" of {} candidates, {} left out by where", outlook.candidates,
+                                 outlook.candidates - points);
+    std::cout << fmt::format("\nreplicates {}\ncases      {}", campaign.replicates, cost.places);
     if (cost.questions != cost.places) std::cout << fmt::format(", {} different", cost.questions);
     if (cost.proven > 0) std::cout << fmt::format(", {} of them answered without simulation", cost.proven);
     if (cost.impossible > 0)
@@ -130,6 +180,13 @@ void show_text(const Campaign& campaign, std::span<const PlacedCase> cases, cons
                                  cost.first_point, cost.first_reason);
     std::cout << fmt::format("\npredicted  {} on one core; the longest case {}\n", seconds_text(cost.total_seconds),
                              seconds_text(cost.longest_seconds));
+    if (!outlook.database.empty())
+        std::cout << fmt::format("finished   {} of {} in {}\n", outlook.finished, cost.places, outlook.database);
+    if (outlook.stored) {
+        if (const auto note = report::extent_note(*outlook.stored); !note.empty())
+            std::cout << fmt::format("stored     {}\n", note);
+    }
+    for (const auto& warning : outlook.warnings) std::cout << fmt::format("warning    {}\n", warning);
     if (const auto& convergence = campaign.convergence) {
         std::cout << fmt::format("judged by  {} on {} within {}, every {} points\n", convergence->rule,
                                  convergence->observable, convergence->tolerance, convergence->block);
@@ -149,15 +206,19 @@ void show_text(const Campaign& campaign, std::span<const PlacedCase> cases, cons
     }
 }
 
-int plan(const std::string& config, Format format) {
-    const Campaign campaign = campaign::read_campaign(config);
-    const auto cases = campaign::asked_in(config, [&] {
-        return campaign::unfold(campaign, store::make_filter(campaign.where, campaign::filter_names(campaign)));
-    });
-    const auto cost = campaign::asked_in(config, [&] { return campaign::forecast(campaign.scene(), cases); });
-    if (format == Format::text) show_text(campaign, cases, cost);
-    if (format == Format::csv) report::write(std::cout, cases_of(campaign, cases), format);
-    if (format == Format::json) report::write(std::cout, json_of(campaign, cases, cost));
+int plan(const std::string& config, std::string database, Format format) {
+    Campaign campaign = campaign::read_campaign(config);
+    std::optional<store::Store> archive;
+    if (database.empty() && std::filesystem::exists(campaign.name + ".db")) database = campaign.name + ".db";
+    if (!database.empty()) archive.emplace(database, store::Store::Mode::read);
+    auto outlook = campaign::asked_in(config, [&] { return outlook_of(campaign, archive ? &*archive : nullptr); });
+    outlook.database = database;
+    if (format == Format::text) show_text(campaign, outlook);
+    if (format == Format::json) report::write(std::cout, json_of(campaign, outlook));
+    if (format == Format::csv) {
+        for (const auto& warning : outlook.warnings) std::cerr << "warning: " << warning << '\n';
+        report::write(std::cout, cases_of(campaign, outlook.cases), format);
+    }
     return 0;
 }
 
@@ -167,8 +228,12 @@ std::vector<Command> plan_commands() {
     return {{"plan", "check and unfold a campaign; show the design and the predicted cost; run nothing",
              [](Parser& parser, const Format& format) -> Action {
                  const auto config = std::make_shared<std::string>();
+                 const auto database = std::make_shared<std::string>();
                  parser.add_option("CONFIG", *config, "campaign file")->required();
-                 return [config, &format] { return plan(*config, format); };
+                 parser.add_option("--db", *database,
+                                   "database the campaign would be run into; default: NAME.db in the current folder, "
+                                   "where there is one");
+                 return [config, database, &format] { return plan(*config, *database, format); };
              },
              false}};
 }

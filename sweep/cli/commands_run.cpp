@@ -47,12 +47,14 @@ void show(const RunReport& report, Format format) {
                                                         {"database", report.database.string()},
                                                         {"bytes", bytes},
                                                         {"ending", report.ending},
+                                                        {"converged", report::to_json(report.converged)},
                                                         {"exit_code", report.exit_code}});
         return;
     }
     report::write(std::cout,
-                  {{"campaign", "database", "bytes", "ending", "exit_code"},
-                   {{report.campaign, report.database.string(), bytes, report.ending, std::int64_t{report.exit_code}}}},
+                  {{"campaign", "database", "bytes", "ending", "exit_code", "converged"},
+                   {{report.campaign, report.database.string(), bytes, report.ending, std::int64_t{report.exit_code},
+                     report.converged ? store::Table::Cell{std::int64_t{*report.converged}} : store::Table::Cell{}}}},
                   format);
 }
 

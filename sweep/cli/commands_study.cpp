@@ -42,6 +42,7 @@ using store::Store;
 /// Which campaign and which observable of a database.
 struct Subject {
     std::string database, campaign, observable;
+    bool check = false;  ///< of `converge`: the exit code tells whether everything shown has converged
 };
 
 void append(store::Table& all, store::Table more) {
@@ -66,8 +67,18 @@ void print_notes(const std::vector<std::string>& notes) {
 void print_history(const Responses& responses, const report::ResponseColumn& response, const report::History& history,
                    const std::vector<report::LatticeStep>& lattices) {
     print_heading(responses, response);
-    report::write(std::cout, report::statistics_table(history), Format::text);
-    std::cout << '\n';
+    if (!responses.campaign.condition.empty()) std::cout << "where: " << report::points_line(responses) << "\n\n";
+    if (history.all.count > 0 || !history.provisional) {
+        report::write(std::cout, report::statistics_table(history), Format::text);
+        std::cout << '\n';
+    }
+    if (history.provisional) {
+        std::cout << fmt::format(
+            "provisional, over all {} finished cases wherever they stand in the design; not judged\n",
+            responses.finished());
+        report::write(std::cout, report::provisional_table(history), Format::text);
+        std::cout << '\n';
+    }
     if (!history.checks.empty()) {
         const auto checks = report::checks_table(history);
         report::write(std::cout, checks, Format::text);
@@ -101,14 +112,17 @@ int converge(const Subject& subject, Format format) {
     const Store store(subject.database, Store::Mode::read);
     Json all = Json::array();
     store::Table rows;
+    bool converged = true;
     for_each_campaign(store, subject,
                       [&](const Responses& responses, const report::ResponseColumn& response, bool first) {
                           const auto history = report::history_of(responses, response);
+                          converged = converged && history.converged.value_or(false);
                           const auto lattices = report::lattice_family(store, responses, response);
                           if (format == Format::json) {
                               all.push_back(report::to_json(responses, response, history, lattices));
                           } else if (format == Format::csv) {
                               append(rows, report::checks_rows(responses, response, history));
+                              append(rows, report::provisional_rows(responses, response, history));
                           } else {
                               if (!first) std::cout << '\n';
                               print_history(responses, response, history, lattices);
@@ -116,7 +130,7 @@ int converge(const Subject& subject, Format format) {
                       });
     if (format == Format::json) report::write(std::cout, all);
     if (format == Format::csv) report::write(std::cout, rows, format);
-    return 0;
+    return subject.check && !converged ? 1 : 0;
 }
 
 int sensitivity(const Subject& subject, Format format) {
@@ -228,6 +242,10 @@ Command study(std::string command, std::string summary, int (*answer)(const Subj
                 parser.add_option("--campaign", subject->campaign, "one of its campaigns; default: all");
                 parser.add_option("--observable", subject->observable,
                                   "a scalar; default: the one the campaign converges on, else the scene's first");
+                if (answer == converge)
+                    parser.add_flag("--check", subject->check,
+                                    "exit 1 unless all that is shown has converged by its campaign's rule (one without "
+                                    "a rule has not), else 0");
                 return [subject, &format, answer] { return answer(*subject, format); };
             },
             false};

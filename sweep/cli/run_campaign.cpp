@@ -5,10 +5,12 @@
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/progress.hpp"
+#include "sweep/report/history.hpp"
 #include "sweep/schedule/judge.hpp"
 #include "sweep/schedule/plan.hpp"
 #include "sweep/schedule/scheduler.hpp"
 #include "sweep/store/artefacts.hpp"
+#include "sweep/store/campaign_name.hpp"
 #include "sweep/store/expression.hpp"
 #include "sweep/store/recorder.hpp"
 #include "sweep/store/store.hpp"
@@ -38,51 +40,85 @@ std::size_t worker_count(const campaign::Campaign& campaign, const RunRequest& r
     return asked > 0 ? static_cast<std::size_t>(asked) : std::max(1U, std::thread::hardware_concurrency());
 }
 
+/// What the statistics of a campaign are over: every place that is stored. Where the run asks for a part of them, the
+/// others are there too, by the id of their question alone, and not to be computed.
+struct Placement {
+    std::vector<PlacedCase> placed;
+    std::vector<store::CaseState> states;
+    std::vector<bool> asked;
+    std::int64_t candidates = 0;
+};
+
+Placement placement_of(const store::Store& store, const store::CampaignRecord& record, std::vector<PlacedCase> asked,
+                       const std::vector<store::CaseState>& states) {
+    if (!record.shrunk()) {
+        const std::size_t places = asked.size();
+        return {std::move(asked), states, std::vector<bool>(places, true), record.stored.candidates};
+    }
+    Placement all;
+    all.candidates = record.stored.candidates;
+    std::size_t next = 0;  // both are ordered by point, then replicate
+    for (auto& place : store.placement(record.name)) {
+        const bool now = next < asked.size() && asked[next].point == place.placed.point &&
+                         asked[next].replicate == place.placed.replicate;
+        all.placed.push_back(now ? std::move(asked[next++]) : std::move(place.placed));
+        all.states.push_back(place.state);
+        all.asked.push_back(now);
+    }
+    return all;
+}
+
 /// Questions without repetition, and which of them each place asks.
 struct Questions {
     std::vector<campaign::Case> cases;
     std::vector<schedule::History> histories;
     std::vector<double> predicted;
     std::vector<std::size_t> places;
+    std::vector<std::int64_t> blocks;  ///< after which the campaign may stop; empty: it does not
 };
 
-Questions collect(const campaign::Campaign& campaign, const std::vector<PlacedCase>& placed,
-                  const std::vector<store::CaseState>& states) {
+Questions collect(const campaign::Campaign& campaign, const Placement& placement) {
+    const auto& placed = placement.placed;
+    const bool stops = campaign.convergence && campaign.convergence->stop;
     Questions questions;
     std::unordered_map<campaign::CaseId, std::size_t> index;
     questions.places.reserve(placed.size());
     for (std::size_t i = 0; i < placed.size(); ++i) {
         const auto [at, fresh] = index.try_emplace(placed[i].question.id, questions.cases.size());
         questions.places.push_back(at->second);
-        if (!fresh) continue;
-        questions.cases.push_back(placed[i].question);
-        questions.histories.push_back({states[i].attempts, states[i].failures, states[i].outcome});
-        questions.predicted.push_back(campaign::predict(campaign.scene(), placed[i].question.inputs).seconds);
+        const bool now = placement.asked[i];
+        if (fresh) {
+            const auto& state = placement.states[i];
+            questions.cases.push_back(placed[i].question);
+            questions.histories.push_back({state.attempts, state.failures, state.outcome, false});
+            questions.predicted.push_back(0);
+            if (stops) questions.blocks.push_back(placed[i].point / campaign.convergence->block);
+        }
+        auto& history = questions.histories[at->second];
+        if (!now || history.asked) continue;
+        history.asked = true;
+        questions.cases[at->second] = placed[i].question;
+        questions.predicted[at->second] = campaign::predict(campaign.scene(), placed[i].question.inputs).seconds;
     }
     return questions;
 }
 
 std::unique_ptr<schedule::Judge> make_judge(const campaign::Campaign& campaign, const store::Store& store,
-                                            const std::vector<PlacedCase>& placed) {
+                                            const Placement& placement) {
     if (!campaign.convergence) return nullptr;
     std::map<std::pair<std::int64_t, std::int64_t>, double> stored;
     for (const auto& value : store.values(campaign.name, campaign.convergence->observable)) {
         if (value.outcome) stored.emplace(std::pair(value.point, value.replicate), value.value);
     }
     std::vector<double> known;
-    known.reserve(placed.size());
-    for (const auto& one : placed) {
+    known.reserve(placement.placed.size());
+    for (const auto& one : placement.placed) {
         const auto found = stored.find({one.point, one.replicate});
         known.push_back(found == stored.end() ? std::numeric_limits<double>::quiet_NaN() : found->second);
     }
-    const auto option = [&](const char* name) -> std::optional<std::int64_t> {
-        if (!campaign.request.options.contains(name)) return std::nullopt;
-        return campaign.request.count(name);
-    };
-    const auto sequences = static_cast<std::size_t>(option("sequences").value_or(1));
-    return std::make_unique<schedule::Judge>(*campaign.convergence, placed,
-                                             schedule::independent_sequences(campaign.design, sequences), known,
-                                             option("points"));
+    const auto sequences = designs::independent_sequences(campaign.design, campaign.request);
+    return std::make_unique<schedule::Judge>(*campaign.convergence, placement.placed,
+                                             static_cast<std::size_t>(sequences), known, placement.candidates);
 }
 
 std::vector<std::string> worker_command(const campaign::Campaign& campaign, const fs::path& artefacts,
@@ -95,19 +131,29 @@ std::vector<std::string> worker_command(const campaign::Campaign& campaign, cons
     return command;
 }
 
+/// What the last line says of convergence; empty where the campaign gives no rule.
+std::string standing(const schedule::Judge* judge) {
+    if (judge == nullptr) return {};
+    if (const auto points = judge->converged_at()) return fmt::format("; converged at {} points", *points);
+    return "; not converged: " + judge->verdict();
+}
+
 std::string describe(Ending ending, const schedule::Plan::Tally& tally, const schedule::Judge* judge) {
     switch (ending) {
         case Ending::finished:
-            return tally.failed == 0 ? "all cases are settled"
-                                     : fmt::format("all cases have their last word, {} of them failed", tally.failed);
+            return tally.failed == 0 ? "all cases are settled" + standing(judge)
+                                     : fmt::format("all cases have their last word, {} of them failed{}", tally.failed,
+                                                   standing(judge));
         case Ending::converged:
             return fmt::format("converged after {} points: {}", *judge->converged_at(), judge->verdict());
         case Ending::limited:
-            return fmt::format("stopped with {} cases left; run again to go on", tally.questions - tally.decided);
+            return fmt::format("stopped with {} cases left; run again to go on{}", tally.questions - tally.decided,
+                               standing(judge));
         case Ending::too_many_failures:
-            return fmt::format("stopped after {} failed cases", tally.failed_now);
+            return fmt::format("stopped after {} failed cases{}", tally.failed_now, standing(judge));
         case Ending::interrupted:
-            return fmt::format("interrupted with {} cases left; run again to go on", tally.questions - tally.decided);
+            return fmt::format("interrupted with {} cases left; run again to go on{}", tally.questions - tally.decided,
+                               standing(judge));
     }
     return {};
 }
@@ -118,15 +164,32 @@ int exit_code(Ending ending, const schedule::Plan::Tally& tally) {
     return tally.failed == 0 && tally.decided == tally.questions ? 0 : 1;
 }
 
+schedule::Rules rules_of(const campaign::Campaign& campaign, const RunRequest& request, std::size_t workers) {
+    return {.attempts = campaign.limits.attempts,
+            .stop_after_failures = request.stop_after_failures,
+            .max_cases = request.max_cases,
+            .again = request.again,
+            .workers = workers};
+}
+
+/// What must be known before the first answer comes.
+void say_first(ProgressLine& line, const campaign::Campaign& campaign, const campaign::Forecast& forecast,
+               const store::CampaignRecord& record) {
+    for (const auto& warning : campaign::warnings_of(campaign, forecast)) line.note("warning: " + warning);
+    if (const auto note = report::extent_note(record); !note.empty()) line.note("note: " + note);
+}
+
 }  // namespace
 
 RunReport run_campaign(const RunRequest& request) {
     campaign::Campaign campaign = campaign::read_campaign(request.config);
+    campaign::Forecast forecast;
     const auto unfolded = [&] {
         return campaign::asked_in(request.config, [&] {
+            store::check_campaign_name(campaign.name);
             const auto filter = store::make_filter(campaign.where, campaign::filter_names(campaign));
             auto cases = campaign::unfold(campaign, filter);
-            (void)campaign::forecast(campaign.scene(), cases);  // refuses impossible cases before anything is made
+            forecast = campaign::forecast(campaign.scene(), cases);  // refuses impossible cases before anything is made
             return cases;
         });
     };
@@ -153,15 +216,13 @@ RunReport run_campaign(const RunRequest& request) {
         placed = unfolded();
     }
     const auto states = campaign::asked_in(request.config, [&] { return store.enrol(campaign, placed, provenance()); });
-    const auto judge = make_judge(campaign, store, placed);
-    Questions questions = collect(campaign, placed, states);
-    schedule::Rules rules;
-    rules.attempts = campaign.limits.attempts;
-    rules.stop_after_failures = request.stop_after_failures;
-    rules.max_cases = request.max_cases;
-    rules.again = request.again;
+    const auto record = store.stored(campaign).value();
+    say_first(line, campaign, forecast, record);
+    const auto placement = placement_of(store, record, std::move(placed), states);
+    const auto judge = make_judge(campaign, store, placement);
+    Questions questions = collect(campaign, placement);
     schedule::Plan plan(std::move(questions.cases), questions.histories, std::move(questions.predicted),
-                        std::move(questions.places), rules);
+                        std::move(questions.places), rules_of(campaign, request, workers), questions.blocks);
 
     workers::Pool pool(
         {worker_command(campaign, artefacts, request.path), workers, campaign.limits.wall_seconds, build_version()});
@@ -180,7 +241,8 @@ RunReport run_campaign(const RunRequest& request) {
         ending = scheduler.run();
     }
     const auto tally = plan.tally();
-    return {exit_code(ending, tally), campaign.name, database, describe(ending, tally, judge.get())};
+    return {exit_code(ending, tally), campaign.name, database, describe(ending, tally, judge.get()),
+            judge ? std::optional(judge->converged_at().has_value()) : std::nullopt};
 }
 
 }  // namespace grainsweep::cli

@@ -26,7 +26,8 @@ struct RunReport {
     int exit_code = 0;
     std::string campaign;
     std::filesystem::path database;
-    std::string ending;  ///< one sentence
+    std::string ending;             ///< one sentence; where the campaign gives a rule, whether it has converged by it
+    std::optional<bool> converged;  ///< by the campaign's rule; none: it gives no rule
 };
 
 [[nodiscard]] RunReport run_campaign(const RunRequest& request);

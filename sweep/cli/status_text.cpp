@@ -31,6 +31,13 @@ std::string with_unit(const std::string& column, const Cell& cell) {
     const auto* number = std::get_if<double>(&cell);
     if (count != nullptr && is_outcome(column)) return *count == 0 ? "" : counted(*count, "case");
     if (count != nullptr && (column == "cases" || column == "waiting")) return counted(*count, "case");
+    if (column == "points" || column == "asked_points" || column == "asked_replicates") return {};  // told by others
+    if (count != nullptr && column == "candidates") return counted(*count, "point") + " of the design";
+    if (count != nullptr && column == "dropped")
+        return *count == 0 ? "" : counted(*count, "point") + " left out by where";
+    if (count != nullptr && column == "replicates")
+        return *count == 1 ? "" : counted(*count, "case") + " at each point";
+    if (count != nullptr && column == "finished") return counted(*count, "case");
     if (count != nullptr && column == "stopped_at") return fmt::format("converged after {}", counted(*count, "point"));
     if (number != nullptr && column == "rate")
         return fmt::format("{} cases/s in its last run",

@@ -21,6 +21,17 @@ const DesignInfo* find_design(std::string_view name) {
     return found == kinds.end() ? nullptr : &*found;
 }
 
+const DesignInfo& design_named(std::string_view name) {
+    const auto* found = find_design(name);
+    if (found == nullptr) throw std::logic_error("there is no design '" + std::string(name) + "'");
+    return *found;
+}
+
+std::int64_t independent_sequences(std::string_view design, const DesignRequest& request) {
+    if (!design_named(design).independent_sequences || !request.options.contains("sequences")) return 1;
+    return request.count("sequences");
+}
+
 namespace {
 
 template <typename T>
@@ -57,7 +68,12 @@ OptionSpec points_option(std::string meaning) {
             .default_value = std::nullopt,
             .minimum = 1,
             .maximum = 100'000'000,
-            .words = {}};
+            .words = {},
+            .extent = true};
+}
+
+std::int64_t points_asked(const DesignRequest& request) {
+    return request.count("points");
 }
 
 std::vector<double> room_for(std::int64_t points, std::size_t dimensions) {

@@ -35,6 +35,9 @@ struct OptionSpec {
     std::int64_t minimum = 1;                  ///< of a count
     std::int64_t maximum = 1'000'000'000'000;
     std::vector<std::string> words;  ///< of a word
+    /// Says how much of the design is asked, not which design it is: the same campaign may ask for more of it where
+    /// the design extends.
+    bool extent = false;
 };
 
 struct DesignRequest {
@@ -63,19 +66,41 @@ struct PointSet {
     }
 };
 
+/// What the first points of a design are, up to any one.
+enum class Beginning {
+    sample,  ///< a sample of the ranges: statistics settle along the design and can be judged
+    listed,  ///< what the user put first: judged where the campaign gives a rule, without errors
+    corner,  ///< a part that says nothing of the whole: only the whole design is a sample
+};
+
+/// What a design is made for, and how the influence of its factors is found.
+enum class Purpose { statistics, saltelli, morris };
+
+/// What others must know of a kind of design; nothing else compares names.
 struct DesignInfo {
     std::string name;
     std::string summary;  ///< what it is good for, and what it is not, with figures
     std::vector<OptionSpec> options;
-    bool extends = false;
+    bool extends = false;  ///< more of it begins with the same points
     /// The sequences of its points, where there are several, are independent repetitions of each other: the
     /// convergence rule 'replicates' may compare them. (Elsewhere a sequence names a point's part in a block.)
     bool independent_sequences = false;
+    bool independent_points = false;  ///< each is drawn without regard to the others
+    Beginning beginning = Beginning::sample;
+    Purpose purpose = Purpose::statistics;
+    /// How many points the request numbers, without forming them: the size of sample(request). Throws as that does.
+    std::function<std::int64_t(const DesignRequest&)> size;
+    /// Points that belong together, one after the other, with so many factors: 1 where each stands by itself.
+    std::function<std::size_t(std::size_t factors)> block = [](std::size_t) { return std::size_t{1}; };
     /// Throws std::invalid_argument with one sentence where options are impossible together.
     std::function<PointSet(const DesignRequest&)> sample;
 };
 
 [[nodiscard]] std::span<const DesignInfo> design_catalogue();
 [[nodiscard]] const DesignInfo* find_design(std::string_view name);
+/// The same for a name that is known to exist. Throws std::logic_error for any other.
+[[nodiscard]] const DesignInfo& design_named(std::string_view name);
+/// Sequences of the request's design that repeat one another independently, 1 where none do.
+[[nodiscard]] std::int64_t independent_sequences(std::string_view design, const DesignRequest& request);
 
 }  // namespace grainsweep::designs

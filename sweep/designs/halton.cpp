@@ -98,6 +98,7 @@ DesignInfo halton_design() {
                      .words = {}}},
         .extends = true,
         .independent_sequences = true,
+        .size = points_asked,
         .sample = sample};
 }
 

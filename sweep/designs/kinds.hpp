@@ -23,6 +23,8 @@ enum class DrawPurpose : std::uint64_t { random = 1, latin_hypercube = 2, sobol 
 
 /// The option "points", as every sampling design declares it.
 [[nodiscard]] OptionSpec points_option(std::string meaning);
+/// The size of a design that has it.
+[[nodiscard]] std::int64_t points_asked(const DesignRequest& request);
 
 /// Room for points x dimensions coordinates; throws std::invalid_argument where that is more than a
 /// machine should be asked for (2^28 coordinates, 2 GiB).

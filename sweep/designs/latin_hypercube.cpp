@@ -37,6 +37,7 @@ DesignInfo latin_hypercube_design() {
             .options = {points_option("number of points")},
             .extends = false,
             .independent_sequences = false,
+            .size = points_asked,
             .sample = sample};
 }
 

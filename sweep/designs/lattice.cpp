@@ -62,6 +62,10 @@ double coordinate(std::int64_t i, std::int64_t k, bool endpoints) {
     return (static_cast<double>(i) + 0.5) / static_cast<double>(k);
 }
 
+std::int64_t size(const DesignRequest& request) {
+    return product_of(levels_of(request));
+}
+
 PointSet sample(const DesignRequest& request) {
     const std::size_t d = request.dimensions();
     const auto levels = levels_of(request);
@@ -96,7 +100,8 @@ DesignInfo lattice_design() {
                          .default_value = std::vector<std::int64_t>{},
                          .minimum = 1,
                          .maximum = 1'000'000,
-                         .words = {}},
+                         .words = {},
+                         .extent = true},
                         {.name = "placement",
                          .meaning = "endpoints: i/(k-1), the ends of the range included; centred: (i + 1/2)/k, the "
                                     "middles of k equal cells",
@@ -107,6 +112,8 @@ DesignInfo lattice_design() {
                          .words = {"endpoints", "centred"}}},
             .extends = false,
             .independent_sequences = false,
+            .beginning = Beginning::corner,
+            .size = size,
             .sample = sample};
 }
 

@@ -6,18 +6,23 @@
 namespace grainsweep::designs {
 namespace {
 
-PointSet sample(const DesignRequest& request) {
+const Rows& rows_of(const DesignRequest& request) {
     const auto found = request.options.find("rows");
     const Rows* rows = found == request.options.end() ? nullptr : std::get_if<Rows>(&found->second);
     if (rows == nullptr || rows->empty()) throw std::invalid_argument("a list design needs at least one row");
-    for (std::size_t p = 0; p < rows->size(); ++p) {
-        const std::size_t width = (*rows)[p].size();
+    return *rows;
+}
+
+PointSet sample(const DesignRequest& request) {
+    const Rows& rows = rows_of(request);
+    for (std::size_t p = 0; p < rows.size(); ++p) {
+        const std::size_t width = rows[p].size();
         if (width != request.dimensions())
             throw std::invalid_argument("row " + std::to_string(p + 1) + " of the list has " + std::to_string(width) +
                                         (width == 1 ? " value" : " values") + "; there are " +
                                         std::to_string(request.dimensions()) + " factors");
     }
-    return {.dimensions = request.dimensions(), .sequences = 1, .coordinates = {}, .rows = *rows};
+    return {.dimensions = request.dimensions(), .sequences = 1, .coordinates = {}, .rows = rows};
 }
 
 }  // namespace
@@ -34,9 +39,12 @@ DesignInfo list_design() {
                          .default_value = std::nullopt,
                          .minimum = 1,
                          .maximum = 100'000'000,
-                         .words = {}}},
+                         .words = {},
+                         .extent = true}},
             .extends = true,
             .independent_sequences = false,
+            .beginning = Beginning::listed,
+            .size = [](const DesignRequest& request) { return static_cast<std::int64_t>(rows_of(request).size()); },
             .sample = sample};
 }
 

@@ -11,13 +11,21 @@
 namespace grainsweep::designs {
 namespace {
 
+std::size_t block_of(std::size_t factors) {
+    return factors + 1;
+}
+
+std::int64_t size(const DesignRequest& request) {
+    return request.count("trajectories") * static_cast<std::int64_t>(block_of(request.dimensions()));
+}
+
 PointSet sample(const DesignRequest& request) {
     const std::int64_t trajectories = request.count("trajectories");
     const std::int64_t grid = request.count("grid");
     if (grid % 2 != 0)
         throw std::invalid_argument("a Morris grid has an even number of levels, not " + std::to_string(grid));
     const std::size_t d = request.dimensions();
-    const std::size_t length = d + 1;
+    const std::size_t length = block_of(d);
     PointSet set{.dimensions = d,
                  .sequences = length,
                  .coordinates = room_for(trajectories * static_cast<std::int64_t>(length), d),
@@ -57,7 +65,8 @@ DesignInfo morris_design() {
                      .default_value = std::nullopt,
                      .minimum = 1,
                      .maximum = 1'000'000,
-                     .words = {}},
+                     .words = {},
+                     .extent = true},
                     {.name = "grid",
                      .meaning = "levels per factor, even",
                      .kind = OptionSpec::Kind::count,
@@ -67,6 +76,9 @@ DesignInfo morris_design() {
                      .words = {}}},
         .extends = true,
         .independent_sequences = false,
+        .purpose = Purpose::morris,
+        .size = size,
+        .block = block_of,
         .sample = sample};
 }
 

@@ -30,6 +30,8 @@ DesignInfo random_design() {
             .options = {points_option("number of points")},
             .extends = true,
             .independent_sequences = false,
+            .independent_points = true,
+            .size = points_asked,
             .sample = sample};
 }
 

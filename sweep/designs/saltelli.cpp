@@ -14,10 +14,18 @@
 namespace grainsweep::designs {
 namespace {
 
+std::size_t block_of(std::size_t factors) {
+    return factors + 2;
+}
+
+std::int64_t size(const DesignRequest& request) {
+    return request.count("base_points") * static_cast<std::int64_t>(block_of(request.dimensions()));
+}
+
 PointSet sample(const DesignRequest& request) {
     const std::int64_t base_rows = request.count("base_points");
     const std::size_t d = request.dimensions();
-    const std::size_t block = d + 2;
+    const std::size_t block = block_of(d);
     PointSet set{.dimensions = d,
                  .sequences = block,
                  .coordinates = room_for(base_rows * static_cast<std::int64_t>(block), d),
@@ -52,9 +60,13 @@ DesignInfo saltelli_design() {
                          .default_value = std::nullopt,
                          .minimum = 1,
                          .maximum = 10'000'000,
-                         .words = {}}},
+                         .words = {},
+                         .extent = true}},
             .extends = true,
             .independent_sequences = false,
+            .purpose = Purpose::saltelli,
+            .size = size,
+            .block = block_of,
             .sample = sample};
 }
 

@@ -87,6 +87,7 @@ DesignInfo sobol_design() {
                          .words = {}}},
             .extends = true,
             .independent_sequences = true,
+            .size = points_asked,
             .sample = sample};
 }
 

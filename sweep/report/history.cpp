@@ -15,18 +15,13 @@ namespace {
 using stats::ConvergenceRule;
 using stats::Statistic;
 
-constexpr std::int64_t default_block = 400;
-constexpr std::int64_t blocks_of_small_campaigns = 8;
-
 /// Where no rule was given: blocks to look at, the campaign in about eight where it is small.
 stats::ConvergenceSettings settings_for_looking(const Responses& responses) {
     stats::ConvergenceSettings settings;
     settings.sequences = static_cast<std::int64_t>(schedule::independent_sequences(
         responses.campaign.design, static_cast<std::size_t>(responses.campaign.sequences)));
     if (settings.sequences < 4) settings.rule = ConvergenceRule::all_change;
-    const std::int64_t part = responses.candidates / blocks_of_small_campaigns;
-    const std::int64_t whole_rounds = part - part % settings.sequences;
-    settings.block = std::max(settings.sequences, std::min(whole_rounds, default_block));
+    settings.block = campaign::default_block(responses.candidates, settings.sequences, settings.sequences);
     return settings;
 }
 
@@ -57,6 +52,25 @@ stats::Checkpoint check_of_all(const Responses& responses, const ResponseColumn&
     return all;
 }
 
+/// Moments of all finished values, where the settled beginning has not all of them.
+std::optional<stats::Checkpoint> check_of_finished(const Responses& responses, const ResponseColumn& response,
+                                                   stats::ConvergenceSettings settings) {
+    if (responses.campaign.stopped_at || responses.finished() <= responses.settled) return std::nullopt;
+    std::vector<std::int64_t> points;
+    std::vector<double> values;
+    for (std::size_t row = 0; row < responses.rows(); ++row) {
+        if (!has_last_word(responses.outcomes[row])) continue;
+        points.push_back(responses.points[row]);
+        values.push_back(response.values[row]);
+    }
+    settings.block = points.back() + 1;
+    auto found = stats::judge_convergence(settings, points, values, settings.block);
+    if (found.empty()) return std::nullopt;
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    found.front().points = static_cast<std::int64_t>(points.size());
+    return found.front();
+}
+
 void warn(History& history, const Responses& responses, const ResponseColumn& response) {
     const auto& record = responses.campaign;
     if (history.has_rule && history.settings.rule == ConvergenceRule::any_change) {
@@ -67,13 +81,14 @@ void warn(History& history, const Responses& responses, const ResponseColumn& re
         history.warnings.push_back(
             fmt::format("the campaign was judged on {}, not on {}", record.convergence->observable, response.name));
     }
-    if (record.design == "lattice") {
-        history.warnings.emplace_back(
-            "a lattice has no errors and cannot be judged from inside: compare campaigns of growing levels");
+    const auto& design = responses.design();
+    if (design.beginning == designs::Beginning::corner) {
+        history.warnings.push_back(fmt::format(
+            "a {} has no errors and cannot be judged from inside: compare campaigns of growing levels", record.design));
     }
-    if (record.design == "list")
+    if (design.beginning == designs::Beginning::listed)
         history.warnings.emplace_back("listed points are no sample: their moments have no errors");
-    if (record.design == "saltelli" || record.design == "morris") {
+    if (design.block(responses.factors.size()) > 1) {
         history.warnings.push_back(
             fmt::format("points of a {} design depend on each other: errors of moments are rough", record.design));
     }
@@ -87,19 +102,27 @@ void warn(History& history, const Responses& responses, const ResponseColumn& re
         history.warnings.push_back(fmt::format("{} of {} cases have no value and are left out", history.all.excluded,
                                                history.all.excluded + history.all.count));
     }
-    if (!record.stopped_at && responses.settled < responses.rows()) {
-        history.warnings.push_back(fmt::format("{} of {} cases are not settled{}", responses.rows() - responses.settled,
-                                               responses.rows(),
-                                               responses.ordered_sample() ? ", or lie behind one that is not" : ""));
+    const auto finished = responses.finished();
+    if (!record.stopped_at && finished < responses.rows()) {
+        history.warnings.push_back(
+            fmt::format("{} of {} cases are not settled", responses.rows() - finished, responses.rows()));
     }
+    if (history.provisional) {
+        history.warnings.push_back(
+            fmt::format("{} finished cases lie behind one that is not: they count in the provisional figures only",
+                        finished - responses.settled));
+    }
+    if (auto note = extent_note(record); !note.empty()) history.warnings.push_back(std::move(note));
 }
 
 std::string verdict_of(const History& history, const Responses& responses) {
     if (!responses.ordered_sample()) return "not judged: no sample of growing size";
-    const auto& design = responses.campaign.design;
-    if (!history.has_rule && (design == "saltelli" || design == "morris"))
-        return fmt::format("not judged: no rule was given, and a {} design is made for sensitivity", design);
-    if (history.checks.empty()) return fmt::format("first check at {} points", history.settings.block);
+    if (!history.has_rule && responses.design().purpose != designs::Purpose::statistics)
+        return fmt::format("not judged: no rule was given, and a {} design is made for sensitivity",
+                           responses.campaign.design);
+    if (history.checks.empty())
+        return fmt::format("{}first check at {} points, {} are settled", history.has_rule ? "not converged: " : "",
+                           history.settings.block, responses.settled_points);
     // The first converged check is where the campaign might have stopped; without one, the last says what is missing.
     const auto converged = std::ranges::find(history.checks, true, &stats::Checkpoint::converged);
     const auto& check = converged == history.checks.end() ? history.checks.back() : *converged;
@@ -131,6 +154,20 @@ double change(Statistic statistic, double now, double before) {
 
 }  // namespace
 
+std::string extent_note(const store::CampaignRecord& campaign) {
+    if (!campaign.shrunk()) return {};
+    const auto text = [](const store::Extent& extent) {
+        return fmt::format("{} points x {}", extent.candidates, extent.replicates);
+    };
+    return fmt::format("asked now: {}; stored: {}: view and statistics are over what is stored", text(campaign.asked),
+                       text(campaign.stored));
+}
+
+std::string points_line(const Responses& responses) {
+    return fmt::format("{} candidates, {} left out by where, {} cases asked, {} finished", responses.candidates,
+                       responses.dropped(), responses.rows(), responses.finished());
+}
+
 History history_of(const Responses& responses, const ResponseColumn& response) {
     History history;
     history.settings = settings_for(responses);
@@ -140,7 +177,9 @@ History history_of(const Responses& responses, const ResponseColumn& response) {
         history.checks = stats::judge_convergence(history.settings, judged_points(responses),
                                                   responses.judged(response), responses.settled_points);
     }
+    history.provisional = check_of_finished(responses, response, history.settings);
     history.verdict = verdict_of(history, responses);
+    if (history.has_rule) history.converged = std::ranges::any_of(history.checks, &stats::Checkpoint::converged);
     warn(history, responses, response);
     return history;
 }
@@ -160,11 +199,12 @@ std::vector<const stats::Checkpoint*> checks_to_show(const History& history, std
 
 std::vector<LatticeStep> lattice_family(const store::Store& store, const Responses& responses,
                                         const ResponseColumn& response) {
-    if (responses.campaign.design != "lattice") return {};
+    if (responses.design().beginning != designs::Beginning::corner) return {};
     const auto family = family_of(responses.campaign);
     std::vector<LatticeStep> steps;
     for (const auto& record : store.campaigns()) {
-        if (record.design != "lattice" || record.scene != responses.campaign.scene || family_of(record) != family)
+        if (record.design != responses.campaign.design || record.scene != responses.campaign.scene ||
+            family_of(record) != family)
             continue;
         const auto sibling = read_responses(store, record);
         if (sibling.settled < sibling.rows()) continue;  // half a lattice is no lattice

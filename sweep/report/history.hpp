@@ -18,13 +18,22 @@ struct History {
     /// All settled points: the figures to quote. Where the points are no multiple of the block it is shown, never
     /// judged. Errors are NaN for a lattice or a list.
     stats::Checkpoint all;
+    /// Over every finished case, wherever it stands: what is known while finished cases lie behind one that is not.
+    /// Not judged and not to be quoted. `points` counts the points with such a case. None where `all` has them all.
+    std::optional<stats::Checkpoint> provisional;
     std::string verdict;                ///< one line
+    std::optional<bool> converged;      ///< by the campaign's rule; none: it gives no rule
     std::vector<std::string> warnings;  ///< what a reader must know before quoting the figures
 };
 
 /// At most about `most` of the checks, evenly thinned, the last and the one that converged among them; after them `all`
 /// where it is no check. Pointers into the history.
 [[nodiscard]] std::vector<const stats::Checkpoint*> checks_to_show(const History& history, std::size_t most);
+
+/// A campaign whose last run asked for less than is stored: what is asked now and what is stored; else empty.
+[[nodiscard]] std::string extent_note(const store::CampaignRecord& campaign);
+/// Candidates, those left out by the `where` clause, cases asked and finished, in one line.
+[[nodiscard]] std::string points_line(const Responses& responses);
 
 [[nodiscard]] History history_of(const Responses& responses, const ResponseColumn& response);
 

@@ -96,7 +96,7 @@ std::vector<double> numbers_of(const std::vector<std::string>& levels) {
 /// Variance of a value about the mean of its bin, for want of a better one; of a lattice the scatter of single runs.
 double variance_in_bins(const Responses& responses, const stats::PureError& pure, std::span<const EffectBin> bins,
                         std::span<const double> values) {
-    if (responses.campaign.design == "lattice") return pure.freedom > 0 ? pure.variance : 0;
+    if (responses.design().beginning == designs::Beginning::corner) return pure.freedom > 0 ? pure.variance : 0;
     double squares = 0, n = 0;
     for (const double value : values) {
         if (!std::isfinite(value)) continue;
@@ -165,8 +165,9 @@ void add_trends(Influence& influence, const Responses& responses, const Response
         }
         // What the scatter of independent points gives the bins of a sample; a lattice has its errors from replicates.
         const auto points = static_cast<double>(std::max<std::int64_t>(1, influence.split.points));
-        const double in_bins =
-            responses.campaign.design == "lattice" ? 0 : static_cast<double>(found.bins - 1) / points;
+        const double in_bins = responses.design().beginning == designs::Beginning::corner
+                                   ? 0
+                                   : static_cast<double>(found.bins - 1) / points;
         const double noise = std::isfinite(found.first.half_width) ? std::max(in_bins, found.first.half_width) : 1e-9;
         const bool seen = found.first.value > noise || std::abs(rank.value) > rank.half_width;
         if (seen) found.trend = trend_of(factor, levels, responses, influence.split.pure, values);
@@ -176,7 +177,7 @@ void add_trends(Influence& influence, const Responses& responses, const Response
 stats::VarianceSplit split_of(const Responses& responses, const ResponseColumn& response) {
     const auto points = std::span(responses.points).first(responses.settled);
     const auto values = responses.judged(response);
-    const bool lattice = responses.campaign.design == "lattice";
+    const bool lattice = responses.design().beginning == designs::Beginning::corner;
     const std::size_t count = std::set<std::int64_t>(points.begin(), points.end()).size();
     const std::size_t d = responses.factors.size();
     std::vector<std::vector<double>> coordinates(d);
@@ -193,7 +194,7 @@ stats::VarianceSplit split_of(const Responses& responses, const ResponseColumn& 
 }
 
 void add_given_data(Influence& influence, const Responses& responses, const ResponseColumn& response) {
-    const bool lattice = responses.campaign.design == "lattice";
+    const bool lattice = responses.design().beginning == designs::Beginning::corner;
     const auto values = responses.judged(response);
     const std::int64_t points = influence.split.points;  // replicates add nothing to how well a sample covers the range
     const auto labels = sample_parts(responses).labels;
@@ -333,9 +334,9 @@ std::string unexplained_text(const Influence& influence) {
 
 Influence influence_of(const Responses& responses, const ResponseColumn& response) {
     Influence influence;
-    const auto& design = responses.campaign.design;
+    const auto& design = responses.design();
     for (const auto& factor : responses.factors) influence.factors.emplace_back().factor = factor.name;
-    if (design == "morris") {
+    if (design.purpose == designs::Purpose::morris) {
         influence.method = Influence::Method::morris;
         influence.split.pure =
             stats::pure_error(std::span(responses.points).first(responses.settled), responses.judged(response));
@@ -346,11 +347,11 @@ Influence influence_of(const Responses& responses, const ResponseColumn& respons
     influence.split = split_of(responses, response);
     add_given_data(influence, responses, response);
     add_trends(influence, responses, response);
-    if (design == "saltelli") {
+    if (design.purpose == designs::Purpose::saltelli) {
         influence.method = Influence::Method::saltelli;
         add_saltelli(influence, responses, response);
     }
-    if (influence.excluded > 0 && design != "saltelli")
+    if (influence.excluded > 0 && design.purpose != designs::Purpose::saltelli)
         influence.notes.push_back(fmt::format("{} cases without a value are left out", influence.excluded));
     return influence;
 }

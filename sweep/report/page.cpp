@@ -57,6 +57,17 @@ Json json_of(const History& history) {
             one["errors"].push_back(drawn(check->of(statistic).error));
         }
     }
+    value["provisional"] = nullptr;
+    if (history.provisional) {
+        value["notes"].push_back(provisional_line(history));
+        Json& known =
+            value["provisional"] = {{"points", history.provisional->points}, {"count", history.provisional->count}};
+        for (const auto statistic : stats::statistics) {
+            const auto& one = history.provisional->of(statistic);
+            known["statistics"][std::string(stats::to_string(statistic))] = with_error(one.value, one.error);
+        }
+    }
+    value["converged"] = to_json(history.converged);
     value["count"] = history.all.count;
     value["excluded"] = history.all.excluded;
     value["zero_share"] = drawn(history.all.zero_share);

@@ -110,10 +110,6 @@ std::string observable_name(const std::string& column, const SceneInfo* scene) {
     return column.substr(0, column.size() - suffix.size());
 }
 
-bool has_last_word(const std::optional<campaign::Outcome>& outcome) {
-    return outcome && *outcome != campaign::Outcome::abandoned;
-}
-
 std::optional<campaign::Outcome> outcome_of(const std::vector<Cell>& row) {
     const auto* outcome = std::get_if<std::string>(&row[outcome_column]);
     return outcome == nullptr ? std::nullopt : campaign::outcome_named(*outcome);
@@ -134,7 +130,7 @@ void bring_settled_forward(Responses& responses) {
     std::ranges::stable_partition(rows, [&](std::size_t row) { return has_last_word(responses.outcomes[row]); });
     reorder(responses.points, rows);
     reorder(responses.replicates, rows);
-    reorder(responses.case_ids, rows);
+    if (!responses.case_ids.empty()) reorder(responses.case_ids, rows);
     reorder(responses.outcomes, rows);
     for (auto& factor : responses.factors) reorder(factor.values, rows);
     for (auto& response : responses.observables) reorder(response.values, rows);
@@ -162,6 +158,10 @@ void find_settled(Responses& responses) {
 }
 
 }  // namespace
+
+bool has_last_word(const std::optional<campaign::Outcome>& outcome) {
+    return outcome && *outcome != campaign::Outcome::abandoned;
+}
 
 double FactorColumn::coordinate(std::size_t row) const {
     const double value = values[row];
@@ -208,7 +208,23 @@ bool Responses::measures(std::string_view name) const {
 }
 
 bool Responses::ordered_sample() const {
-    return campaign.design != "lattice" && campaign.design != "list";
+    const auto beginning = design().beginning;
+    return beginning == designs::Beginning::sample ||
+           (beginning == designs::Beginning::listed && campaign.convergence.has_value());
+}
+
+const designs::DesignInfo& Responses::design() const {
+    static const designs::DesignInfo unknown;  // of an archive that a newer program wrote
+    const auto* found = designs::find_design(campaign.design);
+    return found == nullptr ? unknown : *found;
+}
+
+std::size_t Responses::finished() const {
+    return static_cast<std::size_t>(std::ranges::count_if(outcomes, has_last_word));
+}
+
+std::int64_t Responses::dropped() const {
+    return candidates - static_cast<std::int64_t>(std::set<std::int64_t>(points.begin(), points.end()).size());
 }
 
 bool repeats(const Responses& responses) {
@@ -245,11 +261,29 @@ Responses read_responses(const store::Store& store, const store::CampaignRecord&
         responses.observables.push_back(std::move(response));
     }
 
-    responses.candidates = responses.points.empty() ? 0 : responses.points.back() + 1;
+    responses.candidates = record.stored.candidates;
     const auto& design = text.at("design");
     if (design.contains("points")) {
         responses.candidates = std::max(responses.candidates, design.at("points").get<std::int64_t>());
     }
+    if (!responses.ordered_sample() && !record.stopped_at) bring_settled_forward(responses);
+    find_settled(responses);
+    return responses;
+}
+
+Responses read_response(const store::Store& store, const store::CampaignRecord& record, const std::string& observable) {
+    Responses responses;
+    responses.campaign = record;
+    responses.candidates = record.stored.candidates;
+    ResponseColumn response;
+    response.name = observable;
+    for (const auto& placed : store.values(record.name, observable)) {
+        responses.points.push_back(placed.point);
+        responses.replicates.push_back(placed.replicate);
+        responses.outcomes.push_back(placed.outcome);
+        response.values.push_back(placed.value);
+    }
+    responses.observables.push_back(std::move(response));
     if (!responses.ordered_sample() && !record.stopped_at) bring_settled_forward(responses);
     find_settled(responses);
     return responses;

@@ -1,6 +1,7 @@
 // A campaign as the study needs it: factors and responses, column by column.
 #pragma once
 
+#include "sweep/designs/design.hpp"
 #include "sweep/store/store.hpp"
 
 #include <cstddef>
@@ -55,6 +56,16 @@ struct Responses {
     [[nodiscard]] std::span<const double> judged(const ResponseColumn& response) const {
         return std::span(response.values).first(settled);
     }
+    /// Rows that have their last word, wherever they stand.
+    [[nodiscard]] std::size_t finished() const;
+    /// Every value there is: the judged ones and, unless the campaign stopped, those of finished cases behind one that
+    /// is not.
+    [[nodiscard]] std::span<const double> known(const ResponseColumn& response) const {
+        return std::span(response.values).first(campaign.stopped_at ? settled : rows());
+    }
+    /// Points the design numbers that the `where` clause leaves out.
+    [[nodiscard]] std::int64_t dropped() const;
+    [[nodiscard]] const designs::DesignInfo& design() const;
     /// The observable of the convergence rule, else the scene's first that has a value, else the first; none where
     /// the scene measures no scalar.
     [[nodiscard]] const ResponseColumn* main_observable() const;
@@ -62,14 +73,21 @@ struct Responses {
     [[nodiscard]] const ResponseColumn& observable(std::string_view name) const;
     /// Whether it has a scalar of this name; any, where the name is empty.
     [[nodiscard]] bool measures(std::string_view name) const;
-    /// A lattice or a list has no order in which statistics could settle: its beginnings are no samples of it.
+    /// Whether statistics can settle along the design: its beginnings are samples, or listed and judged by a rule.
     [[nodiscard]] bool ordered_sample() const;
 };
+
+/// Whether a case will not be computed any more in this run of its campaign.
+[[nodiscard]] bool has_last_word(const std::optional<campaign::Outcome>& outcome);
 
 /// Whether the sequences of the design repeat one another independently.
 [[nodiscard]] bool repeats(const Responses& responses);
 
 [[nodiscard]] Responses read_responses(const store::Store& store, const store::CampaignRecord& campaign);
+
+/// One observable alone, without factors and case ids: what a verdict needs, in a fraction of the time.
+[[nodiscard]] Responses read_response(const store::Store& store, const store::CampaignRecord& campaign,
+                                      const std::string& observable);
 
 /// The records of the named campaign, or of all where the name is empty. Throws WrongQuestion with the nearest name,
 /// or where the database holds no campaign.

@@ -14,24 +14,22 @@ constexpr std::size_t stretches = 8;
 
 /// Consecutive points that belong together.
 std::int64_t block_of(const Responses& responses) {
-    const auto factors = static_cast<std::int64_t>(responses.factors.size());
-    if (responses.campaign.design == "saltelli") return factors + 2;
-    return responses.campaign.design == "morris" ? factors + 1 : 1;
+    return static_cast<std::int64_t>(responses.design().block(responses.factors.size()));
 }
 
 }  // namespace
 
 SampleParts sample_parts(const Responses& responses) {
-    const auto& design = responses.campaign.design;
-    const auto sequences =
-        schedule::independent_sequences(design, static_cast<std::size_t>(responses.campaign.sequences));
+    const auto& design = responses.design();
+    const auto sequences = schedule::independent_sequences(responses.campaign.design,
+                                                           static_cast<std::size_t>(responses.campaign.sequences));
     const std::int64_t block = block_of(responses);
     const std::int64_t blocks = responses.settled_points / block + 1;
     SampleParts parts;
-    parts.independent = sequences >= 4 || design == "random";
+    parts.independent = sequences >= 4 || design.independent_points;
     if (sequences >= 4) {
         parts.what = fmt::format("the {} independent sequences", sequences);
-    } else if (responses.ordered_sample()) {
+    } else if (design.beginning == designs::Beginning::sample) {
         parts.what = fmt::format("{} stretches of the design{}", stretches,
                                  parts.independent ? "" : ", which makes them rough, rather too large");
     }
@@ -40,7 +38,7 @@ SampleParts sample_parts(const Responses& responses) {
         const std::int64_t point = responses.points[row];
         if (sequences >= 4) {
             parts.labels[row] = static_cast<std::size_t>(point) % sequences;
-        } else if (design == "list") {
+        } else if (design.beginning == designs::Beginning::listed) {
             parts.labels[row] =
                 static_cast<std::size_t>(stats::bits_at(1, 0, static_cast<std::uint64_t>(point)) % stretches);
         } else {

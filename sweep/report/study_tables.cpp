@@ -73,6 +73,39 @@ Json number(double x) {
     return to_json(to_cell(x));
 }
 
+store::Table no_checks() {
+    return {{"campaign", "observable", "points", "mean", "sd", "skewness", "g1", "kurtosis", "mean_error", "sd_error",
+             "skewness_error", "g1_error", "kurtosis_error", "zero_share", "excluded", "converged", "provisional"},
+            {}};
+}
+
+struct CheckFlags {
+    bool converged = false, provisional = false;
+};
+
+void add_check(store::Table& table, const Responses& responses, const ResponseColumn& response,
+               const stats::Checkpoint& check, CheckFlags flags) {
+    std::vector<Cell> row = {responses.campaign.name, response.name, check.points};
+    for (const auto statistic : stats::statistics) row.push_back(to_cell(check.of(statistic).value));
+    for (const auto statistic : stats::statistics) row.push_back(to_cell(check.of(statistic).error));
+    row.push_back(to_cell(check.zero_share));
+    row.emplace_back(check.excluded);
+    row.emplace_back(std::int64_t{flags.converged});
+    row.emplace_back(std::int64_t{flags.provisional});
+    table.rows.push_back(std::move(row));
+}
+
+Json provisional_of(const History& history) {
+    if (!history.provisional) return nullptr;
+    const auto& known = *history.provisional;
+    Json value = {{"points", known.points}, {"values", known.count}, {"excluded", known.excluded}};
+    for (const auto statistic : stats::statistics) {
+        value["statistics"][std::string(stats::to_string(statistic))] = {{"value", number(known.of(statistic).value)},
+                                                                         {"error", number(known.of(statistic).error)}};
+    }
+    return value;
+}
+
 }  // namespace
 
 store::Table statistics_table(const History& history) {
@@ -82,6 +115,16 @@ store::Table statistics_table(const History& history) {
         const double measure = judged_check(history).of(statistic).measure;
         table.rows.push_back({std::string(to_string(statistic)), to_cell(all.value), to_cell(all.error),
                               percent(measure), gate_text(history, statistic)});
+    }
+    return table;
+}
+
+store::Table provisional_table(const History& history) {
+    store::Table table{{"statistic", "value", "error"}, {}};
+    if (!history.provisional) return table;
+    for (const auto statistic : stats::statistics) {
+        const auto& known = history.provisional->of(statistic);
+        table.rows.push_back({std::string(to_string(statistic)), to_cell(known.value), to_cell(known.error)});
     }
     return table;
 }
@@ -103,22 +146,17 @@ store::Table checks_table(const History& history) {
 }
 
 store::Table checks_rows(const Responses& responses, const ResponseColumn& response, const History& history) {
-    store::Table table{
-        {"campaign", "observable", "points", "mean", "sd", "skewness", "g1", "kurtosis", "mean_error", "sd_error",
-         "skewness_error", "g1_error", "kurtosis_error", "zero_share", "excluded", "converged"},
-        {}};
-    const auto add = [&](const stats::Checkpoint& check, bool converged) {
-        std::vector<Cell> row = {responses.campaign.name, response.name, check.points};
-        for (const auto statistic : stats::statistics) row.push_back(to_cell(check.of(statistic).value));
-        for (const auto statistic : stats::statistics) row.push_back(to_cell(check.of(statistic).error));
-        row.push_back(to_cell(check.zero_share));
-        row.emplace_back(check.excluded);
-        row.emplace_back(std::int64_t{converged});
-        table.rows.push_back(std::move(row));
-    };
-    for (const auto& check : history.checks) add(check, check.converged);
+    store::Table table = no_checks();
+    for (const auto& check : history.checks)
+        add_check(table, responses, response, check, {.converged = check.converged});
     if (history.all.points > 0 && (history.checks.empty() || history.checks.back().points != history.all.points))
-        add(history.all, false);
+        add_check(table, responses, response, history.all, {});
+    return table;
+}
+
+store::Table provisional_rows(const Responses& responses, const ResponseColumn& response, const History& history) {
+    store::Table table = no_checks();
+    if (history.provisional) add_check(table, responses, response, *history.provisional, {.provisional = true});
     return table;
 }
 
@@ -164,7 +202,12 @@ Json to_json(const Responses& responses, const ResponseColumn& response, const H
                   {"points", history.all.points},
                   {"values", history.all.count},
                   {"excluded", history.all.excluded},
-                  {"zero_share", number(history.all.zero_share)}};
+                  {"zero_share", number(history.all.zero_share)},
+                  {"candidates", responses.candidates},
+                  {"dropped", responses.dropped()},
+                  {"asked", responses.rows()},
+                  {"finished", responses.finished()}};
+    value["provisional"] = provisional_of(history);
     value["rule"] = history.has_rule ? Json(stats::to_string(history.settings.rule)) : Json(nullptr);
     value["tolerance"] = history.has_rule ? Json(history.settings.tolerance) : Json(nullptr);
     value["gates"] = Json::array();

@@ -1,7 +1,6 @@
 #include "sweep/report/summary.hpp"
 
 #include "sweep/report/file_size.hpp"
-#include "sweep/report/history.hpp"
 #include "sweep/report/table.hpp"
 
 #include <fmt/format.h>
@@ -39,6 +38,14 @@ void add_extreme(store::Table& table, const Responses& responses, const Response
     table.rows.push_back(std::move(cells));
 }
 
+std::string moments_heading(const Responses& responses, const History& history) {
+    if (!history.provisional) return fmt::format("moments over {} points, 95 % errors", responses.counted_points());
+    return fmt::format(
+        "provisional moments over all {} finished cases, 95 % errors; the settled beginning has {} points, and only "
+        "that is judged",
+        responses.finished(), responses.counted_points());
+}
+
 }  // namespace
 
 std::string with_error(double value, double error) {
@@ -62,6 +69,18 @@ std::string index_text(const stats::SensitivityIndex& index) {
     return nothing ? "0" : with_error(index.value, index.half_width);
 }
 
+std::string provisional_line(const History& history) {
+    if (!history.provisional) return {};
+    std::string line =
+        fmt::format("provisional, over all finished cases ({} values), not judged:", history.provisional->count);
+    for (const auto statistic : stats::statistics) {
+        const auto& known = history.provisional->of(statistic);
+        line += fmt::format("{} {} {}", line.ends_with(':') ? "" : ",", to_string(statistic),
+                            with_error(known.value, known.error));
+    }
+    return line;
+}
+
 std::string outcome_line(const Responses& responses) {
     std::string line;
     for (const auto& [outcome, count] : count_outcomes(responses)) {
@@ -74,7 +93,8 @@ store::Table moments_table(const Responses& responses) {
     store::Table table;
     table.columns = {"observable", "unit", "mean", "sd", "skewness", "g1", "kurtosis", "values"};
     for (const auto* response : main_first(responses)) {
-        const auto all = history_of(responses, *response).all;
+        const auto history = history_of(responses, *response);
+        const auto& all = history.provisional ? *history.provisional : history.all;
         std::vector<store::Table::Cell> row = {response->name, response->unit};
         for (const auto statistic : stats::statistics)
             row.emplace_back(with_error(all.of(statistic).value, all.of(statistic).error));
@@ -90,7 +110,7 @@ store::Table extremes_table(const Responses& responses, const ResponseColumn& re
     if (responses.campaign.replicates > 1) table.columns.emplace_back("replicate");
     for (const auto& factor : responses.factors) table.columns.push_back(factor.name);
     table.columns.push_back(response.name);
-    const auto values = responses.judged(response);
+    const auto values = responses.known(response);
     const auto finite =
         static_cast<std::size_t>(std::ranges::count_if(values, [](double x) { return std::isfinite(x); }));
     const std::size_t large = finite <= 2 * count ? finite : count;
@@ -112,17 +132,21 @@ std::string closing_summary(const store::Store& store, const std::string& campai
     std::ostringstream text;
     text << fmt::format("{}: {} cases of {}: {}\n", campaign, responses.rows(), responses.campaign.scene,
                         outcome_line(responses));
+    if (!responses.campaign.condition.empty()) text << "where: " << points_line(responses) << '\n';
     if (const auto* main = responses.main_observable()) {
         const auto history = history_of(responses, *main);
         if (history.has_rule) text << fmt::format("{}: {}\n", main->name, history.verdict);
         for (const auto& warning : history.warnings) text << "note: " << warning << '\n';
-        text << fmt::format("\nmoments over {} points, 95 % errors\n", responses.counted_points());
-        write(text, moments_table(responses), Format::text);
-        text << '\n';
-        write(text, extremes_table(responses, *main, shown_extremes), Format::text);
+        if (responses.finished() > 0) {
+            text << '\n' << moments_heading(responses, history) << '\n';
+            write(text, moments_table(responses), Format::text);
+            text << '\n';
+            write(text, extremes_table(responses, *main, shown_extremes), Format::text);
+        }
     }
-    text << fmt::format("\ndatabase {2}\nnext: grainsweep report {0}\n      grainsweep query {0} \"SELECT * FROM {1}\"\n",
-                        database.string(), campaign, named_with_size(database));
+    text << fmt::format(
+        "\ndatabase {2}\nnext: grainsweep report {0}\n      grainsweep query {0} \"SELECT * FROM {1}\"\n",
+        database.string(), campaign, named_with_size(database));
     return text.str();
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "stats/sensitivity.hpp"
+#include "sweep/report/history.hpp"
 #include "sweep/report/responses.hpp"
 
 #include <cstddef>
@@ -17,10 +18,14 @@ namespace grainsweep::report {
 /// An index and its error; below 1e-9 rounding is all there is, and it is shown as 0.
 [[nodiscard]] std::string index_text(const stats::SensitivityIndex& index);
 
+/// The provisional figures in one line, marked so; empty where there are none.
+[[nodiscard]] std::string provisional_line(const History& history);
+
 /// "640 completed, 12 unstable": outcomes that occur.
 [[nodiscard]] std::string outcome_line(const Responses& responses);
 
-/// One row per scalar observable, the main one first: moments with their 95 % errors over the settled beginning.
+/// One row per scalar observable, the main one first: moments with their 95 % errors over the settled beginning; while
+/// finished cases lie behind one that is not, the provisional ones over all of them.
 [[nodiscard]] store::Table moments_table(const Responses& responses);
 
 /// The rows with the `count` largest and the `count` smallest values of a response: point, factors, value. Where there

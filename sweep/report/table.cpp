@@ -112,4 +112,8 @@ Cell to_cell(double number) {
     return std::isnan(number) ? Cell{} : Cell{number};
 }
 
+nlohmann::ordered_json to_json(const std::optional<bool>& flag) {
+    return flag ? nlohmann::ordered_json(*flag) : nlohmann::ordered_json(nullptr);
+}
+
 }  // namespace grainsweep::report

@@ -8,9 +8,9 @@ namespace {
 
 using campaign::Outcome;
 
-// Long enough that the longest case of a window is under way while the rest fills the other workers, short
-// enough that a stopped run has a gapless beginning.
-constexpr std::size_t window = 64;
+// The end begins where what is left would take all workers so many times the longest case that is left. At 1 the others
+// would be done just when the longest is; 2 leaves room for predictions that are wrong by as much.
+constexpr double longest_cases_left = 2;
 
 bool good(Outcome outcome) {
     return outcome == Outcome::completed || outcome == Outcome::skipped;
@@ -19,11 +19,11 @@ bool good(Outcome outcome) {
 }  // namespace
 
 Plan::Plan(std::vector<campaign::Case> questions, std::span<const History> histories, std::vector<double> predicted,
-           std::vector<std::size_t> places, const Rules& rules)
+           std::vector<std::size_t> places, const Rules& rules, std::span<const std::int64_t> blocks)
     : places_(std::move(places)), rules_(rules) {
     assert(questions.size() == histories.size() && questions.size() == predicted.size());
+    assert(blocks.empty() || blocks.size() == questions.size());
     entries_.reserve(questions.size());
-    tally_.questions = questions.size();
     for (std::size_t i = 0; i < questions.size(); ++i) {
         Entry entry{std::move(questions[i]), histories[i].attempts, histories[i].failures, predicted[i]};
         index_.emplace(entry.question.id, i);
@@ -31,7 +31,10 @@ Plan::Plan(std::vector<campaign::Case> questions, std::span<const History> histo
         const bool asked_again = known && rules_.again == known;
         if (asked_again) entry.failures = 0;
         const bool exhausted = entry.failures >= rules_.attempts;
-        if (known && !asked_again && (settles(*known) || exhausted)) {
+        const bool decided = known && !asked_again && (settles(*known) || exhausted);
+        if (!histories[i].asked) {
+            entry.decided = decided;
+        } else if (++tally_.questions; decided) {
             decide(entry, *known);
         } else {
             queue_.push_back(i);
@@ -39,12 +42,36 @@ Plan::Plan(std::vector<campaign::Case> questions, std::span<const History> histo
         }
         entries_.push_back(std::move(entry));
     }
-    for (std::size_t from = 0; from < queue_.size(); from += window) {
-        const auto first = queue_.begin() + static_cast<std::ptrdiff_t>(from);
-        const auto last = queue_.begin() + static_cast<std::ptrdiff_t>(std::min(from + window, queue_.size()));
-        std::stable_sort(first, last, [this](std::size_t a, std::size_t b) {
-            return entries_[a].predicted > entries_[b].predicted;
-        });
+    order_the_end(blocks);
+}
+
+void Plan::order_the_end(std::span<const std::int64_t> blocks) {
+    const auto limit = static_cast<std::size_t>(rules_.max_cases);
+    const std::size_t end = limit > 0 ? std::min(limit, queue_.size()) : queue_.size();
+    const auto length = [this](std::size_t question) { return entries_[question].predicted; };
+    const auto block = [&](std::size_t question) { return blocks.empty() ? 0 : blocks[question]; };
+    const std::vector<std::size_t> in_order(queue_.begin(), queue_.begin() + static_cast<std::ptrdiff_t>(end));
+    double left = 0;
+    for (const auto question : in_order) left += length(question);
+
+    // Longest first, of equally long ones the first, block by block.
+    std::vector<std::size_t> by_length = in_order;
+    std::ranges::stable_sort(by_length, [&](std::size_t a, std::size_t b) {
+        return block(a) != block(b) ? block(a) < block(b) : length(a) > length(b);
+    });
+    std::vector<bool> taken(entries_.size(), false);
+    auto longest = by_length.begin();
+    auto first = in_order.begin();
+    for (std::size_t at = 0; at < end; ++at) {
+        while (taken[*first]) ++first;
+        while (taken[*longest]) ++longest;
+        const bool near_the_end =
+            left <=
+            longest_cases_left * static_cast<double>(std::max<std::size_t>(rules_.workers, 1)) * length(*longest);
+        const std::size_t next = near_the_end ? *longest : *first;
+        queue_[at] = next;
+        taken[next] = true;
+        left -= length(next);
     }
 }
 

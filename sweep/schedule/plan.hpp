@@ -1,8 +1,8 @@
 // What to compute next, what a result means, when to give up. Pure: sees no process, clock or archive.
 //
-// Work is per question: cases that stand at several places of a design are computed once. Order is the
-// design's, so that the finished part is always a usable prefix; within a short window long cases go first,
-// which keeps all workers busy to the end.
+// Work is per question: cases that stand at several places of a design are computed once. Order is the design's, so
+// that the finished part is always a usable prefix. Long cases go first only where they would otherwise be what the end
+// waits for: where what is left is less than a few times the longest case on every worker.
 #pragma once
 
 #include "sweep/campaign/case.hpp"
@@ -24,6 +24,8 @@ struct History {
     std::int64_t attempts = 0;  ///< highest attempt number
     std::int64_t failures = 0;  ///< of those, crashed or timed out
     std::optional<campaign::Outcome> outcome = {};
+    bool asked =
+        true;  ///< by this run; false: of a larger design that is stored, counted in the prefix, never computed
 };
 
 struct Rules {
@@ -31,13 +33,16 @@ struct Rules {
     std::int64_t stop_after_failures = 0;         ///< start nothing more after so many failed cases; 0: never
     std::int64_t max_cases = 0;                   ///< settle at most so many in this run; 0: all
     std::optional<campaign::Outcome> again = {};  ///< ask again what ended like this
+    std::size_t workers = 1;                      ///< how many cases are computed at once
 };
 
 class Plan {
 public:
-    /// `places[i]` is the index of the question that placed case i asks; `predicted` seconds per question.
+    /// `places[i]` is the index of the question that placed case i asks; `predicted` seconds per question. `blocks`: of
+    /// each question the number of the block after which the campaign may stop, growing; no case is brought forward out
+    /// of a later block than the design is in. Empty: nothing stops it.
     Plan(std::vector<campaign::Case> questions, std::span<const History> histories, std::vector<double> predicted,
-         std::vector<std::size_t> places, const Rules& rules);
+         std::vector<std::size_t> places, const Rules& rules, std::span<const std::int64_t> blocks = {});
 
     struct Start {
         campaign::Attempt attempt;
@@ -93,6 +98,8 @@ private:
         bool decided = false, running = false;
         std::optional<double> share = {};  ///< done by the running attempt, as last heard
     };
+    /// Long cases first near the end: of the queue or of what this run may settle.
+    void order_the_end(std::span<const std::int64_t> blocks);
     void move_on(Entry& entry, double share);
     void put_back(std::size_t index);
     void decide(Entry& entry, campaign::Outcome outcome);

@@ -35,6 +35,8 @@ struct Store::Impl {
 
     void require_writer() const;
     void require_group() const;
+    /// Whether the file has the columns of migration 003.
+    [[nodiscard]] bool keeps_extents() const;
     /// Throws WrongQuestion with the nearest name where there is none.
     [[nodiscard]] std::int64_t campaign_key(std::string_view name) const;
     /// Key of an observable; one that the scene did not declare is declared, so that no answer is lost.
@@ -47,6 +49,8 @@ struct CampaignTexts {
     std::string factors, fixed, options, extent;
 };
 [[nodiscard]] CampaignTexts texts_of(const campaign::Campaign& campaign);
+/// The larger of two extents of one design that extends, option by option; of any other the later one.
+[[nodiscard]] std::string larger_extent(std::string_view design, const std::string& before, const std::string& after);
 /// Sequences of the design: point p belongs to sequence p mod this.
 [[nodiscard]] std::int64_t sequences_of(const campaign::Campaign& campaign);
 

@@ -1,15 +1,18 @@
 // What makes a campaign the same campaign: its scene, factors, fixed values, condition, seed and kind of design.
 //
-// More points, levels or replicates extend it. Where an extension renumbers the points (a lattice with more
-// levels), the new placement replaces the old one: cases are known by what they ask, so every answer is kept
-// and those the new design asks for again are shared.
+// More points or replicates extend it, where the design extends; of a design that does not, another size is another
+// design. Levels that a factor of a lattice gains renumber the points: the new placement replaces the old one. Cases
+// are known by what they ask, so every answer is kept and shared.
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/store/archive.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <map>
+#include <set>
 #include <sstream>
 
 namespace grainsweep::store {
@@ -43,9 +46,17 @@ std::string text_of(const designs::OptionValue& value) {
     return text;
 }
 
-/// Counts say how much of a design is asked, and may grow; these two say which.
-bool says_which(std::string_view option, const designs::OptionValue& value) {
-    return std::holds_alternative<std::string>(value) || option == "first" || option == "sequences";
+const designs::OptionSpec* find_option(const designs::DesignInfo& design, std::string_view name) {
+    const auto found = std::ranges::find(design.options, name, &designs::OptionSpec::name);
+    return found == design.options.end() ? nullptr : &*found;
+}
+
+/// "points = 40" -> "points", "40".
+std::pair<std::string, std::string> name_and_value(const std::string& line) {
+    constexpr std::string_view between = " = ";
+    const auto at = line.find(between);
+    if (at == std::string::npos) return {line, {}};
+    return {line.substr(0, at), line.substr(at + between.size())};
 }
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -53,6 +64,31 @@ std::vector<std::string> lines_of(const std::string& text) {
     std::istringstream stream(text);
     for (std::string line; std::getline(stream, line);) lines.push_back(line);
     return lines;
+}
+
+/// The lines of those options that say which design it is, or of those that say how much of it is asked.
+std::string options_of(const designs::DesignInfo& design, const std::string& text, bool extent) {
+    std::set<std::string> kept;
+    for (const auto& line : lines_of(text)) {
+        const auto* option = find_option(design, name_and_value(line).first);
+        if ((option != nullptr && option->extent) == extent) kept.insert(line);
+    }
+    std::string lines;
+    for (const auto& line : kept) lines += line + '\n';
+    return lines;
+}
+
+/// Counts per factor as they act: without those of factors whose own levels decide, and one for all written out.
+std::string counts_that_act(const std::string& value, const std::vector<std::string>& factors) {
+    std::istringstream stream(value);
+    std::vector<std::int64_t> counts;
+    for (std::int64_t count = 0; stream >> count;) counts.push_back(count);
+    std::string acting;
+    for (std::size_t j = 0; j < factors.size() && !counts.empty(); ++j) {
+        if (factors[j].find(" between ") == std::string::npos) continue;
+        acting += fmt::format(" {}", counts[counts.size() == 1 ? 0 : std::min(j, counts.size() - 1)]);
+    }
+    return acting;
 }
 
 /// The same factor with every old level kept: a lattice grows so.
@@ -95,15 +131,67 @@ std::pair<std::string, std::string> first_difference(const std::string& before, 
 
 CampaignTexts texts_of(const Campaign& campaign) {
     CampaignTexts texts;
+    const auto& design = designs::design_named(campaign.design);
     for (const auto& factor : campaign.space.factors) texts.factors += line_of(factor) + '\n';
     for (const auto& [name, value] : campaign.space.fixed)
         texts.fixed += fmt::format("{} = {}\n", name, campaign::identity_text(value));
     for (const auto& [name, value] : campaign.request.options) {
         if (std::holds_alternative<designs::Rows>(value)) continue;  // compared row by row, by what they ask
-        (says_which(name, value) ? texts.options : texts.extent) += fmt::format("{} = {}\n", name, text_of(value));
+        const auto* option = find_option(design, name);
+        const bool extent = option != nullptr && option->extent;
+        (extent ? texts.extent : texts.options) += fmt::format("{} = {}\n", name, text_of(value));
     }
     return texts;
 }
+
+std::string larger_extent(std::string_view design, const std::string& before, const std::string& after) {
+    const auto& info = designs::design_named(design);
+    if (!info.extends) return after;
+    std::map<std::string, std::int64_t> largest;
+    for (const auto* text : {&before, &after}) {
+        for (const auto& line : lines_of(options_of(info, *text, true))) {
+            const auto [name, value] = name_and_value(line);
+            auto& count = largest.try_emplace(name, 0).first->second;
+            count = std::max<std::int64_t>(count, std::strtoll(value.c_str(), nullptr, 10));
+        }
+    }
+    std::string lines;
+    for (const auto& [name, count] : largest) lines += fmt::format("{} = {}\n", name, count);
+    return lines;
+}
+
+namespace {
+
+/// A design that does not extend stands as it was asked first.
+void refuse_another_size(const Store::Impl& archive, const Campaign& campaign, const std::string& stored,
+                         const CampaignTexts& asked) {
+    const auto& design = designs::design_named(campaign.design);
+    if (design.extends) return;
+    const auto factors = lines_of(asked.factors);
+    const auto value_of = [](const std::string& text, const designs::OptionSpec& option) {
+        for (const auto& line : lines_of(text)) {
+            const auto [name, value] = name_and_value(line);
+            if (name == option.name) return value;
+        }
+        return std::string{};
+    };
+    const auto shown = [](const std::string& value) { return value.empty() ? "none" : value; };
+    for (const auto& option : design.options) {
+        if (!option.extent || option.kind == designs::OptionSpec::Kind::rows) continue;
+        const auto before = value_of(stored, option), after = value_of(asked.extent, option);
+        const bool per_factor = option.kind == designs::OptionSpec::Kind::counts;
+        if (before == after || (per_factor && counts_that_act(before, factors) == counts_that_act(after, factors)))
+            continue;
+        throw campaign::wrong_question(
+            "$.design." + option.name, shown(after),
+            fmt::format("campaign '{}' stands in '{}' with {}, and a {} of another size is another design, with other "
+                        "points under the same numbers: give it a campaign name of its own; cases that both ask are "
+                        "not computed again",
+                        campaign.name, archive.file.string(), shown(before), campaign.design));
+    }
+}
+
+}  // namespace
 
 std::int64_t sequences_of(const Campaign& campaign) {
     const auto found = campaign.request.options.find("sequences");
@@ -114,7 +202,8 @@ std::int64_t sequences_of(const Campaign& campaign) {
 std::optional<std::int64_t> match_campaign(const Store::Impl& archive, const Campaign& campaign) {
     const auto& db = archive.db;
     auto rows = db.ask(
-        "SELECT campaign_id, name, scene, revision, seed, factors, fixed, condition, design, design_options "
+        "SELECT campaign_id, name, scene, revision, seed, factors, fixed, condition, design, design_options, "
+        "design_extent "
         "FROM campaign WHERE name = ?",
         campaign.name);
     if (!rows.next()) return std::nullopt;
@@ -132,6 +221,7 @@ std::optional<std::int64_t> match_campaign(const Store::Impl& archive, const Cam
         if (before != after) refuse(where, after, what.empty() ? before : fmt::format("{} {}", what, before));
     };
     const auto texts = texts_of(campaign);
+    const auto& design = designs::design_named(campaign.design);
     same("$.campaign", "the name", name, campaign.name);
     same("$.scene", "scene", rows.get<std::string>(2), campaign.scene().name);
     if (rows.get<std::int64_t>(3) != campaign.scene().revision) {
@@ -141,14 +231,19 @@ std::optional<std::int64_t> match_campaign(const Store::Impl& archive, const Cam
     const auto seed = static_cast<std::uint64_t>(rows.get<std::int64_t>(4));
     same("$.seed", "seed", std::to_string(seed), std::to_string(campaign.seed));
     same("$.design.kind", "design", rows.get<std::string>(8), campaign.design);
-    same("$.factors", "factor", rows.get<std::string>(5), texts.factors, campaign.design == "lattice");
+    same("$.factors", "factor", rows.get<std::string>(5), texts.factors,
+         design.beginning == designs::Beginning::corner);
     same("$.fixed", "fixed", rows.get<std::string>(6), texts.fixed);
     if (rows.get<std::string>(7) != campaign.where) {
         const std::string stored = rows.get<std::string>(7);
         refuse("$.where", campaign.where.empty() ? "none" : campaign.where,
                stored.empty() ? "no condition" : fmt::format("the condition {}", stored));
     }
-    same("$.design", "design option", rows.get<std::string>(9), texts.options);
+    // Which option is of the extent is the program's to say, not the archive's: both texts are sorted anew.
+    const auto options = rows.get<std::string>(9) + rows.get<std::string>(10);
+    same("$.design", "design option", options_of(design, options, false),
+         options_of(design, texts.options + texts.extent, false));
+    refuse_another_size(archive, campaign, options, texts);
     return rows.get<std::int64_t>(0);
 }
 

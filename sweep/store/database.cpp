@@ -406,6 +406,10 @@ void Transaction::commit() {
     connection_ = nullptr;
 }
 
+bool is_sql_word(std::string_view word) {
+    return sqlite3_keyword_check(word.data(), static_cast<int>(word.size())) != 0;
+}
+
 std::string quoted_name(std::string_view name) {
     std::string text = "\"";
     for (const char c : name) text.append(c == '"' ? 2 : 1, c);

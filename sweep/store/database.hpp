@@ -205,6 +205,8 @@ private:
     Connection* connection_;
 };
 
+/// Whether SQLite reads the word as one of its language's own, whatever its case.
+[[nodiscard]] bool is_sql_word(std::string_view word);
 /// An identifier or a word of text as SQL writes it.
 [[nodiscard]] std::string quoted_name(std::string_view name);
 [[nodiscard]] std::string quoted_text(std::string_view text);

@@ -10,6 +10,7 @@
 #include <cctype>
 #include <numeric>
 #include <stdexcept>
+#include <unordered_set>
 
 namespace grainsweep::store {
 
@@ -181,17 +182,21 @@ void place(Store::Impl& archive, const Campaign& campaign, std::int64_t campaign
         }
     }
     if (moved != nullptr) {
-        if (campaign.design == "list") {
+        const auto& design = designs::design_named(campaign.design);
+        if (design.beginning == designs::Beginning::listed) {
             throw campaign::wrong_question(
                 "$.design.rows", fmt::format("another row {}", moved->point),
                 fmt::format("campaign '{}' stands in '{}' with its own: a list is extended at its end", campaign.name,
                             archive.file.string()));
         }
-        if (asked.size() < stored.size()) {
+        // What is stored never leaves the campaign's view.
+        std::unordered_set<std::int64_t> kept;
+        for (const auto& it : asked) kept.insert(it.case_key);
+        if (!std::ranges::all_of(stored, [&](const Place& it) { return kept.contains(it.case_key); })) {
             throw campaign::wrong_question(
                 "$.design", fmt::format("{} cases", asked.size()),
-                fmt::format("campaign '{}' stands in '{}' with {}, and this {} does not contain them: another question "
-                            "needs another name",
+                fmt::format("campaign '{}' stands in '{}' with {}, and this {} does not contain them all: ask for no "
+                            "fewer replicates, or give another question another name",
                             campaign.name, archive.file.string(), stored.size(), campaign.design));
         }
         db.run("DELETE FROM campaign_case WHERE campaign_id = ?", campaign_key);
@@ -232,7 +237,35 @@ void store_rule(Connection& db, std::int64_t campaign_key, const std::optional<c
            rule->stop, campaign_key);
 }
 
-std::int64_t store_campaign(Store::Impl& archive, const Campaign& campaign) {
+/// Points the design numbers; where its options are not known, as many as are placed.
+std::int64_t candidates_in(const Campaign& campaign, std::span<const PlacedCase> cases) {
+    std::int64_t candidates = 0;
+    for (const auto& placed : cases) candidates = std::max(candidates, placed.point + 1);
+    try {
+        candidates = std::max(candidates, campaign::candidates_of(campaign));
+    } catch (const std::invalid_argument&) {  // a campaign that no file was read for
+    }
+    return candidates;
+}
+
+/// What is asked now; what is stored grows to it where the design extends, and changes with it elsewhere.
+void store_extent(Store::Impl& archive, const Campaign& campaign, std::int64_t key, std::int64_t candidates) {
+    std::string stored;
+    {
+        auto rows = archive.db.ask("SELECT design_extent FROM campaign WHERE campaign_id = ?", key);
+        if (rows.next()) stored = rows.get<std::string>(0);
+    }
+    const auto texts = texts_of(campaign);
+    archive.db.run(
+        "UPDATE campaign SET factors = ?1, design_options = ?2, design_extent = ?3, replicates = max(replicates, ?4), "
+        "candidates = iif(?5, max(coalesce(candidates, (SELECT max(point) + 1 FROM campaign_case AS p WHERE "
+        "p.campaign_id = campaign.campaign_id), 0), ?6), ?6), asked_candidates = ?6, asked_replicates = ?4 "
+        "WHERE campaign_id = ?7",
+        texts.factors, texts.options, larger_extent(campaign.design, stored, texts.extent), campaign.replicates,
+        designs::design_named(campaign.design).extends, candidates, key);
+}
+
+std::int64_t store_campaign(Store::Impl& archive, const Campaign& campaign, std::span<const PlacedCase> cases) {
     auto& db = archive.db;
     auto key = match_campaign(archive, campaign);
     const auto texts = texts_of(campaign);
@@ -245,11 +278,8 @@ std::int64_t store_campaign(Store::Impl& archive, const Campaign& campaign) {
             texts.factors, texts.fixed, campaign.where, campaign.design, texts.options, texts.extent,
             sequences_of(campaign), campaign.replicates);
         key = db.last_row();
-    } else {
-        db.run(
-            "UPDATE campaign SET factors = ?, design_extent = ?, replicates = max(replicates, ?) WHERE campaign_id = ?",
-            texts.factors, texts.extent, campaign.replicates, *key);
     }
+    store_extent(archive, campaign, *key, candidates_in(campaign, cases));
     store_rule(db, *key, campaign.convergence);
     return *key;
 }
@@ -298,7 +328,7 @@ std::vector<CaseState> Store::enrol(const Campaign& campaign, std::span<const Pl
     Remembered remembered(*impl_);
     Transaction transaction(impl_->db);
     close_dead_attempts(*impl_);
-    const std::int64_t key = store_campaign(*impl_, campaign);
+    const std::int64_t key = store_campaign(*impl_, campaign, cases);
     const auto parameters = declare_scene(*impl_, campaign.scene());
     impl_->observables.clear();
     store_provenance(*impl_, campaign, key, provenance);

@@ -89,13 +89,34 @@ std::int64_t Store::Impl::campaign_key(std::string_view name) const {
                                    campaign::nearest_word(name, names));
 }
 
+bool Store::Impl::keeps_extents() const {
+    auto rows = db.ask("SELECT count(*) FROM pragma_table_info('campaign') WHERE name = 'candidates'");
+    return rows.next() && rows.get<std::int64_t>(0) > 0;
+}
+
+namespace {
+
+/// candidates, asked_candidates, asked_replicates of campaign g; of an older archive what is placed.
+std::string extent_columns(bool kept) {
+    constexpr std::string_view placed =
+        "(SELECT max(point) + 1 FROM campaign_case AS e WHERE e.campaign_id = g.campaign_id)";
+    if (!kept) return fmt::format("{0}, {0}, g.replicates", placed);
+    return fmt::format(
+        "coalesce(g.candidates, {0}), coalesce(g.asked_candidates, {0}), coalesce(g.asked_replicates, g.replicates)",
+        placed);
+}
+
+}  // namespace
+
 std::vector<CampaignRecord> Store::campaigns() const {
     std::vector<CampaignRecord> records;
-    auto rows = impl_->db.ask(
+    const auto extents = extent_columns(impl_->keeps_extents());
+    auto rows = impl_->db.ask(fmt::format(
         "SELECT name, scene, coalesce((SELECT campaign_text FROM provenance AS v WHERE v.campaign_id = g.campaign_id "
         "ORDER BY provenance_id DESC LIMIT 1), ''), design, revision, sequences, replicates, stopped_at, "
         "convergence_observable, convergence_rule, convergence_gates, convergence_tolerance, convergence_block, "
-        "convergence_stop FROM campaign AS g ORDER BY campaign_id");
+        "convergence_stop, condition, {} FROM campaign AS g ORDER BY campaign_id",
+        extents));
     while (rows.next()) {
         CampaignRecord record;
         record.name = rows.get<std::string>(0);
@@ -107,6 +128,9 @@ std::vector<CampaignRecord> Store::campaigns() const {
         record.replicates = rows.get<std::int64_t>(6);
         record.stopped_at = rows.get<std::optional<std::int64_t>>(7);
         record.convergence = rule_at(rows, 8);
+        record.condition = rows.get<std::string>(14);
+        record.stored = {rows.get<std::int64_t>(15), record.replicates};
+        record.asked = {rows.get<std::int64_t>(16), rows.get<std::int64_t>(17)};
         records.push_back(std::move(record));
     }
     return records;
@@ -119,6 +143,39 @@ std::vector<std::string> Store::factor_order(std::string_view campaign) const {
     std::istringstream lines(rows.get<std::string>(0));
     for (std::string line; std::getline(lines, line);) names.push_back(line.substr(0, line.find(' ')));
     return names;
+}
+
+std::optional<CampaignRecord> Store::stored(const campaign::Campaign& campaign) const {
+    if (!match_campaign(*impl_, campaign)) return std::nullopt;
+    auto records = campaigns();
+    const auto found = std::ranges::find(records, campaign.name, &CampaignRecord::name);
+    return found == records.end() ? std::nullopt : std::optional(std::move(*found));
+}
+
+std::int64_t Store::settled(std::span<const campaign::PlacedCase> cases) const {
+    return std::ranges::count_if(cases, [&](const campaign::PlacedCase& placed) {
+        auto rows = impl_->db.ask("SELECT outcome FROM sim_case WHERE case_id = ?", placed.question.id);
+        if (!rows.next()) return false;
+        const auto outcome = outcome_at(rows, 0);
+        return outcome && settles(*outcome);
+    });
+}
+
+std::vector<StoredPlace> Store::placement(std::string_view campaign) const {
+    std::vector<StoredPlace> places;
+    auto rows = impl_->db.ask(
+        "SELECT p.point, p.sequence, p.replicate, c.case_id, c.attempts, c.failures, c.outcome FROM campaign_case AS p "
+        "JOIN sim_case AS c ON c.case_key = p.case_key WHERE p.campaign_id = ? ORDER BY p.point, p.replicate",
+        impl_->campaign_key(campaign));
+    while (rows.next()) {
+        auto& place = places.emplace_back();
+        place.placed.point = rows.get<std::int64_t>(0);
+        place.placed.sequence = rows.get<std::int64_t>(1);
+        place.placed.replicate = rows.get<std::int64_t>(2);
+        place.placed.question.id = rows.get<std::string>(3);
+        place.state = {rows.get<std::int64_t>(4), rows.get<std::int64_t>(5), outcome_at(rows, 6)};
+    }
+    return places;
 }
 
 std::optional<campaign::Case> Store::find_case(std::string_view id_or_prefix) const {
@@ -283,10 +340,12 @@ Table Store::status() const {
     Table table;
     table.columns = {"campaign", "scene", "cases"};
     for (const auto outcome : campaign::outcomes) table.columns.emplace_back(campaign::to_string(outcome));
-    for (const char* name : {"waiting", "stopped_at", "rate", "time_left"}) table.columns.emplace_back(name);
+    for (const char* name : {"waiting", "stopped_at", "rate", "time_left", "candidates", "dropped", "points",
+                             "replicates", "finished", "asked_points", "asked_replicates"})
+        table.columns.emplace_back(name);
 
     // rate: answers per second of the last run; time_left: s, for what is waiting or abandoned, at that rate.
-    auto rows = impl_->db.ask(
+    auto rows = impl_->db.ask(fmt::format(
         "WITH count AS (SELECT p.campaign_id, c.outcome, count(*) AS cases FROM campaign_case AS p "
         "  JOIN sim_case AS c ON c.case_key = p.case_key GROUP BY p.campaign_id, c.outcome), "
         "last AS (SELECT campaign_id, max(provenance_id), "
@@ -296,10 +355,16 @@ Table Store::status() const {
         "  coalesce((SELECT sum(cases) FROM count AS n WHERE n.campaign_id = g.campaign_id), 0) AS cases, "
         "  coalesce((SELECT sum(cases) FROM count AS n WHERE n.campaign_id = g.campaign_id "
         "    AND (n.outcome IS NULL OR n.outcome = 'abandoned')), 0) AS open, l.rate "
-        "  FROM campaign AS g LEFT JOIN last AS l ON l.campaign_id = g.campaign_id) "
+        "  FROM campaign AS g LEFT JOIN last AS l ON l.campaign_id = g.campaign_id), "
+        "extent (campaign_id, replicates, points, candidates, asked_points, asked_replicates) AS "
+        "  (SELECT g.campaign_id, g.replicates, (SELECT count(DISTINCT point) FROM campaign_case AS p "
+        "  WHERE p.campaign_id = g.campaign_id), {} FROM campaign AS g) "
         "SELECT t.name, t.scene, t.cases, t.stopped_at, t.rate, iif(t.stopped_at IS NULL, t.open / t.rate, 0.0), "
-        "  n.outcome, n.cases FROM total AS t LEFT JOIN count AS n ON n.campaign_id = t.campaign_id "
-        "ORDER BY t.campaign_id");
+        "  e.candidates, e.candidates - e.points, e.points, e.replicates, t.cases - t.open, e.asked_points, "
+        "  e.asked_replicates, n.outcome, n.cases FROM total AS t JOIN extent AS e ON e.campaign_id = t.campaign_id "
+        "LEFT JOIN count AS n ON n.campaign_id = t.campaign_id ORDER BY t.campaign_id",
+        extent_columns(impl_->keeps_extents())));
+    constexpr int outcome_column = 13;
     const std::size_t first_outcome = 3;
     const std::size_t waiting = first_outcome + campaign::outcomes.size();
     while (rows.next()) {
@@ -309,11 +374,13 @@ Table Store::status() const {
             row[0] = name;
             row[1] = rows.cell(1);
             row[2] = rows.cell(2);
-            for (std::size_t k = 0; k < 3; ++k) row[waiting + 1 + k] = rows.cell(3 + static_cast<int>(k));
+            for (int column = 3; column < outcome_column; ++column)
+                row[waiting + static_cast<std::size_t>(column) - 2] = rows.cell(column);
         }
-        if (rows.is_null(7)) continue;  // a campaign without cases
-        const auto outcome = outcome_at(rows, 6);
-        table.rows.back()[outcome ? first_outcome + static_cast<std::size_t>(*outcome) : waiting] = rows.cell(7);
+        if (rows.is_null(outcome_column + 1)) continue;  // a campaign without cases
+        const auto outcome = outcome_at(rows, outcome_column);
+        table.rows.back()[outcome ? first_outcome + static_cast<std::size_t>(*outcome) : waiting] =
+            rows.cell(outcome_column + 1);
     }
     return table;
 }

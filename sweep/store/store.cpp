@@ -144,8 +144,8 @@ std::unique_ptr<Store::Impl> open_to_read(const std::filesystem::path& file) {
     const std::int64_t version = schema_version(db, file);
     if (version == 0)
         throw WrongQuestion(fmt::format("'{}' is empty: no campaign has been run into it.", file.string()));
-    // An older schema is read as it is, and brought up to date by the next run: migrations so far added what no
-    // question needs.
+    // An older schema is read as it is, and brought up to date by the next run: what a migration added is asked for only
+    // where it is (keeps_extents).
     return std::make_unique<Store::Impl>(file, std::nullopt, std::move(db));
 }
 

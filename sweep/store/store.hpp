@@ -77,12 +77,33 @@ struct CasePlace {
     std::optional<std::int64_t> attempts;    ///< limits.attempts of its last run, where that said so
 };
 
+/// How much of its design a campaign has: points the design numbers, and repeats of each.
+struct Extent {
+    std::int64_t candidates = 0;  ///< those that the `where` clause leaves out included
+    std::int64_t replicates = 1;
+    bool operator==(const Extent&) const = default;
+};
+
 struct CampaignRecord {
     std::string name, scene, text, design;
+    std::string condition;  ///< the `where` clause; empty: every point
     int revision = 1;
     std::int64_t sequences = 1, replicates = 1;
+    Extent stored;  ///< never shrinks: what view and statistics are over
+    Extent asked;   ///< by the last run
     std::optional<campaign::Convergence> convergence;
     std::optional<std::int64_t> stopped_at;  ///< it converged and stopped: points numbered below this count
+
+    /// The last run asked for a part of what is stored.
+    [[nodiscard]] bool shrunk() const {
+        return asked.candidates < stored.candidates || asked.replicates < stored.replicates;
+    }
+};
+
+/// A place of a campaign's design, and what the archive knows of its case.
+struct StoredPlace {
+    campaign::PlacedCase placed;  ///< of the question id and nothing else
+    CaseState state;
 };
 
 class Store {
@@ -102,10 +123,12 @@ public:
     /// abandoned. Returns the state of each case, in the order given. Not inside group().
     ///
     /// Another scene, revision, default, factor set, range, fixed value, condition, seed, kind of design, scramble or
-    /// first index under the same name throws WrongQuestion naming both. More points, levels or replicates extend; a
-    /// part of what is there is accepted and removes nothing. Where an extension renumbers points (a lattice with more
-    /// levels) the new places replace the old ones, every answer is kept, and convergence is judged anew, as it is
-    /// after another rule or more replicates. A list only grows at its end.
+    /// first index under the same name throws WrongQuestion naming both, and so does another size of a design that
+    /// does not extend (latin_hypercube, levels of a lattice). More points or replicates extend; a part of what is
+    /// there is accepted, removes nothing and is kept beside the extent (CampaignRecord). Where a factor of a lattice
+    /// gains levels the points are renumbered: the new places replace the old ones, every answer is kept and stays in
+    /// the view, and convergence is judged anew, as it is after another rule or more replicates. A list only grows at
+    /// its end.
     std::vector<CaseState> enrol(const campaign::Campaign& campaign, std::span<const campaign::PlacedCase> cases,
                                  const Provenance& provenance);
 
@@ -125,6 +148,13 @@ public:
     /// The names of a campaign's factors in the order that fixes the dimensions of its design; empty where there is
     /// no campaign of that name.
     [[nodiscard]] std::vector<std::string> factor_order(std::string_view campaign) const;
+    /// The stored campaign of that name, none where there is none. Throws WrongQuestion where enrol() would because it
+    /// asks something else.
+    [[nodiscard]] std::optional<CampaignRecord> stored(const campaign::Campaign& campaign) const;
+    /// How many of these cases are settled, whichever campaign asked them.
+    [[nodiscard]] std::int64_t settled(std::span<const campaign::PlacedCase> cases) const;
+    /// Every place of the campaign, ordered by (point, replicate).
+    [[nodiscard]] std::vector<StoredPlace> placement(std::string_view campaign) const;
     /// Throws WrongQuestion where several cases begin so.
     [[nodiscard]] std::optional<campaign::Case> find_case(std::string_view id_or_prefix) const;
     [[nodiscard]] std::vector<LoggedAttempt> attempts(std::string_view case_id) const;
@@ -135,7 +165,10 @@ public:
     [[nodiscard]] std::vector<PlacedValue> values(std::string_view campaign, std::string_view observable) const;
     [[nodiscard]] std::vector<ConvergenceRow> convergence(std::string_view campaign, std::string_view observable) const;
     /// One row per campaign: campaign, scene, cases, one count per outcome, waiting (no outcome yet), stopped_at,
-    /// rate (answers per second of the last run), time_left (s, at that rate; NULL where none is known).
+    /// rate (answers per second of the last run), time_left (s, at that rate; NULL where none is known); then
+    /// candidates (points the design numbers), dropped (of those, left out by the `where` clause), points (the rest),
+    /// replicates, finished (cases with an outcome, abandoned ones not counted) and what the last run asked for,
+    /// asked_points (candidates) and asked_replicates.
     [[nodiscard]] Table status() const;
     /// One statement of read-only SQL: anything else throws WrongQuestion with SQLite's sentence, the names there are
     /// and the nearest. Beside SQLite's own functions those of aggregates.hpp.

@@ -227,12 +227,13 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{R"([{"op": "replace", "path": "/convergence/block", "value": 31}])",
               "$.convergence.block: got 31; must give each of the 8 sequences at least 4 points."},
         Wrong{R"([{"op": "replace", "path": "/design/sequences", "value": 3}])",
-              "$.convergence.rule: got \"replicates\" by default; this rule needs a halton design with \"scramble\": "
-              "\"random\" and \"sequences\" of at least 4 (8 is good); any_change and all_change need none."},
+              "$.convergence.rule: got \"replicates\" by default; this rule needs a halton or sobol design with "
+              "\"scramble\": \"random\" and \"sequences\" of at least 4 (8 is good); any_change and all_change need "
+              "none."},
         Wrong{R"([{"op": "replace", "path": "/design", "value": {"kind": "lattice", "levels": 3}},
                   {"op": "add", "path": "/convergence/rule", "value": "any_change"}])",
               "$.convergence.rule: got \"any_change\"; the points of a lattice come in no useful order, so blocks of "
-              "them tell nothing; compare lattices campaign by campaign or take a halton design."},
+              "them tell nothing; compare campaigns of that design or take a halton design."},
         Wrong{R"([{"op": "add", "path": "/limits", "value": {"attempts": 0}}])",
               "$.limits.attempts: got 0; must be a whole number from 1 to 1000."},
         Wrong{R"([{"op": "add", "path": "/limits", "value": {"wall_seconds": -1}}])",

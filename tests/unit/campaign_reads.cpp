@@ -67,3 +67,58 @@ TEST(Forecast, CountsEveryQuestionOnce) {
     EXPECT_NEAR(cost.total_seconds, 3, 1e-4);
     EXPECT_NEAR(cost.longest_seconds, 2, 1e-4);
 }
+
+namespace {
+
+Convergence convergence_of(int points, const std::string& design, const std::string& rule) {
+    const std::string text = R"({"campaign": "c", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
+        "design": {)" + design +
+                             R"(, "points": )" + std::to_string(points) + R"(}, "convergence": {"observable": "y")" +
+                             rule + "}}";
+    return *parse_campaign(text, ".").convergence;
+}
+
+}  // namespace
+
+// A rule that can never be checked looks like one that is never met.
+TEST(CampaignFile, WithoutABlockTheDesignIsCheckedEightTimes) {
+    const std::string sequences = R"("kind": "halton", "sequences": 8)", plain = R"("kind": "random")";
+    EXPECT_EQ(convergence_of(2400, sequences, "").block, 296) << "37 rounds of 8 sequences";
+    EXPECT_EQ(convergence_of(10000, sequences, "").block, 400);
+    EXPECT_EQ(convergence_of(64, sequences, "").block, 32) << "4 points for each sequence at least";
+    EXPECT_EQ(convergence_of(100, plain, R"(, "rule": "all_change")").block, 12);
+    EXPECT_EQ(convergence_of(10, plain, R"(, "rule": "all_change")").block, 4);
+    EXPECT_EQ(convergence_of(64, R"("kind": "sobol", "sequences": 4)", "").block, 16) << "sobol sequences repeat, too";
+}
+
+TEST(CampaignFile, SaysWhenNoCheckCanEverPass) {
+    const auto never = [](int points, int block) {
+        return never_converges(parse_campaign(
+            R"({"campaign": "c", "scene": "rehearsal",
+            "factors": [{"name": "x1", "between": [0, 1]}], "design": {"kind": "halton", "points": )" +
+                std::to_string(points) + R"(}, "convergence": {"observable": "y", "rule": "all_change", "block": )" +
+                std::to_string(block) + "}}",
+            "."));
+    };
+    EXPECT_EQ(never(100, 400), "convergence can never be checked: a block is 400 points, and the design has 100");
+    EXPECT_NE(never(100, 60).find("needs two checks"), std::string::npos) << never(100, 60);
+    EXPECT_EQ(never(100, 50), "");
+}
+
+// Warnings of a scene, counted once a kind over the cases that are really asked.
+TEST(Forecast, CountsWarningsByKind) {
+    const Campaign campaign = parse_campaign(R"({"campaign": "c", "scene": "powder_spreading",
+        "factors": [{"name": "gap", "levels": [0.0001, 0.0002, 0.004, 0.05]}], "design": {"kind": "lattice"}})",
+                                             ".");
+    const auto cost = forecast(campaign.scene(), unfold(campaign, {}));
+    ASSERT_EQ(cost.cautions.size(), 2U);
+    EXPECT_EQ(cost.cautions[0].kind, "gap below half a diameter");
+    EXPECT_EQ(cost.cautions[0].questions, 2);
+    EXPECT_EQ(cost.cautions[0].first_point, 0);
+    EXPECT_EQ(cost.cautions[1].kind, "gap above the layer");
+    EXPECT_EQ(cost.cautions[1].first_point, 3);
+    const auto warnings = warnings_of(campaign, cost);
+    ASSERT_EQ(warnings.size(), 2U);
+    EXPECT_EQ(warnings[0].rfind("gap below half a diameter: 2 of 4 cases, first at point 0: a gap of 0.0001 m", 0), 0U)
+        << warnings[0];
+}

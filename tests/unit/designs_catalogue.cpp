@@ -21,6 +21,28 @@ TEST(Catalogue, EveryKindSaysWhatItIsAndExtendsWhereItClaims) {
     }
 }
 
+// Others ask the size of a request without forming its points, and how many points belong together.
+TEST(Catalogue, TheSizeIsThatOfTheSample) {
+    for (const auto& info : designs::design_catalogue()) {
+        designs::DesignRequest request{.levels = {0, 0, 3}, .options = {}, .seed = 3};
+        for (const auto& option : info.options) {
+            if (option.default_value) request.options[option.name] = *option.default_value;
+            if (option.kind == designs::OptionSpec::Kind::count && option.extent)
+                request.options[option.name] = std::int64_t{24};
+            if (option.kind == designs::OptionSpec::Kind::counts) request.options[option.name] = std::int64_t{4};
+            if (option.kind == designs::OptionSpec::Kind::rows)
+                request.options[option.name] = designs::Rows(5, std::vector<Value>(3, Value{0.5}));
+        }
+        const auto points = info.sample(request);
+        EXPECT_EQ(info.size(request), static_cast<std::int64_t>(points.size())) << info.name;
+        EXPECT_EQ(points.size() % info.block(3), 0U) << info.name;
+        EXPECT_GE(std::ranges::count(info.options, true, &designs::OptionSpec::extent), 1) << info.name;
+    }
+    EXPECT_EQ(designs::design_named("saltelli").block(3), 5U);
+    EXPECT_EQ(designs::design_named("morris").block(3), 4U);
+    EXPECT_THROW((void)designs::design_named("no_such_kind"), std::logic_error);
+}
+
 TEST(Catalogue, OnlyRandomisedSequencesAreIndependent) {
     for (const auto& info : designs::design_catalogue())
         EXPECT_EQ(info.independent_sequences, info.name == "halton" || info.name == "sobol") << info.name;

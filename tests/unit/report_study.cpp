@@ -4,6 +4,7 @@
 #include "sweep/report/effects.hpp"
 #include "sweep/report/history.hpp"
 #include "sweep/report/influence.hpp"
+#include "sweep/report/page.hpp"
 #include "sweep/report/study_tables.hpp"
 #include "sweep/report/summary.hpp"
 #include "tests/support/answered.hpp"
@@ -25,6 +26,7 @@ using store::Store;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
@@ -91,6 +93,98 @@ TEST_F(Study, OnlyAGaplessBeginningIsJudged) {
     EXPECT_THAT(history.warnings, Contains(HasSubstr("34 of 64 cases are not settled")));
 }
 
+// Hundreds of cases may be finished while one of the first still runs: what they say is shown, and not judged.
+TEST_F(Study, FinishedCasesBehindAnOpenOneGiveProvisionalFigures) {
+    answer_by(store, halton("c", 640, R"(, "convergence": {"observable": "y"})"), linear, 640,
+              [](const campaign::PlacedCase& placed) { return placed.point != 0 && placed.point % 3 != 1; });
+    const auto responses = ask("c");
+    EXPECT_EQ(responses.settled, 0u);
+    const auto history = history_of(responses, responses.observable("y"));
+    EXPECT_EQ(history.all.points, 0);
+    ASSERT_TRUE(history.provisional);
+    EXPECT_EQ(history.provisional->count, static_cast<std::int64_t>(responses.finished()));
+    const auto& mean = history.provisional->of(stats::Statistic::mean);
+    EXPECT_NEAR(mean.value, 2.5, 3 * mean.error);
+    EXPECT_EQ(history.converged, std::optional(false));
+    EXPECT_THAT(history.verdict, HasSubstr("not converged: first check at 80 points, 0 are settled"));
+    EXPECT_THAT(history.warnings, Contains(HasSubstr("they count in the provisional figures only")));
+
+    const auto text = report::closing_summary(store, "c", folder / "a.db");
+    EXPECT_THAT(text, HasSubstr("provisional moments over all 426 finished cases"));
+    EXPECT_THAT(text, Not(HasSubstr("moments over 0 points")));
+    EXPECT_THAT(text, HasSubstr("largest"));
+    const auto rows = provisional_rows(responses, responses.observable("y"), history);
+    ASSERT_EQ(rows.rows.size(), 1u);
+    EXPECT_EQ(rows.columns.back(), "provisional");
+    EXPECT_EQ(text_of(rows.rows[0].back()), "1");
+    const auto json = to_json(responses, responses.observable("y"), history, {});
+    EXPECT_EQ(json["provisional"]["values"], 426);
+    EXPECT_EQ(json["finished"], 426);
+    EXPECT_EQ(json["converged"], false);
+    const std::vector<report::PageSource> sources = {{&store, "a.db"}};
+    const nlohmann::ordered_json page = report::page_data(sources);
+    const nlohmann::ordered_json& shown = page["campaigns"][0]["observables"][0]["history"];
+    EXPECT_EQ(shown["provisional"]["count"], 426);
+    EXPECT_EQ(shown["notes"].back().get<std::string>().rfind("provisional, over all finished cases (426 values)", 0),
+              0u);
+}
+
+TEST_F(Study, WhereAllFinishedCasesAreSettledNothingIsProvisional) {
+    answer_by(store, halton("c", 64), linear, 30);
+    const auto responses = ask("c");
+    EXPECT_FALSE(history_of(responses, responses.observable("y")).provisional);
+}
+
+TEST_F(Study, WhatTheConditionLeavesOutIsCounted) {
+    answer_by(store, halton("c", 64, R"(, "where": "x1 < 0.5")"), linear, 20);
+    const auto responses = ask("c");
+    EXPECT_EQ(responses.candidates, 64);
+    EXPECT_EQ(responses.dropped(), 64 - static_cast<std::int64_t>(responses.rows()));
+    EXPECT_EQ(points_line(responses), "64 candidates, " + std::to_string(responses.dropped()) + " left out by where, " +
+                                          std::to_string(responses.rows()) + " cases asked, 20 finished");
+    EXPECT_THAT(report::closing_summary(store, "c", folder / "a.db"), HasSubstr("where: 64 candidates"));
+}
+
+// A verdict needs one observable; it is the same without the others.
+TEST_F(Study, OneObservableAloneGivesTheSameVerdict) {
+    answer_by(store, halton("c", 640, R"(, "convergence": {"observable": "y", "tolerance": 0.05})"), linear, 500);
+    const auto whole = ask("c");
+    const auto alone = report::read_response(store, store.campaigns()[0], "y");
+    const auto expected = history_of(whole, whole.observable("y")), found = history_of(alone, alone.observable("y"));
+    EXPECT_EQ(found.verdict, expected.verdict);
+    EXPECT_EQ(found.converged, expected.converged);
+    EXPECT_EQ(found.checks.size(), expected.checks.size());
+}
+
+// A list is judged where its campaign gives a rule, as the run that follows it does.
+TEST_F(Study, AListIsJudgedByARuleAndByNothingElse) {
+    const auto list = [](const std::string& name, const std::string& more) {
+        std::string rows;
+        for (int k = 0; k < 64; ++k) rows += (k == 0 ? "[" : ", [") + std::to_string(0.5 + 0.4 * (k % 7 - 3) / 3) + "]";
+        return R"({"campaign": ")" + name + R"(", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
+            "design": {"kind": "list", "rows": [)" +
+               rows + "]}" + more + "}";
+    };
+    const auto x1 = [](const Inputs& inputs) { return input(inputs, "x1"); };
+    answer_by(store, list("plain", ""), x1);
+    answer_by(store, list("ruled", R"(, "convergence": {"observable": "y", "rule": "any_change", "block": 16})"), x1);
+    const auto plain = ask("plain"), ruled = ask("ruled");
+    EXPECT_TRUE(history_of(plain, plain.observable("y")).checks.empty());
+    EXPECT_EQ(history_of(ruled, ruled.observable("y")).checks.size(), 4u);
+    EXPECT_THAT(history_of(ruled, ruled.observable("y")).warnings, Contains(HasSubstr("listed points are no sample")));
+}
+
+TEST_F(Study, ACampaignThatIsAskedForLessSaysSo) {
+    answer_by(store, halton("c", 64), linear);
+    answer_by(store, halton("c", 16), linear);
+    const auto responses = ask("c");
+    EXPECT_EQ(responses.rows(), 64u);
+    EXPECT_EQ(responses.candidates, 64);
+    EXPECT_THAT(
+        history_of(responses, responses.observable("y")).warnings,
+        Contains("asked now: 16 points x 1; stored: 64 points x 1: view and statistics are over what is stored"));
+}
+
 // The order of a lattice means nothing: every case that has its last word counts, wherever the others lie.
 TEST_F(Study, APartOfALatticeIsCounted) {
     const std::string text = R"({"campaign": "c", "scene": "rehearsal", "replicates": 2,
@@ -146,8 +240,9 @@ TEST_F(Study, MomentsOfAKnownResponseLieWithinTheirErrors) {
     const auto rows = checks_rows(responses, responses.observable("y"), history);
     ASSERT_EQ(rows.rows.size(), 3u);
     EXPECT_EQ(text_of(rows.rows[2][2]), "1000");
-    EXPECT_EQ(text_of(rows.rows[2].back()), "0");  // no multiple of the block: shown, not judged
-    EXPECT_EQ(text_of(rows.rows[1].back()), "1");
+    ASSERT_EQ(rows.columns[15], "converged");
+    EXPECT_EQ(text_of(rows.rows[2][15]), "0");  // no multiple of the block: shown, not judged
+    EXPECT_EQ(text_of(rows.rows[1][15]), "1");
 }
 
 TEST_F(Study, ManyChecksAreThinnedForTheEyeAndKeptForPrograms) {

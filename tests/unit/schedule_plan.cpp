@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
+#include <queue>
 
 using namespace grainsweep;
 using namespace grainsweep::schedule;
@@ -42,11 +46,101 @@ TEST(Plan, HandsOutTheDesignInOrderAndIsOverWhenAllIsSettled) {
     EXPECT_EQ(plan.tally().settled_now, 3U);
 }
 
-TEST(Plan, LongCasesOfAWindowGoFirst) {
+TEST(Plan, LongCasesGoFirstAtTheEnd) {
     Plan plan = make_plan(3, {}, {}, {1.0, 5.0, 2.0});
     EXPECT_EQ(plan.next()->question->id, "case1");
     EXPECT_EQ(plan.next()->question->id, "case2");
     EXPECT_EQ(plan.next()->question->id, "case0");
+}
+
+/// Workers that take as long as predicted: what the plan makes of it.
+struct Course {
+    double seconds = 0;                ///< until the last case ended
+    std::vector<std::size_t> settled;  ///< prefix after each case
+};
+
+Course computed(Plan plan, std::size_t workers) {
+    struct Running {
+        double until;
+        campaign::Attempt attempt;
+        bool operator>(const Running& other) const { return until > other.until; }
+    };
+    std::priority_queue<Running, std::vector<Running>, std::greater<>> running;
+    Course course;
+    while (true) {
+        while (running.size() < workers) {
+            const auto start = plan.next();
+            if (!start) break;
+            running.push({course.seconds + start->predicted_seconds, start->attempt});
+        }
+        if (running.empty()) return course;
+        course.seconds = running.top().until;
+        plan.ended(running.top().attempt, Outcome::completed);
+        running.pop();
+        course.settled.push_back(plan.settled_prefix());
+    }
+}
+
+/// Costs of a sweep over the diameter: a few cases cost thirty times the cheapest.
+std::vector<double> uneven_costs(std::size_t n) {
+    std::vector<double> costs(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const double u = std::fmod(0.618033988749895 * static_cast<double>(i + 1), 1.0);
+        costs[i] = std::pow(1 + 2 * u, 3);
+    }
+    return costs;
+}
+
+Plan uneven_plan(std::size_t n, std::size_t workers, std::int64_t max_cases = 0,
+                 std::vector<std::int64_t> blocks = {}) {
+    std::vector<std::size_t> places(n);
+    std::iota(places.begin(), places.end(), std::size_t{0});
+    const Rules rules{.max_cases = max_cases, .workers = workers};
+    return {questions(n), std::vector<History>(n), uneven_costs(n), places, rules, blocks};
+}
+
+// What is finished is a usable beginning of the design, however early one looks.
+TEST(Plan, TheSettledPrefixGrowsWithTheFinishedCases) {
+    const auto course = computed(uneven_plan(2400, 2), 2);
+    for (std::size_t finished = 1; finished <= 2200; ++finished)
+        ASSERT_GE(course.settled[finished - 1] + 30, finished) << "a long case holds back what ran beside it";
+    EXPECT_EQ(course.settled.back(), 2400U);
+    const auto part = computed(uneven_plan(2400, 2, 24), 2);
+    EXPECT_EQ(part.settled.size(), 24U);
+    EXPECT_EQ(part.settled.back(), 24U) << "a limited run computes the beginning of the design";
+}
+
+TEST(Plan, TheEndKeepsAllWorkersBusy) {
+    for (const std::size_t workers : {2, 8, 32}) {
+        const auto costs = uneven_costs(2400);
+        const double perfect = std::accumulate(costs.begin(), costs.end(), 0.0) / static_cast<double>(workers);
+        const double shortest = *std::ranges::min_element(costs);
+        EXPECT_LT(computed(uneven_plan(2400, workers), workers).seconds, perfect + 2 * shortest) << workers;
+    }
+}
+
+// Where a campaign may stop after a block, a case of a later block would only delay the verdict.
+TEST(Plan, NoCaseIsBroughtForwardOutOfALaterBlock) {
+    std::vector<std::int64_t> blocks;
+    for (std::int64_t i = 0; i < 64; ++i) blocks.push_back(i / 8);
+    Plan plan = uneven_plan(64, 2, 0, blocks);
+    for (std::int64_t i = 0; i < 64; ++i) {
+        const auto start = plan.next();
+        ASSERT_TRUE(start);
+        EXPECT_EQ(std::stoll(start->attempt.case_id.substr(4)) / 8, i / 8);
+    }
+}
+
+// A run that asks for a part of a stored design: the rest counts where it is finished, and is never computed.
+TEST(Plan, ACaseThatIsNotAskedHoldsThePrefixAndIsNotHandedOut) {
+    Plan plan = make_plan(4, {}, {{}, {1, 0, Outcome::completed, false}, {}, {0, 0, {}, false}});
+    EXPECT_EQ(plan.tally().questions, 2U);
+    plan.ended(plan.next()->attempt, Outcome::completed);
+    EXPECT_EQ(plan.settled_prefix(), 2U);
+    plan.ended(plan.next()->attempt, Outcome::completed);
+    EXPECT_FALSE(plan.next());
+    EXPECT_EQ(plan.settled_prefix(), 3U);
+    EXPECT_EQ(plan.tally().decided, plan.tally().questions);
 }
 
 TEST(Plan, CountsWhatRunningCasesHaveDone) {

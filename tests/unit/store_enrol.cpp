@@ -1,9 +1,13 @@
 // Enrolling the same campaign is resuming, a longer one extends it, another one under its name is refused.
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/store/campaign_name.hpp"
+#include "sweep/store/database.hpp"
 #include "tests/support/archive.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <algorithm>
 
 namespace grainsweep::tests {
 namespace {
@@ -136,29 +140,104 @@ TEST_F(StoreEnrol, MorePointsOfTheSameDesignAreTheSameQuestion) {
     EXPECT_EQ(store.campaigns()[0].convergence, campaign.convergence);
 }
 
-// A lattice with more levels: the numbers of its points change, the answers stay.
-TEST_F(StoreEnrol, AFinerLatticeReplacesThePlacesAndKeepsTheAnswers) {
+// A design of another size has other points under the same numbers: what is stored would leave the view.
+TEST_F(StoreEnrol, ADesignThatDoesNotExtendKeepsItsSize) {
     auto campaign = small_campaign("lattice_campaign", 1);
     campaign.design = "lattice";
     campaign.request.options = {{"levels", std::int64_t{3}}, {"placement", std::string("endpoints")}};
-    const auto lattice = [&](int levels) {
-        std::vector<campaign::PlacedCase> cases;
-        for (int k = 0; k < levels; ++k) {
-            Inputs inputs = campaign.scene().defaults();
-            inputs["x1"] = static_cast<double>(k) / (levels - 1);
-            cases.push_back({question(campaign, inputs, 0), k, 0, 0});
-        }
-        return cases;
+    store.enrol(campaign, small_design(campaign, 3), here());
+    campaign.request.options["levels"] = std::vector<std::int64_t>{3};
+    EXPECT_EQ(refusal(campaign, small_design(campaign, 3)), "accepted") << "the same, written out";
+    for (const std::int64_t levels : {2, 5}) {
+        campaign.request.options["levels"] = levels;
+        EXPECT_THAT(refusal(campaign, small_design(campaign, levels)),
+                    AllOf(HasSubstr("$.design.levels: got " + std::to_string(levels)), HasSubstr("with 3"),
+                          HasSubstr("a lattice of another size is another design"),
+                          HasSubstr("give it a campaign name of its own")));
+    }
+    EXPECT_EQ(count("lattice_campaign"), "3");
+
+    auto cube = small_campaign("cube");
+    cube.design = "latin_hypercube";
+    cube.request.options = {{"points", std::int64_t{8}}};
+    store.enrol(cube, small_design(cube, 8), here());
+    EXPECT_EQ(refusal(cube, small_design(cube, 8)), "accepted");
+    cube.replicates = 2;
+    EXPECT_EQ(refusal(cube, small_design(cube, 8)), "accepted") << "replicates are no size of the design";
+    for (const std::int64_t points : {6, 12}) {
+        cube.request.options["points"] = points;
+        EXPECT_THAT(refusal(cube, small_design(cube, points)),
+                    AllOf(HasSubstr("$.design.points: got " + std::to_string(points)), HasSubstr("with 8")));
+    }
+    EXPECT_EQ(count("cube"), "16");
+}
+
+// Less is a part of what is there: the run computes it, and the campaign stays as large as it was.
+TEST_F(StoreEnrol, AskingForLessIsKeptBesideWhatIsStored) {
+    auto campaign = small_campaign("c");
+    campaign.replicates = 2;
+    campaign.request.options["points"] = std::int64_t{12};
+    store.enrol(campaign, small_design(campaign, 10), here());
+    EXPECT_EQ(store.campaigns()[0].stored, (store::Extent{12, 2})) << "the last two points were filtered out";
+    EXPECT_FALSE(store.campaigns()[0].shrunk());
+    campaign.replicates = 1;
+    campaign.request.options["points"] = std::int64_t{4};
+    store.enrol(campaign, small_design(campaign, 4), here());
+    const auto record = store.stored(campaign).value();
+    EXPECT_EQ(record.stored, (store::Extent{12, 2}));
+    EXPECT_EQ(record.asked, (store::Extent{4, 1}));
+    EXPECT_TRUE(record.shrunk());
+    EXPECT_EQ(count("c"), "20");
+    EXPECT_EQ(only_cell(store, "SELECT design_extent FROM campaign"), "points = 12\n");
+    EXPECT_EQ(store.placement("c").size(), 20U);
+    const auto status = store.status();
+    const auto cell = [&](const char* name) {
+        const auto column = std::ranges::find(status.columns, name) - status.columns.begin();
+        return text_of(status.rows[0][static_cast<std::size_t>(column)]);
     };
-    store.enrol(campaign, lattice(3), here());
-    settle(store, lattice(3)[2].question, 1);
-    store.group([&] { store.stop("lattice_campaign", 3); });
-    campaign.request.options["levels"] = std::int64_t{5};
-    const auto states = store.enrol(campaign, lattice(5), here());
-    EXPECT_EQ(states[4].outcome, Outcome::completed) << "x1 = 1 was asked before";
-    EXPECT_EQ(count("lattice_campaign"), "5");
-    EXPECT_FALSE(store.campaigns()[0].stopped_at) << "it stopped on other points";
-    EXPECT_THAT(refusal(campaign, lattice(3)), HasSubstr("3 cases"));
+    EXPECT_EQ(cell("candidates"), "12");
+    EXPECT_EQ(cell("dropped"), "2");
+    EXPECT_EQ(cell("points"), "10");
+    EXPECT_EQ(cell("finished"), "0");
+    EXPECT_EQ(cell("asked_points"), "4");
+    EXPECT_EQ(cell("asked_replicates"), "1");
+}
+
+// Written before extents were kept: what is placed is all that is known of them, also of a file that is only read.
+TEST_F(StoreEnrol, AnArchiveWithoutExtentsIsReadAsItIsPlaced) {
+    const auto campaign = small_campaign("c");
+    store.enrol(campaign, small_design(campaign, 10), here());
+    store = Store(folder / "other.db", Store::Mode::create);
+    store::Connection(file, store::Connection::Access::write)
+        .execute("ALTER TABLE campaign DROP COLUMN candidates; ALTER TABLE campaign DROP COLUMN asked_candidates; "
+                 "ALTER TABLE campaign DROP COLUMN asked_replicates; PRAGMA user_version = 2");
+    store = Store(file, Store::Mode::read);
+    EXPECT_EQ(store.campaigns()[0].stored, (store::Extent{10, 1}));
+    EXPECT_FALSE(store.campaigns()[0].shrunk());
+    EXPECT_EQ(store.status().rows.size(), 1U);
+    store = Store(file, Store::Mode::create);
+    EXPECT_EQ(store.campaigns()[0].stored, (store::Extent{10, 1})) << "migrated, and nothing known yet";
+    auto less = campaign;
+    less.request.options["points"] = std::int64_t{4};
+    EXPECT_EQ(refusal(less, small_design(less, 4)), "accepted");
+    EXPECT_EQ(store.campaigns()[0].stored, (store::Extent{10, 1}));
+    EXPECT_EQ(store.campaigns()[0].asked, (store::Extent{4, 1}));
+}
+
+// Which option says how much is asked is the program's knowledge: an archive that sorted them otherwise is still read.
+TEST_F(StoreEnrol, OptionsAreComparedWhereverTheArchiveKeepsThem) {
+    auto campaign = small_campaign("c", 1);
+    campaign.design = "morris";
+    campaign.request.options = {{"grid", std::int64_t{4}}, {"trajectories", std::int64_t{2}}};
+    store.enrol(campaign, small_design(campaign, 4), here());
+    store = Store(folder / "other.db", Store::Mode::create);
+    store::Connection(file, store::Connection::Access::write)
+        .execute(
+            "UPDATE campaign SET design_options = '', design_extent = 'grid = 4' || char(10) || 'trajectories = 2'");
+    store = Store(file, Store::Mode::create);
+    EXPECT_EQ(refusal(campaign, small_design(campaign, 4)), "accepted");
+    campaign.request.options["grid"] = std::int64_t{6};
+    EXPECT_THAT(refusal(campaign, small_design(campaign, 4)), AllOf(HasSubstr("grid = 6"), HasSubstr("grid = 4")));
 }
 
 TEST_F(StoreEnrol, ALatticeMayGainLevelsOfAFactorButLoseNone) {
@@ -178,6 +257,31 @@ TEST_F(StoreEnrol, ALatticeMayGainLevelsOfAFactorButLoseNone) {
     EXPECT_THAT(refusal(campaign, small_design(campaign, 6)), HasSubstr("x1 levels 0 | 0.5 | 1"));
 }
 
+// New levels renumber the points; with fewer replicates some answers would have no place in the new design.
+TEST_F(StoreEnrol, NothingLeavesTheViewWhenAFactorGainsLevels) {
+    auto campaign = small_campaign("c", 1);
+    campaign.design = "lattice";
+    campaign.request.options = {{"placement", std::string("endpoints")}};
+    campaign.replicates = 2;
+    const auto lattice = [&](std::vector<double> values) {
+        campaign.space.factors[0].range = campaign::Levels{{values.begin(), values.end()}};
+        std::vector<campaign::PlacedCase> cases;
+        for (std::size_t k = 0; k < values.size(); ++k) {
+            Inputs inputs = campaign.scene().defaults();
+            inputs["x1"] = values[k];
+            for (std::int64_t r = 0; r < campaign.replicates; ++r)
+                cases.push_back({question(campaign, inputs, r), static_cast<std::int64_t>(k), 0, r});
+        }
+        return cases;
+    };
+    store.enrol(campaign, lattice({0.0, 1.0}), here());
+    campaign.replicates = 1;
+    EXPECT_THAT(refusal(campaign, lattice({0.0, 0.25, 0.5, 0.75, 1.0})), HasSubstr("does not contain them all"));
+    campaign.replicates = 2;
+    EXPECT_EQ(refusal(campaign, lattice({0.0, 0.5, 1.0})), "accepted");
+    EXPECT_EQ(count("c"), "6");
+}
+
 TEST_F(StoreEnrol, AListGrowsAtItsEnd) {
     auto campaign = small_campaign("c");
     campaign.design = "list";
@@ -195,6 +299,19 @@ TEST_F(StoreEnrol, ATakenNameIsRefused) {
         const auto campaign = small_campaign(name);
         EXPECT_THAT(refusal(campaign, small_design(campaign, 2)), HasSubstr("$.campaign")) << name;
     }
+}
+
+TEST(CampaignName, AWordOfSqlIsRefused) {
+    for (const char* name : {"select", "SELECT", "Order", "group", "table", "join", "window"}) {
+        try {
+            store::check_campaign_name(name);
+            ADD_FAILURE() << name;
+        } catch (const campaign::WrongQuestion& wrong) {
+            EXPECT_THAT(wrong.what(), AllOf(HasSubstr("$.campaign"), HasSubstr("is a word of SQL")));
+        }
+    }
+    for (const char* name : {"selection", "orders", "point", "mfr", "c"})
+        EXPECT_NO_THROW(store::check_campaign_name(name));
 }
 
 TEST_F(StoreEnrol, WhatADeadBossBeganIsAbandoned) {

@@ -134,6 +134,8 @@ TEST(StoreFiles, AReaderChangesNothing) {
 /// The schema of version 1, with what was enrolled.
 void take_back_to_version_1(const std::filesystem::path& file) {
     store::Connection db(file, store::Connection::Access::write);
+    for (const char* column : {"candidates", "asked_candidates", "asked_replicates"})
+        db.execute("ALTER TABLE campaign DROP COLUMN " + std::string(column));
     db.execute("DROP INDEX campaign_case_by_case; ALTER TABLE provenance DROP COLUMN process; PRAGMA user_version = 1");
 }
 

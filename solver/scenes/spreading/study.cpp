@@ -69,10 +69,6 @@ double sphere_volume(double diameter) {
     return std::numbers::pi / 6 * diameter * diameter * diameter;
 }
 
-double layer_length(const Study& s) {
-    return s.travel + beyond_travel;
-}
-
 /// Height of the layer at the start: of the lattice, or of the tray unequal spheres are added to.
 double start_height(const Study& s) {
     if (!s.sizes.equal()) return s.layer_area / (loose_fraction * layer_length(s)) + s.sizes.largest() * s.diameter;
@@ -137,6 +133,10 @@ std::string key_of_bed(const Inputs& inputs, const Study& s) {
 }
 
 }  // namespace
+
+double layer_length(const Study& s) {
+    return s.travel + beyond_travel;
+}
 
 double Study::particle_mass() const {
     return dem::sphere_mass(diameter / 2, material.density);

@@ -43,6 +43,9 @@ struct Study {
     [[nodiscard]] double rear(double time) const { return front(time) - blade_thickness; }
 };
 
+/// Of the layer before the blade moves, m.
+[[nodiscard]] double layer_length(const Study& study);
+
 /// Throws std::invalid_argument with one sentence where the inputs are impossible together.
 [[nodiscard]] Study study_of(const Inputs& inputs);
 

@@ -1,0 +1,121 @@
+#include "solver/scenes/spreading/warnings.hpp"
+
+#include "solver/dem/material.hpp"
+#include "solver/scenes/spreading/study.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <string>
+
+namespace grainsweep::spreading {
+namespace {
+
+constexpr double settled_fraction = 0.55;  // random loose packing: a layer is no higher than that makes it
+constexpr double narrowest = 5;            // largest diameters between a particle and its periodic image
+constexpr double fewest_particles = 200;   // of which a layer's statistics can be formed
+constexpr double largest_overlap = 0.1;    // of a diameter: beyond it contact laws of small overlaps say nothing
+constexpr double steps_per_vibration = 20;
+
+std::string text(const char* format, double a, double b = 0, double c = 0, double d = 0) {
+    char buffer[300];
+    std::snprintf(buffer, sizeof buffer, format, a, b, c, d);
+    return buffer;
+}
+
+/// Largest overlap of two equal spheres that meet at the speed, over their diameter (Hertz 1882):
+/// d = (15 m* v^2/(16 E* sqrt(R*)))^(2/5).
+double hertz_overlap(const Study& s, double speed) {
+    const double radius = s.diameter / 4;
+    const double mass = s.particle_mass() / 2;
+    const double energy = 15 * mass * speed * speed / (16 * dem::effective_modulus(s.material) * std::sqrt(radius));
+    return std::pow(energy, 0.4) / s.diameter;
+}
+
+/// The gap against the particles, the layer and the width.
+void warn_of_gap(std::vector<Warning>& warnings, const Study& s, double layer) {
+    const double smallest = s.sizes.smallest() * s.diameter;
+    if (s.gap < smallest / 2)
+        warnings.push_back({"gap below half a diameter",
+                            text("a gap of %.3g m is %.2g of the smallest diameter: the blade's edge meets particles "
+                                 "below their centre and pushes them ahead, so that next to nothing is spread",
+                                 s.gap, s.gap / smallest)});
+    if (s.gap >= layer)
+        warnings.push_back(
+            {"gap above the layer",
+             text("the gap of %.3g m (%.3g diameters) is above the settled layer, about %.3g m high: the "
+                  "blade hardly touches the powder",
+                  s.gap, s.gap / s.diameter, layer)});
+    else if (s.gap > s.width)
+        warnings.push_back({"gap above the width",
+                            text("the gap of %.3g diameters is more than the period of the layer of %.3g diameters "
+                                 "(width): what is spread is higher than it is wide and feels its own images",
+                                 s.gap / s.diameter, s.width / s.diameter)});
+}
+
+void warn_of_layer(std::vector<Warning>& warnings, const Study& s, double layer) {
+    const double largest = s.sizes.largest() * s.diameter;
+    if (layer < largest)
+        warnings.push_back({"layer below one diameter",
+                            text("layer_area and travel give a layer of %.3g diameters: single particles, no layer",
+                                 layer / s.diameter)});
+    if (static_cast<double>(s.particles) < fewest_particles)
+        warnings.push_back(
+            {"few particles", text("%.0f particles are too few for a steady flux: make layer_area or width "
+                                   "larger or the diameter smaller",
+                                   static_cast<double>(s.particles))});
+    if (s.width < narrowest * largest)
+        warnings.push_back(
+            {"narrow layer", text("the layer repeats itself after %.3g of the largest diameters: particles "
+                                  "feel their own images below about %.0f",
+                                  s.width / largest, narrowest)});
+    const double fall = std::sqrt(2 * layer / s.gravity), settling = static_cast<double>(s.settle_steps) * s.time_step;
+    if (settling < fall)
+        warnings.push_back({"layer still falling", text("settle_time of %.3g s ends before a particle has fallen the "
+                                                        "height of the layer, in %.3g s",
+                                                        settling, fall)});
+}
+
+void warn_of_blade(std::vector<Warning>& warnings, const Study& s) {
+    const double measured = (1 - measured_from) * s.travel;
+    if (s.blade_thickness >= measured)
+        warnings.push_back(
+            {"blade thicker than the measured travel",
+             text("blade_thickness of %.3g m leaves no spread layer behind the blade within the measured "
+                  "travel of %.3g m: packing_fraction, layer_roughness and empty_share describe nothing",
+                  s.blade_thickness, measured)});
+    if (s.travel < 10 * s.diameter)
+        warnings.push_back(
+            {"short travel", text("a travel of %.3g m is %.2g diameters: the flux does not become steady", s.travel,
+                                  s.travel / s.diameter)});
+    const double period = s.vibration_frequency > 0 ? 1 / s.vibration_frequency : 0;
+    if (s.vibration_frequency > 0 && period < steps_per_vibration * s.time_step)
+        warnings.push_back(
+            {"vibration faster than the time step",
+             text("a vibration of %.4g Hz has %.2g time steps of %.3g s in a period: at least %.0f follow it",
+                  s.vibration_frequency, period / s.time_step, s.time_step, steps_per_vibration)});
+    const double shaking = 2 * std::numbers::pi * s.vibration_frequency * s.vibration_amplitude;
+    const double overlap = hertz_overlap(s, std::hypot(s.speed, shaking));
+    if (overlap > largest_overlap)
+        warnings.push_back(
+            {"particles too soft for the speed",
+             text("at %.3g m/s particles of this stiffness overlap by about %.2g of a diameter, and contact "
+                  "laws hold for small overlaps: raise youngs_modulus",
+                  std::hypot(s.speed, shaking), overlap)});
+}
+
+}  // namespace
+
+std::vector<Warning> warnings_of(const Inputs& inputs) {
+    const Study s = study_of(inputs);
+    // The layer reaches 20 mm beyond the travel (study.hpp).
+    const double layer = s.layer_area / (settled_fraction * layer_length(s));
+    std::vector<Warning> warnings;
+    warn_of_gap(warnings, s, layer);
+    warn_of_layer(warnings, s, layer);
+    warn_of_blade(warnings, s);
+    return warnings;
+}
+
+}  // namespace grainsweep::spreading
