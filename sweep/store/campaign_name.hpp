@@ -5,8 +5,8 @@
 
 namespace grainsweep::store {
 
-/// Throws WrongQuestion (at $.campaign) for a word of SQL (SELECT, ORDER, PLAN, ...), in upper or lower case: a view of
-/// that name could be asked only in quotes.
+/// Throws WrongQuestion (at $.campaign) for a word of SQL, in upper or lower case, that cannot name a table without
+/// quotes (SELECT, ORDER, TABLE, ...). Words that can (FIRST, PLAN, KEY) are accepted.
 void check_campaign_name(std::string_view name);
 
 }  // namespace grainsweep::store
