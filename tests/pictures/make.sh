@@ -32,9 +32,9 @@ shoot() {
 
 # The campaign of the README, on its report page: three of its sections.
 report() {
-    awk '/^```json first.json/ {inside = 1; next} /^```/ {inside = 0} inside' "$here/README.md" >first.json
-    "$program" run first.json --quiet
-    "$program" report first.db -o whole.html
+    awk '/^```json trial.json/ {inside = 1; next} /^```/ {inside = 0} inside' "$here/README.md" >trial.json
+    "$program" run trial.json --quiet
+    "$program" report trial.db -o whole.html
     sed 's#</head>#<style>main > section[id]:not(\#response):not(\#effects):not(\#explore), details {display: none}</style></head>#' \
         whole.html >report.html
     shoot report.html report 1300 1930 0.6
