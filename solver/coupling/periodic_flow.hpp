@@ -93,6 +93,20 @@ public:
         return around;
     }
 
+    /// The velocity on all faces at `phase`, ghosts included.
+    void velocity(double phase, flow::FaceVectors& into) const {
+        const double c = std::cos(phase);
+        const double s = std::sin(phase);
+        const std::array<double, terms> basis{1, c, s, c * c - s * s, 2 * s * c};
+        for (std::size_t d = 0; d < 3; ++d)
+            for (std::size_t m = 0; m < shape_.size(); ++m) {
+                double sum = 0;
+                for (std::size_t t = 0; t < terms; ++t)
+                    sum += basis[t] * static_cast<double>(amplitudes_[d][m][t / 4][t % 4]);
+                into[d].values()[m] = sum;
+            }
+    }
+
     void save(std::vector<std::byte>& into) const {
         for (const auto& nodes : amplitudes_) flow::append_bytes<Node>(into, nodes);
     }

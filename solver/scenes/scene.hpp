@@ -4,7 +4,6 @@
 
 #include "solver/scenes/values.hpp"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -23,13 +22,6 @@ using Bytes = std::vector<std::byte>;
 struct Health {
     std::string reason;
     [[nodiscard]] bool stable() const { return reason.empty(); }
-};
-
-/// Particle columns for pictures: positions and named columns of the same length.
-struct Snapshot {
-    std::vector<std::array<double, 3>> positions;  ///< m
-    std::map<std::string, std::vector<double>, std::less<>> scalars;
-    std::map<std::string, std::vector<std::array<double, 3>>, std::less<>> vectors;
 };
 
 /// Expensive starting states shared by cases (packing, settled bed, periodic flow). The key is the
@@ -75,6 +67,11 @@ public:
     virtual void save(Bytes& into) const = 0;
     virtual void restore(std::span<const std::byte> from) = 0;
     [[nodiscard]] virtual Snapshot snapshot() const { return {}; }
+    /// Of a motion that repeats itself and would flicker in a film: pictures further apart than this are best taken at
+    /// whole multiples of it. 0: none.
+    [[nodiscard]] virtual double picture_period() const { return 0; }
+    /// When what the case is about begins, after a preparation that most pictures may pass over; 0: at once.
+    [[nodiscard]] virtual double picture_focus() const { return 0; }
 };
 
 /// Everything known about a kind of scene without making one.

@@ -13,6 +13,7 @@
 // when no mobile sphere is left, and, under the rule "quiet", when the powder has come to rest: for 1.5 t* no more than
 // one sphere in a thousand of those left (or one) moved at a time, and the count changed by no more. Those few may
 // still leave; beyond them the rule presumes that what rests stays at rest.
+#include "solver/geometry/level_surface.hpp"
 #include "solver/geometry/tpms_outlet.hpp"
 #include "solver/geometry/vector.hpp"
 #include "solver/observables/beverloo.hpp"
@@ -20,6 +21,7 @@
 #include "solver/particles/tpms_filling.hpp"
 #include "solver/scenes/catalogue.hpp"
 #include "solver/scenes/dem_picture.hpp"
+#include "solver/scenes/drawn_box.hpp"
 #include "solver/scenes/tpms/question.hpp"
 #include "solver/scenes/tpms/record.hpp"
 #include "solver/scenes/tpms/warnings.hpp"
@@ -29,6 +31,7 @@
 #include <cstdio>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 
 namespace grainsweep {
@@ -81,6 +84,7 @@ public:
     [[nodiscard]] Snapshot snapshot() const override;
 
 private:
+    [[nodiscard]] WallSurface cell_surface() const;
     [[nodiscard]] bool in_cell(const Vec3& x) const;
     [[nodiscard]] std::size_t layer(const Vec3& x) const;
     void sample();
@@ -103,6 +107,7 @@ private:
     double max_overlap_ = 0;  // diameters
     TpmsRecord record_;
     std::string fault_;
+    mutable std::optional<WallSurface> drawn_cell_;  // made for the first picture
 };
 
 TpmsDischarge::TpmsDischarge(const TpmsQuestion& question, const particles::TpmsFilling& filling, double outlet,
@@ -260,9 +265,24 @@ void TpmsDischarge::restore(std::span<const std::byte> from) {
     engine_->state(state_);
 }
 
+/// The middle surface of the shell, f = 0, and the edges of the cell.
+WallSurface TpmsDischarge::cell_surface() const {
+    constexpr int grid = 36;
+    const double length = question_.length();
+    const geometry::TpmsShell shell(question_.cell, question_.side, length, question_.shell * question_.diameter);
+    auto surface =
+        geometry::level_surface([&shell](const Vec3& x) { return shell.value(x); }, {}, {length, length, length}, grid);
+    WallSurface cell{"cell", std::move(surface.corners), std::move(surface.triangles), {}};
+    add_box({}, {length, length, length}, cell);
+    return cell;
+}
+
 /// In the frame of the cell; wall spheres that nothing can touch are not there.
 Snapshot TpmsDischarge::snapshot() const {
-    return picture_of(*engine_);
+    if (!drawn_cell_) drawn_cell_ = cell_surface();
+    Snapshot picture = picture_of(*engine_);
+    picture.walls.push_back(*drawn_cell_);
+    return picture;
 }
 
 /// Processor seconds: particle steps of the mobile spheres on average in the box, and the packing.

@@ -4,6 +4,7 @@
 // from parameter names to values (Inputs). Everything is in SI units unless a unit is named.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -106,6 +107,40 @@ struct Sample {
 struct Observations {
     std::map<std::string, double, std::less<>> scalars;
     std::map<std::string, std::vector<Sample>, std::less<>> series;  ///< series and profiles
+};
+
+/// A wall in a picture, where it stands at that moment: triangles, lines, or both.
+struct WallSurface {
+    std::string name;                                    ///< letters, digits and underscores, its own in the picture
+    std::vector<std::array<double, 3>> corners;          ///< in the picture's unit of length
+    std::vector<std::array<std::int32_t, 3>> triangles;  ///< of corners
+    std::vector<std::array<std::int32_t, 2>> edges;      ///< lines between corners
+};
+
+/// Quantities of a fluid in the cells of a rectilinear grid, x fastest.
+struct FlowField {
+    std::string name;                          ///< as of a wall
+    std::array<std::vector<double>, 3> faces;  ///< between the cells of each axis, both ends among them; ascending
+    std::map<std::string, std::vector<double>, std::less<>> scalars;
+    std::map<std::string, std::vector<std::array<double, 3>>, std::less<>> vectors;
+
+    [[nodiscard]] std::size_t cells() const {
+        std::size_t product = 1;
+        for (const auto& axis : faces) product *= axis.empty() ? 0 : axis.size() - 1;
+        return product;
+    }
+};
+
+/// What a scene shows at a moment: named columns of its particles, and what surrounds them.
+struct Snapshot {
+    std::vector<std::array<double, 3>> positions;  ///< one per particle
+    std::map<std::string, std::vector<double>, std::less<>> scalars;
+    std::map<std::string, std::vector<std::array<double, 3>>, std::less<>> vectors;
+    std::vector<WallSurface> walls;
+    std::vector<FlowField> fields;
+    std::map<std::string, std::string, std::less<>> units;  ///< of columns and quantities; absent: a pure number
+    std::string length_unit = "m", time_unit = "s";
+    std::array<double, 3> periods{};  ///< lengths after which the picture repeats itself along an axis; 0: never
 };
 
 /// Where the time went. Not part of the answer, never compared.

@@ -236,7 +236,7 @@ campaign::Case as_asked_today(campaign::Case question) {
     return question;
 }
 
-int replay(const std::string& database, const std::string& id, const PictureRequest& pictures, const std::string& path,
+int replay(const std::string& database, const std::string& id, const PictureRequest& wanted, const std::string& path,
            Format format) {
     const Store archive(database, Store::Mode::read);
     const campaign::Case question = as_asked_today(require_case(archive, id));
@@ -258,9 +258,11 @@ int replay(const std::string& database, const std::string& id, const PictureRequ
         then != attempts.end() && then->version == build_version() && then->instruction_path == here.instruction_path;
 
     NoArtefacts artefacts;
+    Pictures pictures(wanted, question);
     const auto now = workers::compute(
         question, stored->attempt.number, artefacts, std::nullopt, [](const Scene&) { return true; },
-        camera(pictures, question.scene));
+        pictures.camera());
+    pictures.finish(now.value());  // nothing gave it up
     Table table{{"observable", "archive", "replay", "relative_difference"}, {}};
     double worst = 0;
     const auto compare = [&](const std::string& name, double a, double b) {

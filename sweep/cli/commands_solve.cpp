@@ -187,10 +187,11 @@ bool show_progress(const Scene& scene) {
 int solve(const SolveRequest& request, Format format) {
     const campaign::Case question = question_of(request);
     NoArtefacts artefacts;
-    const auto computed =
-        workers::compute(question, 1, artefacts, std::nullopt, show_progress, camera(request.pictures, question.scene));
+    Pictures pictures(request.pictures, question);
+    const auto computed = workers::compute(question, 1, artefacts, std::nullopt, show_progress, pictures.camera());
     if (::isatty(STDERR_FILENO) == 1) std::cerr << "\r\033[K" << std::flush;
     const CaseResult& result = computed.value();  // the watch never gives it up
+    pictures.finish(result);
     if (format == Format::text) show_text(question, result);
     if (format == Format::csv) report::write(std::cout, table_of(question, result), format);
     if (format == Format::json) report::write(std::cout, json_of(question, result));

@@ -1,32 +1,22 @@
 // converge, sensitivity, report: what the stored answers say.
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
+#include "sweep/cli/page_file.hpp"
 #include "sweep/report/file_size.hpp"
 #include "sweep/report/history.hpp"
 #include "sweep/report/influence.hpp"
 #include "sweep/report/page.hpp"
 #include "sweep/report/study_tables.hpp"
 #include "sweep/report/summary.hpp"
-#include "sweep/store/aside_file.hpp"
-#include "sweep/store/broken_world.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cctype>
-#include <cerrno>
 #include <cstddef>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
-#include <span>
 #include <sstream>
-#include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -159,49 +149,6 @@ int sensitivity(const Subject& subject, Format format) {
     return 0;
 }
 
-/// Where no page can be. A file that is there and is no page is somebody's: a campaign file, say.
-void check_output(const std::string& output, const std::string& database) {
-    const auto refuse = [&](std::string_view why) {
-        throw campaign::wrong_question("-o", fmt::format("'{}'", output), std::string(why));
-    };
-    std::error_code error;
-    const auto there = fs::status(output, error);
-    if (there.type() == fs::file_type::none) refuse(error.message());
-    if (fs::is_directory(there)) refuse("this is a folder; name a file");
-    const auto folder = fs::path(output).parent_path();
-    if (!fs::is_directory(folder.empty() ? "." : folder, error)) refuse("there is no such folder");
-    if (fs::exists(there) && !fs::is_regular_file(there)) return;  // a pipe, a terminal
-    if (access(folder.empty() ? "." : folder.c_str(), W_OK | X_OK) != 0) refuse(std::strerror(errno));
-    for (const auto* suffix : {"", "-wal", "-shm", "-journal", ".lock"})
-        if (fs::weakly_canonical(output, error) == fs::weakly_canonical(database + suffix, error))
-            refuse("this belongs to the database");
-    if (!fs::exists(there)) return;
-    std::ifstream stream(output, std::ios::binary);
-    if (!stream || access(output.c_str(), W_OK) != 0) refuse(std::strerror(errno));
-    constexpr std::string_view page = "<!doctype html>";
-    std::string start(page.size(), '\0');
-    stream.read(start.data(), static_cast<std::streamsize>(start.size()));
-    if (stream.gcount() == 0) return;
-    std::ranges::transform(start, start.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (start != page) refuse("this file is there and is no page; take another name");
-}
-
-/// The page in its place when whole, so that a failure leaves what was there; straight into what is no file.
-void write_page(const std::string& output, const std::string& page) {
-    std::error_code ignored;
-    const bool link_to_nowhere = fs::is_symlink(fs::symlink_status(output, ignored)) && !fs::exists(output, ignored);
-    if (link_to_nowhere || (fs::exists(output, ignored) && !fs::is_regular_file(output, ignored))) {
-        errno = 0;
-        std::ofstream stream(output, std::ios::binary);
-        stream << page << std::flush;
-        if (!stream) throw store::BrokenWorld(fmt::format("'{}': cannot be written: {}", output, std::strerror(errno)));
-        return;
-    }
-    store::AsideFile file(fs::weakly_canonical(output));  // through links: the page is where the link points
-    file.write(std::as_bytes(std::span(page)));
-    file.take_place();
-}
-
 int write_report(const std::vector<std::string>& databases, std::string output, Format format) {
     std::vector<Store> stores;
     stores.reserve(databases.size());
@@ -216,11 +163,11 @@ int write_report(const std::vector<std::string>& databases, std::string output, 
         return 0;
     }
     if (output.empty()) output = fs::path(database).filename().replace_extension(".html").string();
-    for (const auto& name : databases) check_output(output, name);
+    for (const auto& name : databases) check_page_file("-o", output, name);
     std::ostringstream stream;
     report::write_page(stream, sources);
     const std::string page = std::move(stream).str();
-    write_page(output, page);
+    write_page_file(output, page);
     const auto size = static_cast<std::int64_t>(page.size());
     if (format == Format::text) {
         std::cout << fmt::format("{} ({}): open it in a browser\n", output,

@@ -1,52 +1,95 @@
 #include "sweep/cli/pictures.hpp"
 
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/cli/page_file.hpp"
 #include "sweep/report/file_size.hpp"
+#include "sweep/report/film.hpp"
+#include "sweep/report/vtk_file.hpp"
 #include "sweep/report/vtk_series.hpp"
+#include "sweep/report/watch_page.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <iostream>
-#include <memory>
 #include <system_error>
+#include <utility>
 
 namespace grainsweep::cli {
+namespace {
+
+constexpr std::int64_t usual_frames = 60;
+
+}  // namespace
 
 void declare_pictures(Parser& parser, PictureRequest& request) {
-    auto* folder =
-        parser.add_option("--vtk", request.folder, "folder for pictures of the particles (VTP files and a PVD series)")
-            ->type_name("DIR");
-    parser.add_option("--frames", request.frames, "pictures from start to end")
-        ->needs(folder)
-        ->check(whole_number(2, 9999))
-        ->capture_default_str();
+    parser
+        .add_option("--vtk", request.folder,
+                    "folder for ParaView: particles and walls (VTP), flow (VTI or VTR), a PVD series")
+        ->type_name("DIR");
+    parser.add_option("--watch", request.page, "page that plays the case in three dimensions in any browser")
+        ->type_name("FILE.html");
+    parser
+        .add_option("--frames", request.frames,
+                    fmt::format("pictures from start to end, with --vtk or --watch; default: {}", usual_frames))
+        ->check(whole_number(2, 9999));
 }
 
-workers::Camera camera(const PictureRequest& request, const std::string& scene) {
-    if (request.folder.empty()) return {};
-    const auto series = std::make_shared<report::VtkSeries>(request.folder, scene);
-    return {request.frames, [series, scene](const Scene& seen) {
-                const Snapshot snapshot = seen.snapshot();
-                if (snapshot.positions.empty() && series->size() == 0)
-                    throw campaign::wrong_question("--vtk", "", fmt::format("scene '{}' shows no particles", scene));
-                series->add(snapshot, seen.time());
-            }};
+Pictures::Pictures(PictureRequest request, campaign::Case question)
+    : request_(std::move(request)), question_(std::move(question)) {
+    if (request_.frames && request_.page.empty() && request_.folder.empty())
+        throw campaign::wrong_question("--frames", std::to_string(*request_.frames),
+                                       "says how many pictures --watch or --vtk take; ask for one of them");
+    if (!request_.page.empty()) {
+        check_page_file("--watch", request_.page, "");
+        film_ = std::make_unique<report::Film>();
+    }
+    if (!request_.folder.empty()) series_ = std::make_unique<report::VtkSeries>(request_.folder, question_.scene);
 }
 
-void say_pictures(const PictureRequest& request, const std::string& scene, bool on_standard_output) {
-    if (request.folder.empty()) return;
+Pictures::~Pictures() = default;
+
+workers::Camera Pictures::camera() {
+    if (!series_ && !film_) return {};
+    return {request_.frames.value_or(usual_frames), [this](const Scene& scene) { shoot(scene); }};
+}
+
+void Pictures::shoot(const Scene& scene) {
+    const Snapshot snapshot = scene.snapshot();
+    if (!any_ && !report::shows_particles(snapshot) && snapshot.fields.empty())
+        throw campaign::wrong_question(film_ ? "--watch" : "--vtk", "",
+                                       fmt::format("scene '{}' shows no particles and no flow", question_.scene));
+    any_ = true;
+    if (series_) series_->add(snapshot, scene.time());
+    if (film_) film_->add(snapshot, scene.time());
+}
+
+void Pictures::finish(const campaign::CaseResult& result) {
+    if (!film_ || !any_) return;
+    const std::string page = report::watch_page(*film_, report::about_case(question_, result));
+    write_page_file(request_.page, page);
+    page_bytes_ = page.size();
+}
+
+void Pictures::say(bool on_standard_output) const {
+    std::ostream& out = on_standard_output ? std::cout : std::cerr;
+    if ((series_ || film_) && !any_) out << "no pictures: nothing was simulated\n";
+    if (!any_) return;
+    if (film_)
+        out << fmt::format("{} ({}): {} frames of {} particles; open it in a browser\n", request_.page,
+                           report::size_text(page_bytes_), film_->frames(), film_->spheres());
+    if (!series_) return;
     std::uintmax_t bytes = 0;
     std::size_t files = 0;
     std::error_code none;
-    for (const auto& entry : std::filesystem::directory_iterator(request.folder, none)) {
-        if (!entry.path().filename().string().starts_with(scene)) continue;
+    for (const auto& entry : std::filesystem::directory_iterator(request_.folder, none)) {
+        if (!entry.path().filename().string().starts_with(question_.scene)) continue;
         bytes += entry.file_size(none);
         ++files;
     }
-    (on_standard_output ? std::cout : std::cerr)
-        << fmt::format("pictures: {} files, {}; open {} in ParaView\n", files, report::size_text(bytes),
-                       report::VtkSeries(request.folder, scene).collection().string());
+    out << fmt::format("pictures: {} files, {}; open {} in ParaView\n", files, report::size_text(bytes),
+                       series_->collection().string());
 }
 
 }  // namespace grainsweep::cli

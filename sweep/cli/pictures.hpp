@@ -1,26 +1,56 @@
-// --vtk DIR and --frames N: pictures on the way, for the commands that compute a case in this process.
+// Pictures on the way, for the commands that compute a case in this process: --vtk DIR for ParaView, --watch FILE.html
+// for any browser, --frames N for both.
 #pragma once
 
+#include "sweep/campaign/case.hpp"
 #include "sweep/cli/parser.hpp"
 #include "sweep/workers/compute.hpp"
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
+
+namespace grainsweep::report {
+class Film;
+class VtkSeries;
+}  // namespace grainsweep::report
 
 namespace grainsweep::cli {
 
 struct PictureRequest {
-    std::string folder;  ///< empty: no pictures
-    std::int64_t frames = 50;
+    std::string folder;  ///< of VTK files; empty: none
+    std::string page;    ///< to watch the case; empty: none
+    std::optional<std::int64_t> frames;
 };
 
 void declare_pictures(Parser& parser, PictureRequest& request);
 
-/// A camera that fills the folder, none where none is asked for. Throws WrongQuestion on its first frame where the
-/// scene shows no particles, store::BrokenWorld where a file cannot be written.
-[[nodiscard]] workers::Camera camera(const PictureRequest& request, const std::string& scene);
-/// Says which pictures were written, where any were asked for; elsewhere than on standard output where that holds one
-/// value for a program.
-void say_pictures(const PictureRequest& request, const std::string& scene, bool on_standard_output);
+/// The pictures of one case. Throws WrongQuestion where the page cannot be written, before anything is computed.
+class Pictures {
+public:
+    Pictures(PictureRequest request, campaign::Case question);
+    ~Pictures();
+
+    /// Takes what is asked for, nothing where nothing is. Throws WrongQuestion on its first frame where the scene shows
+    /// nothing, store::BrokenWorld where a file cannot be written.
+    [[nodiscard]] workers::Camera camera();
+    /// Writes the page.
+    void finish(const campaign::CaseResult& result);
+    /// Says which pictures were written, where any were asked for; elsewhere than on standard output where that holds
+    /// one value for a program.
+    void say(bool on_standard_output) const;
+
+private:
+    void shoot(const Scene& scene);
+
+    PictureRequest request_;
+    campaign::Case question_;
+    std::unique_ptr<report::VtkSeries> series_;
+    std::unique_ptr<report::Film> film_;
+    bool any_ = false;
+    std::size_t page_bytes_ = 0;
+};
 
 }  // namespace grainsweep::cli

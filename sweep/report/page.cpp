@@ -8,6 +8,7 @@
 #include "sweep/report/influence.hpp"
 #include "sweep/report/packed_column.hpp"
 #include "sweep/report/page_files.hpp"
+#include "sweep/report/page_template.hpp"
 #include "sweep/report/summary.hpp"
 #include "sweep/report/table.hpp"
 
@@ -273,22 +274,6 @@ Json campaign_of(const store::Store& store, const store::CampaignRecord& record,
     value["failures"] = failures_of(store, responses);
     value["runs"] = runs_of(store, record.name);
     return value;
-}
-
-/// Writes the skeleton with what belongs between its double braces.
-void fill(std::ostream& out, std::string_view skeleton,
-          const std::vector<std::pair<std::string_view, std::string_view>>& parts) {
-    while (true) {
-        const auto open = skeleton.find("{{");
-        const auto close = skeleton.find("}}", open == std::string_view::npos ? 0 : open);
-        if (open == std::string_view::npos || close == std::string_view::npos) break;
-        out << skeleton.substr(0, open);
-        const auto name = skeleton.substr(open + 2, close - open - 2);
-        const auto part = std::ranges::find(parts, name, &std::pair<std::string_view, std::string_view>::first);
-        if (part != parts.end()) out << part->second;
-        skeleton.remove_prefix(close + 2);
-    }
-    out << skeleton;
 }
 
 }  // namespace

@@ -1,38 +1,45 @@
-// Pictures of a scene for ParaView and everything else that reads VTK: one VTP file per moment, and a PVD file that
-// says when each of them is.
-//
-// VTP: XML poly data, one point per particle and one cell that shows them all; columns as appended raw binary, little
-// endian, 32-bit floats, each block after its length in bytes (64 bits). https://docs.vtk.org, "VTK XML formats".
+// A scene as it goes, for ParaView and everything else that reads VTK: files of single moments (vtk_file.hpp), and a
+// PVD file that says when each of them is.
 #pragma once
 
-#include "solver/scenes/scene.hpp"
+#include "solver/scenes/values.hpp"
 
 #include <filesystem>
+#include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace grainsweep::report {
-
-/// The file's bytes. Columns of another length than the positions: std::invalid_argument.
-[[nodiscard]] std::string vtp(const Snapshot& snapshot, double time);
 
 class VtkSeries {
 public:
     VtkSeries(std::filesystem::path folder, std::string name);
 
-    /// Writes NAME_0000.vtp, NAME_0001.vtp, ..., then NAME.pvd anew, which names all so far. Makes the folder where
-    /// there is none; the first moment takes away an older series of this name. Throws store::BrokenWorld where it
-    /// cannot.
+    /// Writes the moment's files, then NAME.pvd anew, which names all so far: particles as NAME_0000.vtp,
+    /// NAME_0001.vtp, ..., a wall as NAME_WALL_0000.vtp, numbered like the moment since which it stands as it is (one
+    /// that never moves is one file), a flow as NAME_FIELD_0000.vti or .vtr. Makes the folder where there is none; the
+    /// first moment takes away an older series of this name. Throws store::BrokenWorld where it cannot.
     void add(const Snapshot& snapshot, double time);
-    [[nodiscard]] std::size_t size() const { return times_.size(); }
+    [[nodiscard]] std::size_t size() const { return moments_; }
     [[nodiscard]] std::filesystem::path collection() const { return folder_ / (name_ + ".pvd"); }
 
 private:
-    [[nodiscard]] std::string file_of(std::size_t k) const;
+    struct Wall {
+        WallSurface shown;
+        std::string file;
+    };
+
+    void begin();
+    [[nodiscard]] std::string file_of(std::string_view what, std::string_view extension) const;
+    void list(std::string_view what, const std::string& file, double time);
 
     std::filesystem::path folder_;
     std::string name_;
-    std::vector<double> times_;  ///< s
+    std::size_t moments_ = 0;
+    std::map<std::string, Wall, std::less<>> walls_;
+    std::vector<std::string> parts_;  ///< names, in the order of their numbers
+    std::string entries_;             ///< of the collection
 };
 
 }  // namespace grainsweep::report

@@ -35,16 +35,22 @@ constexpr double first_slice = 1e-9;
 /// When the next picture is due.
 class Shutter {
 public:
-    Shutter(const Camera& camera, const Scene& scene) : camera_(camera) {
+    Shutter(const Camera& camera, const Scene& scene) : camera_(camera), start_(scene.time()) {
         if (camera_.frames > 0) shoot(scene);
     }
     [[nodiscard]] double next() const {
-        return camera_.frames > 0 && interval_ > 0 ? interval_ * static_cast<double>(due_) : infinite;
+        if (camera_.frames == 0 || !foreseen_) return std::numeric_limits<double>::infinity();
+        const double spacing = due_ <= before_ ? (focus_ - start_) / static_cast<double>(before_)
+                                               : (end_ - focus_) / static_cast<double>(camera_.frames - 1 - before_);
+        const double moment = due_ <= before_ ? start_ + spacing * static_cast<double>(due_)
+                                              : focus_ + spacing * static_cast<double>(due_ - before_);
+        if (!(period_ > 0 && period_ <= spacing)) return moment;
+        // Slightly early: the scene's own step that ends there must not be missed by rounding.
+        return std::round(moment / period_) * period_ * (1 - 1e-9);
     }
     void look(const Scene& scene) {
         if (camera_.frames == 0) return;
-        if (interval_ == 0 && scene.progress() > 0)
-            interval_ = scene.time() / scene.progress() / static_cast<double>(camera_.frames - 1);
+        if (!foreseen_ && scene.progress() > 0) foresee(scene);
         if (scene.time() < next()) return;
         shoot(scene);
         while (next() <= scene.time()) ++due_;
@@ -54,14 +60,27 @@ public:
     }
 
 private:
+    static constexpr double preparation = 0.25;  // of the pictures, at most
+
+    void foresee(const Scene& scene) {
+        foreseen_ = true;
+        period_ = scene.picture_period();
+        end_ = std::max(scene.time() / scene.progress(), scene.time());
+        focus_ = std::clamp(scene.picture_focus(), start_, end_);
+        const double share = end_ > start_ ? std::min(preparation, (focus_ - start_) / (end_ - start_)) : 0;
+        before_ = std::llround(share * static_cast<double>(camera_.frames - 1));
+        if (before_ == 0) focus_ = start_;
+    }
     void shoot(const Scene& scene) {
         camera_.shoot(scene);
         shot_ = scene.time();
     }
 
-    static constexpr double infinite = std::numeric_limits<double>::infinity();
     const Camera& camera_;
-    double interval_ = 0;  // of the scene's time; 0: not known yet
+    double start_, focus_ = 0, end_ = 0;
+    double period_ = 0;
+    bool foreseen_ = false;
+    std::int64_t before_ = 0;  // pictures up to the focus, the first not counted
     std::int64_t due_ = 1;
     double shot_ = 0;
 };

@@ -14,7 +14,9 @@ namespace grainsweep::workers {
 using Watch = std::function<bool(const Scene&)>;
 
 /// Takes pictures on the way: the first at the start, the last at the end, the others evenly spaced in the scene's
-/// time, as far as its progress after the first step foretells the end. The same moments however the run is sliced.
+/// time, as far as its progress after the first step foretells the end, but at most a quarter of them before its
+/// picture_focus(). Where the scene has a picture_period() shorter than their distance, at its nearest whole multiple.
+/// The same moments however the run is sliced.
 struct Camera {
     std::int64_t frames = 0;                  ///< 0: none
     std::function<void(const Scene&)> shoot;  ///< reads only

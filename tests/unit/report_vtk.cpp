@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "sweep/report/vtk_file.hpp"
 #include "sweep/report/vtk_series.hpp"
 #include "sweep/store/broken_world.hpp"
 #include "tests/support/process.hpp"
@@ -26,6 +27,8 @@ struct Read {
     std::map<std::string, std::vector<float>> columns;
     std::map<std::string, int> components;
     std::vector<std::int64_t> connectivity, offsets;
+    std::string kind, grid;  // of a flow: ImageData or RectilinearGrid, and its attributes
+    std::map<std::string, std::vector<double>> coordinates;
     double time = 0;
 };
 
@@ -53,8 +56,12 @@ Read read(const std::string& file) {
         file.substr(begin + opening.size(), file.size() - begin - opening.size() - closing.size());
     EXPECT_NE(text.find("byte_order=\"LittleEndian\" header_type=\"UInt64\""), std::string::npos);
     std::smatch match;
-    EXPECT_TRUE(std::regex_search(text, match, std::regex("NumberOfPoints=\"(\\d+)\" NumberOfVerts=\"1\"")));
-    r.points = std::stoul(match[1]);
+    if (std::regex_search(text, match, std::regex("NumberOfPoints=\"(\\d+)\" NumberOfVerts=\"(\\d+)\"")))
+        r.points = std::stoul(match[1]);
+    if (std::regex_search(text, match, std::regex("<(ImageData|RectilinearGrid) ([^>]*)>"))) {
+        r.kind = match[1];
+        r.grid = match[2];
+    }
     EXPECT_TRUE(std::regex_search(text, match, std::regex("Name=\"TimeValue\"[^>]*>([^<]*)<")));
     r.time = std::stod(match[1]);
     const std::regex array(
@@ -67,9 +74,13 @@ Read read(const std::string& file) {
         if (type == "Float32") {
             r.columns[name] = block<float>(bytes, at, used);
             r.components[name] = std::stoi((*a)[3]);
-        } else {
+        } else if (type == "Float64") {
+            r.coordinates[name] = block<double>(bytes, at, used);
+        } else {  // of walls the lines, then the triangles
             EXPECT_EQ(type, "Int64");
-            (name == "connectivity" ? r.connectivity : r.offsets) = block<std::int64_t>(bytes, at, used);
+            auto& list = name == "connectivity" ? r.connectivity : r.offsets;
+            const auto more = block<std::int64_t>(bytes, at, used);
+            list.insert(list.end(), more.begin(), more.end());
         }
     }
     EXPECT_EQ(used, bytes.size());
@@ -123,14 +134,114 @@ TEST(Vtp, ColumnsOfAnotherLengthAreRefused) {
     EXPECT_THROW((void)report::vtp(s, 0), std::invalid_argument);
 }
 
+TEST(Vtp, OfAWallHoldsItsLinesAndTriangles) {
+    const WallSurface wall{"blade", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0.5}}, {{0, 1, 2}, {0, 2, 3}}, {{3, 0}}};
+    const std::string file = report::vtp(wall, 0.5);
+    const Read r = read(file);
+    EXPECT_NE(file.find("NumberOfVerts=\"0\" NumberOfLines=\"1\" NumberOfStrips=\"0\" NumberOfPolys=\"2\""),
+              std::string::npos);
+    EXPECT_EQ(r.points, 4U);
+    EXPECT_EQ(r.time, 0.5);
+    EXPECT_EQ(r.columns.at("Points"), (std::vector<float>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0.5F}));
+    EXPECT_EQ(r.connectivity, (std::vector<std::int64_t>{3, 0, 0, 1, 2, 0, 2, 3}));
+    EXPECT_EQ(r.offsets, (std::vector<std::int64_t>{2, 3, 6}));
+}
+
+namespace {
+
+FlowField two_cells(std::vector<double> x) {
+    FlowField field;
+    field.name = "flow";
+    field.faces = {std::move(x), {-0.5, 0.5}, {0, 2}};
+    field.scalars["temperature"] = {0.25, -0.25};
+    field.vectors["velocity"] = {{1, 2, 3}, {4, 5, 6}};
+    return field;
+}
+
+}  // namespace
+
+TEST(VtkGrid, OfEqualCellsIsAnImage) {
+    const FlowField field = two_cells({-0.5, 0, 0.5});
+    EXPECT_EQ(report::extension_of(field), ".vti");
+    const Read r = read(report::vtk_grid(field, 0.125));
+    EXPECT_EQ(r.kind, "ImageData");
+    EXPECT_EQ(r.grid, "WholeExtent=\"0 2 0 1 0 1\" Origin=\"-0.5 -0.5 0\" Spacing=\"0.5 1 2\"");
+    EXPECT_EQ(r.time, 0.125);
+    EXPECT_EQ(r.components, (std::map<std::string, int>{{"temperature", 1}, {"velocity", 3}}));
+    EXPECT_EQ(r.columns.at("temperature"), (std::vector<float>{0.25F, -0.25F}));
+    EXPECT_EQ(r.columns.at("velocity"), (std::vector<float>{1, 2, 3, 4, 5, 6}));
+    EXPECT_TRUE(r.coordinates.empty());
+}
+
+TEST(VtkGrid, OfClusteredCellsIsExact) {
+    const FlowField field = two_cells({-0.5, -0.4, 0.5});
+    EXPECT_EQ(report::extension_of(field), ".vtr");
+    const Read r = read(report::vtk_grid(field, 0));
+    EXPECT_EQ(r.kind, "RectilinearGrid");
+    EXPECT_EQ(r.grid, "WholeExtent=\"0 2 0 1 0 1\"");
+    EXPECT_EQ(r.coordinates.at("x"), field.faces[0]);
+    EXPECT_EQ(r.coordinates.at("y"), field.faces[1]);
+    EXPECT_EQ(r.coordinates.at("z"), field.faces[2]);
+    EXPECT_EQ(r.columns.at("velocity").size(), 6U);
+}
+
+TEST(VtkGrid, ThatIsNoneIsRefused) {
+    FlowField field = two_cells({-0.5, 0, 0.5});
+    field.scalars["temperature"].push_back(1);
+    EXPECT_THROW((void)report::vtk_grid(field, 0), std::invalid_argument);
+    EXPECT_THROW((void)report::extension_of(two_cells({0, 0, 1})), std::invalid_argument);
+    EXPECT_THROW((void)report::extension_of(two_cells({0})), std::invalid_argument);
+}
+
+TEST(VtkSeries, WritesAStandingWallOnceAndAMovingOneAtEveryMoment) {
+    const test::Folder folder;
+    report::VtkSeries series(folder.path(), "bed");
+    WallSurface base{"base", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}};
+    WallSurface blade = base, gate = base;
+    blade.name = "blade";
+    gate.name = "gate";
+    for (const double t : {0.0, 1.0, 2.0}) {
+        Snapshot moment = three_particles();
+        for (auto& corner : blade.corners) corner[0] += 0.5;
+        moment.walls = {base, blade};
+        if (t == 0) moment.walls.push_back(gate);
+        moment.fields = {two_cells({0, 1, 2})};
+        series.add(moment, t);
+    }
+    const auto there = [&](const char* name) { return std::filesystem::exists(folder / name); };
+    EXPECT_TRUE(there("bed_base_0000.vtp") && !there("bed_base_0001.vtp"));
+    EXPECT_TRUE(there("bed_blade_0000.vtp") && there("bed_blade_0001.vtp") && there("bed_blade_0002.vtp"));
+    EXPECT_TRUE(there("bed_flow_0000.vti") && there("bed_flow_0002.vti"));
+    const std::string collection = contents(series.collection());
+    const auto listed = [&](const std::string& entry) { return collection.find(entry) != std::string::npos; };
+    EXPECT_TRUE(listed("<DataSet timestep=\"2\" part=\"1\" file=\"bed_base_0000.vtp\" name=\"base\"/>"));
+    EXPECT_TRUE(listed("<DataSet timestep=\"2\" part=\"2\" file=\"bed_blade_0002.vtp\" name=\"blade\"/>"));
+    EXPECT_TRUE(listed("<DataSet timestep=\"0\" part=\"3\" file=\"bed_gate_0000.vtp\" name=\"gate\"/>"));
+    EXPECT_FALSE(listed("<DataSet timestep=\"1\" part=\"3\""));  // the gate is gone
+    EXPECT_TRUE(listed("<DataSet timestep=\"1\" part=\"4\" file=\"bed_flow_0001.vti\" name=\"flow\"/>"));
+}
+
+TEST(VtkSeries, OfAFlowAloneHasNoParticles) {
+    const test::Folder folder;
+    report::VtkSeries series(folder.path(), "cavity");
+    Snapshot moment;
+    moment.fields = {two_cells({0, 1, 3})};
+    EXPECT_FALSE(report::shows_particles(moment));
+    series.add(moment, 0);
+    EXPECT_FALSE(std::filesystem::exists(folder / "cavity_0000.vtp"));
+    EXPECT_NE(contents(series.collection()).find("part=\"0\" file=\"cavity_flow_0000.vtr\""), std::string::npos);
+}
+
 TEST(VtkSeries, NamesEveryMomentInTheCollection) {
     const test::Folder folder;
     report::VtkSeries series(folder / "deep/inside", "cell");
     series.add(three_particles(), 0);
     series.add(three_particles(), 0.25);
     const std::string collection = contents(series.collection());
-    EXPECT_NE(collection.find("<DataSet timestep=\"0\" part=\"0\" file=\"cell_0000.vtp\"/>"), std::string::npos);
-    EXPECT_NE(collection.find("<DataSet timestep=\"0.25\" part=\"0\" file=\"cell_0001.vtp\"/>"), std::string::npos);
+    EXPECT_NE(collection.find("<DataSet timestep=\"0\" part=\"0\" file=\"cell_0000.vtp\" name=\"particles\"/>"),
+              std::string::npos);
+    EXPECT_NE(collection.find("<DataSet timestep=\"0.25\" part=\"0\" file=\"cell_0001.vtp\" name=\"particles\"/>"),
+              std::string::npos);
     EXPECT_EQ(read(contents(folder / "deep/inside/cell_0001.vtp")).time, 0.25);
 }
 

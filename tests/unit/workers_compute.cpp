@@ -4,8 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
+#include <optional>
+#include <vector>
 
 #include "solver/scenes/scene.hpp"
 
@@ -36,4 +41,54 @@ TEST(Compute, RejectsACaseWhoseFileHasChanged) {
                             "file again");
     std::filesystem::remove(file);
     EXPECT_THAT(answer(), HasSubstr("cannot read"));
+}
+
+namespace {
+
+std::vector<double> moments_of(const char* scene, const Inputs& given, std::int64_t frames) {
+    const SceneInfo& info = *find_scene(scene);
+    campaign::Case question{"", info.name, info.revision, info.defaults(), 1};
+    for (const auto& [name, value] : given) question.inputs.at(name) = value;
+    NoArtefacts none;
+    std::vector<double> moments;
+    const workers::Camera camera{frames, [&](const Scene& seen) { moments.push_back(seen.time()); }};
+    const auto found = workers::compute(
+        question, 1, none, std::nullopt, [](const Scene&) { return true; }, camera);
+    EXPECT_EQ(found.value().outcome, campaign::Outcome::completed) << found.value().message;
+    return moments;
+}
+
+}  // namespace
+
+TEST(Camera, TakesAFlowThatVibratesAlwaysAtTheSamePhase) {
+    const double frequency = 23300, period = 2 * std::numbers::pi / frequency;
+    const auto moments = moments_of("thermovibration",
+                                    {{"frequency", frequency},
+                                     {"particles", std::int64_t{5}},
+                                     {"cells", std::int64_t{6}},
+                                     {"steps_per_period", std::int64_t{16}},
+                                     {"end_time", 20.4 * period}},
+                                    8);
+    ASSERT_EQ(moments.size(), 8U);
+    for (std::size_t k = 0; k < moments.size(); ++k) {
+        const double periods = moments[k] / period;
+        EXPECT_NEAR(periods, std::round(periods), 1e-6);
+        EXPECT_NEAR(periods, 20.0 / 7 * static_cast<double>(k), 0.5 + 1e-6);
+    }
+}
+
+TEST(Camera, TakesMostPicturesOfTheSweepAndFewOfTheSettling) {
+    const auto moments = moments_of("powder_spreading",
+                                    {{"diameter", 0.004},
+                                     {"width", 3.0},
+                                     {"gap", 0.008},
+                                     {"layer_area", 1e-4},
+                                     {"travel", 0.02},
+                                     {"settle_time", 0.1}},
+                                    21);
+    ASSERT_EQ(moments.size(), 21U);
+    EXPECT_NEAR(moments[5], 0.1, 1e-4);
+    EXPECT_NEAR(moments[20], 0.1 + 0.02 / 1.4, 1e-4);
+    for (std::size_t k = 1; k < 21; ++k)
+        EXPECT_NEAR(moments[k] - moments[k - 1], k <= 5 ? 0.02 : 0.02 / 1.4 / 15, 1e-4) << k;
 }

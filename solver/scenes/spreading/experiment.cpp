@@ -25,6 +25,8 @@ Experiment::Experiment(const Study& study, std::uint64_t seed, const dem::Method
     const bool shared = study_.bed_seed > 0;
     const dem::Setup setup = settling(study_, shared ? seed_of_bed(study_.bed_seed) : seed);
     if (shared) study_.blade_start -= run_up(study_, seed);
+    domain_ = setup.domain;
+    gates_ = setup.walls;
     volume_.reserve(setup.spheres.size());
     for (const auto& sphere : setup.spheres) {
         const double d = 2 * sphere.radius / study_.diameter;
@@ -215,8 +217,25 @@ double Experiment::progress() const {
     return static_cast<double>(step_) / static_cast<double>(last_step());
 }
 
+/// The base from end to end; blade and gates up to where the powder is.
 Snapshot Experiment::snapshot() const {
-    return picture_of(*engine_);
+    Snapshot picture = picture_of(*engine_);
+    picture.periods[1] = study_.width;
+    const dem::Vec3 low = {domain_.low[0], 0, domain_.low[2]};
+    const dem::Vec3 high = {domain_.high[0], study_.width, drawn_height(study_)};
+    const auto add = [&](const dem::Wall& wall, const char* name) {
+        picture.walls.push_back(surface_of(wall, name, low, high, engine_->wall_time()));
+    };
+    if (sweeping_) {
+        const auto walls = sweeping_walls(study_);
+        add(walls.at(0), "base");
+        add(walls.at(1), "blade");
+    } else {
+        add(gates_.at(0), "base");
+        add(gates_.at(1), "first_gate");
+        add(gates_.at(2), "second_gate");
+    }
+    return picture;
 }
 
 void Experiment::save(Bytes& into) const {

@@ -25,6 +25,9 @@ public:
     void save(Bytes& into) const override;
     void restore(std::span<const std::byte> from) override;
     [[nodiscard]] Snapshot snapshot() const override;
+    [[nodiscard]] double picture_focus() const override {
+        return study_.time_step * static_cast<double>(study_.settle_steps);
+    }
 
     static constexpr std::size_t profile_layers = 12;
 
@@ -58,6 +61,8 @@ private:
     enum class Place : char { ahead, behind, left };
     std::vector<Place> place_;  // by id: of the front face at the last sample, or out of the box
     double left_behind_ = 0;    // volume that left the box behind the front face
+    dem::Domain domain_;            // for pictures, as the walls
+    std::vector<dem::Wall> gates_;  // base and gates, between which the layer settles
     observables::VelocityProfile profile_{profile_layers};
     dem::State state_;  // scratch of sample()
 };

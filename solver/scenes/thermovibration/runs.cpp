@@ -81,13 +81,6 @@ std::int64_t watch_interval(std::int64_t steps_per_period) {
     return steps;
 }
 
-Snapshot picture(const coupling::Cloud& cloud) {
-    Snapshot snapshot;
-    snapshot.positions = cloud.position;
-    snapshot.vectors["velocity"] = cloud.velocity;
-    return snapshot;
-}
-
 SpinUp::SpinUp(const Question& question)
     : question_(question),
       fluid_(question.fluid()),

@@ -10,6 +10,7 @@
 #include "solver/coupling/solids_volume.hpp"
 #include "solver/coupling/suspension.hpp"
 #include "solver/scenes/scene.hpp"
+#include "solver/scenes/thermovibration/picture.hpp"
 #include "solver/scenes/thermovibration/record.hpp"
 
 #include <optional>
@@ -25,7 +26,6 @@ using Drag = coupling::SchillerNaumann;
 [[nodiscard]] std::string fault(const flow::Flow<flow::Boussinesq>& fluid, double time);
 [[nodiscard]] std::string fault(const coupling::Cloud& cloud, double time_step, double cell, double time);
 [[nodiscard]] std::string fault(const coupling::SolidsVolume& solids, const flow::Grid& grid, double time);
-[[nodiscard]] Snapshot picture(const coupling::Cloud& cloud);
 /// Particles are watched after every step, fluid and fractions every so many (and before what they are sampled for):
 /// about eight, with no divisor in common with those of a period, so that all phases of the vibration come up in turn.
 [[nodiscard]] std::int64_t watch_interval(std::int64_t steps_per_period);
@@ -65,7 +65,13 @@ public:
         flow::take_bytes(from, budget_);
         record_.restore(from);
     }
-    [[nodiscard]] Snapshot snapshot() const override { return picture(suspension_.cloud()); }
+    [[nodiscard]] Snapshot snapshot() const override {
+        Snapshot now = picture(question_, suspension_.cloud());
+        const auto& fluid = suspension_.fluid();
+        now.fields.push_back(drawn_flow(question_, fluid.velocity(), &fluid.temperature()));
+        return now;
+    }
+    [[nodiscard]] double picture_period() const override { return question_.steady_force() ? 0 : question_.period(); }
 
 private:
     [[nodiscard]] std::int64_t steps() const { return suspension_.fluid().steps(); }
@@ -119,6 +125,7 @@ public:
     [[nodiscard]] bool periodic() const { return stage_ == Stage::stored; }
     [[nodiscard]] const std::string& fault() const { return fault_; }
     [[nodiscard]] const FlowMeans& means() const { return means_; }
+    [[nodiscard]] const flow::FaceVectors& velocity() const { return fluid_.velocity(); }
     [[nodiscard]] coupling::PeriodicFlow stored() const { return {fluid_.grid(), stored_}; }
 
     void save(std::vector<std::byte>& into) const;
@@ -212,7 +219,20 @@ public:
             flow_.restore(from);
         }
     }
-    [[nodiscard]] Snapshot snapshot() const override { return picture(cloud_); }
+    /// Without temperature, which the stored flow has not.
+    [[nodiscard]] Snapshot snapshot() const override {
+        Snapshot now = picture(question_, cloud_);
+        if (spin_up_) {
+            now.fields.push_back(drawn_flow(question_, spin_up_->velocity(), nullptr));
+        } else {
+            auto velocity = flow::face_vectors(grid_);
+            const auto in_period = static_cast<double>(steps_ % question_.steps_per_period);
+            flow_.velocity(question_.frequency * in_period * question_.step(), velocity);
+            now.fields.push_back(drawn_flow(question_, velocity, nullptr));
+        }
+        return now;
+    }
+    [[nodiscard]] double picture_period() const override { return question_.period(); }
 
 private:
     void settle() {

@@ -19,3 +19,17 @@ add_dependencies(sweep page_program)
 set_source_files_properties(sweep/report/page_files.cpp PROPERTIES
   COMPILE_DEFINITIONS "CHART_JS=\"${CHART_JS}\";PAGE_FOLDER=\"${PAGE_FOLDER}\";PAGE_PROGRAM=\"${PAGE_PROGRAM}\""
   OBJECT_DEPENDS "${CHART_JS};${PAGE_FOLDER}/page.html;${PAGE_FOLDER}/page.css;${PAGE_PROGRAM}")
+
+# The player of cases to watch, for a page of its own and for the report.
+set(WATCH_FOLDER "${PAGE_FOLDER}/watch")
+set(WATCH_SCRIPTS film matrix camera colours shaders painter element shading player)
+list(TRANSFORM WATCH_SCRIPTS REPLACE "(.+)" "${WATCH_FOLDER}/\\1.js")
+set(WATCH_PLAYER "${CMAKE_BINARY_DIR}/generated/watch_player.js")
+add_custom_command(OUTPUT "${WATCH_PLAYER}"
+  COMMAND "${CMAKE_COMMAND}" -E cat ${WATCH_SCRIPTS} > "${WATCH_PLAYER}"
+  DEPENDS ${WATCH_SCRIPTS} VERBATIM)
+add_custom_target(watch_player DEPENDS "${WATCH_PLAYER}")
+add_dependencies(sweep watch_player)
+set_source_files_properties(sweep/report/watch_page.cpp PROPERTIES
+  COMPILE_DEFINITIONS "WATCH_FOLDER=\"${WATCH_FOLDER}\";WATCH_PLAYER=\"${WATCH_PLAYER}\""
+  OBJECT_DEPENDS "${WATCH_PLAYER};${WATCH_FOLDER}/page.html;${WATCH_FOLDER}/watch.css;${WATCH_FOLDER}/page.js")

@@ -1,0 +1,26 @@
+// The surface f = 0 inside a box as triangles, for pictures.
+//
+// Surface nets (Gibson 1998, doi 10.1007/BFb0056277): a corner for every cell of a grid in which f changes sign, at the
+// mean of the places where the cell's edges cross the surface, and a quadrilateral around every such edge. On the
+// faces of the box the cells are flat, so that the surface ends there and its rim lies in them. Corners are off the
+// surface by O(h^2).
+#pragma once
+
+#include "solver/geometry/vector.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace grainsweep::geometry {
+
+struct TriangleSurface {
+    std::vector<Vec3> corners;
+    std::vector<std::array<std::int32_t, 3>> triangles;  ///< counter-clockwise seen from where f > 0
+};
+
+/// cells >= 1: of the grid along each axis of the box. Throws std::invalid_argument otherwise.
+[[nodiscard]] TriangleSurface level_surface(const std::function<double(const Vec3&)>& f, const Vec3& low,
+                                            const Vec3& high, int cells);
+
+}  // namespace grainsweep::geometry

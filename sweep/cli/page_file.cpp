@@ -1,0 +1,65 @@
+#include "sweep/cli/page_file.hpp"
+
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/store/aside_file.hpp"
+#include "sweep/store/broken_world.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstddef>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <span>
+#include <system_error>
+
+namespace grainsweep::cli {
+
+namespace fs = std::filesystem;
+
+void check_page_file(std::string_view option, const std::string& output, const std::string& database) {
+    const auto refuse = [&](std::string_view why) {
+        throw campaign::wrong_question(std::string(option), fmt::format("'{}'", output), std::string(why));
+    };
+    std::error_code error;
+    const auto there = fs::status(output, error);
+    if (there.type() == fs::file_type::none) refuse(error.message());
+    if (fs::is_directory(there)) refuse("this is a folder; name a file");
+    const auto folder = fs::path(output).parent_path();
+    if (!fs::is_directory(folder.empty() ? "." : folder, error)) refuse("there is no such folder");
+    if (fs::exists(there) && !fs::is_regular_file(there)) return;  // a pipe, a terminal
+    if (access(folder.empty() ? "." : folder.c_str(), W_OK | X_OK) != 0) refuse(std::strerror(errno));
+    for (const auto* suffix : {"", "-wal", "-shm", "-journal", ".lock"})
+        if (!database.empty() && fs::weakly_canonical(output, error) == fs::weakly_canonical(database + suffix, error))
+            refuse("this belongs to the database");
+    if (!fs::exists(there)) return;
+    std::ifstream stream(output, std::ios::binary);
+    if (!stream || access(output.c_str(), W_OK) != 0) refuse(std::strerror(errno));
+    constexpr std::string_view page = "<!doctype html>";
+    std::string start(page.size(), '\0');
+    stream.read(start.data(), static_cast<std::streamsize>(start.size()));
+    if (stream.gcount() == 0) return;
+    std::ranges::transform(start, start.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (start != page) refuse("this file is there and is no page; take another name");
+}
+
+void write_page_file(const std::string& output, const std::string& page) {
+    std::error_code ignored;
+    const bool link_to_nowhere = fs::is_symlink(fs::symlink_status(output, ignored)) && !fs::exists(output, ignored);
+    if (link_to_nowhere || (fs::exists(output, ignored) && !fs::is_regular_file(output, ignored))) {
+        errno = 0;
+        std::ofstream stream(output, std::ios::binary);
+        stream << page << std::flush;
+        if (!stream) throw store::BrokenWorld(fmt::format("'{}': cannot be written: {}", output, std::strerror(errno)));
+        return;
+    }
+    store::AsideFile file(fs::weakly_canonical(output));  // through links: the page is where the link points
+    file.write(std::as_bytes(std::span(page)));
+    file.take_place();
+}
+
+}  // namespace grainsweep::cli

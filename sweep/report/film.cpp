@@ -1,0 +1,180 @@
+#include "sweep/report/film.hpp"
+
+#include "stats/random.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+namespace grainsweep::report {
+namespace {
+
+constexpr float absent = std::numeric_limits<float>::quiet_NaN();
+constexpr std::uint64_t thinning_stream = 1;
+
+using Vector = std::array<double, 3>;
+
+double magnitude(const Vector& v) {
+    return std::hypot(v[0], v[1], v[2]);
+}
+
+/// Columns that say what a sphere is, not how it fares.
+bool is_trait(std::string_view name) {
+    return name == "id" || name == "mobile" || name == "diameter";
+}
+
+bool same_shape(const WallSurface& a, const WallSurface& b) {
+    return a.name == b.name && a.corners.size() == b.corners.size() && a.triangles == b.triangles && a.edges == b.edges;
+}
+
+}  // namespace
+
+/// Where each particle of the snapshot stands in the frames; `spheres_.size()` for those that are thinned out.
+std::vector<std::size_t> Film::places_of(const Snapshot& snapshot) {
+    const std::size_t n = snapshot.positions.size();
+    const auto ids = snapshot.scalars.find("id");
+    const auto diameters = snapshot.scalars.find("diameter");
+    const auto mobile = snapshot.scalars.find("mobile");
+    const auto given = [&](const auto& column) { return column != snapshot.scalars.end(); };
+    if (frames_.empty() && n > limits_.spheres)
+        kept_share_ = static_cast<double>(limits_.spheres) / static_cast<double>(n);
+    most_present_ = std::max(most_present_, n);
+    const stats::Stream thinning(0, thinning_stream);
+    std::vector<std::size_t> places(n, std::numeric_limits<std::size_t>::max());
+    for (std::size_t i = 0; i < n; ++i) {
+        const auto id = given(ids) ? static_cast<std::int64_t>(ids->second[i]) : static_cast<std::int64_t>(i);
+        if (kept_share_ < 1 && thinning.uniform(static_cast<std::uint64_t>(id)) >= kept_share_) continue;
+        const auto [found, is_new] = place_of_.try_emplace(id, spheres_.size());
+        if (is_new)
+            spheres_.push_back({given(diameters) ? diameters->second[i] : 0, !given(mobile) || mobile->second[i] != 0});
+        places[i] = found->second;
+    }
+    return places;
+}
+
+void Film::add_particles(const Snapshot& snapshot) {
+    const auto check = [&](const auto& columns) {
+        for (const auto& [name, values] : columns)
+            if (values.size() != snapshot.positions.size())
+                throw std::invalid_argument(fmt::format("column '{}' of a picture has {} values for {} particles", name,
+                                                        values.size(), snapshot.positions.size()));
+    };
+    check(snapshot.scalars);
+    check(snapshot.vectors);
+    const auto places = places_of(snapshot);
+    Frame frame;
+    frame.positions.assign(spheres_.size(), {absent, absent, absent});
+    const auto fill = [&](const std::string& name, auto value) {
+        auto& column = frame.columns[name];
+        column.assign(spheres_.size(), absent);
+        for (std::size_t i = 0; i < places.size(); ++i)
+            if (places[i] < column.size()) column[places[i]] = static_cast<float>(value(i));
+    };
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        if (places[i] >= spheres_.size()) continue;
+        for (std::size_t a = 0; a < 3; ++a)
+            frame.positions[places[i]][a] = static_cast<float>(snapshot.positions[i][a]);
+    }
+    for (const auto& [name, values] : snapshot.scalars)
+        if (limits_.columns && !is_trait(name)) fill(name, [&values = values](std::size_t i) { return values[i]; });
+    for (const auto& [name, values] : snapshot.vectors)
+        if (limits_.columns || name == "velocity")
+            fill(name, [&values = values](std::size_t i) { return magnitude(values[i]); });
+    frames_.push_back(std::move(frame));
+}
+
+void Film::add_walls(const Snapshot& snapshot) {
+    for (auto& wall : walls_) {
+        if (wall.closed) continue;
+        const auto now =
+            std::ranges::find_if(snapshot.walls, [&](const WallSurface& seen) { return same_shape(seen, wall.shape); });
+        wall.closed = now == snapshot.walls.end();
+        if (wall.closed) continue;
+        wall.moves = wall.moves || now->corners != wall.shape.corners;
+        wall.corners.push_back(now->corners);
+    }
+    for (const auto& seen : snapshot.walls) {
+        const bool known =
+            std::ranges::any_of(walls_, [&](const Wall& wall) { return !wall.closed && same_shape(seen, wall.shape); });
+        if (!known && !seen.corners.empty()) walls_.push_back({seen, times_.size(), {seen.corners}, false, false});
+    }
+}
+
+Film::Slice& Film::slice_of(const FlowField& field, const std::string& quantity, int component) {
+    const auto found = std::ranges::find_if(slices_, [&](const Slice& slice) {
+        return slice.field == field.name && slice.quantity == quantity && slice.component == component;
+    });
+    if (found != slices_.end()) return *found;
+    return slices_.emplace_back(Slice{field.name, quantity, component, field.faces});
+}
+
+namespace {
+
+/// Calls body(cell) for the cells of a plane across `axis`, the next axis but one fastest... in the order (u, v), u
+/// fastest, where u and v are the other two axes in their order.
+template <class Body>
+void for_each_cell_of_plane(const std::array<std::size_t, 3>& cells, std::size_t axis, std::size_t at, Body body) {
+    const std::size_t u = axis == 0 ? 1 : 0;
+    const std::size_t v = axis == 2 ? 1 : 2;
+    std::array<std::size_t, 3> index{};
+    index[axis] = at;
+    for (index[v] = 0; index[v] < cells[v]; ++index[v])
+        for (index[u] = 0; index[u] < cells[u]; ++index[u])
+            body(index[0] + cells[0] * (index[1] + cells[1] * index[2]));
+}
+
+/// The mean of the two planes of cells beside the middle of the box, or its middle plane of cells.
+template <class Value>
+std::vector<float> middle_plane(const FlowField& field, std::size_t axis, Value value) {
+    std::array<std::size_t, 3> cells{};
+    for (std::size_t a = 0; a < 3; ++a) cells[a] = field.faces[a].size() - 1;
+    std::vector<float> plane;
+    for_each_cell_of_plane(cells, axis, cells[axis] / 2,
+                           [&](std::size_t cell) { plane.push_back(static_cast<float>(value(cell))); });
+    if (cells[axis] % 2 == 0) {
+        std::size_t k = 0;
+        for_each_cell_of_plane(cells, axis, cells[axis] / 2 - 1, [&](std::size_t cell) {
+            plane[k] = 0.5F * (plane[k] + static_cast<float>(value(cell)));
+            ++k;
+        });
+    }
+    return plane;
+}
+
+}  // namespace
+
+void Film::add_slices(const FlowField& field) {
+    const auto add = [&](const std::string& quantity, int component, auto value) {
+        Slice& slice = slice_of(field, quantity, component);
+        if (slice.faces != field.faces || slice.frames != times_.size()) return;  // a quantity that comes and goes
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto plane = middle_plane(field, axis, value);
+            slice.planes[axis].insert(slice.planes[axis].end(), plane.begin(), plane.end());
+        }
+        ++slice.frames;
+    };
+    for (const auto& [name, values] : field.vectors) {
+        add(name, 3, [&values = values](std::size_t cell) { return magnitude(values[cell]); });
+        for (int c = 0; c < 3; ++c)
+            add(name, c, [&values = values, c](std::size_t cell) { return values[cell][static_cast<std::size_t>(c)]; });
+    }
+    for (const auto& [name, values] : field.scalars)
+        add(name, -1, [&values = values](std::size_t cell) { return values[cell]; });
+}
+
+void Film::add(const Snapshot& snapshot, double time) {
+    units_ = snapshot.units;
+    length_unit_ = snapshot.length_unit;
+    time_unit_ = snapshot.time_unit;
+    periods_ = snapshot.periods;
+    add_particles(snapshot);
+    add_walls(snapshot);
+    for (const auto& field : snapshot.fields) add_slices(field);
+    times_.push_back(time);
+}
+
+}  // namespace grainsweep::report

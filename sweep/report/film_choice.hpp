@@ -1,0 +1,22 @@
+// Which cases of a database are worth watching: those that span what a response does.
+#pragma once
+
+#include "sweep/store/store.hpp"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace grainsweep::report {
+
+struct FilmChoice {
+    std::string campaign, case_id;
+    std::string says;  ///< "largest mfr, 0.41"
+};
+
+/// So many cases at most, the campaigns sharing them: of the completed cases of each, by its main observable, the
+/// smallest, the largest and those at even quantiles between them; one alone is the median. A campaign without a
+/// finite value has none.
+[[nodiscard]] std::vector<FilmChoice> cases_to_watch(const store::Store& store, std::size_t count);
+
+}  // namespace grainsweep::report

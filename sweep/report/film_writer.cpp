@@ -1,0 +1,299 @@
+// A film's header and blocks. What each entry of the header means stands where it is written.
+#include "sweep/report/film.hpp"
+#include "sweep/report/film_codec.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <span>
+#include <utility>
+
+namespace grainsweep::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double finest = 65535;
+constexpr double colours = 254;           // levels of a colour that is defined
+constexpr double common_share = 0.995;    // of the values: beyond their quantile lies what is rare
+constexpr double far_beyond = 1.5;        // times that quantile
+constexpr std::size_t sampled = 200'000;  // values that determine a quantile
+constexpr double bytes_per_sphere = 8.3;  // and frame, as text
+
+struct Range {
+    double low = 0, high = 0;
+    bool clipped = false;  ///< a few values lie beyond
+};
+
+/// From the values that are numbers: from 0, or around 0, or from the least where all are far from 0.
+Range range_of(std::vector<float> values) {
+    std::erase_if(values, [](float x) { return !std::isfinite(x); });
+    if (values.empty()) return {};
+    const auto [least, most] = std::ranges::minmax(values);
+    Range range{least, most, false};
+    for (float& x : values) x = std::abs(x);
+    const auto rank =
+        values.begin() + static_cast<std::ptrdiff_t>(common_share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), rank, values.end());
+    const double common = *rank;
+    const double largest = std::max(std::abs(range.low), range.high);
+    const bool clipped = common > 0 && largest > far_beyond * common;
+    const double end = clipped ? common : largest;
+    if (range.low < 0) return {-end, end, clipped};
+    if (range.low < 0.5 * end) range.low = 0;
+    return {range.low, end, clipped};
+}
+
+std::uint16_t colour_of(double x, const Range& range) {
+    if (!std::isfinite(x)) return 0;
+    const double width = range.high - range.low;
+    const double share = width > 0 ? std::clamp((x - range.low) / width, 0.0, 1.0) : 0.0;
+    return static_cast<std::uint16_t>(1 + std::lround(colours * share));
+}
+
+}  // namespace
+
+/// Puts the blocks one after the other and writes down where they are.
+class FilmWriter {
+public:
+    FilmWriter(const Film& film, const Json& about) : film_(film), header_(Json::object()) {
+        header_["about"] = about;
+        header_["time_unit"] = film.time_unit_;
+        header_["length_unit"] = film.length_unit_;
+        header_["times"] = film.times_;
+        header_["periods"] = film.periods_;
+        header_["spheres"] = film.spheres_.size();
+        header_["particles"] = film.most_present_;  // more than spheres: thinned
+    }
+
+    std::string write() {
+        if (!film_.spheres_.empty()) {
+            write_positions();
+            write_traits();
+        }
+        write_walls();
+        write_slices();
+        write_columns();
+        const std::string header = header_.dump(-1, ' ', false, Json::error_handler_t::replace);
+        std::string bytes = "GSF1";
+        for (unsigned shift = 0; shift < 32; shift += 8)
+            bytes.push_back(static_cast<char>(header.size() >> shift & 0xFFU));
+        return bytes + header + blocks_;
+    }
+
+private:
+    using Numbers = std::vector<std::uint16_t>;
+
+    /// [offset, length] of the packed column.
+    Json block(const Numbers& values, std::size_t items) { return block(pack_film_column(values, items)); }
+    Json block(const std::string& bytes) {
+        Json place = {blocks_.size(), bytes.size()};
+        blocks_ += bytes;
+        return place;
+    }
+
+    /// Three columns, one after the other in each frame; where a particle is not, it stays as it is.
+    void write_positions() {
+        constexpr double infinite = std::numeric_limits<double>::infinity();
+        std::array<double, 3> low{infinite, infinite, infinite}, high{-infinite, -infinite, -infinite}, step{};
+        for (const auto& frame : film_.frames_)
+            for (const auto& x : frame.positions)
+                for (std::size_t a = 0; a < 3; ++a) {
+                    if (!std::isfinite(x[a])) continue;
+                    low[a] = std::min<double>(low[a], x[a]);
+                    high[a] = std::max<double>(high[a], x[a]);
+                }
+        for (std::size_t a = 0; a < 3; ++a) {
+            if (!(low[a] <= high[a])) low[a] = high[a] = 0;
+            step[a] = (high[a] - low[a]) / finest;
+        }
+        const std::size_t n = film_.spheres_.size();
+        Numbers places(3 * n * film_.frames_.size()), present(n * film_.frames_.size());
+        bool all_present = true;
+        for (std::size_t f = 0; f < film_.frames_.size(); ++f) {
+            const auto& now = film_.frames_[f].positions;
+            for (std::size_t i = 0; i < n; ++i) {
+                const bool there = i < now.size() && std::isfinite(now[i][0] + now[i][1] + now[i][2]);
+                present[f * n + i] = there ? 1 : 0;
+                all_present = all_present && there;
+                for (std::size_t a = 0; a < 3; ++a) {
+                    auto& place = places[(3 * f + a) * n + i];
+                    if (there)
+                        place = step[a] > 0 ? static_cast<std::uint16_t>(std::lround((now[i][a] - low[a]) / step[a]))
+                                            : std::uint16_t{0};
+                    else if (f > 0)
+                        place = places[(3 * (f - 1) + a) * n + i];
+                }
+            }
+        }
+        header_["positions"] = {{"low", low}, {"step", step}, {"block", block(places, 3 * n)}};
+        if (!all_present) header_["present"] = block(present, n);
+    }
+
+    /// Diameters as 16-bit numbers over their largest; which spheres are mobile.
+    void write_traits() {
+        double largest = 0;
+        bool all_mobile = true;
+        for (const auto& sphere : film_.spheres_) {
+            if (std::isfinite(sphere.diameter)) largest = std::max(largest, sphere.diameter);
+            all_mobile = all_mobile && sphere.mobile;
+        }
+        Numbers diameters, mobile;
+        bool equal = true;
+        for (const auto& sphere : film_.spheres_) {
+            const double share = largest > 0 && std::isfinite(sphere.diameter) ? sphere.diameter / largest : 0;
+            diameters.push_back(static_cast<std::uint16_t>(std::lround(finest * std::clamp(share, 0.0, 1.0))));
+            equal = equal && diameters.back() == diameters.front();
+            mobile.push_back(sphere.mobile ? 1 : 0);
+        }
+        header_["diameter"] = {{"largest", largest}, {"equal", equal}, {"block", block(diameters, diameters.size())}};
+        if (!all_mobile) header_["mobile"] = block(mobile, mobile.size());
+    }
+
+    /// Colours of mobile spheres; what frozen ones bear would hide how the powder fares.
+    void write_columns() {
+        header_["columns"] = Json::array();
+        Json left_out = Json::array();
+        const std::size_t n = film_.spheres_.size();
+        const double text = 4.0 / 3;  // base64
+        const double most = std::max(static_cast<double>(film_.limits_.bytes),
+                                     bytes_per_sphere * static_cast<double>(n * film_.frames_.size())) /
+                            text;
+        for (const auto& name : column_names()) {
+            const Range range = range_of(sample_of(name));
+            Numbers values(n * film_.frames_.size());
+            for (std::size_t f = 0; f < film_.frames_.size(); ++f) {
+                const auto found = film_.frames_[f].columns.find(name);
+                if (found == film_.frames_[f].columns.end()) continue;
+                for (std::size_t i = 0; i < found->second.size(); ++i)
+                    if (film_.spheres_[i].mobile) values[f * n + i] = colour_of(found->second[i], range);
+            }
+            const std::string bytes = pack_film_column(values, n);
+            if (static_cast<double>(blocks_.size() + bytes.size()) + header_room > most) {
+                left_out.push_back(name);
+                continue;
+            }
+            Json column = coloured(name, range);
+            column["block"] = block(bytes);
+            header_["columns"].push_back(std::move(column));
+        }
+        header_["left_out"] = std::move(left_out);
+    }
+
+    /// Velocity first, then by name.
+    [[nodiscard]] std::vector<std::string> column_names() const {
+        std::set<std::string> names;
+        for (const auto& frame : film_.frames_)
+            for (const auto& [name, values] : frame.columns) names.insert(name);
+        std::vector<std::string> ordered(names.begin(), names.end());
+        std::ranges::stable_partition(ordered, [](const std::string& name) { return name == "velocity"; });
+        return ordered;
+    }
+
+    /// Of the mobile spheres, every k-th one.
+    [[nodiscard]] std::vector<float> sample_of(const std::string& name) const {
+        const std::size_t every = 1 + film_.spheres_.size() * film_.frames_.size() / sampled;
+        std::vector<float> sample;
+        std::size_t count = 0;
+        for (const auto& frame : film_.frames_) {
+            const auto found = frame.columns.find(name);
+            if (found == frame.columns.end()) continue;
+            for (std::size_t i = 0; i < found->second.size(); ++i)
+                if (film_.spheres_[i].mobile && count++ % every == 0) sample.push_back(found->second[i]);
+        }
+        return sample;
+    }
+
+    [[nodiscard]] Json coloured(const std::string& name, const Range& range) const {
+        const auto unit = film_.units_.find(name);
+        return {{"name", name},
+                {"unit", unit == film_.units_.end() ? "" : unit->second},
+                {"low", range.low},
+                {"high", range.high},
+                {"clipped", range.clipped}};
+    }
+
+    /// Corners as 16-bit numbers in the wall's own box: one frame where it stands still, else those from `first` on,
+    /// `frames` in number; shown that long.
+    void write_walls() {
+        header_["walls"] = Json::array();
+        for (const auto& wall : film_.walls_) {
+            const std::size_t n = wall.shape.corners.size();
+            if (n > static_cast<std::size_t>(finest)) {
+                header_["walls_left_out"].push_back(wall.shape.name);
+                continue;
+            }
+            std::array<double, 3> low = wall.shape.corners.front(), high = low, step{};
+            for (const auto& corners : wall.corners)
+                for (const auto& x : corners)
+                    for (std::size_t a = 0; a < 3; ++a) {
+                        low[a] = std::min(low[a], x[a]);
+                        high[a] = std::max(high[a], x[a]);
+                    }
+            for (std::size_t a = 0; a < 3; ++a) step[a] = (high[a] - low[a]) / finest;
+            Numbers places;
+            for (std::size_t f = 0; f < (wall.moves ? wall.corners.size() : 1); ++f)
+                for (std::size_t a = 0; a < 3; ++a)
+                    for (const auto& x : wall.corners[f])
+                        places.push_back(step[a] > 0
+                                             ? static_cast<std::uint16_t>(std::lround((x[a] - low[a]) / step[a]))
+                                             : std::uint16_t{0});
+            header_["walls"].push_back({{"name", wall.shape.name},
+                                        {"first", wall.first},
+                                        {"frames", wall.corners.size()},
+                                        {"moves", wall.moves},
+                                        {"corners", n},
+                                        {"low", low},
+                                        {"step", step},
+                                        {"places", block(places, 3 * n)},
+                                        {"triangles", list_of(wall.shape.triangles)},
+                                        {"edges", list_of(wall.shape.edges)}});
+        }
+    }
+
+    /// Indices, all first corners, then all second ones, ...
+    template <std::size_t Corners>
+    Json list_of(const std::vector<std::array<std::int32_t, Corners>>& cells) {
+        Numbers indices;
+        for (std::size_t k = 0; k < Corners; ++k)
+            for (const auto& cell : cells) indices.push_back(static_cast<std::uint16_t>(cell[k]));
+        return {{"count", cells.size()}, {"block", block(indices, indices.size())}};
+    }
+
+    /// planes[a]: across axis a; the other two axes in their order, the first of them fastest.
+    void write_slices() {
+        header_["slices"] = Json::array();
+        for (const auto& slice : film_.slices_) {
+            if (slice.frames < film_.times_.size()) continue;
+            std::vector<float> all;
+            for (const auto& plane : slice.planes) all.insert(all.end(), plane.begin(), plane.end());
+            Json one = coloured(slice.quantity, range_of(std::move(all)));
+            const Range range{one["low"].get<double>(), one["high"].get<double>(), false};
+            one["component"] = slice.component;
+            one["field"] = slice.field;
+            one["faces"] = slice.faces;
+            one["planes"] = Json::array();
+            for (const auto& plane : slice.planes) {
+                Numbers values;
+                for (const float x : plane) values.push_back(colour_of(x, range));
+                one["planes"].push_back(block(values, plane.size() / slice.frames));
+            }
+            header_["slices"].push_back(std::move(one));
+        }
+    }
+
+    static constexpr double header_room = 20'000;  // bytes
+
+    const Film& film_;
+    Json header_;
+    std::string blocks_;
+};
+
+std::string Film::bytes(const nlohmann::ordered_json& about) const {
+    return FilmWriter(*this, about).write();
+}
+
+}  // namespace grainsweep::report

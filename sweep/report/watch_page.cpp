@@ -1,0 +1,79 @@
+#include "sweep/report/watch_page.hpp"
+
+#include "solver/scenes/scene.hpp"
+#include "sweep/report/embedded_file.hpp"
+#include "sweep/report/packed_column.hpp"
+#include "sweep/report/page_template.hpp"
+#include "sweep/report/table.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+GRAINSWEEP_EMBED(watch_html, WATCH_FOLDER "/page.html");
+GRAINSWEEP_EMBED(watch_css, WATCH_FOLDER "/watch.css");
+GRAINSWEEP_EMBED(watch_player, WATCH_PLAYER);
+GRAINSWEEP_EMBED(watch_page, WATCH_FOLDER "/page.js");
+
+namespace grainsweep::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json entry(const std::string& name, Json value, const std::string& unit) {
+    return {name, std::move(value), unit};
+}
+
+std::string as_text(const std::string& bytes) {
+    return base64(std::span(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()));
+}
+
+}  // namespace
+
+Json about_case(const campaign::Case& question, const campaign::CaseResult& result) {
+    const SceneInfo* scene = find_scene(question.scene);
+    std::string title = question.scene;
+    std::ranges::replace(title, '_', ' ');
+    Json about = {{"title", title},
+                  {"name", question.scene + "_" + question.id.substr(0, 8)},
+                  {"case", question.id},
+                  {"subtitle", fmt::format("case {}, seed {}", question.id.substr(0, 10), question.seed)},
+                  {"message", ""},
+                  {"inputs", Json::array()},
+                  {"results", Json::array()}};
+    if (result.outcome != campaign::Outcome::completed)
+        about["message"] = fmt::format("{}: {}", campaign::to_string(result.outcome), result.message);
+    if (scene == nullptr) return about;
+    for (const auto& parameter : scene->parameters)
+        if (const auto found = question.inputs.find(parameter.name); found != question.inputs.end())
+            about["inputs"].push_back(entry(parameter.name, to_json(to_cell(found->second)), parameter.unit));
+    for (const auto& observable : scene->observables)
+        if (const auto found = result.observations.scalars.find(observable.name);
+            found != result.observations.scalars.end() && std::isfinite(found->second))
+            about["results"].push_back(entry(observable.name, found->second, observable.unit));
+    return about;
+}
+
+std::string watch_page(const Film& film, const Json& about) {
+    if (!film.shows_anything()) throw std::invalid_argument("a film without particles or a flow");
+    const std::string program =
+        std::string(GRAINSWEEP_EMBEDDED(watch_player)) + std::string(GRAINSWEEP_EMBEDDED(watch_page));
+    const std::string text = as_text(film.bytes(about));
+    std::ostringstream page;
+    fill(page, GRAINSWEEP_EMBEDDED(watch_html),
+         {{"style", GRAINSWEEP_EMBEDDED(watch_css)}, {"film", text}, {"program", program}});
+    return std::move(page).str();
+}
+
+Player player() {
+    return {GRAINSWEEP_EMBEDDED(watch_css), GRAINSWEEP_EMBEDDED(watch_player)};
+}
+
+}  // namespace grainsweep::report

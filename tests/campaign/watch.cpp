@@ -1,0 +1,148 @@
+// --watch of solve and replay, through the real executable and a real browser.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/support/browser.hpp"
+#include "tests/support/process.hpp"
+
+using namespace grainsweep::test;
+using nlohmann::json;
+
+namespace {
+
+const char* cell = R"({"campaign": "c", "scene": "tpms_discharge", "factors": [{"name": "cohesion", "levels": [0]}],
+  "fixed": {"edge": 8, "shell": 2, "gravity": 122.6, "end_time": 0.5}, "design": {"kind": "lattice"}})";
+const char* bed = R"({"campaign": "b", "scene": "powder_spreading", "factors": [{"name": "gap", "levels": [0.008]}],
+  "fixed": {"diameter": 0.004, "width": 3, "layer_area": 1e-4, "travel": 0.02, "settle_time": 0.02},
+  "design": {"kind": "lattice"}})";
+const char* cavity =
+    R"({"campaign": "v", "scene": "thermovibration", "factors": [{"name": "rayleigh", "levels": [3e5]}],
+  "fixed": {"frequency": 23300, "acceleration": 1.09e9, "particles": 50, "cells": 10, "steps_per_period": 16,
+            "end_time": 0.01, "sampling_cells": 5}, "design": {"kind": "lattice"}})";
+
+/// Solves the case with --watch and lets the page test itself.
+json watched(const char* config, const char* frames, const Folder& folder) {
+    folder.write("c.json", config);
+    const auto ended = run_program({"solve", "c.json", "--watch", "case.html", "--frames", frames}, folder.path());
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_NE(ended.err.find("case.html"), std::string::npos) << ended.err;  // it says what it wrote
+    const Browsed seen = browse(folder / "case.html", "#selftest", folder.path());
+    EXPECT_EQ(seen.data.count("errors"), 1U) << seen.said;
+    EXPECT_EQ(seen.data.at("errors"), "[]");
+    EXPECT_THAT(seen.console, testing::IsEmpty());
+    const json told = json::parse(seen.data.at("selftest"));
+    EXPECT_EQ(told.at("graphics"), 0) << "an error of WebGL";
+    EXPECT_GT(told.at("painted"), told.at("pixels").get<double>() / 100) << told;
+    EXPECT_GT(told.at("differing"), 100) << told;
+    EXPECT_GT(told.at("turned"), 100) << told;
+    return told;
+}
+
+}  // namespace
+
+TEST(Watch, ACellIsPlayedInTheBrowser) {
+    const Folder folder;
+    const json told = watched(cell, "6", folder);
+    EXPECT_EQ(told.at("frames"), 6);
+    EXPECT_GT(told.at("walls"), 100);
+    for (const auto& [column, pixels] : told.at("colours").get<std::vector<std::pair<std::string, int>>>())
+        EXPECT_TRUE(pixels > 100 || column == "velocity") << column << told;
+}
+
+TEST(Watch, ABedIsPlayedWithItsBlade) {
+    const Folder folder;
+    const json told = watched(bed, "8", folder);
+    EXPECT_GT(told.at("walls"), 100);
+    EXPECT_GT(told.at("last").at("mean")[0], told.at("first").at("mean")[0]);  // the blade pushes towards +x
+    EXPECT_LT(told.at("last").at("mean")[2], told.at("first").at("mean")[2]);  // and the powder falls
+}
+
+TEST(Watch, AFlowIsSliced) {
+    const Folder folder;
+    const json told = watched(cavity, "5", folder);
+    ASSERT_EQ(told.at("slices").size(), 5U);  // velocity and its three components, temperature
+    for (const auto& pixels : told.at("slices")) EXPECT_GT(pixels, 1000) << told;
+}
+
+TEST(Watch, TheBrowserUnpacksTheVeryPositions) {
+    const Folder folder;
+    const json told = watched(cell, "3", folder);
+    ASSERT_EQ(
+        run_program({"solve", "c.json", "--vtk", "film", "--frames", "3", "--watch", "again.html"}, folder.path()).code,
+        0);
+    EXPECT_TRUE(std::filesystem::exists(folder / "again.html"));
+    // Centres of mass, from the VTP files of the same moments.
+    std::ifstream stream(folder / "film/tpms_discharge_0000.vtp", std::ios::binary);
+    const std::string vtp{std::istreambuf_iterator<char>(stream), {}};
+    const std::string opening = "<AppendedData encoding=\"raw\">\n_";
+    const std::size_t begin = vtp.find(opening) + opening.size();
+    std::uint64_t length = 0;
+    std::memcpy(&length, vtp.data() + begin, sizeof length);
+    std::vector<float> places(length / sizeof(float));
+    std::memcpy(places.data(), vtp.data() + begin + sizeof length, length);
+    ASSERT_EQ(places.size() / 3, told.at("first").at("count").get<std::size_t>());
+    for (std::size_t a = 0; a < 3; ++a) {
+        double sum = 0;
+        for (std::size_t i = a; i < places.size(); i += 3) sum += static_cast<double>(places[i]);
+        const double mean = 3 * sum / static_cast<double>(places.size());
+        EXPECT_NEAR(told.at("first").at("mean")[a].get<double>(), mean, 12 * 45e-6 / 65535);
+    }
+}
+
+TEST(Watch, ChangesNoBitOfTheAnswer) {
+    const Folder folder;
+    folder.write("c.json", cavity);
+    const auto plain = run_program({"solve", "c.json", "--format", "json"}, folder.path());
+    const auto seen = run_program({"solve", "c.json", "--format", "json", "--watch", "w.html"}, folder.path());
+    ASSERT_EQ(seen.code, 0) << seen.err;
+    json a = json::parse(plain.out), b = json::parse(seen.out);
+    a.erase("cost"), b.erase("cost");
+    EXPECT_EQ(a, b);
+}
+
+TEST(Watch, OfAStoredCaseComparesAsBefore) {
+    const Folder folder;
+    folder.write("c.json", cell);
+    ASSERT_EQ(run_program({"run", "c.json", "-j", "1"}, folder.path()).code, 0);
+    const auto rows =
+        json::parse(run_program({"query", "c.db", "SELECT case_id FROM c", "--format", "json"}, folder.path()).out);
+    const std::string id = rows.at(0).at("case_id");
+    const auto replayed = run_program({"replay", "c.db", id, "--watch", "w.html", "--frames", "3"}, folder.path());
+    EXPECT_EQ(replayed.code, 0) << replayed.out << replayed.err;
+    EXPECT_NE(replayed.out.find("equal to the last bit"), std::string::npos);
+    EXPECT_TRUE(std::filesystem::exists(folder / "w.html"));
+}
+
+TEST(Watch, IsRefusedBeforeAnythingIsComputed) {
+    const Folder folder;
+    folder.write("c.json", cell);
+    const auto refused = [&](const std::string& page, const std::string& sentence) {
+        const auto ended = run_program({"solve", "c.json", "--watch", page}, folder.path());
+        EXPECT_EQ(ended.code, 2) << page;
+        EXPECT_NE(ended.err.find("--watch"), std::string::npos) << ended.err;
+        EXPECT_NE(ended.err.find(sentence), std::string::npos) << ended.err;
+        EXPECT_TRUE(ended.out.empty());
+    };
+    refused("c.json", "is no page");
+    refused("nowhere/case.html", "no such folder");
+    refused(".", "this is a folder");
+    const auto lonely = run_program({"solve", "c.json", "--frames", "5"}, folder.path());
+    EXPECT_EQ(lonely.code, 2);
+    EXPECT_NE(lonely.err.find("--watch"), std::string::npos) << lonely.err;
+    folder.write("r.json", R"({"campaign": "c", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
+      "design": {"kind": "halton", "points": 2}})");
+    const auto nothing = run_program({"solve", "r.json", "--watch", "w.html"}, folder.path());
+    EXPECT_EQ(nothing.code, 2);
+    EXPECT_NE(nothing.err.find("shows no particles"), std::string::npos) << nothing.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "w.html"));
+}
