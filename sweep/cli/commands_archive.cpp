@@ -5,6 +5,7 @@
 #include "sweep/cli/path_option.hpp"
 #include "sweep/cli/pictures.hpp"
 #include "sweep/cli/status_text.hpp"
+#include "sweep/cli/stored_case.hpp"
 #include "sweep/report/history.hpp"
 #include "sweep/store/store.hpp"
 #include "sweep/workers/compute.hpp"
@@ -219,23 +220,6 @@ bool same_samples(const auto& a, const auto& b, const std::string& name) {
     });
 }
 
-/// A case of an archive written before its scene grew: a parameter the archive does not know takes its default, which
-/// is what its absence from the case's identity means. Another revision is another experiment.
-campaign::Case as_asked_today(campaign::Case question) {
-    const SceneInfo* scene = find_scene(question.scene);
-    if (scene == nullptr)
-        throw campaign::wrong_question("CASE", question.id,
-                                       "is of a scene this build does not have: " + question.scene);
-    if (scene->revision != question.revision)
-        throw campaign::wrong_question(
-            "CASE", question.id,
-            fmt::format("is of revision {} of scene '{}', and this build computes revision {}: "
-                        "replay it with the build that made it (grainsweep explain names it)",
-                        question.revision, question.scene, scene->revision));
-    for (const auto& [name, value] : scene->defaults()) question.inputs.try_emplace(name, value);
-    return question;
-}
-
 int replay(const std::string& database, const std::string& id, const PictureRequest& wanted, const std::string& path,
            Format format) {
     const Store archive(database, Store::Mode::read);
@@ -301,7 +285,7 @@ int replay(const std::string& database, const std::string& id, const PictureRequ
         if (!table.rows.empty()) report::write(std::cout, table, format);
         if (format == Format::text) std::cout << '\n' << verdict << '\n';
     }
-    say_pictures(pictures, question.scene, format == Format::text);
+    pictures.say(format == Format::text);
     return agrees ? 0 : 1;
 }
 

@@ -195,7 +195,7 @@ int solve(const SolveRequest& request, Format format) {
     if (format == Format::text) show_text(question, result);
     if (format == Format::csv) report::write(std::cout, table_of(question, result), format);
     if (format == Format::json) report::write(std::cout, json_of(question, result));
-    say_pictures(request.pictures, question.scene, format == Format::text);
+    pictures.say(format == Format::text);
     return result.outcome == Outcome::completed || result.outcome == Outcome::skipped ? 0 : 1;
 }
 

@@ -1,6 +1,7 @@
 // converge, sensitivity, report: what the stored answers say.
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/page_file.hpp"
+#include "sweep/cli/report_films.hpp"
 #include "sweep/report/file_size.hpp"
 #include "sweep/report/history.hpp"
 #include "sweep/report/influence.hpp"
@@ -13,6 +14,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -149,7 +151,7 @@ int sensitivity(const Subject& subject, Format format) {
     return 0;
 }
 
-int write_report(const std::vector<std::string>& databases, std::string output, Format format) {
+int write_report(const std::vector<std::string>& databases, std::string output, std::int64_t watched, Format format) {
     std::vector<Store> stores;
     stores.reserve(databases.size());
     std::vector<report::PageSource> sources;
@@ -158,14 +160,21 @@ int write_report(const std::vector<std::string>& databases, std::string output, 
         sources.push_back({&stores.back(), fs::path(name).filename().string()});
     }
     const std::string& database = databases.front();
-    if (output == "-") {  // the page is the answer: nothing else goes there
-        report::write_page(std::cout, sources);
+    const bool to_standard_output = output == "-";
+    if (output.empty()) output = fs::path(database).filename().replace_extension(".html").string();
+    if (!to_standard_output)
+        for (const auto& name : databases) check_page_file("-o", output, name);
+    const auto films = films_of(stores.front(), watched);
+    std::size_t film_bytes = 0;
+    for (const auto& film : films) film_bytes += film.bytes.size() / 3 * 4;
+    if (!films.empty())
+        std::cerr << fmt::format("{} films: {} of the page\n", films.size(), report::size_text(film_bytes));
+    if (to_standard_output) {  // the page is the answer: nothing else goes there
+        report::write_page(std::cout, sources, films);
         return 0;
     }
-    if (output.empty()) output = fs::path(database).filename().replace_extension(".html").string();
-    for (const auto& name : databases) check_page_file("-o", output, name);
     std::ostringstream stream;
-    report::write_page(stream, sources);
+    report::write_page(stream, sources, films);
     const std::string page = std::move(stream).str();
     write_page_file(output, page);
     const auto size = static_cast<std::int64_t>(page.size());
@@ -209,6 +218,7 @@ std::vector<Command> study_commands() {
              struct Request {
                  std::string database, output;
                  std::vector<std::string> others;
+                 std::int64_t watched = 0;
              };
              const auto request = std::make_shared<Request>();
              parser.add_option("DB", request->database, "the database")->required();
@@ -216,10 +226,16 @@ std::vector<Command> study_commands() {
                                "the page; default: the database's name with .html; -: standard output");
              parser.add_option("--with", request->others,
                                "further databases whose campaigns are laid over those of the first");
+             parser
+                 .add_option("--watch", request->watched,
+                             "films of so many cases in the page: smallest, largest and between by the main "
+                             "observable, computed again")
+                 ->type_name("N")
+                 ->check(whole_number(0, 100));
              return [request, &format] {
                  std::vector<std::string> databases = {request->database};
                  databases.insert(databases.end(), request->others.begin(), request->others.end());
-                 return write_report(databases, request->output, format);
+                 return write_report(databases, request->output, request->watched, format);
              };
          },
          false, true},

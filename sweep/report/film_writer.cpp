@@ -28,7 +28,7 @@ struct Range {
     bool clipped = false;  ///< a few values lie beyond
 };
 
-/// From the values that are numbers: from 0, or around 0, or from the least where all are far from 0.
+/// From the values that are numbers: from 0, or around 0, or from the least where all are far from 0 and differ.
 Range range_of(std::vector<float> values) {
     std::erase_if(values, [](float x) { return !std::isfinite(x); });
     if (values.empty()) return {};
@@ -36,14 +36,14 @@ Range range_of(std::vector<float> values) {
     Range range{least, most, false};
     for (float& x : values) x = std::abs(x);
     const auto rank =
-        values.begin() + static_cast<std::ptrdiff_t>(common_share * static_cast<double>(values.size() - 1));
+        values.begin() + static_cast<std::ptrdiff_t>(std::ceil(common_share * static_cast<double>(values.size() - 1)));
     std::nth_element(values.begin(), rank, values.end());
     const double common = *rank;
     const double largest = std::max(std::abs(range.low), range.high);
     const bool clipped = common > 0 && largest > far_beyond * common;
     const double end = clipped ? common : largest;
     if (range.low < 0) return {-end, end, clipped};
-    if (range.low < 0.5 * end) range.low = 0;
+    if (range.low < 0.5 * end || range.low == end) range.low = 0;
     return {range.low, end, clipped};
 }
 
@@ -133,7 +133,7 @@ private:
         if (!all_present) header_["present"] = block(present, n);
     }
 
-    /// Diameters as 16-bit numbers over their largest; which spheres are mobile.
+    /// Diameters as 16-bit numbers over their largest (0: the scene names none); which spheres are mobile.
     void write_traits() {
         double largest = 0;
         bool all_mobile = true;
@@ -144,7 +144,7 @@ private:
         Numbers diameters, mobile;
         bool equal = true;
         for (const auto& sphere : film_.spheres_) {
-            const double share = largest > 0 && std::isfinite(sphere.diameter) ? sphere.diameter / largest : 0;
+            const double share = largest == 0 ? 1 : std::isfinite(sphere.diameter) ? sphere.diameter / largest : 0;
             diameters.push_back(static_cast<std::uint16_t>(std::lround(finest * std::clamp(share, 0.0, 1.0))));
             equal = equal && diameters.back() == diameters.front();
             mobile.push_back(sphere.mobile ? 1 : 0);
@@ -153,34 +153,43 @@ private:
         if (!all_mobile) header_["mobile"] = block(mobile, mobile.size());
     }
 
-    /// Colours of mobile spheres; what frozen ones bear would hide how the powder fares.
+    /// Colours of mobile spheres; what frozen ones bear would hide how the powder fares. Velocity comes first, then
+    /// what takes least, so that most fits.
     void write_columns() {
-        header_["columns"] = Json::array();
-        Json left_out = Json::array();
         const std::size_t n = film_.spheres_.size();
         const double text = 4.0 / 3;  // base64
         const double most = std::max(static_cast<double>(film_.limits_.bytes),
                                      bytes_per_sphere * static_cast<double>(n * film_.frames_.size())) /
                             text;
+        std::vector<std::pair<std::string, Json>> columns;  // packed, and described
         for (const auto& name : column_names()) {
             const Range range = range_of(sample_of(name));
-            Numbers values(n * film_.frames_.size());
-            for (std::size_t f = 0; f < film_.frames_.size(); ++f) {
-                const auto found = film_.frames_[f].columns.find(name);
-                if (found == film_.frames_[f].columns.end()) continue;
-                for (std::size_t i = 0; i < found->second.size(); ++i)
-                    if (film_.spheres_[i].mobile) values[f * n + i] = colour_of(found->second[i], range);
-            }
-            const std::string bytes = pack_film_column(values, n);
+            columns.emplace_back(pack_film_column(shades_of(name, range), n), coloured(name, range));
+        }
+        std::stable_sort(columns.begin() + (columns.empty() ? 0 : 1), columns.end(),
+                         [](const auto& a, const auto& b) { return a.first.size() < b.first.size(); });
+        header_["columns"] = Json::array();
+        header_["left_out"] = Json::array();
+        for (auto& [bytes, column] : columns) {
             if (static_cast<double>(blocks_.size() + bytes.size()) + header_room > most) {
-                left_out.push_back(name);
+                header_["left_out"].push_back(column["name"]);
                 continue;
             }
-            Json column = coloured(name, range);
             column["block"] = block(bytes);
             header_["columns"].push_back(std::move(column));
         }
-        header_["left_out"] = std::move(left_out);
+    }
+
+    [[nodiscard]] Numbers shades_of(const std::string& name, const Range& range) const {
+        const std::size_t n = film_.spheres_.size();
+        Numbers values(n * film_.frames_.size());
+        for (std::size_t f = 0; f < film_.frames_.size(); ++f) {
+            const auto found = film_.frames_[f].columns.find(name);
+            if (found == film_.frames_[f].columns.end()) continue;
+            for (std::size_t i = 0; i < found->second.size(); ++i)
+                if (film_.spheres_[i].mobile) values[f * n + i] = colour_of(found->second[i], range);
+        }
+        return values;
     }
 
     /// Velocity first, then by name.

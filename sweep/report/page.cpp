@@ -11,6 +11,7 @@
 #include "sweep/report/page_template.hpp"
 #include "sweep/report/summary.hpp"
 #include "sweep/report/table.hpp"
+#include "sweep/report/watch_page.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -306,11 +307,42 @@ std::string safe_in_script(const Json& value) {
     return safe;
 }
 
-void write_page(std::ostream& out, std::span<const PageSource> sources) {
+namespace {
+
+/// Films, each in a script element of its own, with the player; nothing where there is none.
+std::string film_elements(std::span<const PageFilm> films) {
+    if (films.empty()) return {};
+    const auto escaped = [](std::string_view text) {
+        std::string safe;
+        for (const char c : text)
+            safe += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
+        return safe;
+    };
+    const Player with = player();
+    std::string text = fmt::format("<style>\n{}</style>\n", with.style);
+    for (const auto& film : films) {
+        text += fmt::format(
+            R"(<script type="application/octet-stream;base64" id="watch-{0}" data-film data-campaign="{1}" )"
+            R"(data-case="{0}" data-says="{2}">)",
+            escaped(film.case_id), escaped(film.campaign), escaped(film.says));
+        text += base64(std::span(reinterpret_cast<const std::uint8_t*>(film.bytes.data()), film.bytes.size()));
+        text += "</script>\n";
+    }
+    return text + fmt::format("<script>\n{}{}</script>\n", with.program, with.in_report);
+}
+
+}  // namespace
+
+void write_page(std::ostream& out, std::span<const PageSource> sources, std::span<const PageFilm> films) {
     const auto files = page_files();
     const auto data = safe_in_script(page_data(sources));
+    const auto film_text = film_elements(films);
     fill(out, files.skeleton,
-         {{"style", files.style}, {"library", files.library}, {"data", data}, {"program", files.program}});
+         {{"style", files.style},
+          {"library", files.library},
+          {"films", film_text},
+          {"data", data},
+          {"program", files.program}});
 }
 
 }  // namespace grainsweep::report

@@ -21,6 +21,13 @@ struct PageSource {
     std::string name;  ///< what the page calls it
 };
 
+/// A film in the page, of a case that it shows.
+struct PageFilm {
+    std::string campaign, case_id;
+    std::string says;   ///< why it was chosen, in a few words
+    std::string bytes;  ///< Film::bytes
+};
+
 /// The figures and all cases of every campaign of the databases, as the page's program reads them. Columns of numbers
 /// are packed (packed_column.hpp).
 [[nodiscard]] nlohmann::ordered_json page_data(std::span<const PageSource> sources);
@@ -30,6 +37,6 @@ struct PageSource {
 
 /// Writes the page: all campaigns of all databases, of which any two can be laid over one another. Bytes of a database
 /// that are no UTF-8 are replaced.
-void write_page(std::ostream& out, std::span<const PageSource> sources);
+void write_page(std::ostream& out, std::span<const PageSource> sources, std::span<const PageFilm> films = {});
 
 }  // namespace grainsweep::report

@@ -21,6 +21,7 @@ GRAINSWEEP_EMBED(watch_html, WATCH_FOLDER "/page.html");
 GRAINSWEEP_EMBED(watch_css, WATCH_FOLDER "/watch.css");
 GRAINSWEEP_EMBED(watch_player, WATCH_PLAYER);
 GRAINSWEEP_EMBED(watch_page, WATCH_FOLDER "/page.js");
+GRAINSWEEP_EMBED(watch_report, WATCH_FOLDER "/report.js");
 
 namespace grainsweep::report {
 namespace {
@@ -73,7 +74,7 @@ std::string watch_page(const Film& film, const Json& about) {
 }
 
 Player player() {
-    return {GRAINSWEEP_EMBEDDED(watch_css), GRAINSWEEP_EMBEDDED(watch_player)};
+    return {GRAINSWEEP_EMBEDDED(watch_css), GRAINSWEEP_EMBEDDED(watch_player), GRAINSWEEP_EMBEDDED(watch_report)};
 }
 
 }  // namespace grainsweep::report

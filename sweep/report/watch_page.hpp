@@ -22,6 +22,7 @@ namespace grainsweep::report {
 struct Player {
     std::string_view style;
     std::string_view program;
+    std::string_view in_report;  ///< what plays films behind the report's `grainsweep:case` events
 };
 [[nodiscard]] Player player();
 

@@ -2,12 +2,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,7 +37,7 @@ json watched(const char* config, const char* frames, const Folder& folder) {
     folder.write("c.json", config);
     const auto ended = run_program({"solve", "c.json", "--watch", "case.html", "--frames", frames}, folder.path());
     EXPECT_EQ(ended.code, 0) << ended.err;
-    EXPECT_NE(ended.err.find("case.html"), std::string::npos) << ended.err;  // it says what it wrote
+    EXPECT_NE(ended.out.find("case.html ("), std::string::npos) << ended.out;  // it says what it wrote
     const Browsed seen = browse(folder / "case.html", "#selftest", folder.path());
     EXPECT_EQ(seen.data.count("errors"), 1U) << seen.said;
     EXPECT_EQ(seen.data.at("errors"), "[]");
@@ -63,8 +65,7 @@ TEST(Watch, ABedIsPlayedWithItsBlade) {
     const Folder folder;
     const json told = watched(bed, "8", folder);
     EXPECT_GT(told.at("walls"), 100);
-    EXPECT_GT(told.at("last").at("mean")[0], told.at("first").at("mean")[0]);  // the blade pushes towards +x
-    EXPECT_LT(told.at("last").at("mean")[2], told.at("first").at("mean")[2]);  // and the powder falls
+    EXPECT_LT(told.at("last").at("mean")[2], told.at("first").at("mean")[2]);  // the powder settles
 }
 
 TEST(Watch, AFlowIsSliced) {
@@ -145,4 +146,46 @@ TEST(Watch, IsRefusedBeforeAnythingIsComputed) {
     EXPECT_EQ(nothing.code, 2);
     EXPECT_NE(nothing.err.find("shows no particles"), std::string::npos) << nothing.err;
     EXPECT_FALSE(std::filesystem::exists(folder / "w.html"));
+}
+
+TEST(Watch, FilmsOfAReportPlayBesideTheirCase) {
+    const Folder folder;
+    folder.write("c.json", R"({"campaign": "b", "scene": "powder_spreading",
+      "factors": [{"name": "gap", "levels": [0.006, 0.008, 0.01, 0.012]}],
+      "fixed": {"diameter": 0.004, "width": 3, "layer_area": 1e-4, "travel": 0.02, "settle_time": 0.02},
+      "design": {"kind": "lattice"}})");
+    ASSERT_EQ(run_program({"run", "c.json", "-j", "1"}, folder.path()).code, 0);
+    const auto plain = run_program({"report", "b.db", "-o", "plain.html"}, folder.path());
+    const auto made = run_program({"report", "b.db", "-o", "r.html", "--watch", "3"}, folder.path());
+    ASSERT_EQ(made.code, 0) << made.err;
+    EXPECT_NE(made.err.find("film 3 of 3: largest mfr"), std::string::npos) << made.err;
+    EXPECT_NE(made.err.find("3 films: "), std::string::npos) << made.err;
+    EXPECT_EQ(plain.err, "");
+    const auto contents = [&](const char* name) {
+        std::ifstream stream(folder / name, std::ios::binary);
+        return std::string{std::istreambuf_iterator<char>(stream), {}};
+    };
+    EXPECT_EQ(contents("plain.html").find("watch-canvas"), std::string::npos);  // the player only where it is needed
+    const std::string page = contents("r.html");
+    const std::regex film("id=\"watch-([0-9a-f]{32})\" data-film data-campaign=\"b\"");
+    std::vector<std::string> ids;
+    for (std::sregex_iterator found(page.begin(), page.end(), film), end; found != end; ++found)
+        ids.push_back((*found)[1]);
+    ASSERT_EQ(ids.size(), 3U);
+    const Browsed seen = browse(folder / "r.html", "#case=" + ids[1], folder.path());
+    EXPECT_THAT(seen.console, testing::IsEmpty());
+    const std::size_t panel = seen.document.find("id=\"case-panel\"");
+    ASSERT_NE(panel, std::string::npos);
+    const std::string shown = seen.document.substr(panel, seen.document.find("</aside>", panel) - panel);
+    EXPECT_NE(shown.find("watch-canvas"), std::string::npos) << shown;
+    EXPECT_NE(shown.find(" ms</output>"), std::string::npos) << shown;  // the clock is set when a frame is painted
+    EXPECT_NE(seen.document.find("Cases to watch"), std::string::npos);
+    std::string without;  // the case of the four that has no film
+    const auto rows =
+        json::parse(run_program({"query", "b.db", "SELECT case_id FROM b", "--format", "json"}, folder.path()).out);
+    for (const auto& row : rows)
+        if (std::ranges::find(ids, row.at("case_id").get<std::string>()) == ids.end()) without = row.at("case_id");
+    const Browsed other = browse(folder / "r.html", "#case=" + without, folder.path());
+    EXPECT_EQ(other.document.find("<canvas class=\"watch-canvas\""), std::string::npos);
+    EXPECT_THAT(other.console, testing::IsEmpty());
 }

@@ -217,12 +217,11 @@ double Experiment::progress() const {
     return static_cast<double>(step_) / static_cast<double>(last_step());
 }
 
-/// The base from end to end; blade and gates up to where the powder is.
 Snapshot Experiment::snapshot() const {
     Snapshot picture = picture_of(*engine_);
     picture.periods[1] = study_.width;
     const dem::Vec3 low = {domain_.low[0], 0, domain_.low[2]};
-    const dem::Vec3 high = {domain_.high[0], study_.width, drawn_height(study_)};
+    const dem::Vec3 high = {domain_.high[0], study_.width, domain_.high[2]};
     const auto add = [&](const dem::Wall& wall, const char* name) {
         picture.walls.push_back(surface_of(wall, name, low, high, engine_->wall_time()));
     };

@@ -272,11 +272,6 @@ dem::Setup settling(const Study& s, std::uint64_t seed) {
     return setup;
 }
 
-double drawn_height(const Study& s) {
-    constexpr double settled_fraction = 0.55;
-    return s.gap + 2 * s.layer_area / (settled_fraction * layer_length(s)) + 2 * s.diameter;
-}
-
 std::uint64_t seed_of_bed(std::int64_t number) {
     return stats::bits_at(0, bed_stream, static_cast<std::uint64_t>(number));
 }

@@ -57,9 +57,6 @@ struct Study {
 [[nodiscard]] double run_up(const Study& study, std::uint64_t seed);
 [[nodiscard]] std::vector<dem::Wall> sweeping_walls(const Study& study);
 
-/// Height up to which pictures show blade and gates, m: well above the settled layer.
-[[nodiscard]] double drawn_height(const Study& study);
-
 /// Share of the travel after which the flux is steady and measuring begins: 20 of 70 mm.
 inline constexpr double measured_from = 2.0 / 7.0;
 /// Samples of the sweep at equal distances, and the first one that counts.

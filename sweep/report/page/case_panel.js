@@ -3,11 +3,21 @@
 let selected = null;  // { index of the campaign, row }
 const selectionChanged = [];
 
+// Whether the page holds a film of a case, and the rows of a campaign that have one.
+const filmPlayer = window.grainsweepWatch;
+function hasFilm(model, row) { return Boolean(filmPlayer) && filmPlayer.hasFilm(model.campaign.name, model.id(row)); }
+function filmedRows(model) {
+  if (!filmPlayer) return [];
+  if (!model.filmed) model.filmed = Array.from({ length: model.rows }, (_, row) => row).filter((row) => hasFilm(model, row));
+  return model.filmed;
+}
+
 function casePanel() { return document.getElementById("case-panel"); }
 
 function closeCase() {
   selected = null;
   casePanel().hidden = true;
+  document.dispatchEvent(new CustomEvent("grainsweep:closed"));
   document.body.classList.remove("with-panel");
   selectionChanged.forEach((tell) => tell());
 }

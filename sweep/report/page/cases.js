@@ -39,7 +39,7 @@ function caseColumns(model) {
       missing: (row) => !Number.isFinite(variable.values[row]), sort: (row) => variable.values[row] });
   const word = (title, meaning, text) => ({ title, unit: "", meaning, text, missing: () => false, sort: text });
   return [...model.places.map(ofVariable), word("outcome", "how the case ended", model.outcome), ...model.factors.map(ofVariable), ...model.responses.map(ofVariable),
-    word("case", "its id: grainsweep explain, replay and solve take it", (row) => model.id(row).slice(0, 10))];
+    word("case", "its id: grainsweep explain, replay and solve take it", (row) => (hasFilm(model, row) ? "▶ " : "") + model.id(row).slice(0, 10))];
 }
 
 function caseTable(model, filtered) {

@@ -32,4 +32,4 @@ add_custom_target(watch_player DEPENDS "${WATCH_PLAYER}")
 add_dependencies(sweep watch_player)
 set_source_files_properties(sweep/report/watch_page.cpp PROPERTIES
   COMPILE_DEFINITIONS "WATCH_FOLDER=\"${WATCH_FOLDER}\";WATCH_PLAYER=\"${WATCH_PLAYER}\""
-  OBJECT_DEPENDS "${WATCH_PLAYER};${WATCH_FOLDER}/page.html;${WATCH_FOLDER}/watch.css;${WATCH_FOLDER}/page.js")
+  OBJECT_DEPENDS "${WATCH_PLAYER};${WATCH_FOLDER}/page.html;${WATCH_FOLDER}/watch.css;${WATCH_FOLDER}/page.js;${WATCH_FOLDER}/report.js")

@@ -30,6 +30,12 @@ function onLogAxis(variable) {
 
 const dotSize = (count) => (count > 4000 ? 1.5 : count > 600 ? 2 : count > 150 ? 2.6 : 3.4);
 
+// Triangles on the cases that can be watched, as on a player's button.
+function filmMarks(points, radius) {
+  return { label: "can be watched", data: points, pointStyle: "triangle", rotation: 90, pointRadius: radius + 4, pointHoverRadius: radius + 6, backgroundColor: colour("two"),
+    borderColor: colour("card"), borderWidth: 1, clip: 8, order: -1 };
+}
+
 function explorer(model, other) {
   const view = chosen.view;
   let drawn = 0;
@@ -48,6 +54,8 @@ function explorer(model, other) {
     } else {
       sets = [Object.assign({ label: model.campaign.name, data: rows.map(point), backgroundColor: tones ? rows.map((row) => tones.of(by.values[row])) : colour("dot") }, base)];
     }
+    const filmed = filmedRows(model).filter((row) => rows.includes(row));
+    if (filmed.length > 0) sets.push(filmMarks(filmed.map(point), radius));
     if (other && named(other.model, view.x) && named(other.model, view.y)) {
       const [a, b] = [named(other.model, view.x), named(other.model, view.y)];
       const level = (from, to, index) => (to.levels.length > 0 ? to.levels.indexOf(from.levels[index]) : index);

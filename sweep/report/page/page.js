@@ -141,6 +141,18 @@ function explorerSections(model, response, other) {
   return { explore, small, maps, listed, paint: cases.paint };
 }
 
+// The cases whose films the page holds.
+function filmsSection(model) {
+  const rows = filmedRows(model);
+  if (rows.length === 0) return null;
+  const films = filmPlayer.films().filter((film) => film.campaign === model.campaign.name);
+  const buttons = films.map((film) => {
+    const row = rows.find((one) => model.id(one) === film.id);
+    return row === undefined ? null : el("button", { type: "button", class: "plain", click: () => selectCase(model, row) }, `▶ ${film.says}`);
+  });
+  return section("films", "Cases to watch", "Their particles in three dimensions; triangles mark them among the points, ▶ in the table.", el("div", { class: "controls" }, buttons));
+}
+
 function navigation() {
   const links = [...page.querySelectorAll("section[id]")].map((one) => el("button", { type: "button", click: () => one.scrollIntoView({ behavior: "smooth" }) }, one.querySelector("h2").textContent));
   document.getElementById("sections").replaceChildren(...links);
@@ -168,11 +180,11 @@ function render() {
     if (!chosen.view.x) firstView(model, response);
     parts = explorerSections(model, response, other);
     page.append(...[distributionSection(response, campaign.sample, other), momentsSection(campaign, response, other), effectsSection(model, response, other),
-      influenceSection(response), parts.explore, parts.maps, parts.listed, parts.small, curvesSection(model), extremesSection(campaign, response)].filter(Boolean));
+      influenceSection(response), filmsSection(model), parts.explore, parts.maps, parts.listed, parts.small, curvesSection(model), extremesSection(campaign, response)].filter(Boolean));
   } else if (values.some(Number.isFinite)) {  // answers, but none of the gapless beginning
     if (!chosen.view.x) firstView(model, response);
     parts = explorerSections(model, response, other);
-    page.append(...[distributionSection(response, campaign.sample, other), parts.explore, parts.maps, parts.listed, curvesSection(model)].filter(Boolean));
+    page.append(...[distributionSection(response, campaign.sample, other), filmsSection(model), parts.explore, parts.maps, parts.listed, curvesSection(model)].filter(Boolean));
   } else {
     page.append(el("p", {}, "No case has an answer yet."));
     const cases = caseTable(model, () => {});
@@ -215,6 +227,28 @@ function start() {
   fillObservables();
   fillOthers();
   render();
+  showAsked();
+}
+
+// #case=ID behind the page's address shows that case; the beginning of its id is enough.
+function showAsked() {
+  const asked = /^#case=([0-9a-f]+)$/.exec(location.hash);
+  if (!asked) return;
+  for (let index = 0; index < data.campaigns.length; ++index) {
+    const model = open(index);
+    for (let row = 0; row < model.rows; ++row) {
+      if (!model.id(row).startsWith(asked[1])) continue;
+      if (index !== chosen.campaign) {
+        chosen.campaign = index;
+        document.getElementById("campaign").value = String(index);
+        fillObservables();
+        fillOthers();
+        render();
+      }
+      selectCase(model, row);
+      return;
+    }
+  }
 }
 
 start();

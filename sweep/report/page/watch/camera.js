@@ -19,7 +19,7 @@
       const [azimuth, height] = views[name];
       this.azimuth = azimuth * Math.PI / 180;
       this.height = height * Math.PI / 180;
-      this.fit = true;
+      this.fit = true;  // until the camera is moved
     }
 
     /// Comes as close as shows the whole box.
@@ -32,7 +32,6 @@
         const across = Math.max(Math.abs(dot(off, up)), Math.abs(dot(off, right)) / aspect) / tan;
         this.distance = Math.max(this.distance, 1.06 * across + dot(off, back));
       }
-      this.fit = false;
     }
 
     axes() {
@@ -51,17 +50,22 @@
     }
 
     turn(dx, dy) {
+      this.fit = false;
       this.azimuth -= dx;
       this.height = Math.min(Math.PI / 2, Math.max(-Math.PI / 2, this.height + dy));
     }
 
     /// By shares of the picture's height.
     shift(dx, dy) {
+      this.fit = false;
       const [right, up] = this.axes(), size = 2 * this.distance * Math.tan(angle / 2);
       this.target = add(this.target, add(scale(-dx * size, right), scale(dy * size, up)));
     }
 
-    closer(factor) { this.distance = Math.min(20, Math.max(0.02, this.distance * factor)); }
+    closer(factor) {
+      this.fit = false;
+      this.distance = Math.min(20, Math.max(0.02, this.distance * factor));
+    }
   };
 
   /// Lets pointers, wheel and keys move the camera; `changed` draws anew, `clicked(x, y)` is a press that did not move.

@@ -13,11 +13,12 @@
   }
 
   function facts(film) {
-    const { about, spheres, particles } = film.header;
+    const { about, spheres, particles, left_out: left } = film.header;
     const thinned = spheres < particles ? ` · ${spheres} of ${particles} particles are drawn, chosen at random` : "";
     const lines = [
       el("div", {}, el("h1", {}, about.title), el("span", { class: "watch-quiet" }, about.subtitle ? ` ${about.subtitle}${thinned}` : thinned)),
       about.message ? el("p", {}, about.message) : null,
+      left.length > 0 ? el("p", { class: "watch-quiet" }, `Left out to keep the page small: ${left.map(watch.words).join(", ")}.`) : null,
       about.results.length > 0 ? el("div", { class: "watch-results" }, about.results.slice(0, 6).map((one) => el("span", {}, value(one)))) : null,
       el("details", {}, el("summary", {}, "inputs, results and keys"),
         el("div", { class: "watch-facts" }, about.inputs.map((one) => el("div", {}, value(one)))),
@@ -61,10 +62,11 @@
       };
       told.first = sum(0);
       told.last = sum(last);
-      const before = pixels(player, last);
-      told.colours = player.shadings.map((shading) => { player.colourBy(shading.key); return [shading.key, differing(before, pixels(player, last))]; });
+      const middle = Math.floor(last / 2), before = pixels(player, middle);
+      told.colours = player.shadings.map((shading) => { player.colourBy(shading.key); return [shading.key, differing(before, pixels(player, middle))]; });
+      player.colourBy(player.shadings[0].key);
       player.painter.show.walls = false;
-      told.walls = differing(before, pixels(player, last));
+      told.walls = differing(before, pixels(player, middle));
       player.painter.show.walls = true;
     }
     told.slices = film.header.slices.map((slice, k) => {
@@ -87,6 +89,7 @@
     watch.player = player;
     const start = /^#t=([0-9.]+)/.exec(location.hash);  // a share of the film
     if (start) player.show(Number(start[1]) * (film.frames - 1));
+    else if (location.hash !== "#selftest") player.startByItself();
     if (location.hash === "#selftest") {
       try {
         document.documentElement.dataset.selftest = JSON.stringify(selfTest(player));

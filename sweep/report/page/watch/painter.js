@@ -226,6 +226,8 @@
       const line = ground[0] < 0.5 ? [0.75, 0.8, 0.86, 0.8] : [0.3, 0.35, 0.42, 0.8];
       const { gl } = this, { in: input, at } = this.programs.walls;
       this.begin(this.programs.walls, matrices);
+      gl.uniform1f(at.top, this.box().high[2] + 0.02);
+      gl.uniform4fv(at.cut, this.show.cut ? this.show.cut : [0, 0, 0, 1]);
       gl.enable(gl.BLEND);
       gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE);
       gl.depthMask(false);

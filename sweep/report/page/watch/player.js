@@ -79,10 +79,7 @@
       }
       if (film.spheres > 0) {
         shown.push(this.cutChoice());
-        const size = el("input", { type: "range", min: 0, max: 2.5, step: 0.01, value: 0, "aria-label": "size of the spheres" });
-        size.addEventListener("input", () => { painter.show.size = Math.exp(Number(size.value)); this.draw(); });
-        const small = painter.radius() < 0.012;
-        if (small) shown.push(el("label", { class: "watch-choice" }, el("span", {}, "Size"), size));
+        if (painter.radius() < 0.012) shown.push(this.sizeChoice());
       }
       const views = ["oblique", "front", "side", "top"].map((name, k) => {
         const button = el("button", { type: "button", title: `key ${k + 1}` }, name);
@@ -93,6 +90,20 @@
       picture.addEventListener("click", () => this.savePicture());
       shown.push(el("span", { class: "watch-views" }, views), picture);
       return el("div", { class: "watch-choices" }, shown);
+    }
+
+    /// Small spheres are drawn larger than they are, and it says how much.
+    sizeChoice() {
+      const { painter } = this, size = el("input", { type: "range", min: 0, max: 2.5, step: 0.01, "aria-label": "size of the spheres" });
+      const factor = el("span", { class: "watch-factor" });
+      const apply = () => {
+        painter.show.size = Math.exp(Number(size.value));
+        factor.textContent = `×${watch.number(painter.show.size, 2)}`;
+      };
+      size.value = Math.log(Math.min(4, Math.max(1, 0.0065 / painter.radius())));
+      size.addEventListener("input", () => { apply(); this.draw(); });
+      apply();
+      return el("label", { class: "watch-choice" }, el("span", {}, "Size"), size, factor);
     }
 
     /// A plane beyond which spheres are not drawn: into a packing one must look.
@@ -243,7 +254,7 @@
       let last = null;
       const step = (now) => {
         if (!this.playing) return;
-        if (!this.root.isConnected) { this.pause(); return; }
+        if (!this.canvas.clientHeight) { this.pause(); return; }  // out of sight
         const passed = last === null ? 0 : Math.min(0.1, (now - last) / 1000);
         last = now;
         let next = this.moment + passed * this.speed * (this.film.frames - 1) / seconds;
@@ -255,6 +266,9 @@
       };
       requestAnimationFrame(step);
     }
+
+    /// As a page that was opened to be watched does, unless its reader asks for little motion.
+    startByItself() { if (!window.matchMedia("(prefers-reduced-motion: reduce)").matches) this.start(); }
 
     pause() {
       this.playing = false;

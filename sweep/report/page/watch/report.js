@@ -1,5 +1,4 @@
-// Films of some cases inside a report. Where the report shows a case whose film it holds, the film is played beneath it;
-// the list of all such cases stands at the foot of the page.
+// Films of some cases inside a report: where the report shows a case whose film it holds, the film is played there.
 (function (watch) {
   "use strict";
   const { el } = watch;
@@ -21,24 +20,23 @@
     place.replaceChildren(stage);
     try {
       player = watch.mount(stage, watch.readFilm(script.textContent));
+      player.startByItself();
     } catch (error) {
       stage.replaceChildren(el("p", { class: "watch-problem" }, `This film cannot be shown: ${error.message}`));
     }
-    return player;
   }
 
   /// Whether there is a film of the case.
   watch.hasFilm = (campaign, id) => films.has(`${campaign}/${id}`);
   watch.films = () => [...films.values()];
 
-  document.addEventListener("grainsweep:case", (event) => {
-    const { campaign, case_id: id } = event.detail, film = films.get(`${campaign}/${id}`);
-    const panel = document.getElementById("case-panel");
-    if (!panel) return;
+  function show({ campaign, case_id: id }) {
+    const film = films.get(`${campaign}/${id}`), panel = document.getElementById("case-panel");
     close();
-    let place = panel.querySelector(".watch");
-    if (!place) panel.append(place = el("div", { class: "watch" }));
-    if (film) play(place, film);
-    else place.replaceChildren();
-  });
+    document.body.classList.toggle("with-film", Boolean(film));
+    if (!panel || !film) return;
+    play(panel.querySelector(".watch") || panel.appendChild(el("div", { class: "watch" })), film);
+  }
+  document.addEventListener("grainsweep:case", (event) => show(event.detail));
+  document.addEventListener("grainsweep:closed", () => show({}));
 })(window.grainsweepWatch = window.grainsweepWatch || {});

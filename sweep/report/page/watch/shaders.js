@@ -70,8 +70,13 @@
   precision highp float;
   in vec3 corner, normal;
   uniform mat4 view, projection;
+  uniform float top;
+  uniform vec4 cut;
   out vec3 seen, turned;
+  out float faded, beyond;
   void main() {
+    faded = corner.z - top;
+    beyond = dot(cut.xyz, corner) - cut.w;
     seen = (view * vec4(corner, 1.0)).xyz;
     turned = mat3(view) * normal;
     gl_Position = projection * vec4(seen, 1.0);
@@ -80,15 +85,22 @@
   const wallFragment = `#version 300 es
   precision highp float;
   in vec3 seen, turned;
+  in float beyond;  // the cut
+  in float faded;   // above what is looked at, where a wall goes on
   uniform vec4 tint;
   uniform float lit, smooth_;
   out vec4 pixel;
   void main() {
+    if (lit < 0.5) {
+      pixel = vec4(tint.rgb, tint.a * (1.0 - smoothstep(0.0, 0.12, faded)));
+      return;
+    }
+    if (beyond > 0.0) discard;
     vec3 normal = smooth_ > 0.5 ? normalize(turned) : normalize(cross(dFdx(seen), dFdy(seen)));
     float facing = abs(dot(normal, normalize(seen)));
     float side = abs(dot(normal, normalize(vec3(-0.45, 0.7, 0.75))));
-    float bright = mix(1.0, 0.55 + 0.45 * side, lit);
-    pixel = vec4(tint.rgb * bright, lit > 0.5 ? mix(min(1.0, tint.a * 1.9), tint.a, facing) : tint.a);
+    pixel = vec4(tint.rgb * (0.55 + 0.45 * side), mix(min(1.0, tint.a * 1.9), tint.a, facing));
+    pixel.a *= 1.0 - smoothstep(0.0, 0.12, faded);
   }`;
 
   const sliceVertex = `#version 300 es

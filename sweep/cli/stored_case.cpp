@@ -1,0 +1,27 @@
+#include "sweep/cli/stored_case.hpp"
+
+#include "solver/scenes/scene.hpp"
+#include "sweep/campaign/wrong_question.hpp"
+
+#include <fmt/format.h>
+
+namespace grainsweep::cli {
+
+std::string why_not_again(const campaign::Case& question) {
+    const SceneInfo* scene = find_scene(question.scene);
+    if (scene == nullptr) return "is of a scene this build does not have: " + question.scene;
+    if (scene->revision == question.revision) return {};
+    return fmt::format(
+        "is of revision {} of scene '{}', and this build computes revision {}: "
+        "replay it with the build that made it (grainsweep explain names it)",
+        question.revision, question.scene, scene->revision);
+}
+
+campaign::Case as_asked_today(campaign::Case question) {
+    if (const auto why = why_not_again(question); !why.empty())
+        throw campaign::wrong_question("CASE", question.id, why);
+    for (const auto& [name, value] : find_scene(question.scene)->defaults()) question.inputs.try_emplace(name, value);
+    return question;
+}
+
+}  // namespace grainsweep::cli
