@@ -4,7 +4,7 @@
   // From dark to bright, evenly to the eye and safe for the colour-blind, for what has a size; from blue over white to
   // red for what has a sign.
   const scales = {
-    spheres: ["#440154", "#482878", "#3e4a89", "#31688e", "#26838f", "#1f9d8a", "#6cce5a", "#b6de2b", "#fee825"],
+    spheres: ["#4a1f78", "#4b3086", "#3e4a89", "#31688e", "#26838f", "#1f9d8a", "#6cce5a", "#b6de2b", "#fee825"],
     slices: ["#0b0724", "#35115f", "#721f81", "#b73779", "#f1605d", "#feb078", "#fcfdbf"],
     signed: ["#2b4ab8", "#6f92f3", "#aac7fd", "#e4e4e8", "#f7b89c", "#e7745b", "#b40426"],
   };
