@@ -76,6 +76,8 @@ struct Limits {
 struct Execution {
     std::int64_t workers = 0;           ///< 0: all cores
     std::vector<std::string> launcher;  ///< argv prefix of a worker
+    double start_seconds = 300;         ///< a worker that is not ready by then is replaced; 0: no limit
+    double silence_seconds = 60;        ///< so is one that says nothing for so long while it has a case; 0: no limit
 };
 
 struct Campaign {

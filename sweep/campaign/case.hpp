@@ -56,6 +56,15 @@ struct Attempt {
     auto operator<=>(const Attempt&) const = default;
 };
 
+/// What computes an attempt, and where. Equal builds are equal machine code; with equal instruction paths they give
+/// equal bits.
+struct Computer {
+    std::string version, commit;  ///< of the program; "-modified" marks sources with changes of their own
+    std::string build;            ///< id of the executable, hexadecimal
+    std::string instruction_path, processor, host;
+    auto operator<=>(const Computer&) const = default;
+};
+
 struct CaseResult {
     Attempt attempt;
     Outcome outcome = Outcome::completed;

@@ -127,7 +127,13 @@ std::span<const Key> convergence_keys() {
 
 std::span<const Key> limits_keys() {
     static const std::vector<Key> keys = {
-        {"wall_seconds", "time an attempt may take, s; 0: no limit", Kind::number, false, not_negative, {}, "0"},
+        {"wall_seconds",
+         fmt::format("time an attempt may take, s; at least {}, or 0: no limit", shortest_limit),
+         Kind::number,
+         false,
+         not_negative,
+         {},
+         "0"},
         {"attempts",
          "tries of a case that crashes or runs out of time",
          Kind::whole,
@@ -149,6 +155,23 @@ std::span<const Key> execution_keys() {
          {},
          {},
          "[]"},
+        {"start_seconds",
+         fmt::format("a worker that is not ready after so long is replaced, s; at least {}, or 0: no limit",
+                     shortest_limit),
+         Kind::number,
+         false,
+         not_negative,
+         {},
+         fmt::format("{}", Execution{}.start_seconds)},
+        {"silence_seconds",
+         fmt::format("a worker that computes and gives no sign of life for so long is replaced, s (a sign comes every "
+                     "second); at least {}, or 0: no limit",
+                     shortest_silence),
+         Kind::number,
+         false,
+         not_negative,
+         {},
+         fmt::format("{}", Execution{}.silence_seconds)},
     };
     return keys;
 }
@@ -172,9 +195,9 @@ std::vector<Key> design_keys(const designs::DesignInfo& design) {
 
 std::span<const std::string> reserved_names() {
     static const std::vector<std::string> names = {
-        "campaign",    "sim_case",   "case_input", "campaign_case",       "attempt",   "observable", "observation",
-        "convergence", "provenance", "series",     "convergence_history", "parameter", "inputs",     "json_each",
-        "json_tree"};  // the last two are SQLite's own
+        "campaign",    "sim_case",        "case_input", "campaign_case",       "attempt",   "observable", "observation",
+        "convergence", "provenance",      "series",     "convergence_history", "parameter", "inputs",     "json_each",
+        "json_tree",   "attempt_computer"};  // json_ ...: SQLite's own
     return names;
 }
 

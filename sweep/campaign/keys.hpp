@@ -35,6 +35,10 @@ inline constexpr std::string_view notes_key = "notes";
 /// "kind", the design's options and, where it takes rows, "file".
 [[nodiscard]] std::vector<Key> design_keys(const designs::DesignInfo& design);
 
+/// Limits of time below these would end every worker before it can answer, s.
+inline constexpr double shortest_limit = 0.1;
+inline constexpr double shortest_silence = 3;  ///< a few signs of life
+
 /// Letters of a campaign's name: NAME.db must be a file name.
 inline constexpr std::size_t longest_campaign_name = 128;
 

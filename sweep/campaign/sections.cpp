@@ -61,6 +61,14 @@ std::int64_t block_by_default(const Convergence& convergence, const Campaign& ca
     return default_block(points, sequences, least_block(convergence.rule, sequences));
 }
 
+/// Seconds that are a limit, or 0 where there is none.
+double read_time_limit(const Section& section, std::string_view key, double standard, double shortest) {
+    const double seconds = section.number(key, standard);
+    if (seconds > 0 && seconds < shortest)
+        section.at(key).refuse(fmt::format("must be at least {} s, or 0 for no limit", shortest));
+    return seconds;
+}
+
 }  // namespace
 
 Convergence read_convergence(const Cursor& place, const Campaign& campaign) {
@@ -87,7 +95,7 @@ Convergence read_convergence(const Cursor& place, const Campaign& campaign) {
 Limits read_limits(const Cursor& place) {
     const Section section(place, limits_keys());
     Limits limits;
-    limits.wall_seconds = section.number("wall_seconds", limits.wall_seconds);
+    limits.wall_seconds = read_time_limit(section, "wall_seconds", limits.wall_seconds, shortest_limit);
     limits.attempts = section.whole("attempts", limits.attempts);
     return limits;
 }
@@ -97,6 +105,9 @@ Execution read_execution(const Cursor& place) {
     Execution execution;
     execution.workers = section.whole("workers", execution.workers);
     execution.launcher = section.words("launcher", {});
+    execution.start_seconds = read_time_limit(section, "start_seconds", execution.start_seconds, shortest_limit);
+    execution.silence_seconds =
+        read_time_limit(section, "silence_seconds", execution.silence_seconds, shortest_silence);
     return execution;
 }
 

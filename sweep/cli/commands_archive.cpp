@@ -143,13 +143,20 @@ std::string why(const std::vector<store::LoggedAttempt>& attempts, const std::ve
     return next_run(why_failed(attempts, places));
 }
 
+std::string described_build(const campaign::Computer& by) {
+    const std::string id = by.build.empty() ? "" : " " + by.build.substr(0, 12);
+    return fmt::format("{} ({}){}", by.version, by.commit, id);
+}
+
 Table attempts_table(const std::vector<store::LoggedAttempt>& attempts) {
-    Table table{{"attempt", "outcome", "started", "wall_seconds", "host", "instruction_path", "message"}, {}};
+    Table table{
+        {"attempt", "outcome", "started", "wall_seconds", "host", "processor", "instruction_path", "build", "message"},
+        {}};
     for (const auto& attempt : attempts) {
-        table.rows.push_back({attempt.number,
-                              attempt.outcome ? std::string(to_string(*attempt.outcome)) : std::string("running"),
-                              attempt.started, report::to_cell(attempt.wall_seconds), attempt.host,
-                              attempt.instruction_path, attempt.message});
+        table.rows.push_back(
+            {attempt.number, attempt.outcome ? std::string(to_string(*attempt.outcome)) : std::string("running"),
+             attempt.started, report::to_cell(attempt.wall_seconds), attempt.computer.host, attempt.computer.processor,
+             attempt.computer.instruction_path, described_build(attempt.computer), attempt.message});
     }
     return table;
 }
@@ -189,6 +196,13 @@ int explain(const std::string& database, const std::string& id, Format format) {
     report::write(std::cout, table, format);
     std::cout << '\n' << reason << '\n';
     return 0;
+}
+
+/// Same sources and instruction path; where the sources have changes of their own or are unknown, the same executable.
+bool gives_the_same_bits(const campaign::Computer& a, const campaign::Computer& b) {
+    const bool known = a.commit != "unknown" && !a.commit.ends_with("-modified");
+    return a.version == b.version && a.commit == b.commit && a.instruction_path == b.instruction_path &&
+           (known || (!a.build.empty() && a.build == b.build));
 }
 
 // ---- replay -------------------------------------------------------------------------------------------------
@@ -236,10 +250,8 @@ int replay(const std::string& database, const std::string& id, const PictureRequ
     if (!path.empty())
         use_path(path);
     else if (then != attempts.end())
-        use_path_of_old(then->instruction_path);
-    const auto here = provenance();
-    const bool same_path =
-        then != attempts.end() && then->version == build_version() && then->instruction_path == here.instruction_path;
+        use_path_of_old(then->computer.instruction_path);
+    const bool same_path = then != attempts.end() && gives_the_same_bits(then->computer, this_computer());
 
     NoArtefacts artefacts;
     Pictures pictures(wanted, question);

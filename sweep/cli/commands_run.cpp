@@ -123,6 +123,7 @@ Command worker_command() {
                 return [options, path] {
                     use_path(*path);
                     options->version = build_version();
+                    options->computer = this_computer();
                     return workers::work(*options);
                 };
             },

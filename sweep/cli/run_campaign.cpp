@@ -121,12 +121,9 @@ std::unique_ptr<schedule::Judge> make_judge(const campaign::Campaign& campaign, 
                                              static_cast<std::size_t>(sequences), known, placement.candidates);
 }
 
-std::vector<std::string> worker_command(const campaign::Campaign& campaign, const fs::path& artefacts,
-                                        const std::string& path) {
-    std::vector<std::string> command = campaign.execution.launcher;
-    const std::vector<std::string> own = {fs::read_symlink("/proc/self/exe").string(), "worker", "--artefacts",
-                                          artefacts.string()};
-    command.insert(command.end(), own.begin(), own.end());
+std::vector<std::string> worker_command(const fs::path& artefacts, const std::string& path) {
+    std::vector<std::string> command = {fs::read_symlink("/proc/self/exe").string(), "worker", "--artefacts",
+                                        artefacts.string()};
     if (!path.empty()) command.insert(command.end(), {"--path", path});
     return command;
 }
@@ -136,6 +133,20 @@ std::string standing(const schedule::Judge* judge) {
     if (judge == nullptr) return {};
     if (const auto points = judge->converged_at()) return fmt::format("; converged at {} points", *points);
     return "; not converged: " + judge->verdict();
+}
+
+workers::PoolOptions pool_options(const campaign::Campaign& campaign, const fs::path& artefacts,
+                                  const RunRequest& request) {
+    workers::PoolOptions options;
+    options.launcher = campaign.execution.launcher;
+    options.command = worker_command(artefacts, request.path);
+    options.workers = worker_count(campaign, request);
+    options.limits = {campaign.limits.wall_seconds, campaign.execution.start_seconds,
+                      campaign.execution.silence_seconds};
+    options.expected.program = this_computer();
+    for (const auto& observable : campaign.scene().observables)
+        options.expected.measured.emplace(observable.name, observable.shape);
+    return options;
 }
 
 std::string describe(Ending ending, const schedule::Plan::Tally& tally, const schedule::Judge* judge) {
@@ -224,8 +235,7 @@ RunReport run_campaign(const RunRequest& request) {
     schedule::Plan plan(std::move(questions.cases), questions.histories, std::move(questions.predicted),
                         std::move(questions.places), rules_of(campaign, request, workers), questions.blocks);
 
-    workers::Pool pool(
-        {worker_command(campaign, artefacts, request.path), workers, campaign.limits.wall_seconds, build_version()});
+    workers::Pool pool(pool_options(campaign, artefacts, request));
     store::ArtefactFolder folder(artefacts);
     schedule::Watchers watchers;
     watchers.progress = [&](const schedule::Progress& progress) { line.update(progress); };

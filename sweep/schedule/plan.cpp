@@ -12,6 +12,9 @@ using campaign::Outcome;
 // would be done just when the longest is; 2 leaves room for predictions that are wrong by as much.
 constexpr double longest_cases_left = 2;
 
+// Less than this is no headway: a case that is given back must have come further than the last time.
+constexpr double headway = 0.01;
+
 bool good(Outcome outcome) {
     return outcome == Outcome::completed || outcome == Outcome::skipped;
 }
@@ -83,6 +86,13 @@ std::optional<double> Plan::next_predicted() const {
     return entries_[queue_.front()].predicted;
 }
 
+std::size_t Plan::waiting() const {
+    if (!next_predicted()) return 0;
+    const auto limit = static_cast<std::size_t>(rules_.max_cases);
+    return limit == 0 ? queue_.size()
+                      : std::min(queue_.size(), limit - (tally_.settled_now + tally_.failed_now + running_));
+}
+
 std::optional<Plan::Start> Plan::next() {
     if (!next_predicted()) return std::nullopt;
     Entry& entry = entries_[queue_.front()];
@@ -101,20 +111,24 @@ void Plan::move_on(Entry& entry, double share) {
 }
 
 void Plan::advanced(const campaign::Attempt& attempt, double share) {
+    Entry* entry = running(attempt);
+    if (entry == nullptr || !(share >= 0 && share <= 1)) return;
+    const bool first = !entry->share;
+    move_on(*entry, share);
+    if (first) tally_.predicted_done -= share * entry->predicted;
+}
+
+Plan::Entry* Plan::running(const campaign::Attempt& attempt) {
     const auto found = index_.find(attempt.case_id);
-    if (found == index_.end() || !(share >= 0 && share <= 1)) return;
+    if (found == index_.end()) return nullptr;
     Entry& entry = entries_[found->second];
-    if (!entry.running || entry.attempts != attempt.number) return;
-    const bool first = !entry.share;
-    move_on(entry, share);
-    if (first) tally_.predicted_done -= share * entry.predicted;
+    return entry.running && entry.attempts == attempt.number ? &entry : nullptr;
 }
 
 Plan::Verdict Plan::ended(const campaign::Attempt& attempt, Outcome outcome) {
-    const auto found = index_.find(attempt.case_id);
-    if (found == index_.end()) return Verdict::stale;
-    Entry& entry = entries_[found->second];
-    if (!entry.running || entry.attempts != attempt.number) return Verdict::stale;
+    Entry* found = running(attempt);
+    if (found == nullptr) return Verdict::stale;
+    Entry& entry = *found;
     entry.running = false;
     --running_;
     if (settles(outcome)) {
@@ -123,41 +137,41 @@ Plan::Verdict Plan::ended(const campaign::Attempt& attempt, Outcome outcome) {
         decide(entry, outcome);
         return Verdict::settled;
     }
-    if (outcome != Outcome::abandoned) ++entry.failures;
-    if (entry.failures >= rules_.attempts) {
+    const bool given_up = outcome == Outcome::abandoned ? comes_no_further(entry) : ++entry.failures >= rules_.attempts;
+    if (given_up) {
         ++tally_.failed_now;
         move_on(entry, 1);
         decide(entry, outcome);
         return Verdict::gave_up;
     }
-    put_back(found->second);
+    put_back(entry);
     return Verdict::again;
 }
 
-void Plan::returned(const campaign::Attempt& attempt) {
-    const auto found = index_.find(attempt.case_id);
-    if (found == index_.end()) return;
-    Entry& entry = entries_[found->second];
-    if (!entry.running || entry.attempts != attempt.number) return;
-    entry.running = false;
-    --running_;
-    put_back(found->second);
+Plan::Verdict Plan::given_back(const campaign::Attempt& attempt) {
+    return ended(attempt, Outcome::abandoned);
 }
 
-void Plan::put_back(std::size_t index) {
-    Entry& entry = entries_[index];
+bool Plan::comes_no_further(const Entry& entry) {
+    auto& known = give_backs_[static_cast<std::size_t>(&entry - entries_.data())];
+    const double share = entry.share.value_or(0);
+    if (share > known.furthest + headway) known = {0, share};
+    return ++known.in_a_row >= rules_.give_backs;
+}
+
+void Plan::put_back(Entry& entry) {
     tally_.predicted_left += entry.share.value_or(0) * entry.predicted;  // until the next attempt says what it found
     entry.share.reset();
-    queue_.push_front(index);
+    queue_.push_front(static_cast<std::size_t>(&entry - entries_.data()));
 }
 
 void Plan::never_begun(const campaign::Attempt& attempt) {
-    const auto found = index_.find(attempt.case_id);
-    if (found == index_.end()) return;
-    Entry& entry = entries_[found->second];
-    if (!entry.running || entry.attempts != attempt.number) return;
-    returned(attempt);
-    --entry.attempts;
+    Entry* entry = running(attempt);
+    if (entry == nullptr) return;
+    entry->running = false;
+    --running_;
+    put_back(*entry);
+    --entry->attempts;
 }
 
 std::size_t Plan::settled_prefix() {

@@ -29,9 +29,10 @@ struct History {
 };
 
 struct Rules {
-    std::int64_t attempts = 3;                    ///< tries of a case that crashes or times out
-    std::int64_t stop_after_failures = 0;         ///< start nothing more after so many failed cases; 0: never
-    std::int64_t max_cases = 0;                   ///< settle at most so many in this run; 0: all
+    std::int64_t attempts = 3;             ///< tries of a case that crashes or times out
+    std::int64_t give_backs = 10;          ///< times in this run that a case may come back no further than before
+    std::int64_t stop_after_failures = 0;  ///< start nothing more after so many failed cases; 0: never
+    std::int64_t max_cases = 0;            ///< settle at most so many in this run; 0: all
     std::optional<campaign::Outcome> again = {};  ///< ask again what ended like this
     std::size_t workers = 1;                      ///< how many cases are computed at once
 };
@@ -53,6 +54,8 @@ public:
     [[nodiscard]] std::optional<Start> next();
     /// Predicted seconds of what next() would return; nothing when there is nothing.
     [[nodiscard]] std::optional<double> next_predicted() const;
+    /// How many next() could return one after the other now.
+    [[nodiscard]] std::size_t waiting() const;
 
     /// A running attempt has come so far, 0 to 1. What it had done when first heard of, from a checkpoint, was not done
     /// in this run.
@@ -61,8 +64,9 @@ public:
     enum class Verdict { settled, again, gave_up, stale };
     /// A running attempt ended so.
     Verdict ended(const campaign::Attempt& attempt, campaign::Outcome outcome);
-    /// It was given back unfinished: the question returns to the head of the queue.
-    void returned(const campaign::Attempt& attempt);
+    /// It was given back unfinished, which costs no try: the question returns to the head of the queue. One that comes
+    /// back again and again without getting further is given up in this run.
+    Verdict given_back(const campaign::Attempt& attempt);
     /// It was handed out but no worker began it: the same, and its number is free again.
     void never_begun(const campaign::Attempt& attempt);
     /// Start nothing more.
@@ -100,14 +104,21 @@ private:
     };
     /// Long cases first near the end: of the queue or of what this run may settle.
     void order_the_end(std::span<const std::int64_t> blocks);
+    struct GiveBacks {
+        std::int64_t in_a_row = 0;
+        double furthest = 0;  ///< share done when it was given back
+    };
+    [[nodiscard]] Entry* running(const campaign::Attempt& attempt);
+    [[nodiscard]] bool comes_no_further(const Entry& entry);
     void move_on(Entry& entry, double share);
-    void put_back(std::size_t index);
+    void put_back(Entry& entry);
     void decide(Entry& entry, campaign::Outcome outcome);
 
     std::vector<Entry> entries_;
     std::vector<std::size_t> places_;
     std::unordered_map<campaign::CaseId, std::size_t> index_;
     std::deque<std::size_t> queue_;
+    std::unordered_map<std::size_t, GiveBacks> give_backs_;  ///< by question, of those that were given back
     Rules rules_;
     Tally tally_;
     std::size_t running_ = 0;

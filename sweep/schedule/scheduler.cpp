@@ -44,7 +44,7 @@ Ending Scheduler::run() {
     judge_prefix();  // what the archive already has may be enough
     while (!at_once_) {
         hand_out();
-        if (in_flight_ == 0) break;
+        if (in_flight_ == 0 && !plan_.next_predicted()) break;
         if (auto event = crew_.wait(200ms)) handle(std::move(*event));
         show();
     }
@@ -62,11 +62,13 @@ Ending Scheduler::run() {
 }
 
 void Scheduler::hand_out() {
+    crew_.expect(plan_.waiting());
     while (const auto predicted = plan_.next_predicted()) {
-        if (!crew_.has_room(*predicted)) return;
+        const auto place = crew_.place_for(*predicted);
+        if (!place) return;
         const auto start = plan_.next();
-        recorder_.write(start->attempt);
-        crew_.start(start->attempt, *start->question);
+        recorder_.write(store::Recorder::Begun{start->attempt, place->computer});
+        crew_.give(*place, start->attempt, *start->question);
         ++in_flight_;
     }
 }
@@ -75,15 +77,22 @@ void Scheduler::handle(workers::PoolEvent event) {
     std::visit(Overloaded{[&](workers::Finished& finished) { handle_finished(finished); },
                           [&](const workers::Heartbeat& beat) { plan_.advanced(beat.attempt, beat.progress); },
                           [&](const workers::Lost& lost) {
-                              if (lost.running)
+                              if (lost.running && lost.from_outside)
+                                  handle_given_back(*lost.running, lost.reason, lost.seconds, true);
+                              else if (lost.running)
                                   handle_failure(*lost.running, Outcome::crashed, lost.reason, lost.seconds);
+                              if (lost.running && lost.spoils_checkpoint && !lost.from_outside)
+                                  watchers_.forget_checkpoint(lost.running->case_id);
                               take_back(lost.queued);
                           },
                           [&](const workers::TimedOut& late) {
                               handle_failure(late.running, Outcome::timed_out, late.reason, late.seconds);
                               take_back(late.queued);
                           },
-                          [&](const workers::GivenBack& back) { park(back); },
+                          [&](const workers::GivenBack& back) {
+                              handle_given_back(back.attempt, back.reason, back.seconds, !back.asked);
+                          },
+                          [&](const workers::Remark& remark) { watchers_.note(remark.text); },
                           [&](const workers::Interrupted& stop) {
                               plan_.close();
                               if (!early_) early_ = Ending::interrupted;
@@ -94,6 +103,10 @@ void Scheduler::handle(workers::PoolEvent event) {
 }
 
 void Scheduler::handle_finished(workers::Finished& finished) {
+    if (!settles(finished.result.outcome)) {  // a worker that tells of a crash or a time-out of what it started
+        const auto& result = finished.result;
+        return handle_failure(result.attempt, result.outcome, result.message, result.cost.wall_seconds);
+    }
     --in_flight_;
     const auto& result = finished.result;
     if (plan_.ended(result.attempt, result.outcome) == Plan::Verdict::stale) return;
@@ -118,10 +131,12 @@ void Scheduler::handle_failure(const campaign::Attempt& attempt, Outcome outcome
     watchers_.note(fmt::format("{} {} in attempt {}{}: {}", attempt.case_id.substr(0, 12), to_string(outcome),
                                attempt.number, verdict == Plan::Verdict::again ? ", trying again" : ", giving up",
                                reason));
-    if (verdict == Plan::Verdict::gave_up) {
-        if (judge_ != nullptr) judge_->learn(attempt.case_id, {});  // an older answer counts no more
-        judge_prefix();
-    }
+    if (verdict == Plan::Verdict::gave_up) give_up(attempt);
+}
+
+void Scheduler::give_up(const campaign::Attempt& attempt) {
+    if (judge_ != nullptr) judge_->learn(attempt.case_id, {});  // an older answer counts no more
+    judge_prefix();
 }
 
 void Scheduler::take_back(const std::vector<campaign::Attempt>& attempts) {
@@ -131,12 +146,19 @@ void Scheduler::take_back(const std::vector<campaign::Attempt>& attempts) {
     }
 }
 
-void Scheduler::park(const workers::GivenBack& back) {
+void Scheduler::handle_given_back(const campaign::Attempt& attempt, std::string reason, double seconds, bool noted) {
     --in_flight_;
-    plan_.returned(back.attempt);
-    campaign::CaseResult result = unanswered(back.attempt, Outcome::abandoned, back.seconds);
-    result.message = "given back before it was finished";
+    const auto verdict = plan_.given_back(attempt);
+    if (verdict == Plan::Verdict::stale) return;
+    const bool gave_up = verdict == Plan::Verdict::gave_up;
+    if (gave_up) reason += "; given back too often without getting further, so not tried again in this run";
+    if (noted || gave_up)
+        watchers_.note(fmt::format("{} given back in attempt {}{}: {}", attempt.case_id.substr(0, 12), attempt.number,
+                                   gave_up ? ", giving up" : ", trying again", reason));
+    campaign::CaseResult result = unanswered(attempt, Outcome::abandoned, seconds);
+    result.message = std::move(reason);
     recorder_.write(std::move(result));
+    if (gave_up) give_up(attempt);
 }
 
 void Scheduler::judge_prefix() {

@@ -52,7 +52,8 @@ private:
     void handle_failure(const campaign::Attempt& attempt, campaign::Outcome outcome, const std::string& reason,
                         double seconds);
     void take_back(const std::vector<campaign::Attempt>& attempts);
-    void park(const workers::GivenBack& back);
+    void handle_given_back(const campaign::Attempt& attempt, std::string reason, double seconds, bool noted);
+    void give_up(const campaign::Attempt& attempt);
     void judge_prefix();
     void show();
 

@@ -32,6 +32,7 @@ struct Store::Impl {
     bool in_group = false;
     std::int64_t settled_in_group = 0;
     std::map<std::pair<std::string, std::int64_t>, Keys> observables;  ///< (scene, revision) -> keys
+    std::map<campaign::Computer, std::int64_t> computers;
 
     void require_writer() const;
     void require_group() const;
@@ -39,9 +40,9 @@ struct Store::Impl {
     [[nodiscard]] bool keeps_extents() const;
     /// Throws WrongQuestion with the nearest name where there is none.
     [[nodiscard]] std::int64_t campaign_key(std::string_view name) const;
-    /// Key of an observable; one that the scene did not declare is declared, so that no answer is lost.
-    [[nodiscard]] std::int64_t observable_key(const std::string& scene, std::int64_t revision, std::string_view name,
-                                              Shape shape);
+    /// Throws std::logic_error for one that the scene has not declared.
+    [[nodiscard]] std::int64_t observable_key(const std::string& scene, std::int64_t revision, std::string_view name);
+    [[nodiscard]] std::int64_t computer_key(const campaign::Computer& computer);
 };
 
 /// The campaign's identity as text, one line per factor, value or option.

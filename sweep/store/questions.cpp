@@ -205,25 +205,36 @@ std::optional<campaign::Case> Store::find_case(std::string_view id_or_prefix) co
     return std::move(found.front());
 }
 
+namespace {
+
+/// What computed an attempt; an archive of an older form knows only what ran the campaign.
+std::string_view attempts_question(const Connection& db) {
+    auto tables = db.ask("SELECT 1 FROM sqlite_schema WHERE name = 'attempt_computer'");
+    return tables.next()
+               ? "SELECT number, outcome, coalesce(message, ''), wall_seconds, started, version, \"commit\", build, "
+                 "instruction_path, processor, host FROM attempt AS t "
+                 "JOIN attempt_computer AS m ON m.computer_id = t.computer_id WHERE case_key = ? ORDER BY number"
+               : "SELECT number, outcome, coalesce(message, ''), wall_seconds, started, version, \"commit\", '', "
+                 "instruction_path, processor, host FROM attempt AS t "
+                 "JOIN provenance AS v ON v.provenance_id = t.provenance_id WHERE case_key = ? ORDER BY number";
+}
+
+}  // namespace
+
 std::vector<LoggedAttempt> Store::attempts(std::string_view case_id) const {
     std::vector<LoggedAttempt> attempts;
     const auto key = case_key(impl_->db, case_id);
     if (!key) return attempts;
-    auto rows = impl_->db.ask(
-        "SELECT number, outcome, coalesce(message, ''), wall_seconds, started, host, "
-        "version || ' (' || \"commit\" || ')', instruction_path "
-        "FROM attempt AS t JOIN provenance AS v ON v.provenance_id = t.provenance_id "
-        "WHERE case_key = ? ORDER BY number",
-        *key);
+    auto rows = impl_->db.ask(attempts_question(impl_->db), *key);
     while (rows.next()) {
-        attempts.push_back({.number = rows.get<std::int64_t>(0),
-                            .outcome = outcome_at(rows, 1),
-                            .message = rows.get<std::string>(2),
-                            .wall_seconds = rows.get<double>(3),
-                            .started = rows.get<std::string>(4),
-                            .host = rows.get<std::string>(5),
-                            .version = rows.get<std::string>(6),
-                            .instruction_path = rows.get<std::string>(7)});
+        attempts.push_back(
+            {.number = rows.get<std::int64_t>(0),
+             .outcome = outcome_at(rows, 1),
+             .message = rows.get<std::string>(2),
+             .wall_seconds = rows.get<double>(3),
+             .started = rows.get<std::string>(4),
+             .computer = {rows.get<std::string>(5), rows.get<std::string>(6), rows.get<std::string>(7),
+                          rows.get<std::string>(8), rows.get<std::string>(9), rows.get<std::string>(10)}});
     }
     return attempts;
 }

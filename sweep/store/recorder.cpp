@@ -11,10 +11,22 @@ namespace {
 constexpr std::size_t group_rows = 256;
 constexpr auto group_wait = std::chrono::milliseconds(10);
 
+// Entries and samples that may wait, some 100 MB: more than a disk that works leaves behind.
+constexpr std::size_t most_waiting = 1'000'000;
+
 template <class... Cases>
 struct Overloaded : Cases... {
     using Cases::operator()...;
 };
+
+std::size_t weight_of(const Recorder::Entry& entry) {
+    constexpr std::size_t of_an_entry = 8;
+    std::size_t samples = 0;
+    if (const auto* result = std::get_if<campaign::CaseResult>(&entry)) {
+        for (const auto& [name, series] : result->observations.series) samples += series.size();
+    }
+    return of_an_entry + samples;
+}
 
 }  // namespace
 
@@ -34,8 +46,10 @@ void Recorder::rethrow() {
 }
 
 void Recorder::write(Entry entry) {
-    const std::lock_guard lock(mutex_);
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return failure_ || weight_ < most_waiting; });
     rethrow();
+    weight_ += weight_of(entry);
     waiting_.push_back(std::move(entry));
     if (waiting_.size() == 1 || waiting_.size() >= group_rows) changed_.notify_all();
 }
@@ -60,6 +74,7 @@ void Recorder::run() {
         if (!closing_)
             changed_.wait_for(lock, group_wait, [this] { return closing_ || waiting_.size() >= group_rows; });
         std::vector<Entry> group = std::exchange(waiting_, {});
+        if (std::exchange(weight_, 0) >= most_waiting) changed_.notify_all();
         busy_ = true;
         lock.unlock();
         std::vector<campaign::CaseResult> kept;
@@ -67,7 +82,7 @@ void Recorder::run() {
         try {
             store_.group([&] {
                 for (auto& entry : group) {
-                    std::visit(Overloaded{[&](const campaign::Attempt& attempt) { store_.begin(attempt); },
+                    std::visit(Overloaded{[&](const Begun& begun) { store_.begin(begun.attempt, *begun.computer); },
                                           [&](campaign::CaseResult& result) {
                                               if (store_.finish(result)) kept.push_back(std::move(result));
                                           },

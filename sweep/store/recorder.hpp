@@ -6,6 +6,7 @@
 
 #include <condition_variable>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -24,13 +25,18 @@ public:
         std::string campaign;
         ConvergenceRow row;
     };
-    using Entry = std::variant<campaign::Attempt, campaign::CaseResult, Checked, Stopped>;
+    struct Begun {
+        campaign::Attempt attempt;
+        std::shared_ptr<const campaign::Computer> computer;
+    };
+    using Entry = std::variant<Begun, campaign::CaseResult, Checked, Stopped>;
 
     /// The store must outlive the recorder and is the recorder's alone until drain() returned.
     explicit Recorder(Store& store);
     ~Recorder();
 
-    /// Hands over; returns at once. Throws what an earlier write failed with.
+    /// Hands over; returns at once, unless more waits for the disk than memory should hold. Throws what an earlier
+    /// write failed with.
     void write(Entry entry);
     /// Results that reached the disk since the last call, in the order written.
     [[nodiscard]] std::vector<campaign::CaseResult> take_durable();
@@ -45,6 +51,7 @@ private:
     std::mutex mutex_;
     std::condition_variable changed_;
     std::vector<Entry> waiting_;
+    std::size_t weight_ = 0;  ///< of what waits
     std::vector<campaign::CaseResult> durable_;
     std::exception_ptr failure_;
     bool busy_ = false, closing_ = false;

@@ -177,8 +177,7 @@ void Store::Impl::require_group() const {
     if (!in_group) throw std::logic_error("results are written inside Store::group()");
 }
 
-std::int64_t Store::Impl::observable_key(const std::string& scene, std::int64_t revision, std::string_view name,
-                                         Shape shape) {
+std::int64_t Store::Impl::observable_key(const std::string& scene, std::int64_t revision, std::string_view name) {
     Keys& keys = observables[{scene, revision}];
     if (keys.empty()) {
         auto rows =
@@ -186,9 +185,24 @@ std::int64_t Store::Impl::observable_key(const std::string& scene, std::int64_t 
         while (rows.next()) keys.emplace(rows.get<std::string>(0), rows.get<std::int64_t>(1));
     }
     if (const auto found = keys.find(name); found != keys.end()) return found->second;
-    db.run("INSERT INTO observable (scene, revision, name, unit, meaning, shape) VALUES (?, ?, ?, '', '', ?)", scene,
-           revision, name, shape == Shape::scalar ? "scalar" : "series");
-    return keys.emplace(name, db.last_row()).first->second;
+    throw std::logic_error(
+        fmt::format("scene {} of revision {} has no observable '{}', and a case measured it", scene, revision, name));
+}
+
+std::int64_t Store::Impl::computer_key(const campaign::Computer& by) {
+    const auto [found, fresh] = computers.try_emplace(by, 0);
+    if (!fresh) return found->second;
+    db.run(
+        "INSERT INTO attempt_computer (version, \"commit\", build, instruction_path, processor, host) "
+        "VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING",
+        by.version, by.commit, by.build, by.instruction_path, by.processor, by.host);
+    auto rows = db.ask(
+        "SELECT computer_id FROM attempt_computer WHERE (version, \"commit\", build, instruction_path, processor, "
+        "host) "
+        "= (?, ?, ?, ?, ?, ?)",
+        by.version, by.commit, by.build, by.instruction_path, by.processor, by.host);
+    if (!rows.next()) throw BrokenWorld(fmt::format("database '{}': a row just written is not there", file.string()));
+    return found->second = rows.get<std::int64_t>(0);
 }
 
 void Store::group(const std::function<void()>& writes) {
@@ -204,7 +218,7 @@ void Store::group(const std::function<void()>& writes) {
         Membership(const Membership&) = delete;
         ~Membership() {
             impl.in_group = false;
-            if (!committed) impl.observables.clear();  // keys of rows that were rolled back
+            if (!committed) impl.computers.clear();  // keys of rows that were rolled back
         }
     } membership(*impl_);
     Transaction transaction(impl_->db);
@@ -217,7 +231,7 @@ void Store::group(const std::function<void()>& writes) {
     membership.committed = true;
 }
 
-void Store::begin(const campaign::Attempt& attempt) {
+void Store::begin(const campaign::Attempt& attempt, const campaign::Computer& computer) {
     impl_->require_group();
     auto& db = impl_->db;
     if (!impl_->provenance) throw std::logic_error("an attempt begins before its campaign is enrolled");
@@ -229,12 +243,11 @@ void Store::begin(const campaign::Attempt& attempt) {
     }
     // An attempt that was handed out to a worker that died before it began may begin again.
     const auto begun = db.run(
-        "INSERT INTO attempt (case_key, number, provenance_id, started) "
-        "SELECT case_key, ?1, ?2, ?3 FROM sim_case WHERE case_id = ?4 "
-        "ON CONFLICT (case_key, number) DO UPDATE SET provenance_id = excluded.provenance_id, started = "
-        "excluded.started "
-        "WHERE outcome IS NULL",
-        attempt.number, impl_->provenance, utc_now(), attempt.case_id);
+        "INSERT INTO attempt (case_key, number, provenance_id, computer_id, started) "
+        "SELECT case_key, ?1, ?2, ?3, ?4 FROM sim_case WHERE case_id = ?5 "
+        "ON CONFLICT (case_key, number) DO UPDATE SET provenance_id = excluded.provenance_id, "
+        "computer_id = excluded.computer_id, started = excluded.started WHERE outcome IS NULL",
+        attempt.number, impl_->provenance, impl_->computer_key(computer), utc_now(), attempt.case_id);
     if (begun != 1) {
         throw std::logic_error(
             fmt::format("attempt {} of case {} begins after it ended", attempt.number, attempt.case_id));
@@ -275,12 +288,12 @@ bool Store::finish(const campaign::CaseResult& result) {
         "INSERT INTO observation (case_key, observable_id, sample, time, bin, value) VALUES (?, ?, ?, ?, ?, ?)";
     for (const auto& [name, value] : result.observations.scalars) {
         if (std::isnan(value)) continue;  // undefined: no row, NULL in every view
-        const auto observable = impl_->observable_key(scene, revision, name, Shape::scalar);
+        const auto observable = impl_->observable_key(scene, revision, name);
         db.run(insert, key, observable, 0, std::nullopt, std::nullopt, value);
     }
     for (const auto& [name, samples] : result.observations.series) {
         if (samples.empty()) continue;
-        const auto observable = impl_->observable_key(scene, revision, name, Shape::series);
+        const auto observable = impl_->observable_key(scene, revision, name);
         std::int64_t number = 0;
         for (const auto& sample : samples)
             db.run(insert, key, observable, number++, sample.time, sample.bin, sample.value);

@@ -24,7 +24,7 @@
 
 namespace grainsweep::store {
 
-/// Who computes: stored once per run, referred to by every attempt.
+/// What runs a campaign, and where: stored once per run. What computed an attempt is stored with the attempt.
 struct Provenance {
     std::string version, commit, compiler, flags, instruction_path, processor, host;
 };
@@ -40,8 +40,9 @@ struct LoggedAttempt {
     std::int64_t number = 0;
     std::optional<campaign::Outcome> outcome;  ///< none: running, or its boss died
     std::string message;
-    double wall_seconds = 0;                               ///< NaN: running, or its boss died
-    std::string started, host, version, instruction_path;  ///< version (commit) of the program
+    double wall_seconds = 0;  ///< NaN: running, or its boss died
+    std::string started;
+    campaign::Computer computer;  ///< of an archive older than these columns: what ran the campaign; no build
 };
 
 /// Rows for the commands: column names and cells (NULL, integer, real, text).
@@ -136,9 +137,11 @@ public:
     void group(const std::function<void()>& writes);
     // Inside group():
     /// Numbers only grow: throws std::logic_error for a case that is unknown or has begun a later attempt.
-    void begin(const campaign::Attempt& attempt);
+    /// `computer`: what computes it; all empty where that is not known.
+    void begin(const campaign::Attempt& attempt, const campaign::Computer& computer = {});
     /// Replaces what an earlier attempt measured. A result whose attempt is not the case's latest, or is closed
-    /// already, is stale: dropped, returns false. NaN is stored as NULL, a scalar that is NaN not at all.
+    /// already, is stale: dropped, returns false. NaN is stored as NULL, a scalar that is NaN not at all. Throws
+    /// std::logic_error for an observable that the scene has not declared.
     bool finish(const campaign::CaseResult& result);
     void record(std::string_view campaign, const ConvergenceRow& row);
     void stop(std::string_view campaign, std::int64_t points);

@@ -121,6 +121,21 @@ std::variant<Files, std::string> read_files(const Inputs& inputs) {
     return files;
 }
 
+/// The name of an observable that the scene does not declare, or declares otherwise; empty: none.
+std::string undeclared(const SceneInfo& scene, const Observations& observations) {
+    const auto declared = [&](const std::string& name, bool scalar) {
+        const auto* observable = scene.find_observable(name);
+        return observable != nullptr && (observable->shape == Shape::scalar) == scalar;
+    };
+    for (const auto& [name, value] : observations.scalars) {
+        if (!declared(name, true)) return name;
+    }
+    for (const auto& [name, samples] : observations.series) {
+        if (!declared(name, false)) return name;
+    }
+    return {};
+}
+
 bool all_finite(const Observations& observations) {
     const auto infinite = [](double x) { return std::isinf(x); };
     for (const auto& [name, value] : observations.scalars) {
@@ -180,6 +195,11 @@ std::optional<campaign::CaseResult> compute(const campaign::Case& question, std:
         scene->observe(result.observations);
     } catch (const std::invalid_argument& error) {
         return close(campaign::Outcome::rejected, error.what());
+    }
+    if (const std::string name = undeclared(*info, result.observations); !name.empty()) {
+        result.observations = {};
+        return close(campaign::Outcome::rejected,
+                     fmt::format("it measured '{}', which its scene does not declare so", name));
     }
     if (!all_finite(result.observations)) {
         result.observations = {};

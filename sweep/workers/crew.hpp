@@ -4,6 +4,8 @@
 #include "sweep/campaign/case.hpp"
 
 #include <chrono>
+#include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -11,16 +13,19 @@
 
 namespace grainsweep::workers {
 
-/// A worker's process ended, or spoke nonsense. The case it was computing has failed; those still in its
-/// queue were never begun.
+/// A worker's process ended, wrote nonsense or fell silent. The case it was computing has failed, or was interrupted;
+/// those that waited behind it were never begun.
 struct Lost {
     std::optional<campaign::Attempt> running;
     std::vector<campaign::Attempt> queued;
-    std::string reason;  ///< how it ended, and the last lines it wrote to standard error
-    double seconds = 0;  ///< since it began `running`
+    std::string reason;         ///< how it ended, and the last lines it wrote to standard error
+    double seconds = 0;         ///< since it began `running`
+    bool from_outside = false;  ///< no failure of the case: its worker was asked to end, or gave no sign of life
+    /// The checkpoint of `running` is not to be used again: the case crashed on it, or after it on its own account.
+    bool spoils_checkpoint = false;
 };
 
-/// The case exceeded its wall time; its worker was stopped.
+/// The case exceeded its wall time; its worker was ended.
 struct TimedOut {
     campaign::Attempt running;
     std::vector<campaign::Attempt> queued;
@@ -28,10 +33,12 @@ struct TimedOut {
     double seconds = 0;
 };
 
-/// Given back unfinished after a stop.
+/// Given back unfinished.
 struct GivenBack {
     campaign::Attempt attempt;
+    std::string reason;
     double seconds = 0;  ///< since it was begun, 0 where it never was
+    bool asked = true;   ///< the worker had been asked to stop
 };
 
 struct Finished {
@@ -44,12 +51,23 @@ struct Heartbeat {
     double progress = 0;
 };
 
+/// Something the user should know: which worker is waited for, which output was forgiven.
+struct Remark {
+    std::string text;
+};
+
 /// The user asked to stop: politely (first time) or at once (again).
 struct Interrupted {
     bool at_once = false;
 };
 
-using PoolEvent = std::variant<Finished, Heartbeat, Lost, TimedOut, GivenBack, Interrupted>;
+using PoolEvent = std::variant<Finished, Heartbeat, Lost, TimedOut, GivenBack, Remark, Interrupted>;
+
+/// Where the next case goes.
+struct Place {
+    std::size_t worker = 0;
+    std::shared_ptr<const campaign::Computer> computer;  ///< what it will be computed by
+};
 
 class Crew {
 public:
@@ -58,14 +76,14 @@ public:
     Crew& operator=(const Crew&) = delete;
     virtual ~Crew() = default;
 
-    /// Whether another case can be taken now. Short cases queue up behind a running one.
-    [[nodiscard]] virtual bool has_room(double predicted_seconds) const = 0;
-    virtual void start(const campaign::Attempt& attempt, const campaign::Case& question) = 0;
+    /// So many cases wait: workers are started for them as far as there may be more. They take cases once ready.
+    virtual void expect(std::size_t cases) = 0;
+    /// Where a case can go now, if anywhere. Short cases queue up behind a running one. Good until wait().
+    [[nodiscard]] virtual std::optional<Place> place_for(double predicted_seconds) = 0;
+    virtual void give(const Place& place, const campaign::Attempt& attempt, const campaign::Case& question) = 0;
     /// The next event, or nothing within the time.
     [[nodiscard]] virtual std::optional<PoolEvent> wait(std::chrono::milliseconds at_most) = 0;
-    /// Cases handed out and not yet accounted for by an event.
-    [[nodiscard]] virtual std::size_t outstanding() const = 0;
-    /// Tells workers to finish or park what they have and take nothing more.
+    /// Asks workers to finish or give back what they have and take nothing more.
     virtual void retire() = 0;
     /// Ends all workers now; what they were computing is lost.
     virtual void dismiss() = 0;

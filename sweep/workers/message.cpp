@@ -1,9 +1,14 @@
 #include "sweep/workers/message.hpp"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cctype>
+#include <charconv>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 namespace grainsweep::workers {
@@ -101,6 +106,53 @@ Done to_done(const Json& object) {
     return done;
 }
 
+Json from_ready(const Ready& ready) {
+    const auto& by = ready.computer;
+    return {{"protocol", ready.protocol},  {"version", by.version},     {"commit", by.commit}, {"build", by.build},
+            {"path", by.instruction_path}, {"processor", by.processor}, {"host", by.host}};
+}
+
+// Of another protocol's Ready enough is understood to say what is wrong with it.
+Ready to_ready(const Json& object) {
+    const auto text = [&](const char* key) { return object.value(key, std::string()); };
+    return {object.value("protocol", std::int64_t{1}),
+            {text("version"), text("commit"), text("build"), text("path"), text("processor"), text("host")}};
+}
+
+// Every case costs one `begun`, so the form it is written in is written and read without building a document.
+constexpr std::string_view begun_start = R"({"begun":{"attempt":)", begun_id = R"(,"id":")",
+                           begun_resumed = R"(","resumed":)";
+
+std::string from_begun(const Begun& begun) {
+    const bool plain = std::ranges::all_of(begun.attempt.case_id, [](unsigned char c) { return std::isalnum(c) != 0; });
+    if (plain)
+        return fmt::format("{}{}{}{}{}{}}}}}", begun_start, begun.attempt.number, begun_id, begun.attempt.case_id,
+                           begun_resumed, begun.resumed);
+    Json object = from_attempt(begun.attempt);
+    object["resumed"] = begun.resumed;
+    return Json{{"begun", std::move(object)}}.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// None where it is written in another form.
+std::optional<Begun> to_begun(std::string_view text) {
+    Begun begun;
+    const auto skip = [&](std::string_view word) {
+        if (!text.starts_with(word)) return false;
+        text.remove_prefix(word.size());
+        return true;
+    };
+    if (!skip(begun_start)) return std::nullopt;
+    const auto number = std::from_chars(text.data(), text.data() + text.size(), begun.attempt.number);
+    text.remove_prefix(static_cast<std::size_t>(number.ptr - text.data()));
+    if (number.ec != std::errc() || !skip(begun_id)) return std::nullopt;
+    const auto end = std::ranges::find_if(text, [](unsigned char c) { return std::isalnum(c) == 0; });
+    begun.attempt.case_id.assign(text.begin(), end);
+    text.remove_prefix(begun.attempt.case_id.size());
+    if (!skip(begun_resumed)) return std::nullopt;
+    begun.resumed = text == "true}}";
+    return begun.resumed || text == "false}}" ? std::optional(std::move(begun)) : std::nullopt;
+}
+
 // Invalid UTF-8 in a message (from a library's error text, say) must not lose the result.
 std::string line(const Json& object) {
     return object.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -136,22 +188,25 @@ std::string encode(const ToWorker& message) {
 }
 
 std::string encode(const ToBoss& message) {
-    return line(
-        std::visit(Overloaded{[](const Ready& ready) -> Json {
-                                  return {{"ready", {{"version", ready.version}, {"path", ready.instruction_path}}}};
-                              },
-                              [](const Alive& alive) -> Json {
-                                  Json object = from_attempt(alive.attempt);
-                                  object["progress"] = alive.progress;
-                                  return {{"alive", std::move(object)}};
-                              },
-                              [](const Done& done) -> Json {
-                                  return {{"done", from_done(done)}};
-                              },
-                              [](const Parked& parked) -> Json {
-                                  return {{"parked", from_attempt(parked.attempt)}};
-                              }},
-                   message));
+    if (const auto* begun = std::get_if<Begun>(&message)) return from_begun(*begun);
+    return line(std::visit(Overloaded{[](const Ready& ready) -> Json {
+                                          return {{"ready", from_ready(ready)}};
+                                      },
+                                      [](const Begun&) -> Json { return {}; },  // above
+                                      [](const Alive& alive) -> Json {
+                                          Json object = from_attempt(alive.attempt);
+                                          object["progress"] = alive.progress;
+                                          return {{"alive", std::move(object)}};
+                                      },
+                                      [](const Done& done) -> Json {
+                                          return {{"done", from_done(done)}};
+                                      },
+                                      [](const GiveBack& back) -> Json {
+                                          Json object = from_attempt(back.attempt);
+                                          object["reason"] = back.reason;
+                                          return {{"give_back", std::move(object)}};
+                                      }},
+                           message));
 }
 
 ToWorker decode_to_worker(std::string_view text) {
@@ -172,15 +227,20 @@ ToWorker decode_to_worker(std::string_view text) {
 }
 
 ToBoss decode_to_boss(std::string_view text) {
+    if (auto begun = to_begun(text)) return std::move(*begun);
     const Json object = parse(text);
     try {
         if (object.contains("done")) return to_done(object.at("done"));
+        if (object.contains("begun")) {
+            return Begun{to_attempt(object.at("begun")), object.at("begun").at("resumed").get<bool>()};
+        }
         if (object.contains("alive")) {
             return Alive{to_attempt(object.at("alive")), number_or_nan(object.at("alive").at("progress"))};
         }
-        if (object.contains("parked")) return Parked{to_attempt(object.at("parked"))};
-        const Json& ready = object.at("ready");
-        return Ready{ready.at("version").get<std::string>(), ready.at("path").get<std::string>()};
+        if (object.contains("give_back")) {
+            return GiveBack{to_attempt(object.at("give_back")), object.at("give_back").at("reason").get<std::string>()};
+        }
+        return to_ready(object.at("ready"));
     } catch (const Json::exception& error) {
         throw std::invalid_argument(error.what());
     }

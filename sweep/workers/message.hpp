@@ -1,25 +1,61 @@
 // The protocol between boss and worker, on one page.
 //
-// One JSON object per line, flushed. The boss writes Run, Lease, Stop to the worker's standard input; the
-// worker writes Ready, Alive, Done, Parked to its standard output. End of file in either direction means
-// the other side is gone. Heartbeats stay short: some launchers delay lines above 1 kB.
+// One JSON object per line, at most longest_line bytes, flushed. The boss writes Run, Lease, Stop to the worker's
+// standard input; the worker writes Ready, Begun, Alive, Done, GiveBack to its standard output. End of file in either
+// direction means that the other side is gone. Heartbeats stay short: some launchers delay lines above 1 kB.
 //
 //   boss   {"run": {"attempt": 2, "id": "...", "scene": "...", "revision": 1, "seed": 7, "inputs": {...}}}
-//          {"lease": true}      the boss lives; a worker that hears nothing for a minute exits
-//          {"stop": true}       no more cases; finish soon or park at a checkpoint, then exit
-//   worker {"ready": {"version": "...", "path": "avx2"}}
-//          {"alive": {"id": "...", "attempt": 2, "progress": 0.4}}
+//          {"lease": true}      the boss lives; a worker that hears nothing for long gives back what it has and ends
+//          {"stop": true}       no more cases; finish soon or give back, then end
+//   worker {"ready": {"protocol": 2, "version": "...", "commit": "...", "build": "...", "path": "avx2", ...}}
+//          {"begun": {"id": "...", "attempt": 2, "resumed": false}}     the next of the cases it was given
+//          {"alive": {"id": "...", "attempt": 2, "progress": 0.4}}      every second that the case makes headway
 //          {"done": {"id": "...", "attempt": 2, "outcome": "completed", ...}}
-//          {"parked": {"id": "...", "attempt": 2}}     given back unfinished; a checkpoint may exist
+//          {"give_back": {"id": "...", "attempt": 2, "reason": "..."}}  unfinished; a checkpoint may exist
+//
+// The worker as the boss sees it (worker_state.hpp). Whatever has no arrow is answered by `dismissed`:
+//
+//                      ready, of the boss's build
+//       starting ------------------------------------> serving <--+ begun, alive, done
+//          |  |  no message: a launcher's banner         |  |   | |   (one case at a time, in the order given)
+//          |  +--> starting                              |  |   +-+
+//          |                       give_back, or the     |  |
+//          |                       boss wrote stop       v  |
+//          |   the boss wrote stop                 leaving <-- begun, alive, done, give_back
+//          +--------------------------------------> |  |    |
+//          |                                        |  |    |
+//          | not ready in time;                     |  | no sign of life in time; no answer in time;
+//          | another build or protocol;             |  | an answer to what it had not begun; no message;
+//          | an answer before ready                 |  | a line too long; a flood
+//          v                                        |  v    v
+//       dismissed: killed; nothing it wrote counts  |  dismissed
+//                                                   v
+//       end of file, from any state: ended. What had begun has failed, or was interrupted from outside; the rest of
+//       what it was given was never begun.
+//
+// A case in a worker's hands:
+//
+//       given --begun--> begun --done------> answered
+//         |                |---give_back---> given back (abandoned; costs no try)
+//         |                |---end of file-> crashed, or abandoned where it was ended from outside
+//         |                +---dismissed---> crashed, timed_out, or abandoned where the worker fell silent
+//         +--give_back---> given back
+//         +--end of file, dismissed--> never begun: its attempt is free again
 #pragma once
 
 #include "sweep/campaign/case.hpp"
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <variant>
 
 namespace grainsweep::workers {
+
+/// Grows whenever a message changes its meaning.
+inline constexpr std::int64_t protocol_number = 2;
+/// Bytes of a line. A million samples of a series do not fit; what does not fit is `rejected` by its worker.
+inline constexpr std::size_t longest_line = std::size_t{16} << 20U;
 
 struct Run {
     std::int64_t attempt = 1;
@@ -30,21 +66,26 @@ struct Stop {};
 using ToWorker = std::variant<Run, Lease, Stop>;
 
 struct Ready {
-    std::string version;           ///< commit and build of the worker's executable
-    std::string instruction_path;  ///< what its inner loops run with
+    std::int64_t protocol = protocol_number;
+    campaign::Computer computer;
+};
+struct Begun {
+    campaign::Attempt attempt;
+    bool resumed = false;  ///< from a checkpoint
 };
 struct Alive {
     campaign::Attempt attempt;
-    double progress = 0;
+    double progress = 0;  ///< 0 to 1; NaN: not known yet
 };
 struct Done {
     campaign::CaseResult result;
     bool checkpointed = false;  ///< a checkpoint file of the case exists and may now be removed
 };
-struct Parked {
+struct GiveBack {
     campaign::Attempt attempt;
+    std::string reason;
 };
-using ToBoss = std::variant<Ready, Alive, Done, Parked>;
+using ToBoss = std::variant<Ready, Begun, Alive, Done, GiveBack>;
 
 /// One line without its end. Numbers round-trip; NaN travels as null.
 [[nodiscard]] std::string encode(const ToWorker& message);

@@ -1,61 +1,45 @@
 #include "sweep/workers/pool.hpp"
 
+#include "sweep/workers/awake_clock.hpp"
+#include "sweep/workers/child.hpp"
+#include "sweep/workers/line_buffer.hpp"
 #include "sweep/workers/message.hpp"
 
-#include <utility>  // Boost 1.74's Asio needs it first under C++20
-
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/wait.h>
-#include <unistd.h>
-#include <boost/asio.hpp>
-#include <boost/process.hpp>
-#include <boost/process/extend.hpp>
 
 #include <algorithm>
 #include <csignal>
-#include <cstring>
 #include <deque>
 #include <stdexcept>
-#include <thread>
+#include <utility>
 
 namespace grainsweep::workers {
 namespace {
 
 namespace asio = boost::asio;
-namespace bp = boost::process;
-using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
+using Phase = WorkerState::Phase;
 
 // A case predicted to take less than this waits its turn inside the worker, so that no worker idles while
 // the boss is busy.
 constexpr double short_case_seconds = 0.05;
 constexpr std::size_t queue_of_short_cases = 4;
-constexpr std::size_t kept_log_bytes = 4096;
-constexpr auto lease_every = 10s;
-constexpr auto grace_before_kill = 2s;
+// Seconds.
+constexpr double lease_every = 10;
+constexpr double grace_before_kill = 2;
+constexpr double place_kept_by_the_dying = 5;
+constexpr double look_every = 0.05;  // at the clock
+constexpr double heartbeat_every = 0.5;
+constexpr double time_to_leave = 1;  // of a worker that gave back its case, before its place is taken
+constexpr double remark_on_start = 30;
+constexpr double shortest_pause = 1, longest_pause = 60;  // between attempts to start a worker where it fails
 constexpr auto time_to_end = 5s;  // of a worker that has nothing left to do, and of what launched it
-// So many workers in a row that end before they are ready: the launcher is wrong, not the case. One that somebody
-// killed says less about the launcher.
-constexpr int unready_limit = 3;
-constexpr int killed_unready_limit = 10;
-
-/// Our ends of a pipe must not live on in other workers, or nobody would ever see an end of file.
-void close_on_exec(bp::async_pipe& pipe) {
-    for (const int fd : {pipe.native_source(), pipe.native_sink()}) ::fcntl(fd, F_SETFD, FD_CLOEXEC);
-}
-
-boost::filesystem::path program_of(const std::string& word) {
-    if (word.find('/') == std::string::npos) return bp::search_path(word);
-    boost::system::error_code error;
-    const bool there = boost::filesystem::is_regular_file(word, error) && ::access(word.c_str(), X_OK) == 0;
-    return there ? boost::filesystem::path(word) : boost::filesystem::path();
-}
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
+constexpr int launches_at_once = 16;
+constexpr int events_at_once = 64;
+// So many workers in a row that end before they begin a case: the launcher is wrong, not the case. One that was killed
+// says less about the launcher.
+constexpr int fruitless_limit = 3;
+constexpr int killed_fruitless_limit = 10;
 std::string joined(const std::vector<std::string>& words) {
     std::string text;
     for (const auto& word : words) text += (text.empty() ? "" : " ") + word;
@@ -63,37 +47,41 @@ std::string joined(const std::vector<std::string>& words) {
 }
 
 bool was_killed(int status) {
-    return WIFSIGNALED(status) && (WTERMSIG(status) == SIGKILL || WTERMSIG(status) == SIGTERM);
-}
-
-std::string describe_end(int status) {
-    if (WIFSIGNALED(status)) {
-        const int signal = WTERMSIG(status);
-        return "worker ended by signal " + std::to_string(signal) + " (" + ::strsignal(signal) + ")";
-    }
-    return "worker ended with exit code " + std::to_string(WEXITSTATUS(status));
+    return ending_signal(status) == SIGKILL || ending_signal(status) == SIGTERM;
 }
 
 }  // namespace
 
 struct Pool::Impl {
     struct Worker {
-        explicit Worker(asio::io_context& io) : in(io), out(io), err(io) {}
-        bp::child process;
-        bp::async_pipe in, out, err;
-        asio::streambuf buffer, log_buffer;
-        std::string log;
-        std::deque<campaign::Attempt> cases;  // the first is being computed
-        std::deque<std::string> outgoing;
-        Clock::time_point began{};
-        std::optional<Clock::time_point> killed_at;
-        bool ready = false, timed_out = false, retiring = false, ended = false, kill_sent = false;
-        std::string complaint;
+        Worker(std::shared_ptr<Child> process, const Expected& expected, double now)
+            : state(expected, now), child(std::move(process)) {}
+        WorkerState state;
+        std::shared_ptr<Child> child;
+        LineBuffer lines{longest_line};
+        double beat = -heartbeat_every;  // when a heartbeat was last passed on
+        bool told_to_stop = false, remarked = false;
+
+        [[nodiscard]] std::string name() const {
+            const auto& by = state.computer();
+            return by ? fmt::format("worker {} on {}", child->id(), by->host) : fmt::format("worker {}", child->id());
+        }
+    };
+    /// A process that no longer counts, until it is gone.
+    struct Dying {
+        std::shared_ptr<Child> child;
+        double since = 0;
+        double ask_at = 0, kill_at = 0;  // when it is sent TERM and KILL
+        bool asked = false, killed = false;
     };
 
-    explicit Impl(PoolOptions o) : options(std::move(o)), signals(io, SIGINT, SIGTERM) { await_signal(); }
+    explicit Impl(PoolOptions o) : options(std::move(o)), signals(io, SIGINT, SIGTERM, SIGUSR1) {
+        argv = options.launcher;
+        argv.insert(argv.end(), options.command.begin(), options.command.end());
+        await_signal();
+    }
 
-    // ---- events ------------------------------------------------------------------------------------------
+    // ---- reading -----------------------------------------------------------------------------------------
 
     void await_signal() {
         signals.async_wait([this](const boost::system::error_code& error, int) {
@@ -103,188 +91,271 @@ struct Pool::Impl {
         });
     }
 
-    void await_line(const std::shared_ptr<Worker>& worker) {
-        asio::async_read_until(worker->out, worker->buffer, '\n',
-                               [this, worker](const boost::system::error_code& error, std::size_t length) {
-                                   if (error) return lose(worker);
-                                   const auto* data = static_cast<const char*>(worker->buffer.data().data());
-                                   const std::string line(data, length);
-                                   worker->buffer.consume(length);
-                                   hear(worker, line);
-                                   if (!worker->ended) await_line(worker);
-                               });
+    void read(const std::shared_ptr<Worker>& worker, std::string_view piece) {
+        const bool fits = worker->lines.feed(piece, [&](std::string_view line) {
+            hear(worker, line);
+            return worker->state.phase() != Phase::dismissed;
+        });
+        if (fits || worker->state.phase() == Phase::dismissed) return;
+        dismiss_for(worker, fmt::format("the worker wrote a line of more than {} MB, beginning {}", longest_line >> 20U,
+                                        shortened(worker->lines.begun(), 200)));
     }
 
-    void await_log(const std::shared_ptr<Worker>& worker) {
-        asio::async_read(worker->err, worker->log_buffer, asio::transfer_at_least(1),
-                         [this, worker](const boost::system::error_code& error, std::size_t length) {
-                             const auto* data = static_cast<const char*>(worker->log_buffer.data().data());
-                             worker->log.append(data, length);
-                             worker->log_buffer.consume(length);
-                             if (worker->log.size() > kept_log_bytes) {
-                                 worker->log.erase(0, worker->log.size() - kept_log_bytes);
-                             }
-                             if (!error) await_log(worker);
-                         });
-    }
-
-    void hear(const std::shared_ptr<Worker>& worker, const std::string& line) {
-        try {
-            ToBoss message = decode_to_boss(line);
-            if (auto* done = std::get_if<Done>(&message)) {
-                take_off(*worker, done->result.attempt);
-                events.emplace_back(Finished{std::move(done->result), done->checkpointed});
-            } else if (auto* parked = std::get_if<Parked>(&message)) {
-                const bool begun = worker->ready && !worker->cases.empty() && parked->attempt == worker->cases.front();
-                const double seconds = begun ? seconds_since(worker->began) : 0;
-                take_off(*worker, parked->attempt);
-                events.emplace_back(GivenBack{parked->attempt, seconds});
-            } else if (auto* alive = std::get_if<Alive>(&message)) {
-                events.emplace_back(Heartbeat{alive->attempt, alive->progress});
-            } else if (const auto& ready = std::get<Ready>(message); ready.version == options.version) {
-                worker->ready = true;
-                worker->began = Clock::now();  // what it took to be launched is not the case's
-                unready_in_a_row = 0;
-            } else {
-                complain(*worker,
-                         fmt::format("the worker is build {}, the boss is build {}", ready.version, options.version));
-            }
-        } catch (const std::invalid_argument& error) {
-            complain(*worker, fmt::format("the worker wrote something that is no message: {}", error.what()));
+    void hear(const std::shared_ptr<Worker>& worker, std::string_view line) {
+        const bool fruitful = worker->state.has_begun_any();
+        auto meaning = worker->state.hear(line, clock.now());
+        if (!fruitful && worker->state.has_begun_any()) {
+            fruitless_in_a_row = 0;
+            pause = shortest_pause;
+        }
+        if (auto* finished = std::get_if<Finished>(&meaning)) {
+            events.emplace_back(std::move(*finished));
+        } else if (auto* beat = std::get_if<Heartbeat>(&meaning)) {
+            pass_on(*worker, std::move(*beat));
+        } else if (auto* back = std::get_if<GivenBack>(&meaning)) {
+            events.emplace_back(std::move(*back));
+            tell_to_stop(worker);  // it is leaving: no more cases, and it gives back what it has left
+        } else if (const auto* banner = std::get_if<WorkerState::Banner>(&meaning)) {
+            forgive(banner->line);
+        } else if (auto* complaint = std::get_if<WorkerState::Complaint>(&meaning)) {
+            dismiss_for(worker, std::move(complaint->why));
         }
     }
 
-    void complain(Worker& worker, std::string complaint) {
-        worker.complaint = std::move(complaint);
-        kill(worker, SIGKILL);
+    void pass_on(Worker& worker, Heartbeat beat) {
+        const double now = clock.now();
+        if (now - worker.beat < heartbeat_every) return;
+        worker.beat = now;
+        events.emplace_back(std::move(beat));
     }
 
-    static void take_off(Worker& worker, const campaign::Attempt& attempt) {
-        const auto found = std::ranges::find(worker.cases, attempt);
-        if (found == worker.cases.end()) throw std::invalid_argument("an answer to a case it was not given");
-        worker.cases.erase(found);
-        worker.began = Clock::now();
+    void forgive(const std::string& banner) {
+        if (banner.empty() || banner == forgiven) return;
+        forgiven = banner;
+        if (++remarks_on_banners > fruitless_limit) return;
+        events.emplace_back(Remark{
+            fmt::format("what starts the workers wrote to standard output, where only they should: '{}'", banner)});
     }
 
+    // ---- ends --------------------------------------------------------------------------------------------
+
+    /// End of file: the worker is gone, or as good as.
     void lose(const std::shared_ptr<Worker>& worker) {
-        if (worker->ended) return;
-        worker->ended = true;
-        kill(*worker, SIGKILL);  // whatever is left of its process group
-        std::error_code ignored;
-        worker->process.wait(ignored);
+        worker->child->signal(SIGKILL);  // whatever is left of its process group
+        worker->child->wait(2s);
+        const int status = worker->child->status();
+        Lost lost = account_for(*worker, describe_end(status));
+        lost.from_outside = ended_from_outside(status, worker->child->log());
+        lost.spoils_checkpoint = worker->state.resumed() || ending_signal(status) != SIGKILL;
+        bury(worker);
+        report(*worker, std::move(lost), was_killed(status));
+    }
+
+    /// It broke the protocol.
+    void dismiss_for(const std::shared_ptr<Worker>& worker, std::string complaint) {
+        Lost lost = account_for(*worker, complaint);
+        lost.spoils_checkpoint = true;
+        bury(worker);
+        report(*worker, std::move(lost), false);
+    }
+
+    Lost account_for(const Worker& worker, const std::string& reason) {
+        Lost lost;
+        lost.running = worker.state.running();
+        lost.queued = worker.state.waiting();
+        lost.seconds = worker.state.running_seconds(clock.now());
+        lost.reason = reason;
+        if (const auto& log = worker.child->log(); !log.empty()) lost.reason += "; it wrote: " + log;
+        if (!worker.state.was_ready() && !worker.state.banner().empty())
+            lost.reason += "; before that: " + worker.state.banner();
+        return lost;
+    }
+
+    void report(const Worker& worker, Lost lost, bool killed) {
+        const bool owed = lost.running || !lost.queued.empty();
+        if (!worker.state.has_begun_any() && (owed || !worker.state.was_ready() || worker.told_to_stop) && !retired)
+            note_fruitless(lost.reason, killed ? killed_fruitless_limit : fruitless_limit);
+        if (owed) events.emplace_back(std::move(lost));
+    }
+
+    /// A worker that never began a case, or could not be launched.
+    void note_fruitless(const std::string& reason, int limit) {
+        if (++fruitless_in_a_row < limit) return;
+        if (workers.empty()) {
+            broken = fmt::format("cannot start workers with '{}': {}", joined(argv), reason);
+            return;
+        }
+        not_before = clock.now() + pause;
+        if (pause == shortest_pause)
+            events.emplace_back(Remark{fmt::format(
+                "cannot start another worker with '{}': {}; going on with {}, and trying again now and then",
+                joined(argv), reason, workers.size())});
+        pause = std::min(2 * pause, longest_pause);
+    }
+
+    /// Nothing it wrote or will write counts; its process is on its way out.
+    void bury(const std::shared_ptr<Worker>& worker) {
+        worker->state.dismiss();
+        worker->child->close();
         std::erase(workers, worker);
-        if (worker->retiring && worker->cases.empty()) return;
-        std::vector<campaign::Attempt> queued(worker->cases.begin(), worker->cases.end());
-        std::optional<campaign::Attempt> running;
-        if (!queued.empty() && worker->ready) {  // a worker that was never ready has begun no case
-            running = queued.front();
-            queued.erase(queued.begin());
-        }
-        if (queued.empty() && !running && worker->ready) return;
-        std::string reason =
-            worker->complaint.empty() ? describe_end(worker->process.native_exit_code()) : worker->complaint;
-        if (!worker->log.empty()) reason += "; it wrote: " + worker->log;
-        const double seconds = seconds_since(worker->began);
-        const bool killed = worker->complaint.empty() && was_killed(worker->process.native_exit_code());
-        const int limit = killed ? killed_unready_limit : unready_limit;
-        if (!worker->ready && ++unready_in_a_row >= limit) {
-            broken = "cannot start workers with '" + joined(options.command) + "': " + reason;
-        }
-        if (worker->timed_out && running) {
-            events.emplace_back(TimedOut{*running, std::move(queued),
-                                         fmt::format("no answer within {} s", options.wall_seconds), seconds});
-        } else {
-            events.emplace_back(Lost{std::move(running), std::move(queued), std::move(reason), seconds});
-        }
+        if (!worker->child->runs()) return;
+        // A launcher is asked first, so that it ends what it launched.
+        const double now = clock.now();
+        const bool launched = !options.launcher.empty();
+        dying.push_back({worker->child, now, now, launched ? now + grace_before_kill : now});
+        hasten(dying.back(), now);
+    }
+
+    /// It gave back its case and is to end by itself; its place is free.
+    void let_go(const std::shared_ptr<Worker>& worker) {
+        Lost rest = account_for(*worker, "a worker gave back what it was given");
+        worker->state.dismiss();
+        worker->child->close();
+        std::erase(workers, worker);
+        report(*worker, std::move(rest), false);
+        const double now = clock.now();
+        dying.push_back({worker->child, now, now + grace_before_kill, now + 2 * grace_before_kill});
+    }
+
+    static void hasten(Dying& one, double now) {
+        if (now >= one.kill_at && !std::exchange(one.killed, true)) return one.child->signal(SIGKILL);
+        if (now >= one.ask_at && !std::exchange(one.asked, true)) one.child->signal(SIGTERM);
     }
 
     // ---- doing -------------------------------------------------------------------------------------------
 
-    std::shared_ptr<Worker> launch() {
-        auto worker = std::make_shared<Worker>(io);
-        for (auto* pipe : {&worker->in, &worker->out, &worker->err}) close_on_exec(*pipe);
+    /// False where none can be had now.
+    bool launch() {
         std::error_code error;
-        const auto& command = options.command;
-        const auto executable = program_of(command.front());
-        if (executable.empty())
-            throw std::runtime_error(fmt::format("cannot find '{}' to start a worker", command.front()));
-        worker->process = bp::child(
-            executable, bp::args(std::vector<std::string>(command.begin() + 1, command.end())),
-            bp::std_in<worker->in, bp::std_out> worker->out, bp::std_err > worker->err, error,
-            // a process group of its own: the terminal's Ctrl-C reaches only the boss, and a kill reaches all of it
-            bp::extend::on_exec_setup = [](auto&) { ::setpgid(0, 0); });
-        if (error)
-            throw std::runtime_error(
-                fmt::format("cannot start a worker with '{}': {}", command.front(), error.message()));
-        worker->began = Clock::now();
+        auto child = Child::start(io, argv, error);
+        if (child == nullptr) {
+            fruitless_in_a_row = fruitless_limit;  // another try at once would end the same way
+            note_fruitless(error.message(), fruitless_limit);
+            return false;
+        }
+        auto worker = std::make_shared<Worker>(std::move(child), options.expected, clock.now());
         workers.push_back(worker);
-        await_line(worker);
-        await_log(worker);
-        return worker;
+        worker->child->listen({[this, known = std::weak_ptr(worker)](std::string_view piece) {
+                                   if (const auto found = known.lock()) read(found, piece);
+                               },
+                               [this, known = std::weak_ptr(worker)] {
+                                   if (const auto found = known.lock()) lose(found);
+                               }});
+        return true;
     }
 
-    static void kill(Worker& worker, int signal) {
-        const pid_t pid = worker.process.id();
-        if (pid > 0 && ::kill(-pid, signal) != 0) ::kill(pid, signal);  // before it made its own group
+    static void send(const Worker& worker, const ToWorker& message) { worker.child->write(encode(message) + "\n"); }
+
+    void tell_to_stop(const std::shared_ptr<Worker>& worker) {
+        worker->state.stop();
+        if (!std::exchange(worker->told_to_stop, true)) send(*worker, Stop{});
     }
 
-    void send(const std::shared_ptr<Worker>& worker, const ToWorker& message) {
-        worker->outgoing.push_back(encode(message) + "\n");
-        if (worker->outgoing.size() == 1) write_next(worker);
-    }
-
-    void write_next(const std::shared_ptr<Worker>& worker) {
-        asio::async_write(worker->in, asio::buffer(worker->outgoing.front()),
-                          [this, worker](const boost::system::error_code& error, std::size_t) {
-                              if (error || worker->ended) return;  // its end of file will be heard
-                              worker->outgoing.pop_front();
-                              if (!worker->outgoing.empty()) write_next(worker);
-                          });
-    }
+    // ---- time --------------------------------------------------------------------------------------------
 
     void keep_time() {
-        const auto now = Clock::now();
+        const double now = clock.now();
+        if (now - looked < look_every) return;
+        looked = now;
         if (now - leased > lease_every) {
             leased = now;
-            for (const auto& worker : workers) send(worker, Lease{});
+            for (const auto& worker : workers)
+                if (worker->child->everything_is_written())
+                    send(*worker, Lease{});  // else it has not read the last one yet
         }
-        for (const auto& worker : workers) {
-            if (options.wall_seconds > 0 && worker->ready && !worker->cases.empty() && !worker->timed_out &&
-                now - worker->began > std::chrono::duration<double>(options.wall_seconds)) {
-                worker->timed_out = true;
-                worker->killed_at = now;
-                kill(*worker, SIGTERM);
+        const auto watched = workers;  // some may be dismissed
+        for (const auto& worker : watched) {
+            if (!retired && worker->state.phase() == Phase::leaving && !worker->state.running() &&
+                worker->state.silence(now) > time_to_leave) {
+                let_go(worker);
+                continue;
             }
-            if (worker->killed_at && !worker->kill_sent && now - *worker->killed_at > grace_before_kill) {
-                worker->kill_sent = true;
-                kill(*worker, SIGKILL);
-            }
+            remark(*worker, now);
+            check(worker, worker->state.overdue(options.limits, now), now);
+        }
+        std::erase_if(dying, [&](Dying& one) {
+            if (!one.child->runs()) return true;
+            hasten(one, now);
+            return false;
+        });
+    }
+
+    void check(const std::shared_ptr<Worker>& worker, WorkerState::Overdue overdue, double now) {
+        const auto& limits = options.limits;
+        if (overdue == WorkerState::Overdue::answer) {
+            TimedOut late{*worker->state.running(), worker->state.waiting(),
+                          fmt::format("no answer within {} s", limits.wall), worker->state.running_seconds(now)};
+            bury(worker);
+            events.emplace_back(std::move(late));
+        } else if (overdue == WorkerState::Overdue::silence) {
+            Lost lost = account_for(*worker, fmt::format("{} gave no sign of life for {} s and is replaced",
+                                                         worker->name(), limits.silence));
+            lost.from_outside = true;
+            bury(worker);
+            report(*worker, std::move(lost), true);
+        } else if (overdue == WorkerState::Overdue::start) {
+            Lost lost = account_for(
+                *worker, fmt::format("{} was not ready within {} s and is replaced", worker->name(), limits.start));
+            bury(worker);
+            events.emplace_back(Remark{lost.reason});
+            report(*worker, std::move(lost), false);
         }
     }
 
-    /// The worker the next case goes to: an idle one, a new one, or for short cases the shortest queue.
-    std::shared_ptr<Worker> place_for(double predicted_seconds) const {
-        std::shared_ptr<Worker> best;
-        for (const auto& worker : workers) {
-            if (worker->timed_out || worker->retiring) continue;
-            if (!best || worker->cases.size() < best->cases.size()) best = worker;
+    /// Says which worker is waited for, once, at half of its time.
+    void remark(Worker& worker, double now) {
+        const auto& limits = options.limits;
+        const double half_silence = limits.silence / 2;
+        if (!worker.state.was_ready()) {
+            const double limit = limits.start > 0 ? std::min(remark_on_start, limits.start / 2) : remark_on_start;
+            if (worker.remarked || now - worker.state.launched() < limit) return;
+            worker.remarked = true;
+            events.emplace_back(Remark{fmt::format("waiting for {} to be ready, {:.0f} s so far: started with '{}'",
+                                                   worker.name(), now - worker.state.launched(), joined(argv))});
+            return;
         }
-        if (best && best->cases.empty()) return best;
-        if (workers.size() < options.workers) return nullptr;  // launch one
-        if (best && predicted_seconds < short_case_seconds && best->cases.size() < queue_of_short_cases) return best;
-        return nullptr;
+        const double silence = worker.state.silence(now);
+        if (limits.silence <= 0 || silence < half_silence) {
+            worker.remarked = false;
+        } else if (!std::exchange(worker.remarked, true) && worker.state.cases() > 0) {
+            events.emplace_back(
+                Remark{fmt::format("waiting for a sign of life of {}, {:.0f} s so far", worker.name(), silence)});
+        }
+    }
+
+    // ---- where a case goes -------------------------------------------------------------------------------
+
+    [[nodiscard]] std::size_t free_workers() const {
+        return static_cast<std::size_t>(std::ranges::count_if(workers, [](const auto& worker) {
+            return worker->state.phase() == Phase::starting ||
+                   (worker->state.phase() == Phase::serving && worker->state.cases() == 0);
+        }));
+    }
+
+    /// Processes that are ending still use the machine, but one that cannot be ended must not keep its place.
+    [[nodiscard]] std::size_t places_taken(double now) const {
+        return workers.size() + static_cast<std::size_t>(std::ranges::count_if(dying, [&](const Dying& one) {
+                   return now - one.since < place_kept_by_the_dying;
+               }));
     }
 
     PoolOptions options;
+    std::vector<std::string> argv;  // of a worker, with its launcher
     asio::io_context io;
     asio::signal_set signals;
     std::vector<std::shared_ptr<Worker>> workers;
+    std::vector<Dying> dying;
     std::deque<PoolEvent> events;
-    Clock::time_point leased = Clock::now();
+    AwakeClock clock;
+    int events_before_reading = 0;
+    double leased = 0, looked = 0;
     int interruptions = 0;
     bool retired = false;
-    int unready_in_a_row = 0;  // workers lost before they said they were ready
-    std::string broken;        // why no worker can be had at all
+    int fruitless_in_a_row = 0;  // workers lost before they began a case
+    double not_before = 0, pause = shortest_pause;
+    std::string forgiven;  // the last banner
+    int remarks_on_banners = 0;
+    std::string broken;  // why no worker can be had at all
 };
 
 Pool::Pool(PoolOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {
@@ -295,23 +366,47 @@ Pool::~Pool() {
     dismiss();
 }
 
-bool Pool::has_room(double predicted_seconds) const {
-    return !impl_->retired &&
-           (impl_->workers.size() < impl_->options.workers || impl_->place_for(predicted_seconds) != nullptr);
+void Pool::expect(std::size_t cases) {
+    auto& pool = *impl_;
+    for (int launched = 0; launched < launches_at_once; ++launched) {
+        if (pool.retired || !pool.broken.empty() || pool.workers.size() >= pool.options.workers) return;
+        const double now = pool.clock.now();
+        if (now < pool.not_before || pool.places_taken(now) >= pool.options.workers || pool.free_workers() >= cases)
+            return;
+        if (!pool.launch()) return;
+    }
 }
 
-void Pool::start(const campaign::Attempt& attempt, const campaign::Case& question) {
-    auto worker = impl_->place_for(0);
-    if (!worker) worker = impl_->launch();
-    if (worker->cases.empty()) worker->began = Clock::now();
-    worker->cases.push_back(attempt);
-    impl_->send(worker, Run{attempt.number, question});
+std::optional<Place> Pool::place_for(double predicted_seconds) {
+    const auto& workers = impl_->workers;
+    const std::size_t none = workers.size();
+    std::size_t best = none;
+    for (std::size_t k = 0; k < workers.size() && !(best < none && workers[best]->state.cases() == 0); ++k) {
+        const auto& state = workers[k]->state;
+        if (state.phase() == Phase::serving && (best == none || state.cases() < workers[best]->state.cases())) best = k;
+    }
+    if (best == none || impl_->retired) return std::nullopt;
+    const auto& state = workers[best]->state;
+    const bool queues = predicted_seconds < short_case_seconds && state.cases() < queue_of_short_cases;
+    return state.cases() == 0 || queues ? std::optional(Place{best, state.computer()}) : std::nullopt;
+}
+
+void Pool::give(const Place& place, const campaign::Attempt& attempt, const campaign::Case& question) {
+    const auto& worker = impl_->workers.at(place.worker);
+    worker->state.give(attempt, impl_->clock.now());
+    Impl::send(*worker, Run{attempt.number, question});
 }
 
 std::optional<PoolEvent> Pool::wait(std::chrono::milliseconds at_most) {
+    using Clock = std::chrono::steady_clock;
     const auto until = Clock::now() + at_most;
-    impl_->io.poll();
-    impl_->keep_time();
+    // What has come is read before the clock is looked at: after events_at_once events, and no more than gives as many.
+    if (impl_->events.empty() || --impl_->events_before_reading <= 0) {
+        impl_->events_before_reading = events_at_once;
+        for (int k = 0; k < events_at_once && impl_->io.poll_one() > 0; ++k) {
+        }
+        impl_->keep_time();
+    }
     while (impl_->events.empty()) {
         if (!impl_->broken.empty()) throw std::runtime_error(impl_->broken);
         const auto left = until - Clock::now();
@@ -325,53 +420,41 @@ std::optional<PoolEvent> Pool::wait(std::chrono::milliseconds at_most) {
     return event;
 }
 
-std::size_t Pool::outstanding() const {
-    std::size_t count = 0;
-    for (const auto& worker : impl_->workers) count += worker->cases.size();
-    return count;
-}
-
 void Pool::retire() {
     impl_->retired = true;
-    for (const auto& worker : impl_->workers) {
-        worker->retiring = true;
-        impl_->send(worker, Stop{});
-    }
+    for (const auto& worker : impl_->workers) impl_->tell_to_stop(worker);
 }
 
 bool Pool::can_start(const std::string& program) {
-    return !program_of(program).empty();
+    return Child::can_start(program);
 }
 
 // A launcher has things to do after its worker has ended (srun gives its part of the machine back), so both are
-// asked, then told, and killed last. Workers that were retired and have nothing left to do end by themselves.
+// asked, then told, and killed last. Workers that were retired and have nothing left to do end by themselves. What
+// cannot even be killed (it waits for a dead file server) is left behind.
 void Pool::dismiss() {
-    const auto runs = [](const auto& worker) {
-        std::error_code ignored;
-        return worker->process.running(ignored);
-    };
-    const auto running = [&] { return std::ranges::any_of(impl_->workers, runs); };
-    const auto wait_for = [&](std::chrono::milliseconds at_most) {
-        const auto until = Clock::now() + at_most;
-        for (auto pause = 1ms; running() && Clock::now() < until;
-             pause = std::min<std::chrono::milliseconds>(2 * pause, 50ms))
-            std::this_thread::sleep_for(pause);
-    };
+    std::vector<std::shared_ptr<Child>> all;
     for (const auto& worker : impl_->workers) {
-        worker->ended = true;
-        if (!worker->retiring || !worker->cases.empty()) Impl::kill(*worker, SIGTERM);
+        const bool ends_by_itself = worker->told_to_stop && worker->state.was_ready() && worker->state.cases() == 0;
+        worker->state.dismiss();
+        if (!ends_by_itself) worker->child->signal(SIGTERM);
+        all.push_back(worker->child);
     }
-    wait_for(time_to_end);
-    for (const auto& worker : impl_->workers)
-        if (runs(worker)) Impl::kill(*worker, SIGTERM);
-    wait_for(grace_before_kill);
-    for (const auto& worker : impl_->workers) {
-        if (runs(worker)) Impl::kill(*worker, SIGKILL);
-        ::kill(-worker->process.id(), SIGKILL);  // whatever is left of its process group
-        std::error_code ignored;
-        worker->process.wait(ignored);
-    }
+    for (const auto& one : impl_->dying) all.push_back(one.child);
+    const auto running = [&] { return std::ranges::any_of(all, [](const auto& child) { return child->runs(); }); };
+    const auto signal_all = [&](int number) {
+        for (const auto& child : all)
+            if (child->runs()) child->signal(number);
+    };
+    constexpr auto grace = std::chrono::milliseconds(static_cast<int>(1000 * grace_before_kill));
+    wait_while(running, time_to_end);
+    signal_all(SIGTERM);
+    wait_while(running, grace);
+    for (const auto& child : all) child->signal(SIGKILL);  // and whatever is left of its process group
+    wait_while(running, grace);
+    for (const auto& child : all) child->close();
     impl_->workers.clear();
+    impl_->dying.clear();
 }
 
 }  // namespace grainsweep::workers

@@ -1,8 +1,9 @@
-// Worker processes of this same executable, kept for the whole campaign. The only file that knows
-// Boost.Process; it launches, listens and stops, and decides nothing.
+// Worker processes of this same executable, kept for the whole campaign: when one is started, given up and replaced.
+// How a process is started, read and ended is child.hpp's, what a worker may write when worker_state.hpp's.
 #pragma once
 
 #include "sweep/workers/crew.hpp"
+#include "sweep/workers/worker_state.hpp"
 
 #include <filesystem>
 #include <memory>
@@ -12,25 +13,27 @@
 namespace grainsweep::workers {
 
 struct PoolOptions {
-    std::vector<std::string> command;  ///< launcher prefix, executable, "worker", its arguments
+    std::vector<std::string> launcher;  ///< argv prefix; empty: the workers are children of this process
+    std::vector<std::string> command;   ///< executable, "worker", its arguments
     std::size_t workers = 1;
-    double wall_seconds = 0;  ///< limit of one case, from when its worker is ready for it; 0: none
-    std::string version;      ///< what a worker's Ready must say
+    TimeLimits limits;  ///< in this process's running time
+    Expected expected;
 };
 
 class Pool final : public Crew {
 public:
-    /// Launches lazily: a worker starts with the first case it is given, and again after one was lost; start() throws
-    /// std::runtime_error where the command cannot be started at all.
+    /// Launches lazily: as many workers as cases wait, again after one was lost, and after a pause where several could
+    /// not be started in a row while others work. expect() and wait() throw std::runtime_error where no worker can be
+    /// had at all.
     explicit Pool(PoolOptions options);
     /// Whether there is such a program, on the search path where the word is no path.
     [[nodiscard]] static bool can_start(const std::string& program);
     ~Pool() override;
 
-    [[nodiscard]] bool has_room(double predicted_seconds) const override;
-    void start(const campaign::Attempt& attempt, const campaign::Case& question) override;
+    void expect(std::size_t cases) override;
+    [[nodiscard]] std::optional<Place> place_for(double predicted_seconds) override;
+    void give(const Place& place, const campaign::Attempt& attempt, const campaign::Case& question) override;
     [[nodiscard]] std::optional<PoolEvent> wait(std::chrono::milliseconds at_most) override;
-    [[nodiscard]] std::size_t outstanding() const override;
     void retire() override;
     void dismiss() override;
 

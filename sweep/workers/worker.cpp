@@ -2,94 +2,24 @@
 
 #include "sweep/store/artefacts.hpp"
 #include "sweep/workers/compute.hpp"
+#include "sweep/workers/desk.hpp"
 #include "sweep/workers/message.hpp"
 
 #include <fmt/format.h>
 #include <sys/prctl.h>
-#include <unistd.h>
 
-#include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <csignal>
-#include <cstdio>
-#include <cstdlib>
-#include <deque>
-#include <iostream>
+#include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
-#include <thread>
+#include <string>
 #include <utility>
 
 namespace grainsweep::workers {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using namespace std::chrono_literals;
-
-/// What the boss said, read on a thread of its own so that an end of file is noticed in the middle of a
-/// case. When the boss is gone nobody can use an answer: the process ends at once.
-class Ear {
-public:
-    explicit Ear(double lease_seconds) : lease_(lease_seconds) {
-        std::thread([this] { listen(); }).detach();
-        std::thread([this] { mind_the_lease(); }).detach();
-    }
-
-    /// The next question; nothing once the boss said stop.
-    std::optional<Run> next() {
-        std::unique_lock lock(mutex_);
-        changed_.wait(lock, [this] { return stop_ || !questions_.empty(); });
-        if (stop_) return std::nullopt;
-        Run run = std::move(questions_.front());
-        questions_.pop_front();
-        return run;
-    }
-
-    bool stopped() const { return stop_; }
-
-    std::deque<Run> unanswered() {
-        const std::lock_guard lock(mutex_);
-        return std::exchange(questions_, {});
-    }
-
-private:
-    void listen() {
-        std::string line;
-        while (std::getline(std::cin, line)) {
-            silence_ = 0;
-            ToWorker message = decode_to_worker(line);
-            const std::lock_guard lock(mutex_);
-            if (auto* run = std::get_if<Run>(&message)) questions_.push_back(std::move(*run));
-            if (std::holds_alternative<Stop>(message)) stop_ = true;
-            changed_.notify_all();
-        }
-        std::_Exit(3);
-    }
-
-    // Counts its own seconds and looks at no clock: a process that is stopped (Ctrl-Z, a suspended machine) was not
-    // awake to hear its boss, who was stopped with it.
-    void mind_the_lease() {
-        while (true) {
-            std::this_thread::sleep_for(1s);
-            if (++silence_ > lease_) std::_Exit(3);
-        }
-    }
-
-    double lease_;
-    std::atomic<int> silence_ = 0;  // seconds
-    std::atomic<bool> stop_ = false;
-    std::mutex mutex_;
-    std::condition_variable changed_;
-    std::deque<Run> questions_;
-};
-
-void say(const ToBoss& message) {
-    const std::string line = encode(message) + "\n";
-    std::fwrite(line.data(), 1, line.size(), stdout);
-    std::fflush(stdout);
-}
 
 /// Shared starting states, kept apart by build and instruction path: another one rounds differently, and a state found
 /// must be to the last bit the one that would be computed.
@@ -136,25 +66,24 @@ private:
     bool exists_ = false;
 };
 
-/// Looks in on a running case: beats, saves, and gives it up after a stop.
-class Watchman {
+/// Looked at between the slices of a running case: tells that it makes headway, saves it now and then, and gives it up
+/// when the worker is to end.
+class CaseWatch {
 public:
-    Watchman(const Run& run, const WorkerOptions& options, const Ear& ear, Checkpoints& checkpoints)
-        : attempt_{run.question.id, run.attempt}, options_(options), ear_(ear), checkpoints_(checkpoints) {}
+    CaseWatch(const WorkerOptions& options, Desk& desk, Checkpoints& checkpoints)
+        : options_(options), desk_(desk), checkpoints_(checkpoints) {}
 
     bool operator()(const Scene& scene) {
+        desk_.advanced(scene.progress());
         const auto now = Clock::now();
-        if (now - beat_ > 1s) {
-            say(Alive{attempt_, scene.progress()});
-            beat_ = now;
-        }
         if (seconds(now - saved_) > options_.checkpoint_seconds) {
             checkpoints_.save(scene);
             saved_ = Clock::now();
         }
-        if (!ear_.stopped()) return true;
-        if (!stop_seen_) stop_seen_ = now;
-        if (seconds(now - *stop_seen_) < options_.park_seconds) return true;
+        const auto ending = desk_.ending();
+        if (ending == Ending::none) return true;
+        if (!ending_seen_) ending_seen_ = now;
+        if (ending == Ending::asked && seconds(now - *ending_seen_) < options_.finish_seconds) return true;
         checkpoints_.save(scene);
         return false;
     }
@@ -162,26 +91,25 @@ public:
 private:
     static double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
-    campaign::Attempt attempt_;
     const WorkerOptions& options_;
-    const Ear& ear_;
+    Desk& desk_;
     Checkpoints& checkpoints_;
-    Clock::time_point beat_ = Clock::now();
     Clock::time_point saved_ = Clock::now();
-    std::optional<Clock::time_point> stop_seen_;
+    std::optional<Clock::time_point> ending_seen_;
 };
 
-void answer(const Run& run, const WorkerOptions& options, store::ArtefactFolder* folder, Ear& ear) {
+void answer(const Run& run, const WorkerOptions& options, store::ArtefactFolder* folder, Desk& desk) {
     OwnArtefacts artefacts(folder, options.version);
     Checkpoints checkpoints(folder, run.question.id, options.version);
     // Looking for a checkpoint costs a failed open; only a case tried before can have one.
     const auto resume = run.attempt > 1 ? checkpoints.load() : std::nullopt;
-    Watchman watchman(run, options, ear, checkpoints);
-    auto result = compute(run.question, run.attempt, artefacts, resume, std::ref(watchman));
+    desk.begin({run.question.id, run.attempt}, resume.has_value());
+    CaseWatch watch(options, desk, checkpoints);
+    auto result = compute(run.question, run.attempt, artefacts, resume, std::ref(watch));
     if (result) {
-        say(Done{std::move(*result), checkpoints.exists()});
+        desk.answer(Done{std::move(*result), checkpoints.exists()});
     } else {
-        say(Parked{{run.question.id, run.attempt}});
+        desk.give_back();
     }
 }
 
@@ -193,17 +121,14 @@ std::string checkpoint_key(const campaign::CaseId& id, const std::string& versio
 
 int work(const WorkerOptions& options) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // a local boss; a remote one is noticed by end of file and lease
-    std::signal(SIGINT, SIG_IGN);        // Ctrl-C is the boss's to interpret
-    std::ios::sync_with_stdio(false);
     std::optional<store::ArtefactFolder> folder;
     if (!options.artefacts.empty()) folder.emplace(options.artefacts);
 
-    say(Ready{options.version, std::string(instruction_path())});
-    static Ear* ear = new Ear(options.lease_seconds);  // outlives main: its threads are never joined
-    while (const auto run = ear->next()) answer(*run, options, folder ? &*folder : nullptr, *ear);
-    for (const auto& run : ear->unanswered()) say(Parked{{run.question.id, run.attempt}});
-    std::fflush(stdout);
-    std::_Exit(0);
+    // Outlives main: its threads are never joined.
+    static Desk* desk = new Desk({options.lease_seconds, options.give_back_seconds});
+    desk->open(options.computer);
+    while (const auto run = desk->next()) answer(*run, options, folder ? &*folder : nullptr, *desk);
+    desk->close();
 }
 
 }  // namespace grainsweep::workers

@@ -104,12 +104,12 @@ struct Library {
 const std::vector<Library>& libraries() {
     static const std::vector<Library> table = {
         {"sqlite3.h", {"sweep/store/database", "sweep/store/expression"}},
-        {"boost/process", {"sweep/workers/pool."}},
-        {"boost/asio", {"sweep/workers/pool."}},
+        {"boost/process", {"sweep/workers/child."}},
+        {"boost/asio", {"sweep/workers/pool.", "sweep/workers/child."}},
         {"nlohmann/", {"sweep/campaign/", "sweep/workers/message.cpp", "sweep/report/", "sweep/cli/"}},
         {"CLI/", {"sweep/cli/parser.cpp"}},
         {"Eigen/", {"solver/", "stats/"}},
-        {"boost/", {"sweep/workers/pool.", "sweep/designs/", "solver/", "stats/"}},
+        {"boost/", {"sweep/workers/pool.", "sweep/workers/child.", "sweep/designs/", "solver/", "stats/"}},
         {"fmt/", {"sweep/"}},
         {"chrono", {"sweep/"}},
         {"fstream", {"sweep/"}},

@@ -186,10 +186,37 @@ TEST(Plan, GivenBackCasesCostNoTry) {
         const auto start = plan.next();
         ASSERT_TRUE(start);
         EXPECT_EQ(start->attempt.number, number);
-        plan.returned(start->attempt);
+        EXPECT_EQ(plan.given_back(start->attempt), Plan::Verdict::again);
     }
     const auto start = plan.next();
     EXPECT_EQ(plan.ended(start->attempt, Outcome::completed), Plan::Verdict::settled);
+}
+
+TEST(Plan, ACaseThatOnlyComesBackIsGivenUpOneThatGetsFurtherIsNot) {
+    Plan plan = make_plan(1, {.attempts = 1, .give_backs = 3});
+    const auto share_of = [](int number) { return number <= 6 ? 0.1 * number : 0.6; };
+    for (int number = 1; number <= 8; ++number) {
+        const auto start = plan.next();
+        ASSERT_TRUE(start) << number;
+        plan.advanced(start->attempt, share_of(number));
+        EXPECT_EQ(plan.given_back(start->attempt), number < 8 ? Plan::Verdict::again : Plan::Verdict::gave_up)
+            << number;
+    }
+    EXPECT_FALSE(plan.next());
+    EXPECT_EQ(plan.tally().failed, 1U);
+    EXPECT_EQ(plan.settled_prefix(), 1U);
+}
+
+TEST(Plan, CountsWhatCouldBeStartedNow) {
+    Plan plan = make_plan(5, {.max_cases = 3});
+    EXPECT_EQ(plan.waiting(), 3U);
+    const auto first = plan.next()->attempt;
+    EXPECT_EQ(plan.waiting(), 2U);
+    plan.given_back(first);
+    EXPECT_EQ(plan.waiting(), 3U);
+    plan.close();
+    EXPECT_EQ(plan.waiting(), 0U);
+    EXPECT_EQ(make_plan(5).waiting(), 5U);
 }
 
 TEST(Plan, ACaseNobodyBeganKeepsItsNumber) {
@@ -203,7 +230,7 @@ TEST(Plan, ACaseNobodyBeganKeepsItsNumber) {
 TEST(Plan, LateAnswersOfDeadAttemptsAreStale) {
     Plan plan = make_plan(1);
     const auto first = plan.next()->attempt;
-    plan.returned(first);
+    plan.given_back(first);
     const auto second = plan.next()->attempt;
     EXPECT_EQ(plan.ended(first, Outcome::completed), Plan::Verdict::stale);
     EXPECT_EQ(plan.ended(second, Outcome::completed), Plan::Verdict::settled);

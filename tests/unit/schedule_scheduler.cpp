@@ -27,8 +27,12 @@ public:
     using Script = std::function<workers::PoolEvent(const campaign::Attempt&)>;
     explicit ScriptedCrew(Script script, std::size_t room = 1) : script_(std::move(script)), room_(room) {}
 
-    [[nodiscard]] bool has_room(double) const override { return !retired && waiting_.size() < room_; }
-    void start(const campaign::Attempt& attempt, const campaign::Case&) override {
+    void expect(std::size_t cases) override { expected = cases; }
+    [[nodiscard]] std::optional<workers::Place> place_for(double) override {
+        if (retired || waiting_.size() >= room_) return std::nullopt;
+        return workers::Place{0, computer};
+    }
+    void give(const workers::Place&, const campaign::Attempt& attempt, const campaign::Case&) override {
         started.push_back(attempt);
         waiting_.push_back(attempt);
     }
@@ -39,11 +43,13 @@ public:
         if (!std::holds_alternative<workers::Interrupted>(event)) waiting_.pop_front();
         return event;
     }
-    [[nodiscard]] std::size_t outstanding() const override { return waiting_.size(); }
     void retire() override { retired = true; }
     void dismiss() override { dismissed = true; }
 
     std::vector<campaign::Attempt> started;
+    std::size_t expected = 0;
+    std::shared_ptr<const campaign::Computer> computer =
+        std::make_shared<const campaign::Computer>(campaign::Computer{"1", "c", "b", "avx2", "p", "its host"});
     bool retired = false, dismissed = false;
 
 private:
@@ -114,7 +120,10 @@ TEST_F(SchedulerLoop, ALostWorkersCaseIsTriedAgainAndItsQueueCostsNothing) {
         [&](const auto& attempt) -> workers::PoolEvent {
             if (losses < 2 && attempt.case_id == placed[0].question.id) {
                 ++losses;
-                return workers::Lost{attempt, {}, "worker ended by signal 9 (Killed)"};
+                workers::Lost lost;
+                lost.running = attempt;
+                lost.reason = "worker ended by signal 9 (Killed)";
+                return lost;
             }
             return completed(attempt);
         },
@@ -185,11 +194,82 @@ TEST_F(SchedulerLoop, ConvergenceFoundWhileStoppingIsStored) {
     EXPECT_EQ(store.campaigns().at(0).stopped_at, stopped);
 }
 
-TEST_F(SchedulerLoop, ParkedCasesAreAbandonedAndAskedAgain) {
+TEST_F(SchedulerLoop, StoresWhatComputedAnAttempt) {
+    ScriptedCrew crew([](const auto& attempt) { return completed(attempt); });
+    EXPECT_EQ(run(crew), Ending::finished);
+    EXPECT_EQ(store.attempts(placed[0].question.id).at(0).computer, *crew.computer);
+}
+
+TEST_F(SchedulerLoop, WhatEndsAWorkerFromOutsideCostsNoTry) {
+    int ended = 0;
+    std::vector<std::string> notes, forgotten;
+    Watchers watchers;
+    watchers.note = [&](const std::string& text) { notes.push_back(text); };
+    watchers.forget_checkpoint = [&](const campaign::CaseId& id) { forgotten.push_back(id); };
+    ScriptedCrew crew([&](const auto& attempt) -> workers::PoolEvent {
+        if (++ended > 4) return completed(attempt);
+        workers::Lost lost;
+        lost.running = attempt;
+        lost.reason = "worker ended by signal 15 (Terminated)";
+        lost.from_outside = lost.spoils_checkpoint = true;
+        return lost;
+    });
+    EXPECT_EQ(run(crew, {.attempts = 1}, std::move(watchers)), Ending::finished);
+    EXPECT_EQ(stored("completed"), 10);
+    const auto log = store.attempts(placed[0].question.id);
+    ASSERT_EQ(log.size(), 5U);
+    EXPECT_EQ(log[0].outcome, Outcome::abandoned);
+    EXPECT_EQ(log[0].message, "worker ended by signal 15 (Terminated)");
+    EXPECT_EQ(notes.size(), 4U);
+    EXPECT_TRUE(forgotten.empty()) << "its checkpoint is as good as before";
+}
+
+TEST_F(SchedulerLoop, ACheckpointThatACaseCrashedOnIsForgotten) {
+    int crashes = 0;
+    std::vector<std::string> forgotten;
+    Watchers watchers;
+    watchers.forget_checkpoint = [&](const campaign::CaseId& id) { forgotten.push_back(id); };
+    ScriptedCrew crew([&](const auto& attempt) -> workers::PoolEvent {
+        if (++crashes > 1) return completed(attempt);
+        workers::Lost lost;
+        lost.running = attempt;
+        lost.spoils_checkpoint = true;
+        return lost;
+    });
+    EXPECT_EQ(run(crew, {}, std::move(watchers)), Ending::finished);
+    EXPECT_EQ(forgotten, std::vector<std::string>{placed[0].question.id});
+}
+
+TEST_F(SchedulerLoop, ACaseThatOnlyComesBackEndsWithAMessage) {
+    ScriptedCrew crew([&](const auto& attempt) -> workers::PoolEvent {
+        if (attempt.case_id != placed[3].question.id) return completed(attempt);
+        return workers::GivenBack{attempt, "for no reason", 0, false};
+    });
+    EXPECT_EQ(run(crew), Ending::finished);
+    EXPECT_EQ(stored("completed"), 9);
+    const auto log = store.attempts(placed[3].question.id);
+    EXPECT_EQ(log.size(), static_cast<std::size_t>(Rules{}.give_backs));
+    EXPECT_EQ(log.back().outcome, Outcome::abandoned);
+    EXPECT_NE(log.back().message.find("for no reason; given back too often"), std::string::npos) << log.back().message;
+}
+
+TEST_F(SchedulerLoop, ACrashThatAWorkerTellsOfIsTriedAgain) {
+    int crashes = 0;
+    ScriptedCrew crew([&](const auto& attempt) -> workers::PoolEvent {
+        auto finished = completed(attempt);
+        if (++crashes <= 2) finished.result.outcome = Outcome::crashed;
+        return finished;
+    });
+    EXPECT_EQ(run(crew), Ending::finished);
+    EXPECT_EQ(stored("completed"), 10);
+    EXPECT_EQ(store.attempts(placed[0].question.id).size(), 3U);
+}
+
+TEST_F(SchedulerLoop, GivenBackCasesAreAbandonedAndAskedAgain) {
     bool interrupted = false;
     ScriptedCrew crew(
         [&](const auto& attempt) -> workers::PoolEvent {
-            if (attempt.case_id == placed[2].question.id) return workers::GivenBack{attempt};
+            if (attempt.case_id == placed[2].question.id) return workers::GivenBack{attempt, "", 0, true};
             if (attempt.case_id == placed[1].question.id && !interrupted) {
                 interrupted = true;
                 return workers::Interrupted{};

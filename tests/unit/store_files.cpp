@@ -136,7 +136,16 @@ void take_back_to_version_1(const std::filesystem::path& file) {
     store::Connection db(file, store::Connection::Access::write);
     for (const char* column : {"candidates", "asked_candidates", "asked_replicates"})
         db.execute("ALTER TABLE campaign DROP COLUMN " + std::string(column));
-    db.execute("DROP INDEX campaign_case_by_case; ALTER TABLE provenance DROP COLUMN process; PRAGMA user_version = 1");
+    db.execute(
+        "DROP INDEX campaign_case_by_case; ALTER TABLE provenance DROP COLUMN process;"
+        "CREATE TABLE attempt_1 (case_key INTEGER NOT NULL REFERENCES sim_case, number INTEGER NOT NULL, "
+        "provenance_id INTEGER NOT NULL REFERENCES provenance, started TEXT NOT NULL, outcome TEXT, message TEXT, "
+        "wall_seconds REAL, cpu_seconds REAL, particle_steps REAL, phases TEXT, PRIMARY KEY (case_key, number)) "
+        "STRICT, WITHOUT ROWID;"
+        "INSERT INTO attempt_1 SELECT case_key, number, provenance_id, started, outcome, message, wall_seconds, "
+        "cpu_seconds, particle_steps, phases FROM attempt;"
+        "DROP TABLE attempt; ALTER TABLE attempt_1 RENAME TO attempt; DROP TABLE attempt_computer;"
+        "PRAGMA user_version = 1");
 }
 
 TEST(StoreFiles, AnOlderSchemaIsReadAsItIsAndBroughtUpToDateByTheNextRun) {
@@ -157,6 +166,7 @@ TEST(StoreFiles, AnOlderSchemaIsReadAsItIsAndBroughtUpToDateByTheNextRun) {
         EXPECT_EQ(dump_of(store), before);
         EXPECT_EQ(only_cell(store, "SELECT count(*) FROM c JOIN series USING (case_id)"), "0");
         EXPECT_EQ(only_cell(store, indexed), "0");
+        EXPECT_EQ(store.attempts(cases[1].question.id).at(0).computer.host, here().host);
     }
     {
         Store store(file, Store::Mode::create);
@@ -165,6 +175,7 @@ TEST(StoreFiles, AnOlderSchemaIsReadAsItIsAndBroughtUpToDateByTheNextRun) {
     const Store store(file, Store::Mode::read);
     EXPECT_EQ(dump_of(store), before);
     EXPECT_EQ(only_cell(store, indexed), "1");
+    EXPECT_EQ(store.attempts(cases[1].question.id).at(0).computer.host, here().host);
 }
 
 TEST(StoreFiles, TheJournalFitsTheFileSystem) {

@@ -127,11 +127,11 @@ TEST_F(StoreResults, FailuresAreCounted) {
     failed.outcome = Outcome::crashed;
     failed.message = "killed by signal 9";
     store.group([&] {
-        store.begin(failed.attempt);
+        store.begin(failed.attempt, {"0.1.0", "abc123", "feed", "avx2", "its processor", "its host"});
         store.finish(failed);
         failed.attempt.number = 2;
         failed.outcome = Outcome::timed_out;
-        store.begin(failed.attempt);
+        store.begin(failed.attempt, {"0.1.0", "abc123", "feed", "x86-64-v2", "another", "its host"});
         store.finish(failed);
         store.begin({one.id, 3});
     });
@@ -142,8 +142,8 @@ TEST_F(StoreResults, FailuresAreCounted) {
     const auto log = store.attempts(one.id);
     ASSERT_EQ(log.size(), 3u);
     EXPECT_EQ(log[0].message, "killed by signal 9");
-    EXPECT_EQ(log[0].host, "a host");
-    EXPECT_EQ(log[0].instruction_path, "x86-64-v2");
+    EXPECT_EQ(log[0].computer, (campaign::Computer{"0.1.0", "abc123", "feed", "avx2", "its processor", "its host"}));
+    EXPECT_EQ(log[1].computer.instruction_path, "x86-64-v2") << "on mixed machines it is not the run's";
     EXPECT_FALSE(log[2].outcome);
     EXPECT_EQ(log[2].started.size(), std::string("2026-01-31T12:00:00.000Z").size());
 }
@@ -153,20 +153,29 @@ TEST_F(StoreResults, AGroupThatThrowsLeavesNothing) {
     EXPECT_THROW(store.group([&] {
         store.begin({one.id, 1});
         auto given = answer(one, 1);
-        given.observations.scalars["undeclared"] = 1;
         store.finish(given);
         throw std::runtime_error("lost");
     }),
                  std::runtime_error);
     EXPECT_EQ(dump_of(store), before);
     EXPECT_TRUE(store.attempts(one.id).empty());
-    auto given = answer(one, 1);
-    given.observations.scalars["undeclared"] = 2;
-    store.group([&] {
-        store.begin({one.id, 1});
-        store.finish(given);
-    });
-    EXPECT_EQ(store.result(one.id)->observations.scalars.at("undeclared"), 2) << "no answer is lost";
+    settle(store, one, 1);
+    EXPECT_EQ(store.attempts(one.id).size(), 1u);
+}
+
+TEST_F(StoreResults, AnObservableThatTheSceneDoesNotDeclareIsRefused) {
+    for (const bool scalar : {true, false}) {
+        auto given = answer(one, 1);
+        if (scalar) given.observations.scalars["undeclared"] = 2;
+        if (!scalar) given.observations.series["undeclared"] = {{.time = 0, .value = 1}};
+        EXPECT_THROW(store.group([&] {
+            store.begin({one.id, 1});
+            store.finish(given);
+        }),
+                     std::logic_error);
+    }
+    EXPECT_TRUE(store.attempts(one.id).empty());
+    EXPECT_EQ(only_cell(store, "SELECT count(*) FROM observable WHERE name = 'undeclared'"), "0");
 }
 
 TEST_F(StoreResults, WritingOutsideAGroupIsAMistake) {

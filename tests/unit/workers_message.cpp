@@ -51,6 +51,33 @@ TEST(Message, AnAnswerSurvivesTheTripToTheLastBit) {
     EXPECT_TRUE(back.checkpointed);
 }
 
+TEST(Message, WhatAWorkerSaysOfItselfAndItsCasesSurvivesTheTrip) {
+    const campaign::Computer by{"0.1.0", "abc", "feed", "avx2", "a \"processor\"", "node3"};
+    const auto ready = std::get<Ready>(decode_to_boss(encode(Ready{protocol_number, by})));
+    EXPECT_EQ(ready.protocol, protocol_number);
+    EXPECT_EQ(ready.computer, by);
+    const auto begun = std::get<Begun>(decode_to_boss(encode(Begun{{"ab", 2}, true})));
+    EXPECT_EQ(begun.attempt, (campaign::Attempt{"ab", 2}));
+    EXPECT_TRUE(begun.resumed);
+    const auto spaced = std::get<Begun>(
+        decode_to_boss(R"({"begun": {"id": "ab", "attempt": 2, "resumed": true}})"));  // in another form
+    EXPECT_EQ(spaced.attempt, begun.attempt);
+    EXPECT_TRUE(spaced.resumed);
+    const auto odd = std::get<Begun>(decode_to_boss(encode(Begun{{"a \"b\"", 3}, false})));
+    EXPECT_EQ(odd.attempt, (campaign::Attempt{"a \"b\"", 3}));
+    EXPECT_FALSE(odd.resumed);
+    const auto back = std::get<GiveBack>(decode_to_boss(encode(GiveBack{{"ab", 2}, "by signal 15"})));
+    EXPECT_EQ(back.attempt, (campaign::Attempt{"ab", 2}));
+    EXPECT_EQ(back.reason, "by signal 15");
+    EXPECT_TRUE(std::isnan(
+        std::get<Alive>(decode_to_boss(encode(Alive{{"ab", 2}, std::numeric_limits<double>::quiet_NaN()}))).progress));
+}
+
+TEST(Message, AnotherProtocolIsUnderstoodAsFarAsItsNumber) {
+    EXPECT_EQ(std::get<Ready>(decode_to_boss(R"({"ready": {"version": "0.1.0", "path": "avx2"}})")).protocol, 1);
+    EXPECT_EQ(std::get<Ready>(decode_to_boss(R"({"ready": {"protocol": 99}})")).protocol, 99);
+}
+
 TEST(Message, HeartbeatsAreShort) {
     const std::string line = encode(ToBoss{Alive{{std::string(32, 'f'), 12}, 0.123456789012345}});
     EXPECT_LT(line.size(), 200U);

@@ -1,0 +1,50 @@
+// Puts lines together from what a pipe brings, piece by piece, and never keeps more than one line.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace grainsweep::workers {
+
+class LineBuffer {
+public:
+    /// `longest`: bytes of a line without its end.
+    explicit LineBuffer(std::size_t longest) : longest_(longest) {}
+
+    /// Calls `take(line)` for every line that `piece` completes, without its end, until it returns false. Returns
+    /// false where a line grows too long: the buffer is then of no further use.
+    template <class Take>
+    [[nodiscard]] bool feed(std::string_view piece, Take&& take) {
+        while (!piece.empty()) {
+            const std::size_t end = piece.find('\n');
+            if (begun_.size() + (end == std::string_view::npos ? piece.size() : end) > longest_) return false;
+            if (end == std::string_view::npos) {
+                begun_.append(piece);
+                return true;
+            }
+            bool more = false;
+            if (begun_.empty()) {
+                more = take(piece.substr(0, end));
+            } else {
+                begun_.append(piece.substr(0, end));
+                more = take(std::string_view(begun_));
+                begun_.clear();
+                if (begun_.capacity() > kept_capacity) begun_.shrink_to_fit();
+            }
+            if (!more) return true;
+            piece.remove_prefix(end + 1);
+        }
+        return true;
+    }
+
+    /// A line without its end, so far.
+    [[nodiscard]] std::string_view begun() const { return begun_; }
+
+private:
+    static constexpr std::size_t kept_capacity = std::size_t{1} << 16U;
+    std::size_t longest_;
+    std::string begun_;
+};
+
+}  // namespace grainsweep::workers

@@ -1,0 +1,104 @@
+// The boss's side of the protocol: what a worker may write when, and what it has in hands. The state diagram is in
+// message.hpp. Pure: sees no process, pipe or clock; `now` is seconds on any clock that only grows.
+#pragma once
+
+#include "solver/scenes/values.hpp"
+#include "sweep/campaign/case.hpp"
+#include "sweep/workers/crew.hpp"
+#include "sweep/workers/message.hpp"
+
+#include <cstddef>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace grainsweep::workers {
+
+/// What a worker must be, and may measure.
+struct Expected {
+    campaign::Computer program;                          ///< version, commit and build count, where it runs does not
+    std::map<std::string, Shape, std::less<>> measured;  ///< observables of the scene
+};
+
+/// Seconds; 0: no limit.
+struct TimeLimits {
+    double wall = 0;      ///< of one case, from when it is begun
+    double start = 300;   ///< until a worker is ready
+    double silence = 60;  ///< of a worker that owes something
+};
+
+class WorkerState {
+public:
+    enum class Phase { starting, serving, leaving, dismissed };
+
+    /// A line before `ready` that is no message: the launcher's, which may greet.
+    struct Banner {
+        std::string line;
+    };
+    /// What is against the protocol; the worker must be dismissed.
+    struct Complaint {
+        std::string why;
+    };
+    struct Nothing {};
+    using Meaning = std::variant<Nothing, Finished, Heartbeat, GivenBack, Banner, Complaint>;
+
+    WorkerState(const Expected& expected, double now) : expected_(&expected), launched_(now), heard_(now) {}
+
+    /// A line of its standard output.
+    [[nodiscard]] Meaning hear(std::string_view line, double now);
+    /// A case is written to it. Only while it serves.
+    void give(const campaign::Attempt& attempt, double now);
+    /// `stop` is written to it.
+    void stop();
+    /// It is being ended; nothing it writes counts from now on.
+    void dismiss() { phase_ = Phase::dismissed; }
+
+    enum class Overdue { nothing, start, silence, answer };
+    [[nodiscard]] Overdue overdue(const TimeLimits& limits, double now) const;
+    /// Seconds since it last wrote while something was expected of it.
+    [[nodiscard]] double silence(double now) const;
+
+    [[nodiscard]] Phase phase() const { return phase_; }
+    [[nodiscard]] bool was_ready() const { return computer_ != nullptr; }
+    [[nodiscard]] bool has_begun_any() const { return has_begun_any_; }
+    [[nodiscard]] std::size_t cases() const { return given_.size(); }
+    /// The case it has begun and not answered.
+    [[nodiscard]] std::optional<campaign::Attempt> running() const;
+    [[nodiscard]] bool resumed() const { return resumed_; }  ///< whether the running one is, from a checkpoint
+    [[nodiscard]] double running_seconds(double now) const { return begun_ ? now - began_ : 0; }
+    /// What it was given and has not begun.
+    [[nodiscard]] std::vector<campaign::Attempt> waiting() const;
+    [[nodiscard]] const std::shared_ptr<const campaign::Computer>& computer() const { return computer_; }
+    [[nodiscard]] const std::string& banner() const { return banner_; }  ///< what was forgiven, shortened
+    [[nodiscard]] double launched() const { return launched_; }
+
+private:
+    [[nodiscard]] Meaning hear_starting(std::string_view line, double now);
+    [[nodiscard]] Meaning understand(Begun& begun, double now);
+    [[nodiscard]] Meaning understand(const Alive& alive, double now);
+    [[nodiscard]] Meaning understand(Done& done);
+    [[nodiscard]] Meaning understand(GiveBack& back, double now);
+    [[nodiscard]] std::optional<std::string> undeclared(const Observations& observations) const;
+    [[nodiscard]] bool is_running(const campaign::Attempt& attempt) const;
+
+    const Expected* expected_;
+    Phase phase_ = Phase::starting;
+    std::shared_ptr<const campaign::Computer> computer_;
+    std::deque<campaign::Attempt> given_;  ///< in order; where `begun_`, the first is being computed
+    bool begun_ = false, resumed_ = false, has_begun_any_ = false;
+    double launched_ = 0, heard_ = 0, began_ = 0;
+    double second_ = 0;  ///< heartbeats are counted from here
+    int heartbeats_ = 0;
+    std::string banner_;
+    std::size_t banner_bytes_ = 0;
+};
+
+/// Not longer than `bytes`, cut between characters.
+[[nodiscard]] std::string shortened(std::string_view text, std::size_t bytes);
+
+}  // namespace grainsweep::workers
