@@ -6,8 +6,8 @@
 
 namespace grainsweep::workers {
 
-/// Asked at least a few times a second, else the time between two calls counts as a second at most: a process that
-/// did not come to ask was stopped, or too busy to have noticed what it waits for.
+/// Asked several times a second; the time between two calls counts as a quarter of a second at most: a process that did
+/// not come to ask was stopped, or too busy to have noticed what it waits for.
 class AwakeClock {
 public:
     explicit AwakeClock(std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now())
@@ -24,7 +24,7 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
-    static constexpr double longest_gap = 1;
+    static constexpr double longest_gap = 0.25;
     Clock::time_point asked_;
     double seconds_ = 0;
 };

@@ -378,6 +378,7 @@ void Pool::expect(std::size_t cases) {
 }
 
 std::optional<Place> Pool::place_for(double predicted_seconds) {
+    if (!impl_->events.empty()) return std::nullopt;  // what is known already may end the run
     const auto& workers = impl_->workers;
     const std::size_t none = workers.size();
     std::size_t best = none;

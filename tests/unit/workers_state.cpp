@@ -235,10 +235,10 @@ TEST(AwakeClock, DoesNotCountWhatItSpentStopped) {
     using namespace std::chrono_literals;
     std::chrono::steady_clock::time_point moment{};
     AwakeClock clock(moment);
-    EXPECT_DOUBLE_EQ(clock.at(moment += 500ms), 0.5);
-    EXPECT_DOUBLE_EQ(clock.at(moment += 250ms), 0.75);
-    EXPECT_DOUBLE_EQ(clock.at(moment += 1min), 1.75) << "a gap counts as a second at most";
-    EXPECT_DOUBLE_EQ(clock.at(moment += 250ms), 2);
+    EXPECT_DOUBLE_EQ(clock.at(moment += 125ms), 0.125);
+    EXPECT_DOUBLE_EQ(clock.at(moment += 125ms), 0.25);
+    EXPECT_DOUBLE_EQ(clock.at(moment += 1min), 0.5) << "a gap counts as a quarter of a second at most";
+    EXPECT_DOUBLE_EQ(clock.at(moment += 125ms), 0.625);
 }
 
 }  // namespace
