@@ -50,7 +50,7 @@ spreading() {
 cell() {
     "$program" solve "$here/configs/gupta_quick.json" --set cell=gyroid --set cohesion=25000 --set edge=30 --set gravity=32.7 \
         --set end_time=2 --watch cell.html
-    shoot "cell.html#t=0.4" cell 900 640 0.8
+    shoot "cell.html#t=0.4" cell 900 640 0.75
 }
 
 # Particles gathered at two side walls of the vibrated cube, seen along x, without the slice of the flow.
