@@ -1,5 +1,7 @@
 #include "tests/support/archive.hpp"
 
+#include "sweep/store/database.hpp"
+
 #include "solver/scenes/catalogue.hpp"
 
 #include <unistd.h>
@@ -87,6 +89,23 @@ void settle(store::Store& store, const campaign::Case& question, std::int64_t at
         store.begin({question.id, attempt});
         if (!store.finish(answer(question, attempt))) throw std::logic_error("taken for stale");
     });
+}
+
+void take_back_to_schema(int version, const std::filesystem::path& file) {
+    store::Connection db(file, store::Connection::Access::write);
+    // 4: a column with a foreign key cannot be dropped
+    db.execute(
+        "CREATE TABLE attempt_1 (case_key INTEGER NOT NULL REFERENCES sim_case, number INTEGER NOT NULL, "
+        "provenance_id INTEGER NOT NULL REFERENCES provenance, started TEXT NOT NULL, outcome TEXT, message TEXT, "
+        "wall_seconds REAL, cpu_seconds REAL, particle_steps REAL, phases TEXT, PRIMARY KEY (case_key, number)) "
+        "STRICT, WITHOUT ROWID;"
+        "INSERT INTO attempt_1 SELECT case_key, number, provenance_id, started, outcome, message, wall_seconds, "
+        "cpu_seconds, particle_steps, phases FROM attempt;"
+        "DROP TABLE attempt; ALTER TABLE attempt_1 RENAME TO attempt; DROP TABLE attempt_computer");
+    for (const char* column : {"candidates", "asked_candidates", "asked_replicates"})  // 3
+        db.execute("ALTER TABLE campaign DROP COLUMN " + std::string(column));
+    if (version < 2) db.execute("DROP INDEX campaign_case_by_case; ALTER TABLE provenance DROP COLUMN process");
+    db.execute("PRAGMA user_version = " + std::to_string(version));
 }
 
 std::string dump_of(const store::Store& store) {

@@ -37,6 +37,9 @@ private:
 /// begin and finish, in one group.
 void settle(store::Store& store, const campaign::Case& question, std::int64_t attempt);
 
+/// Gives the file the form of an older schema (1 or 2), with what is in it.
+void take_back_to_schema(int version, const std::filesystem::path& file);
+
 [[nodiscard]] std::string dump_of(const store::Store& store);
 /// The only cell of a query's answer, as text.
 [[nodiscard]] std::string only_cell(const store::Store& store, std::string_view sql);

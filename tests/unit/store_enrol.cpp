@@ -208,10 +208,7 @@ TEST_F(StoreEnrol, AnArchiveWithoutExtentsIsReadAsItIsPlaced) {
     const auto campaign = small_campaign("c");
     store.enrol(campaign, small_design(campaign, 10), here());
     store = Store(folder / "other.db", Store::Mode::create);
-    store::Connection(file, store::Connection::Access::write)
-        .execute(
-            "ALTER TABLE campaign DROP COLUMN candidates; ALTER TABLE campaign DROP COLUMN asked_candidates; "
-            "ALTER TABLE campaign DROP COLUMN asked_replicates; PRAGMA user_version = 2");
+    take_back_to_schema(2, file);
     store = Store(file, Store::Mode::read);
     EXPECT_EQ(store.campaigns()[0].stored, (store::Extent{10, 1}));
     EXPECT_FALSE(store.campaigns()[0].shrunk());

@@ -131,23 +131,6 @@ TEST(StoreFiles, AReaderChangesNothing) {
     EXPECT_THROW(reader.execute("CREATE TABLE t (x)"), BrokenWorld);
 }
 
-/// The schema of version 1, with what was enrolled.
-void take_back_to_version_1(const std::filesystem::path& file) {
-    store::Connection db(file, store::Connection::Access::write);
-    for (const char* column : {"candidates", "asked_candidates", "asked_replicates"})
-        db.execute("ALTER TABLE campaign DROP COLUMN " + std::string(column));
-    db.execute(
-        "DROP INDEX campaign_case_by_case; ALTER TABLE provenance DROP COLUMN process;"
-        "CREATE TABLE attempt_1 (case_key INTEGER NOT NULL REFERENCES sim_case, number INTEGER NOT NULL, "
-        "provenance_id INTEGER NOT NULL REFERENCES provenance, started TEXT NOT NULL, outcome TEXT, message TEXT, "
-        "wall_seconds REAL, cpu_seconds REAL, particle_steps REAL, phases TEXT, PRIMARY KEY (case_key, number)) "
-        "STRICT, WITHOUT ROWID;"
-        "INSERT INTO attempt_1 SELECT case_key, number, provenance_id, started, outcome, message, wall_seconds, "
-        "cpu_seconds, particle_steps, phases FROM attempt;"
-        "DROP TABLE attempt; ALTER TABLE attempt_1 RENAME TO attempt; DROP TABLE attempt_computer;"
-        "PRAGMA user_version = 1");
-}
-
 TEST(StoreFiles, AnOlderSchemaIsReadAsItIsAndBroughtUpToDateByTheNextRun) {
     const Folder folder;
     const auto file = folder / "a.db";
@@ -159,7 +142,7 @@ TEST(StoreFiles, AnOlderSchemaIsReadAsItIsAndBroughtUpToDateByTheNextRun) {
         settle(store, cases[1].question, 1);
     }
     const std::string before = dump_of(Store(file, Store::Mode::read));
-    take_back_to_version_1(file);
+    take_back_to_schema(1, file);
     const std::string indexed = "SELECT count(*) FROM sqlite_schema WHERE name = 'campaign_case_by_case'";
     {
         const Store store(file, Store::Mode::read);
