@@ -88,7 +88,7 @@ run)
     build_program
     said=$(mktemp) code=0
     "$here/build/grainsweep" run "$@" | tee -i "$said" || code=$?
-    database=$(sed -n 's/^database \(.*\); next: .*/\1/p' "$said")
+    database=$(sed -n 's/^next: grainsweep report //p' "$said")
     rm -f "$said"
     [ -z "$database" ] || "$here/build/grainsweep" report "$database"
     exit "$code"

@@ -227,6 +227,20 @@ std::string name_of(const ::testing::TestParamInfo<Page>& info) {
 
 INSTANTIATE_TEST_SUITE_P(Documents, Commands, ::testing::ValuesIn(pages_with_blocks()), name_of);
 
+// Only the compiler is left out: what the run prints must lead to the page, also where a name has a space.
+TEST(Bootstrap, RunsACampaignAndWritesItsPage) {
+    const Clone clone;
+    expect_success(clone.bash("mkdir tools\n"
+                              "printf '#!/bin/sh\\n' > tools/cmake\n"
+                              "chmod +x tools/cmake\n"
+                              "export PATH=\"$PWD/tools:$PATH\"\n"
+                              "./bootstrap.sh run configs/rehearsal_small.json -j 1\n"
+                              "test -s rehearsal_small.html\n"
+                              "./bootstrap.sh run configs/rehearsal_small.json -j 1 --db 'a first try.db'\n"
+                              "test -s 'a first try.html'\n"),
+                   "bootstrap.sh run");
+}
+
 TEST(Options, InTheDocumentsExist) {
     // Of other programs, as the documents use them.
     std::set<std::string> known = {"--gtest_filter", "--preset", "--build", "--target",
