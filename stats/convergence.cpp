@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::array<std::string_view, 3> rule_names = {"replicates", "any_change", "all_change"};
 constexpr std::int64_t fewest_sequences = 4;
+constexpr std::int64_t fewest_values = 4;  // of each sequence, for an error of anything but the mean
 
 /// An error in the unit of the statistic -> what the tolerance is compared with.
 double scaled(Statistic statistic, double error, double value) {
@@ -135,8 +136,13 @@ void Convergence::find_errors(Checkpoint& now) {
         const auto parts = stretches_.leave_one_out();
         summaries.assign(parts.begin(), parts.end());
     }
+    // Of fewer values the spread and the shape are all but given by their number (the kurtosis of two is 1), and say
+    // nothing of an error.
+    const bool too_few =
+        !sequences_.empty() && std::ranges::any_of(summaries, [](const Summary& x) { return x.count < fewest_values; });
     std::vector<double> repetitions(summaries.size());
     for (std::size_t s = 0; s < statistics.size(); ++s) {
+        if (too_few && statistics[s] != Statistic::mean) continue;
         std::ranges::transform(summaries, repetitions.begin(), [&](const Summary& x) { return x.of(statistics[s]); });
         now.estimates[s].error =
             sequences_.empty() ? jackknife_half_width(repetitions) : student_half_width(repetitions);

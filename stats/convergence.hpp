@@ -10,8 +10,9 @@
 //   any_change  e = change since the check before; any one gate below the tolerance. The rule of the thesis this
 //               program began with; it stops too early in about half of all sweeps.
 //   all_change  the same, every gate below the tolerance.
-// The errors shown beside the values are the Student-t half-width where there are at least 4 sequences; else a
-// delete-a-group jackknife over 8 consecutive stretches of the points (see confidence.hpp).
+// The errors shown beside the values are the Student-t half-width where there are at least 4 sequences (of all but the
+// mean once each has 4 values); else a delete-a-group jackknife over 8 consecutive stretches of the points (see
+// confidence.hpp).
 //
 // What is undefined never passes. Pearson's skewness is refused as a gate while between 45 and 55 % of the
 // values are zero: there the median jumps between zero and the rest.

@@ -148,6 +148,18 @@ TEST(Convergence, UndefinedNeverPasses) {
     EXPECT_EQ(nothing.back().excluded, 1600);
 }
 
+// The kurtosis of two values is 1, of three 1.5, whatever they are: their agreement is no small error.
+TEST(Convergence, ErrorsOfTheShapeNeedFourValuesInEachSequence) {
+    const auto values = uniform(40, 6);
+    const auto checks = judge_convergence(replicates({Statistic::mean}, 0.01, 8), numbers(40), values, 40);
+    ASSERT_EQ(checks.size(), 5U);
+    for (const auto& check : checks) {
+        EXPECT_TRUE(std::isfinite(check.of(Statistic::mean).error)) << check.points;
+        for (const auto statistic : {Statistic::sd, Statistic::skewness, Statistic::g1, Statistic::kurtosis})
+            EXPECT_EQ(std::isfinite(check.of(statistic).error), check.points >= 32) << check.points;
+    }
+}
+
 TEST(Convergence, PearsonIsRefusedWhereHalfTheValuesAreZero) {
     auto values = uniform(8000, 4);
     for (auto& value : values) value = value < 0.5 ? 0 : value;
