@@ -124,7 +124,8 @@ std::string why(const std::vector<store::LoggedAttempt>& attempts, const std::ve
         return passed_by.empty() ? "it was never begun: the next run of its campaign starts it"
                                  : fmt::format("it was never begun and will not be: {}", passed_by);
     const auto& last = attempts.back();
-    if (!last.outcome) return next_run("its last attempt is under way, or its boss died: the next run starts it again");
+    if (!last.outcome)
+        return next_run("its last attempt is under way, or the program that ran it died: the next run starts it again");
     switch (*last.outcome) {
         case Outcome::completed:
         case Outcome::skipped:
@@ -161,6 +162,13 @@ Table attempts_table(const std::vector<store::LoggedAttempt>& attempts) {
     return table;
 }
 
+/// The case and the points it answers, so that an id that begins like a point's number is not mistaken for it.
+std::string heading_of(const Store& archive, const campaign::CaseId& id) {
+    std::string line = fmt::format("case {}", id);
+    for (const auto& place : archive.places(id)) line += fmt::format(", point {} of {}", place.point, place.campaign);
+    return line;
+}
+
 int explain(const std::string& database, const std::string& id, Format format) {
     const Store archive(database, Store::Mode::read);
     const campaign::Case question = require_case(archive, id);
@@ -184,8 +192,8 @@ int explain(const std::string& database, const std::string& id, Format format) {
                                      {"why", reason}});
         return 0;
     }
-    std::cout << fmt::format("case {}\nscene {} revision {}, seed {}\n", question.id, question.scene, question.revision,
-                             question.seed);
+    std::cout << fmt::format("{}\nscene {} revision {}, seed {}\n", heading_of(archive, question.id), question.scene,
+                             question.revision, question.seed);
     const SceneInfo* scene = find_scene(question.scene);
     for (const auto& [name, value] : question.inputs) {
         const auto* parameter = scene == nullptr ? nullptr : scene->find_parameter(name);
@@ -244,7 +252,7 @@ int replay(const std::string& database, const std::string& id, const PictureRequ
         throw campaign::wrong_question("CASE", id, "was given back unfinished: there is no answer to compare with yet");
     if (stored->outcome == Outcome::crashed || stored->outcome == Outcome::timed_out)
         std::cerr << fmt::format("grainsweep: this case {}; computed here it may do the same\n",
-                                 stored->outcome == Outcome::crashed ? "crashed its worker" : "found no end");
+                                 stored->outcome == Outcome::crashed ? "crashed its worker" : "ran out of time");
     const auto attempts = archive.attempts(question.id);
     const auto then = std::ranges::find(attempts, stored->attempt.number, &store::LoggedAttempt::number);
     if (!path.empty())
@@ -294,6 +302,7 @@ int replay(const std::string& database, const std::string& id, const PictureRequ
                                                         {"verdict", verdict},
                                                         {"scalars", report::to_json(table)}});
     } else {
+        if (format == Format::text) std::cout << heading_of(archive, question.id) << "\n\n";
         if (!table.rows.empty()) report::write(std::cout, table, format);
         if (format == Format::text) std::cout << '\n' << verdict << '\n';
     }
@@ -317,9 +326,7 @@ std::shared_ptr<Arguments> with_database(Parser& parser) {
 
 std::vector<Command> archive_commands() {
     return {
-        {"status",
-         "cases by outcome, whether the campaign has converged; rate in cases per second, time left in seconds (csv, "
-         "json)",
+        {"status", "cases by outcome, rate, time left, and whether a campaign has converged",
          [](Parser& parser, const Format& format) -> Action {
              const auto arguments = with_database(parser);
              return [arguments, &format] { return status(arguments->database, format); };

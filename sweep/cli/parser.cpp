@@ -11,6 +11,7 @@
 #include <charconv>
 #include <iostream>
 #include <memory>
+#include <sstream>
 #include <string_view>
 #include <system_error>
 
@@ -28,6 +29,25 @@ std::string complaint(const std::string& word, const WholeNumber& rule) {
         "got '{}'; must be a whole number{}", word,
         open ? fmt::format(", {} or more", rule.least) : fmt::format(" from {} to {}", rule.least, rule.most));
 }
+
+/// Help in lines that fit the terminal.
+class Help : public CLI::Formatter {
+public:
+    std::string make_option_desc(const CLI::Option* option) const override { return fitted(option->get_description()); }
+    std::string make_subcommand(const CLI::App* command) const override {
+        std::ostringstream text;
+        CLI::detail::format_help(text, command->get_display_name(true), fitted(command->get_description()),
+                                 get_column_width());
+        return text.str();
+    }
+
+private:
+    [[nodiscard]] std::string fitted(const std::string& description) const {
+        constexpr std::size_t narrowest = 20;
+        const std::size_t width = std::max(report::text_width(), get_column_width() + narrowest) - get_column_width();
+        return fmt::format("{}", fmt::join(report::wrapped(description, width), "\n"));
+    }
+};
 
 template <typename T>
 Option* declared(CLI::App& app, std::deque<Option>& options, const std::string& names, T& into,
@@ -207,6 +227,7 @@ Action parse_command_line(const std::vector<Command>& commands, int argc, const 
     std::deque<Parser> parsers;
     Action chosen;
     try {
+        app.formatter(std::make_shared<Help>());
         app.set_version_flag("--version", version_text, "version, commit, compiler, flags, instruction path");
         app.require_subcommand(0, 1);
         declare(app, commands, parsers, chosen);

@@ -102,6 +102,27 @@ TEST_F(Terminal, NoLineOfTextIsWiderThan80Or100Columns) {
     }
 }
 
+TEST_F(Terminal, HelpFitsTheTerminal) {
+    const auto help = at_width("80", {"--help"}).out;
+    EXPECT_LE(widest_line(help), 80U) << help;
+    EXPECT_NE(help.find("\n  sensitivity "), std::string::npos) << help;
+    for (const char* command : {"plan", "run", "replay", "converge", "report", "solve"}) {
+        for (const std::size_t width : {80U, 100U}) {
+            const auto text = at_width(std::to_string(width), {command, "--help"}).out;
+            EXPECT_LE(widest_line(text), width) << text;
+        }
+    }
+}
+
+// An id may begin like the number of another point.
+TEST_F(Terminal, ACaseIsShownWithItsPoint) {
+    const auto id = cell("SELECT case_id FROM wide WHERE point = 1 LIMIT 1");
+    for (const char* command : {"explain", "replay"}) {
+        const auto text = run({command, "wide.db", id}).out;
+        EXPECT_EQ(text.substr(0, text.find('\n')), "case " + id + ", point 1 of wide") << command;
+    }
+}
+
 TEST_F(Terminal, APipeHas100ColumnsAndWideAsManyAsItTakes) {
     const std::vector<std::string> command = {"query", "wide.db", "SELECT * FROM wide"};
     auto unset = program_command(command);
