@@ -20,6 +20,8 @@ Between read_between(const Section& factor, const ParameterSpec& parameter, cons
     if (std::holds_alternative<std::int64_t>(parameter.default_value)) {
         place.refuse(fmt::format("'{}' is a whole number; vary it by \"levels\"", parameter.name));
     }
+    if (!place.json().is_array())
+        place.refuse("must be [low, high]; what is the same in every case goes into \"fixed\"");
     const auto ends = place.elements();
     if (ends.size() != 2) place.refuse("must be [low, high]");
     Between range;

@@ -24,7 +24,7 @@ struct Key {
     std::string standard;            ///< JSON text of the default; empty: none
 };
 
-/// Allowed in every object, read by nobody: a text or a list of texts.
+/// Allowed in every object and ignored: a text or a list of texts.
 inline constexpr std::string_view notes_key = "notes";
 
 [[nodiscard]] std::span<const Key> campaign_keys();

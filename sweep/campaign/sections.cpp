@@ -34,7 +34,7 @@ void check_rule(const Section& section, const Convergence& convergence, const Ca
     if (convergence.rule != "replicates") {
         if (designs::design_named(campaign.design).beginning != designs::Beginning::corner) return;
         throw wrong_question(path, got,
-                             fmt::format("the points of a {0} come in no useful order, so blocks of them tell nothing; "
+                             fmt::format("the points of a {0} come in no useful order, so blocks of them mean nothing; "
                                          "compare campaigns of that design or take a halton design",
                                          campaign.design));
     }

@@ -18,7 +18,7 @@ namespace grainsweep::cli {
 
 namespace {
 
-/// "model name" of the first processor, as the kernel tells it.
+/// "model name" of the first processor, as the kernel reports it.
 std::string processor_name() {
     std::ifstream cpuinfo("/proc/cpuinfo");
     std::string line;

@@ -1,4 +1,4 @@
-// solve: one case of a campaign in this process, without an archive.
+// solve: one case of a campaign in this process, without a database.
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/relevance.hpp"
 #include "sweep/campaign/wrong_question.hpp"
@@ -202,7 +202,7 @@ int solve(const SolveRequest& request, Format format) {
 }  // namespace
 
 std::vector<Command> solve_commands() {
-    return {{"solve", "one case of a campaign in this process, without an archive",
+    return {{"solve", "one case of a campaign in this process, without a database",
              [](Parser& parser, const Format& format) -> Action {
                  const auto request = std::make_shared<SolveRequest>();
                  parser.add_option("CONFIG", request->config, "campaign file")->required();

@@ -222,8 +222,9 @@ std::vector<Command> study_commands() {
              };
              const auto request = std::make_shared<Request>();
              parser.add_option("DB", request->database, "the database")->required();
-             parser.add_option("-o,--output", request->output,
-                               "the page; default: the database's name with .html; -: standard output");
+             parser.add_option(
+                 "-o,--output", request->output,
+                 "the page; default: the database's name with .html, in the current folder; -: standard output");
              parser.add_option("--with", request->others,
                                "further databases whose campaigns are laid over those of the first");
              parser

@@ -57,7 +57,7 @@ int main(int argc, char** argv) {
         return flushed(cli::parse_command_line(cli::all_commands(), argc, argv)());
     } catch (const campaign::WrongQuestion& error) {
         return complain(wrong_question, error.what());
-    } catch (const std::exception& error) {  // BrokenWorld and what nobody foresaw
+    } catch (const std::exception& error) {  // BrokenWorld and everything unforeseen
         return complain(broken_world, error.what());
     }
 }

@@ -152,9 +152,9 @@ workers::PoolOptions pool_options(const campaign::Campaign& campaign, const fs::
 std::string describe(Ending ending, const schedule::Plan::Tally& tally, const schedule::Judge* judge) {
     switch (ending) {
         case Ending::finished:
-            return tally.failed == 0 ? "all cases are settled" + standing(judge)
-                                     : fmt::format("all cases have their last word, {} of them failed{}", tally.failed,
-                                                   standing(judge));
+            return tally.failed == 0
+                       ? "all cases are settled" + standing(judge)
+                       : fmt::format("all cases are done, {} of them failed{}", tally.failed, standing(judge));
         case Ending::converged:
             return fmt::format("converged after {} points: {}", *judge->converged_at(), judge->verdict());
         case Ending::limited:

@@ -18,7 +18,7 @@ struct RunRequest {
     std::optional<campaign::Outcome> again;  ///< ask again what ended like this
     std::int64_t max_cases = 0;              ///< 0: all
     bool quiet = false;
-    std::string path;  ///< instruction path the workers are told; empty: each the widest it has
+    std::string path;  ///< instruction path for the workers; empty: each the widest it has
 };
 
 /// What became of the run; the database is closed again.

@@ -31,7 +31,8 @@ std::string with_unit(const std::string& column, const Cell& cell) {
     const auto* number = std::get_if<double>(&cell);
     if (count != nullptr && is_outcome(column)) return *count == 0 ? "" : counted(*count, "case");
     if (count != nullptr && (column == "cases" || column == "waiting")) return counted(*count, "case");
-    if (column == "points" || column == "asked_points" || column == "asked_replicates") return {};  // told by others
+    if (column == "points" || column == "asked_points" || column == "asked_replicates")
+        return {};  // shown in other columns
     if (count != nullptr && column == "candidates") return counted(*count, "point") + " of the design";
     if (count != nullptr && column == "dropped")
         return *count == 0 ? "" : counted(*count, "point") + " left out by where";

@@ -106,7 +106,7 @@ EffectErrors effect_errors(const Responses& responses, const ResponseColumn& res
                                   errors.pure.freedom);
     } else {
         errors.says =
-            fmt::format("none: a {} of single runs tells no error; replicates would", responses.campaign.design);
+            fmt::format("none: a {} of single runs gives no error; replicates would", responses.campaign.design);
     }
     return errors;
 }

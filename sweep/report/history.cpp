@@ -59,7 +59,7 @@ std::optional<stats::Checkpoint> check_of_finished(const Responses& responses, c
     std::vector<std::int64_t> points;
     std::vector<double> values;
     for (std::size_t row = 0; row < responses.rows(); ++row) {
-        if (!has_last_word(responses.outcomes[row])) continue;
+        if (!has_final_outcome(responses.outcomes[row])) continue;
         points.push_back(responses.points[row]);
         values.push_back(response.values[row]);
     }

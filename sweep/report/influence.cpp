@@ -206,7 +206,7 @@ void add_given_data(Influence& influence, const Responses& responses, const Resp
         const auto coordinates = std::span(factor.values).first(responses.settled);
         const auto indices = stats::first_order_indices(coordinates, 1, values, labels, found.bins);
         found.first = indices.first[0];
-        // Lines of a lattice are no sample of it: leaving some out tells nothing about the error.
+        // Lines of a lattice are no sample of it: leaving some out says nothing about the error.
         if (lattice) found.first.half_width = none;
         if (lattice && influence.split.pure.freedom > 0) take_out_scatter(found, influence.split, values);
         influence.used = indices.count;
@@ -224,7 +224,7 @@ void add_given_data(Influence& influence, const Responses& responses, const Resp
     } else if (influence.used > 0) {
         const double floor = static_cast<double>(most_bins - 1) / static_cast<double>(points);
         influence.notes.push_back(
-            fmt::format("with {} points in {} bins an index below about {:.2g} cannot be told from zero", points,
+            fmt::format("with {} points in {} bins an index below about {:.2g} is indistinguishable from zero", points,
                         most_bins, floor));
     }
 }
@@ -298,7 +298,7 @@ namespace {
 
 std::string share_text(const stats::SensitivityIndex& share) {
     const bool told = !(share.value <= share.half_width) && share.value > 0;
-    return told ? index_text(share) : fmt::format("not told from zero ({})", index_text(share));
+    return told ? index_text(share) : fmt::format("indistinguishable from zero ({})", index_text(share));
 }
 
 }  // namespace

@@ -123,11 +123,11 @@ void reorder(std::vector<T>& column, std::span<const std::size_t> rows) {
     column = std::move(moved);
 }
 
-/// Rows that have their last word before the others, each part in its old order.
+/// Rows with a final outcome before the others, each part in its old order.
 void bring_settled_forward(Responses& responses) {
     std::vector<std::size_t> rows(responses.rows());
     std::iota(rows.begin(), rows.end(), std::size_t{0});
-    std::ranges::stable_partition(rows, [&](std::size_t row) { return has_last_word(responses.outcomes[row]); });
+    std::ranges::stable_partition(rows, [&](std::size_t row) { return has_final_outcome(responses.outcomes[row]); });
     reorder(responses.points, rows);
     reorder(responses.replicates, rows);
     if (!responses.case_ids.empty()) reorder(responses.case_ids, rows);
@@ -144,7 +144,7 @@ void find_settled(Responses& responses) {
         responses.settled = static_cast<std::size_t>(end - responses.points.begin());
         return;
     }
-    const auto open = std::ranges::find_if_not(responses.outcomes, has_last_word);
+    const auto open = std::ranges::find_if_not(responses.outcomes, has_final_outcome);
     responses.settled = static_cast<std::size_t>(open - responses.outcomes.begin());
     if (!responses.ordered_sample()) {
         responses.settled_points = responses.settled == 0 ? 0 : responses.points[responses.settled - 1] + 1;
@@ -159,7 +159,7 @@ void find_settled(Responses& responses) {
 
 }  // namespace
 
-bool has_last_word(const std::optional<campaign::Outcome>& outcome) {
+bool has_final_outcome(const std::optional<campaign::Outcome>& outcome) {
     return outcome && *outcome != campaign::Outcome::abandoned;
 }
 
@@ -220,7 +220,7 @@ const designs::DesignInfo& Responses::design() const {
 }
 
 std::size_t Responses::finished() const {
-    return static_cast<std::size_t>(std::ranges::count_if(outcomes, has_last_word));
+    return static_cast<std::size_t>(std::ranges::count_if(outcomes, has_final_outcome));
 }
 
 std::int64_t Responses::dropped() const {

@@ -34,7 +34,7 @@ struct ResponseColumn {
 };
 
 /// One row per placed case, ordered by (point, replicate). A lattice or a list, whose order means nothing, has first
-/// the rows with their last word, then the others.
+/// the rows with a final outcome, then the others.
 struct Responses {
     store::CampaignRecord campaign;
     std::vector<std::int64_t> points, replicates;
@@ -43,8 +43,8 @@ struct Responses {
     std::vector<FactorColumn> factors;
     std::vector<ResponseColumn> observables;
     std::int64_t candidates = 0;  ///< points the design numbers, those filtered out by `where` included
-    /// Rows of the gapless beginning (a lattice, a list: all those) that has its last word, cut where the campaign
-    /// converged and stopped: what statistics are over. A case that crashed counts as having its last word.
+    /// Rows of the gapless beginning (a lattice, a list: all those) with a final outcome, cut where the campaign
+    /// converged and stopped: what statistics are over. A case given up after crashes has one.
     std::size_t settled = 0;
     std::int64_t settled_points = 0;  ///< end of the design points in that beginning
 
@@ -56,7 +56,7 @@ struct Responses {
     [[nodiscard]] std::span<const double> judged(const ResponseColumn& response) const {
         return std::span(response.values).first(settled);
     }
-    /// Rows that have their last word, wherever they stand.
+    /// Rows with a final outcome, wherever they stand.
     [[nodiscard]] std::size_t finished() const;
     /// Every value there is: the judged ones and, unless the campaign stopped, those of finished cases behind one that
     /// is not.
@@ -78,7 +78,7 @@ struct Responses {
 };
 
 /// Whether a case will not be computed any more in this run of its campaign.
-[[nodiscard]] bool has_last_word(const std::optional<campaign::Outcome>& outcome);
+[[nodiscard]] bool has_final_outcome(const std::optional<campaign::Outcome>& outcome);
 
 /// Whether the sequences of the design repeat one another independently.
 [[nodiscard]] bool repeats(const Responses& responses);

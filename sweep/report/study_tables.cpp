@@ -26,14 +26,14 @@ std::string percent(double share) {
     return share < 1 ? fmt::format("{:.2g} %", 100 * share) : fmt::format("{:.0f} %", 100 * share);
 }
 
-/// The check the verdict speaks of: complete, else of all points.
+/// The check the verdict is about: complete, else of all points.
 const stats::Checkpoint& judged_check(const History& history) {
     return history.checks.empty() ? history.all : history.checks.back();
 }
 
 std::string gate_text(const History& history, stats::Statistic statistic) {
     if (!history.has_rule || !is_gate(history, statistic) || history.checks.empty()) return "";
-    return judged_check(history).of(statistic).measure < history.settings.tolerance ? "within" : "holds it back";
+    return judged_check(history).of(statistic).measure < history.settings.tolerance ? "within" : "not within";
 }
 
 std::string_view method_name(Influence::Method method) {

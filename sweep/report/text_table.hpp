@@ -1,7 +1,7 @@
 // A table as aligned text that fits a width, by the first of these that is enough:
 //
 //   cells of text are wrapped, and headings after an underscore
-//   columns that say the same in every row are told in one line below
+//   columns with the same value in every row are given in one line below
 //   case ids are shortened to their beginning, which every command takes
 //   three rows or fewer stand as records, a line per column
 //   columns are left out: whole numbers beyond 2^53 (seeds), how a case was computed (wall_seconds, attempts), then

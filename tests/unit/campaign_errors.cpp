@@ -99,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{R"([{"op": "replace", "path": "/factors/0/between", "value": [0.1]}])",
               "$.factors[0].between: got [0.1]; must be [low, high]."},
         Wrong{R"([{"op": "replace", "path": "/factors/0/between", "value": "0.1"}])",
-              "$.factors[0].between: got \"0.1\"; must be a list."},
+              "$.factors[0].between: got \"0.1\"; must be [low, high]; what is the same in every case goes into \"fixed\"."},
         Wrong{R"([{"op": "replace", "path": "/factors/0/between", "value": [0, 1.5]}])",
               "$.factors[0].between[1]: got 1.5; 'x1' must be a number from 0 to 1."},
         Wrong{R"([{"op": "replace", "path": "/factors/0/between", "value": ["0", 1]}])",
@@ -233,7 +233,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{R"([{"op": "replace", "path": "/design", "value": {"kind": "lattice", "levels": 3}},
                   {"op": "add", "path": "/convergence/rule", "value": "any_change"}])",
               "$.convergence.rule: got \"any_change\"; the points of a lattice come in no useful order, so blocks of "
-              "them tell nothing; compare campaigns of that design or take a halton design."},
+              "them mean nothing; compare campaigns of that design or take a halton design."},
         Wrong{R"([{"op": "add", "path": "/limits", "value": {"attempts": 0}}])",
               "$.limits.attempts: got 0; must be a whole number from 1 to 1000."},
         Wrong{R"([{"op": "add", "path": "/limits", "value": {"wall_seconds": -1}}])",

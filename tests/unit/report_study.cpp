@@ -185,7 +185,7 @@ TEST_F(Study, ACampaignThatIsAskedForLessSaysSo) {
         Contains("asked now: 16 points x 1; stored: 64 points x 1: view and statistics are over what is stored"));
 }
 
-// The order of a lattice means nothing: every case that has its last word counts, wherever the others lie.
+// The order of a lattice means nothing: every case with a final outcome counts, wherever the others lie.
 TEST_F(Study, APartOfALatticeIsCounted) {
     const std::string text = R"({"campaign": "c", "scene": "rehearsal", "replicates": 2,
         "factors": [{"name": "x1", "levels": [0.2, 0.4, 0.6, 0.8]}], "design": {"kind": "lattice"}})";
@@ -492,7 +492,7 @@ TEST_F(Study, MainEffectsOfALatticeOfSingleRunsHaveNoWhiskers) {
     const auto& y = responses.observable("y");
     const auto errors = effect_errors(responses, y);
     EXPECT_EQ(errors.source, report::EffectErrors::Source::none);
-    EXPECT_THAT(errors.says, HasSubstr("a lattice of single runs tells no error; replicates would"));
+    EXPECT_THAT(errors.says, HasSubstr("a lattice of single runs gives no error; replicates would"));
     for (const auto& bin : main_effect(responses.factors[0], responses.judged(y), errors)) {
         EXPECT_DOUBLE_EQ(bin.mean, 0.5);
         EXPECT_TRUE(std::isnan(bin.error));
@@ -656,7 +656,7 @@ TEST_F(Study, AReplicatedLatticeHasErrorsOfItsIndices) {
     EXPECT_LT(x2.half_width, 0.05);
     EXPECT_THAT(influence.notes, Contains(HasSubstr("pure error, 108 degrees of freedom")));
     EXPECT_EQ(influence.factors[0].trend, report::Trend::rises);
-    EXPECT_THAT(unexplained_text(influence), HasSubstr("interactions not told from zero"));
+    EXPECT_THAT(unexplained_text(influence), HasSubstr("interactions indistinguishable from zero"));
 }
 
 }  // namespace
