@@ -35,6 +35,7 @@ void add_extreme(store::Table& table, const Responses& responses, const Response
         }
     }
     cells.push_back(to_cell(response.values[row]));
+    if (!responses.case_ids.empty()) cells.emplace_back(responses.case_ids[row]);
     table.rows.push_back(std::move(cells));
 }
 
@@ -110,6 +111,7 @@ store::Table extremes_table(const Responses& responses, const ResponseColumn& re
     if (responses.campaign.replicates > 1) table.columns.emplace_back("replicate");
     for (const auto& factor : responses.factors) table.columns.push_back(factor.name);
     table.columns.push_back(response.name);
+    if (!responses.case_ids.empty()) table.columns.emplace_back("case_id");
     const auto values = responses.known(response);
     const auto finite =
         static_cast<std::size_t>(std::ranges::count_if(values, [](double x) { return std::isfinite(x); }));

@@ -123,6 +123,16 @@ TEST_F(Terminal, ACaseIsShownWithItsPoint) {
     }
 }
 
+// What stands out at the end of a run can be replayed without a query.
+TEST_F(Terminal, TheTableOfExtremesNamesTheCases) {
+    const auto text = run({"run", "c.json", "--wide"}).out;
+    std::istringstream lines(text.substr(text.find("\nlargest")));
+    std::string line;
+    ASSERT_TRUE(std::getline(lines, line) && std::getline(lines, line));
+    const auto id = line.substr(line.find_last_of(' ', line.find_last_not_of(' ')) + 1);
+    EXPECT_EQ(run({"explain", "wide.db", id}).code, 0) << line;
+}
+
 TEST_F(Terminal, APipeHas100ColumnsAndWideAsManyAsItTakes) {
     const std::vector<std::string> command = {"query", "wide.db", "SELECT * FROM wide"};
     auto unset = program_command(command);

@@ -415,8 +415,14 @@ TEST_F(Study, TheRunEndsWithCountsMomentsExtremesAndThePlace) {
     const auto& y = responses.observable("y");
     const auto table = extremes_table(responses, y, 3);
     ASSERT_EQ(table.rows.size(), 6u);
-    EXPECT_EQ(std::get<double>(table.rows[0].back()), *std::ranges::max_element(y.values));
-    EXPECT_EQ(std::get<double>(table.rows[5].back()), *std::ranges::min_element(y.values));
+    const auto at = [&](const char* column, std::size_t row) {
+        return table
+            .rows[row][static_cast<std::size_t>(std::ranges::find(table.columns, column) - table.columns.begin())];
+    };
+    EXPECT_EQ(std::get<double>(at("y", 0)), *std::ranges::max_element(y.values));
+    EXPECT_EQ(std::get<double>(at("y", 5)), *std::ranges::min_element(y.values));
+    const auto largest = static_cast<std::size_t>(std::ranges::max_element(y.values) - y.values.begin());
+    EXPECT_EQ(std::get<std::string>(at("case_id", 0)), responses.case_ids[largest]);
     EXPECT_EQ(moments_table(responses).rows.size(), 1u);
 }
 
