@@ -39,6 +39,18 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     return at(a.size(), b.size());
 }
 
+/// The only candidate of which `word` is one of the parts between underscores; empty where there is none or several.
+std::string named_by_a_part(std::string_view word, std::span<const std::string> candidates) {
+    std::string only;
+    for (const auto& candidate : candidates) {
+        const std::string parts = "_" + candidate + "_";
+        if (parts.find("_" + std::string(word) + "_") == std::string::npos) continue;
+        if (!only.empty()) return {};
+        only = candidate;
+    }
+    return only;
+}
+
 }  // namespace
 
 WrongQuestion wrong_question(std::string_view where, std::string_view value, std::string_view rule,
@@ -65,7 +77,7 @@ std::string nearest_word(std::string_view word, std::span<const std::string> can
             nearest = candidate;
         }
     }
-    return nearest;
+    return nearest.empty() ? named_by_a_part(word, candidates) : nearest;
 }
 
 }  // namespace grainsweep::campaign

@@ -54,6 +54,15 @@ TEST(Synonyms, OfParametersWhereTheSceneHasThem) {
     EXPECT_EQ(nearest_word("rho", parameters_of("rehearsal")), "");
 }
 
+TEST(Synonyms, AWordThatOnlyOneNameHasBetweenItsUnderscoresIsThatName) {
+    const std::vector<std::string> scenes = {"powder_spreading", "tpms_discharge", "rehearsal"};
+    EXPECT_EQ(nearest_word("spreading", scenes), "powder_spreading");
+    EXPECT_EQ(nearest_word("tpms", scenes), "tpms_discharge");
+    EXPECT_EQ(nearest_word("spread", scenes), "");
+    const std::vector<std::string> flows = {"mfr_window", "mfr_thesis"};
+    EXPECT_EQ(nearest_word("mfr", flows), "") << "two have it";
+}
+
 TEST(Synonyms, OfKeysShowHowTheKeyIsUsed) {
     std::vector<std::string> keys;
     for (const auto& key : campaign::factor_keys()) keys.push_back(key.name);
