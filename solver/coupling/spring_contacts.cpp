@@ -253,6 +253,11 @@ void SpringContacts::restore(std::span<const std::byte>& from) {
     if (contacts > from.size() / sizeof(Contact)) throw std::invalid_argument("the saved state is of another shape");
     contacts_.resize(contacts);
     flow::take_bytes<Contact>(from, contacts_);
+    const auto particles = spin_.size();
+    for (const Contact& contact : contacts_) {
+        const bool wall = contact.j >= wall_base && contact.j < wall_base + 6;
+        flow::require_possible(contact.i < particles && (wall || contact.j < particles));
+    }
 }
 
 }  // namespace grainsweep::coupling

@@ -307,6 +307,7 @@ void Flow<Heat>::restore(std::span<const std::byte>& from) {
     }
     take_bytes<double>(from, pressure_.values());
     heat_.restore(from);
+    require_possible(steps_ >= 0 && steps_ < std::int64_t{1} << 53U);
 }
 
 template class Flow<NoHeat>;

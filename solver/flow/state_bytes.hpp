@@ -39,4 +39,9 @@ void take_bytes(std::span<const std::byte>& from, T& value) {
     take_bytes(from, std::span<T>(&value, 1));
 }
 
+/// Of what was read: false where no state has such a value. Throws std::invalid_argument.
+inline void require_possible(bool possible) {
+    if (!possible) throw std::invalid_argument("the saved state holds values that no state has");
+}
+
 }  // namespace grainsweep::flow

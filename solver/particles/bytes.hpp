@@ -52,9 +52,20 @@ public:
         column.resize(count(sizeof(T)));
         take(column.data(), column.size() * sizeof(T));
     }
+    /// A byte that is neither 0 nor 1 is no truth value.
+    void get(bool& truth) {
+        std::uint8_t byte = 0;
+        get(byte);
+        require(byte <= 1);
+        truth = byte == 1;
+    }
     void get(std::string& text) {
         text.resize(count(1));
         take(text.data(), text.size());
+    }
+    /// Of what was read: false where no state has such a value.
+    static void require(bool possible) {
+        if (!possible) throw std::invalid_argument("checkpoint holds values that no state has");
     }
     void finish() const {
         if (!from_.empty()) throw std::invalid_argument("checkpoint is longer than the state it should hold");

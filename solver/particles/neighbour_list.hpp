@@ -47,10 +47,14 @@ public:
         out.put(first_);
         out.put(entries_);
     }
+    /// Throws std::invalid_argument for what is no list of `particles` particles.
     template <class Archive>
-    void restore(Archive& in) {
+    void restore(Archive& in, std::size_t particles) {
         in.get(first_);
         in.get(entries_);
+        Archive::require(first_.size() == particles + 1 && first_.front() == 0 && first_.back() == entries_.size());
+        for (std::size_t i = 0; i < particles; ++i) Archive::require(first_[i] <= first_[i + 1]);
+        for (const Neighbour entry : entries_) Archive::require(entry.j() < particles && entry.image() < 27);
     }
 
 private:

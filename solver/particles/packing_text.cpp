@@ -82,6 +82,9 @@ Packing decode_packing(std::span<const std::byte> bytes) {
     Packing packing{header.edge, {}, header.largest_overlap, static_cast<int>(header.iterations)};
     packing.positions.resize(header.count);
     if (header.count > 0) std::memcpy(packing.positions.data(), bytes.data() + sizeof header, header.count * record);
+    for (const auto& x : packing.positions)
+        for (const double c : x)
+            if (!(c >= 0 && c <= packing.edge)) throw std::invalid_argument("these bytes are no packing");
     return packing;
 }
 

@@ -119,7 +119,10 @@ public:
     }
     void restore(std::span<const std::byte> from) override {
         if (from.size() != sizeof time_) throw std::invalid_argument("checkpoint of another scene");
-        std::memcpy(&time_, from.data(), sizeof time_);
+        double saved = 0;
+        std::memcpy(&saved, from.data(), sizeof saved);
+        if (!(saved >= 0 && saved <= wait_)) throw std::invalid_argument("checkpoint holds a time that no state has");
+        time_ = saved;
     }
 
 private:

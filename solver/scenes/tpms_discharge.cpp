@@ -56,7 +56,13 @@ particles::Packing packing_of(const TpmsQuestion& question, Artefacts& artefacts
     const particles::PackingRequest request{
         .edge = question.edge, .fraction = question.packing_fraction, .seed = question.packing_seed};
     const std::string key = particles::packing_key(request);
-    if (const auto kept = artefacts.get(key)) return particles::decode_packing(*kept);
+    if (const auto kept = artefacts.get(key)) {
+        try {
+            particles::Packing packing = particles::decode_packing(*kept);
+            if (packing.edge == question.edge && !packing.positions.empty()) return packing;
+        } catch (const std::invalid_argument&) {  // packed anew below
+        }
+    }
     particles::Packing packing = particles::random_close_packing(request);
     artefacts.put(key, particles::encode(packing));
     return packing;
@@ -261,6 +267,7 @@ void TpmsDischarge::restore(std::span<const std::byte> from) {
     std::vector<std::byte> engine;
     in.get(engine);
     in.finish();
+    in.require(step_ >= 0 && step_ <= last_step_ && mobile_left_ >= 0 && mobile_left_ <= start_count_);
     engine_->restore(engine);
     engine_->state(state_);
 }

@@ -28,6 +28,7 @@ struct Command {
 [[nodiscard]] std::vector<Command> plan_commands();       // plan
 [[nodiscard]] std::vector<Command> run_commands();        // run, worker
 [[nodiscard]] std::vector<Command> archive_commands();    // status, explain, replay, query, dump
+[[nodiscard]] std::vector<Command> verify_commands();     // verify
 [[nodiscard]] std::vector<Command> study_commands();      // converge, sensitivity, report
 [[nodiscard]] std::vector<Command> solve_commands();      // solve
 [[nodiscard]] std::vector<Command> catalogue_commands();  // scenes, designs, schema

@@ -9,6 +9,7 @@ std::vector<Command> all_commands() {
              plan_commands(),
              run_commands(),
              archive_commands(),
+             verify_commands(),
              study_commands(),
              solve_commands(),
              catalogue_commands(),

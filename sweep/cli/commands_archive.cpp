@@ -17,6 +17,7 @@
 #include <cmath>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace grainsweep::cli {
@@ -115,7 +116,13 @@ std::string why_failed(const std::vector<store::LoggedAttempt>& attempts, const 
         failures, limit, to_string(*attempts.back().outcome));
 }
 
-std::string why(const std::vector<store::LoggedAttempt>& attempts, const std::vector<store::CasePlace>& places) {
+std::string why(const std::vector<store::LoggedAttempt>& attempts, const std::vector<store::CasePlace>& places,
+                const std::optional<campaign::CaseResult>& stands) {
+    if (stands && campaign::settles(stands->outcome) && attempts.back().number != stands->attempt.number)
+        return fmt::format(
+            "it is settled: the answer of attempt {} stands, and what came later brought none; `run "
+            "--again {}` asks it anew",
+            stands->attempt.number, to_string(stands->outcome));
     const std::string passed_by = out_of_reach(places);
     const auto next_run = [&](const std::string& does) {
         return passed_by.empty() ? does : fmt::format("it will not run: {}", passed_by);
@@ -174,7 +181,7 @@ int explain(const std::string& database, const std::string& id, Format format) {
     const campaign::Case question = require_case(archive, id);
     const auto attempts = archive.attempts(question.id);
     const Table table = attempts_table(attempts);
-    const std::string reason = why(attempts, archive.places(question.id));
+    const std::string reason = why(attempts, archive.places(question.id), archive.result(question.id));
     if (format == Format::csv) {
         report::write(std::cout, table, format);
         return 0;
@@ -316,6 +323,26 @@ struct Arguments {
     std::string database, text;
 };
 
+int query(const Arguments& asked, double seconds, Format format) {
+    constexpr std::int64_t most_memory = std::int64_t{1} << 30U;
+    if (!(seconds >= 0)) throw campaign::wrong_question("--limit-seconds", std::to_string(seconds), "0 or more");
+    const Store archive(asked.database, Store::Mode::read);
+    const Store::QueryLimits limits{seconds, most_memory};
+    if (format == Format::text) {  // columns are aligned over all rows
+        Table table;
+        archive.query(
+            asked.text, limits, [&](const auto& columns) { table.columns = columns; },
+            [&](const auto& row) { table.rows.push_back(row); });
+        report::write(std::cout, table, format);
+        return 0;
+    }
+    report::RowWriter rows(std::cout, format);
+    archive.query(
+        asked.text, limits, [&](const auto& columns) { rows.begin(columns); }, [&](const auto& row) { rows.add(row); });
+    rows.end();
+    return 0;
+}
+
 std::shared_ptr<Arguments> with_database(Parser& parser) {
     auto arguments = std::make_shared<Arguments>();
     parser.add_option("DB", arguments->database, "database")->required();
@@ -357,11 +384,10 @@ std::vector<Command> archive_commands() {
              const auto arguments = with_database(parser);
              parser.add_option("SQL", arguments->text, "one statement; each campaign is a view of its name")
                  ->required();
-             return [arguments, &format] {
-                 const Store archive(arguments->database, Store::Mode::read);
-                 report::write(std::cout, archive.query(arguments->text), format);
-                 return 0;
-             };
+             const auto seconds = std::make_shared<double>(600);
+             parser.add_option("--limit-seconds", *seconds, "processor time it may take, s; 0: no limit; default: 600")
+                 ->type_name("SECONDS");
+             return [arguments, seconds, &format] { return query(*arguments, *seconds, format); };
          },
          false},
         {"dump", "canonical text of all results: equal for equal science",
@@ -373,9 +399,10 @@ std::vector<Command> archive_commands() {
                      archive.dump([](std::string_view line) { std::cout << line << '\n'; });
                      return 0;
                  }
-                 Table table{{"line"}, {}};
-                 archive.dump([&](std::string_view line) { table.rows.push_back({std::string(line)}); });
-                 report::write(std::cout, table, format);
+                 report::RowWriter rows(std::cout, format);
+                 rows.begin({"line"});
+                 archive.dump([&](std::string_view line) { rows.add({std::string(line)}); });
+                 rows.end();
                  return 0;
              };
          },

@@ -122,7 +122,6 @@ Command worker_command() {
                 declare_path(parser, *path);
                 return [options, path] {
                     use_path(*path);
-                    options->version = build_version();
                     options->computer = this_computer();
                     return workers::work(*options);
                 };

@@ -149,6 +149,13 @@ workers::PoolOptions pool_options(const campaign::Campaign& campaign, const fs::
     return options;
 }
 
+/// Beside the database: x.artefacts for x.db, and never the database itself.
+fs::path artefact_folder(const fs::path& database) {
+    fs::path folder = fs::absolute(database);
+    if (folder.extension() == ".artefacts") return folder += ".artefacts";
+    return folder.replace_extension(".artefacts");
+}
+
 std::string describe(Ending ending, const schedule::Plan::Tally& tally, const schedule::Judge* judge) {
     switch (ending) {
         case Ending::finished:
@@ -215,8 +222,7 @@ RunReport run_campaign(const RunRequest& request) {
     if (const auto folder = fs::absolute(database).parent_path(); !fs::is_directory(folder))
         throw campaign::wrong_question("--db", database.string(),
                                        fmt::format("there is no folder '{}'", folder.string()));
-    fs::path artefacts = fs::absolute(database);
-    artefacts.replace_extension(".artefacts");
+    const fs::path artefacts = artefact_folder(database);
 
     store::Store store(database, store::Store::Mode::create);
     const std::size_t workers = worker_count(campaign, request);
@@ -227,6 +233,7 @@ RunReport run_campaign(const RunRequest& request) {
         placed = unfolded();
     }
     const auto states = campaign::asked_in(request.config, [&] { return store.enrol(campaign, placed, provenance()); });
+    for (const auto& note : store.notes()) line.note(note);
     const auto record = store.stored(campaign).value();
     say_first(line, campaign, forecast, record);
     const auto placement = placement_of(store, record, std::move(placed), states);
@@ -237,11 +244,12 @@ RunReport run_campaign(const RunRequest& request) {
 
     workers::Pool pool(pool_options(campaign, artefacts, request));
     store::ArtefactFolder folder(artefacts);
+    folder.sweep();  // the lock is held: what dead processes left belongs to no run
     schedule::Watchers watchers;
     watchers.progress = [&](const schedule::Progress& progress) { line.update(progress); };
     watchers.note = [&](const std::string& text) { line.note(text); };
     watchers.forget_checkpoint = [&](const campaign::CaseId& id) {
-        folder.remove(workers::checkpoint_key(id, build_version()));
+        folder.remove(workers::checkpoint_key(id, this_computer()));
     };
 
     Ending ending{};

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ostream>
+#include <utility>
 
 namespace grainsweep::report {
 
@@ -18,7 +19,28 @@ namespace {
 using Cell = store::Table::Cell;
 using Json = nlohmann::ordered_json;
 
-std::string in_csv(const std::string& text) {
+/// No text of a database moves the cursor of a terminal or is computed by a spreadsheet.
+std::string harmless(const std::string& text) {
+    constexpr std::string_view formula = "=+-@\t\r";
+    std::string line;
+    if (!text.empty() && formula.find(text.front()) != std::string_view::npos) line = "'";
+    for (std::size_t k = 0; k < text.size(); ++k) {
+        const auto c = static_cast<unsigned char>(text[k]);
+        const auto next = k + 1 < text.size() ? static_cast<unsigned char>(text[k + 1]) : 0U;
+        if ((c < 0x20U && c != '\n' && c != '\t') || c == 0x7FU) {
+            line += fmt::format("\\x{:02x}", c);
+        } else if (c == 0xC2U && next >= 0x80U && next < 0xA0U) {  // U+0080 to U+009F
+            line += fmt::format("\\x{:02x}", next);
+            ++k;
+        } else {
+            line += text[k];
+        }
+    }
+    return line;
+}
+
+std::string in_csv(const std::string& given) {
+    const std::string text = harmless(given);
     if (!text.empty() && text.find_first_of(",\"\r\n") == std::string::npos) return text;
     std::string quoted = "\"";
     for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
@@ -46,13 +68,30 @@ std::string in_csv(const Cell& cell) {
     return in_csv(std::get<std::string>(cell));
 }
 
-void write_csv(std::ostream& out, const store::Table& table) {
-    const auto write_line = [&out](const auto& cells) {
-        for (std::size_t j = 0; j < cells.size(); ++j) out << (j > 0 ? "," : "") << in_csv(cells[j]);
-        out << '\n';
-    };
-    write_line(table.columns);
-    for (const auto& row : table.rows) write_line(row);
+void write_csv_line(std::ostream& out, const auto& cells) {
+    for (std::size_t j = 0; j < cells.size(); ++j) out << (j > 0 ? "," : "") << in_csv(cells[j]);
+    out << '\n';
+}
+
+/// A name can be there twice (SELECT a.mfr, b.mfr); an object's cannot.
+std::vector<std::string> distinct(const std::vector<std::string>& columns) {
+    std::vector<std::string> names;
+    for (const auto& column : columns) {
+        std::string name = column;
+        for (int k = 2; std::ranges::find(names, name) != names.end(); ++k) name = fmt::format("{}_{}", column, k);
+        names.push_back(std::move(name));
+    }
+    return names;
+}
+
+Json object_of(const std::vector<std::string>& names, const std::vector<Cell>& row) {
+    Json object = Json::object();
+    for (std::size_t j = 0; j < row.size(); ++j) object[names[j]] = to_json(row[j]);
+    return object;
+}
+
+std::string text_of(const Json& value) {
+    return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace
@@ -69,10 +108,30 @@ void write(std::ostream& out, const store::Table& table, Format format) {
         case Format::text:
             return write_text(out, table, text_width());
         case Format::csv:
-            return write_csv(out, table);
         case Format::json:
-            return write(out, to_json(table));
+            break;
     }
+    RowWriter writer(out, format);
+    writer.begin(table.columns);
+    for (const auto& row : table.rows) writer.add(row);
+    writer.end();
+}
+
+void RowWriter::begin(const std::vector<std::string>& columns) {
+    names_ = format_ == Format::json ? distinct(columns) : columns;
+    if (format_ == Format::json)
+        *out_ << '[';
+    else
+        write_csv_line(*out_, names_);
+}
+
+void RowWriter::add(const std::vector<Cell>& row) {
+    if (format_ != Format::json) return write_csv_line(*out_, row);
+    *out_ << (std::exchange(first_, false) ? "" : ",") << text_of(object_of(names_, row));
+}
+
+void RowWriter::end() {
+    if (format_ == Format::json) *out_ << "]\n";
 }
 
 Json to_json(const Cell& cell) {
@@ -84,24 +143,14 @@ Json to_json(const Cell& cell) {
 }
 
 Json to_json(const store::Table& table) {
-    // A name can be there twice (SELECT a.mfr, b.mfr); an object's cannot.
-    std::vector<std::string> names;
-    for (const auto& column : table.columns) {
-        std::string name = column;
-        for (int k = 2; std::ranges::find(names, name) != names.end(); ++k) name = fmt::format("{}_{}", column, k);
-        names.push_back(std::move(name));
-    }
+    const auto names = distinct(table.columns);
     Json rows = Json::array();
-    for (const auto& row : table.rows) {
-        Json object = Json::object();
-        for (std::size_t j = 0; j < row.size(); ++j) object[names[j]] = to_json(row[j]);
-        rows.push_back(std::move(object));
-    }
+    for (const auto& row : table.rows) rows.push_back(object_of(names, row));
     return rows;
 }
 
 void write(std::ostream& out, const Json& value) {
-    out << value.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+    out << text_of(value) << '\n';
 }
 
 Cell to_cell(const Value& value) {

@@ -1,7 +1,10 @@
 // Rows for people and programs: one renderer for every command.
 //
 //   text  columns aligned, numbers to 6 digits, no line wider than the terminal (text_table.hpp); for reading
-//   csv   cells quoted as in RFC 4180, lines ending in LF as shells want; an absent value is empty, an empty text is ""
+//   csv   cells quoted as in RFC 4180, lines ending in LF as shells want; an absent value is empty, an empty text is
+//   "";
+//         a text that begins with = + - @ gets an apostrophe before it, or a spreadsheet would take it for a formula;
+//         control characters but line ends and tabs are written \x1b
 //   json  a list of objects, keys in column order, a name that is there again with _2; an absent value, NaN and
 //         infinity are null
 //
@@ -19,12 +22,28 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace grainsweep::report {
 
 enum class Format { text, csv, json };
 
 [[nodiscard]] std::optional<Format> format_named(std::string_view word);
+
+/// Rows as they come, none kept: the bytes of write() of the whole table. csv and json; text needs to see all rows.
+class RowWriter {
+public:
+    RowWriter(std::ostream& out, Format format) : out_(&out), format_(format) {}
+    void begin(const std::vector<std::string>& columns);
+    void add(const std::vector<store::Table::Cell>& row);
+    void end();
+
+private:
+    std::ostream* out_;
+    Format format_;
+    std::vector<std::string> names_;
+    bool first_ = true;
+};
 
 /// Writes the table; json is exactly one value and a line end.
 void write(std::ostream& out, const store::Table& table, Format format);

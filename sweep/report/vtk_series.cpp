@@ -19,6 +19,9 @@ namespace {
 constexpr std::string_view particles = "particles";
 
 void write(const std::filesystem::path& path, const std::string& bytes) {
+    std::error_code none;
+    if (std::filesystem::is_symlink(std::filesystem::symlink_status(path, none)))
+        throw store::BrokenWorld("'" + path.string() + "' is a symbolic link; a picture does not replace it");
     store::AsideFile file(path);
     file.write(std::as_bytes(std::span(bytes)));
     file.take_place();
@@ -47,7 +50,8 @@ void VtkSeries::begin() {
     const std::regex entry("file=\"([^\"/]+\\.vt[pir])\"");
     for (std::sregex_iterator found(older.begin(), older.end(), entry), end; found != end; ++found) {
         const std::string file = (*found)[1];
-        if (file.starts_with(name_ + "_")) std::filesystem::remove(folder_ / file, error);
+        const bool own = std::filesystem::is_regular_file(std::filesystem::symlink_status(folder_ / file, error));
+        if (own && file.starts_with(name_ + "_")) std::filesystem::remove(folder_ / file, error);
     }
 }
 

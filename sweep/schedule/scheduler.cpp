@@ -55,6 +55,7 @@ Ending Scheduler::run() {
     }
     recorder_.drain();
     show();
+    if (broken_) throw store::BrokenWorld(*broken_);
     const bool all = plan_.tally().decided == plan_.tally().questions;
     if (early_ && !(all && early_ == Ending::interrupted)) return *early_;
     if (all) return Ending::finished;  // an interrupt that comes when nothing is left is none
@@ -90,7 +91,12 @@ void Scheduler::handle(workers::PoolEvent event) {
                               take_back(late.queued);
                           },
                           [&](const workers::GivenBack& back) {
-                              handle_given_back(back.attempt, back.reason, back.seconds, !back.asked);
+                              if (back.broken && !broken_) {
+                                  broken_ = back.reason;
+                                  plan_.close();
+                                  crew_.retire();
+                              }
+                              handle_given_back(back.attempt, back.reason, back.seconds, !back.asked && !back.broken);
                           },
                           [&](const workers::Remark& remark) { watchers_.note(remark.text); },
                           [&](const workers::Interrupted& stop) {
@@ -114,6 +120,8 @@ void Scheduler::handle_finished(workers::Finished& finished) {
         watchers_.note(
             fmt::format("{} {}: {}", result.attempt.case_id.substr(0, 12), to_string(result.outcome), result.message));
     }
+    if (result.outcome == Outcome::completed && !result.message.empty())
+        watchers_.note(fmt::format("{} completed: {}", result.attempt.case_id.substr(0, 12), result.message));
     if (judge_ != nullptr) judge_->learn(result.attempt.case_id, result.observations);
     if (finished.checkpointed) checkpointed_.push_back(result.attempt.case_id);
     recorder_.write(std::move(finished.result));
@@ -131,12 +139,7 @@ void Scheduler::handle_failure(const campaign::Attempt& attempt, Outcome outcome
     watchers_.note(fmt::format("{} {} in attempt {}{}: {}", attempt.case_id.substr(0, 12), to_string(outcome),
                                attempt.number, verdict == Plan::Verdict::again ? ", trying again" : ", giving up",
                                reason));
-    if (verdict == Plan::Verdict::gave_up) give_up(attempt);
-}
-
-void Scheduler::give_up(const campaign::Attempt& attempt) {
-    if (judge_ != nullptr) judge_->learn(attempt.case_id, {});  // an older answer counts no more
-    judge_prefix();
+    if (verdict == Plan::Verdict::gave_up) judge_prefix();
 }
 
 void Scheduler::take_back(const std::vector<campaign::Attempt>& attempts) {
@@ -158,7 +161,7 @@ void Scheduler::handle_given_back(const campaign::Attempt& attempt, std::string 
     campaign::CaseResult result = unanswered(attempt, Outcome::abandoned, seconds);
     result.message = std::move(reason);
     recorder_.write(std::move(result));
-    if (gave_up) give_up(attempt);
+    if (gave_up) judge_prefix();
 }
 
 void Scheduler::judge_prefix() {

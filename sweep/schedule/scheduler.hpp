@@ -53,7 +53,6 @@ private:
                         double seconds);
     void take_back(const std::vector<campaign::Attempt>& attempts);
     void handle_given_back(const campaign::Attempt& attempt, std::string reason, double seconds, bool noted);
-    void give_up(const campaign::Attempt& attempt);
     void judge_prefix();
     void show();
 
@@ -66,6 +65,7 @@ private:
     Progress progress_;
     std::size_t in_flight_ = 0;
     std::optional<Ending> early_;
+    std::optional<std::string> broken_;  ///< why nothing more can be computed
     bool at_once_ = false;
     std::vector<campaign::CaseId> checkpointed_;
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sweep/store/database.hpp"
+#include "sweep/store/soundness.hpp"
 #include "sweep/store/store.hpp"
 #include "sweep/store/writer_lock.hpp"
 
@@ -30,6 +31,8 @@ struct Store::Impl {
     std::int64_t provenance_campaign = 0;
     bool dead_attempts_closed = false;
     bool in_group = false;
+    bool sound = false;              ///< checked: what is read is what was written
+    std::vector<std::string> notes;  ///< damage met by the last enrol, and what became of it
     std::int64_t settled_in_group = 0;
     std::map<std::pair<std::string, std::int64_t>, Keys> observables;  ///< (scene, revision) -> keys
     std::map<campaign::Computer, std::int64_t> computers;
@@ -38,6 +41,13 @@ struct Store::Impl {
     void require_group() const;
     /// Whether the file has the columns of migration 003.
     [[nodiscard]] bool keeps_extents() const;
+    /// Throws BrokenWorld where the file is no longer the one that was opened.
+    void require_in_place() const;
+    /// Throws BrokenWorld naming the first damage among all that is data; checked once.
+    void require_sound();
+    /// The same for one case.
+    void require_sound(std::int64_t key);
+    void refuse_damage(const std::vector<DamagedTable>& tables, const std::vector<DamagedCase>& cases) const;
     /// Throws WrongQuestion with the nearest name where there is none.
     [[nodiscard]] std::int64_t campaign_key(std::string_view name) const;
     /// Throws std::logic_error for one that the scene has not declared.
@@ -59,6 +69,20 @@ struct CampaignTexts {
 /// it is new.
 [[nodiscard]] std::optional<std::int64_t> match_campaign(const Store::Impl& archive,
                                                          const campaign::Campaign& campaign);
+
+struct DeclaredParameter {
+    std::string name;
+    std::int64_t key = 0;
+    Value default_value;
+};
+/// Stores the inputs of a case that differ from the defaults. `parameters` are sorted by name.
+void enter_inputs(Connection& db, std::int64_t key, const campaign::Case& question,
+                  const std::vector<DeclaredParameter>& parameters);
+[[nodiscard]] CaseState stored_state(const Connection& db, std::int64_t key);
+/// Forgets damaged answers of these cases (`keys`, in the same order) and brings their states up to date.
+void ask_damaged_again(Store::Impl& archive, std::span<const campaign::PlacedCase> cases,
+                       std::span<const std::int64_t> keys, const std::vector<DeclaredParameter>& parameters,
+                       std::vector<CaseState>& states);
 
 /// Creates or renews the view that bears the campaign's name.
 void make_campaign_view(Store::Impl& archive, const campaign::Campaign& campaign, std::int64_t campaign_key);

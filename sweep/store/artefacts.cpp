@@ -11,12 +11,16 @@
 #include <unistd.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
+#include <memory>
+#include <new>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -63,39 +67,72 @@ std::filesystem::path file_of(const std::filesystem::path& folder, std::string_v
     return folder / (campaign::content_hash(key) + ".artefact");
 }
 
-/// What killed processes left half written: no file takes a day to write.
-void sweep_leftovers(const std::filesystem::path& folder) {
-    const auto yesterday = std::filesystem::file_time_type::clock::now() - std::chrono::hours(24);
+/// Removes files being written, or left so, of which `gone` (with how long ago they were last written to) is true.
+template <class Gone>
+void sweep_leftovers(const std::filesystem::path& folder, Gone&& gone) {
+    const auto now = std::filesystem::file_time_type::clock::now();
     std::error_code ignored;
     for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
         if (entry.path().extension() != AsideFile::extension) continue;
         const auto written = entry.last_write_time(ignored);
-        if (!ignored && written < yesterday) std::filesystem::remove(entry.path(), ignored);
+        if (!ignored && gone(entry.path(), now - written)) std::filesystem::remove(entry.path(), ignored);
     }
 }
 
 }  // namespace
 
-std::optional<Bytes> ArtefactFolder::get(std::string_view key) {
-    std::ifstream stream(file_of(folder_, key), std::ios::binary | std::ios::ate);
-    if (!stream) return std::nullopt;
+std::optional<Bytes> ArtefactFolder::read(const std::filesystem::path& file, std::string_view key,
+                                          std::string& damage) const {
+    std::ifstream stream(file, std::ios::binary | std::ios::ate);
+    if (!stream) {
+        std::error_code error;
+        if (std::filesystem::exists(std::filesystem::symlink_status(file, error))) damage = "it cannot be read";
+        return std::nullopt;
+    }
     const auto size = static_cast<std::uint64_t>(std::max<std::streamoff>(stream.tellg(), 0));
     stream.seekg(0);
     Header header;
+    damage = "it is cut short";
     if (size < sizeof header || !stream.read(reinterpret_cast<char*>(&header), sizeof header)) return std::nullopt;
+    damage = "it is no such file";
+    if (header.magic != magic) return std::nullopt;
+    damage = "it belongs to something else";
+    if (header.key_length != key.size()) return std::nullopt;
+    damage = "its length is not as written";
     const std::uint64_t rest = size - sizeof header;
-    if (header.magic != magic || header.key_length != key.size() || key.size() > rest ||
-        header.length != rest - key.size()) {
-        return std::nullopt;
-    }
+    if (key.size() > rest || header.length != rest - key.size()) return std::nullopt;
+    damage = "it cannot be read";
     std::string stored_key(key.size(), '\0');
+    if (!stream.read(stored_key.data(), static_cast<std::streamsize>(stored_key.size()))) return std::nullopt;
     Bytes contents(header.length);
-    if (!stream.read(stored_key.data(), static_cast<std::streamsize>(stored_key.size())) || stored_key != key)
-        return std::nullopt;
     if (!stream.read(reinterpret_cast<char*>(contents.data()), static_cast<std::streamsize>(contents.size())))
         return std::nullopt;
-    if (header.checksum != checksum_of(key, contents)) return std::nullopt;
+    damage = "its checksum does not fit its contents";
+    if (stored_key != key || header.checksum != checksum_of(key, contents)) return std::nullopt;
+    damage.clear();
     return contents;
+}
+
+std::optional<Bytes> ArtefactFolder::get(std::string_view key) {
+    const auto file = file_of(folder_, key);
+    std::string damage;
+    std::optional<Bytes> contents;
+    try {
+        contents = read(file, key, damage);
+    } catch (const std::bad_alloc&) {
+        damage = "it is too large for this machine's memory";
+    }
+    if (!damage.empty() && on_damage_)
+        on_damage_(fmt::format("'{}' is damaged: {}; it is not used, and what it held is computed anew", file.string(),
+                               damage));
+    return contents;
+}
+
+void ArtefactFolder::sweep() const {
+    sweep_leftovers(folder_, [](const std::filesystem::path& file, auto silent) {
+        const auto running = AsideFile::writer_runs(file);
+        return running ? !*running : silent > std::chrono::minutes(10);
+    });
 }
 
 void ArtefactFolder::put(std::string_view key, std::span<const std::byte> contents) {
@@ -106,7 +143,9 @@ void ArtefactFolder::put(std::string_view key, std::span<const std::byte> conten
         const auto parent = std::filesystem::absolute(folder_).parent_path();
         sync_folder(parent);
     }
-    if (!std::exchange(swept_, true)) sweep_leftovers(folder_);
+    if (!std::exchange(swept_, true))  // no file takes a day to write
+        sweep_leftovers(folder_,
+                        [](const std::filesystem::path&, auto silent) { return silent > std::chrono::hours(24); });
     const Header header{magic, key.size(), contents.size(), checksum_of(key, contents)};
     AsideFile aside(file_of(folder_, key));
     aside.write(std::as_bytes(std::span(&header, 1)));

@@ -1,12 +1,14 @@
 // Keyed files beside the database: shared starting states and checkpoints. Written aside, synced, renamed,
-// checksummed: half a file is never seen, a damaged one is as good as absent.
+// checksummed: half a file is never seen, a damaged one is named and as good as absent.
 #pragma once
 
 #include "solver/scenes/scene.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace grainsweep::store {
@@ -15,13 +17,23 @@ namespace grainsweep::store {
 /// use one folder at once. What a full or failing disk does throws BrokenWorld; get() never throws for it.
 class ArtefactFolder final : public Artefacts {
 public:
-    explicit ArtefactFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+    /// `on_damage` gets a sentence for every file that is there and cannot be used.
+    explicit ArtefactFolder(std::filesystem::path folder,
+                            std::function<void(const std::string& sentence)> on_damage = {})
+        : folder_(std::move(folder)), on_damage_(std::move(on_damage)) {}
     [[nodiscard]] std::optional<Bytes> get(std::string_view key) override;
     void put(std::string_view key, std::span<const std::byte> contents) override;
     void remove(std::string_view key);
+    /// Removes what writers that are gone left half written: at once where that was a process of this host, after
+    /// ten minutes elsewhere. Call it with the writer's lock of the database held.
+    void sweep() const;
 
 private:
+    [[nodiscard]] std::optional<Bytes> read(const std::filesystem::path& file, std::string_view key,
+                                            std::string& damage) const;
+
     std::filesystem::path folder_;
+    std::function<void(const std::string&)> on_damage_;
     bool swept_ = false;  ///< leftovers of killed writers looked for
 };
 

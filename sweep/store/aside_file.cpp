@@ -9,8 +9,12 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <string>
+#include <system_error>
 #include <utility>
 
 namespace grainsweep::store {
@@ -20,12 +24,16 @@ namespace {
     throw BrokenWorld(fmt::format("'{}': cannot be {}: {}", file.string(), what, std::strerror(errno)));
 }
 
+std::string host_name() {
+    std::array<char, 65> host{};
+    gethostname(host.data(), host.size() - 1);
+    return host.data();
+}
+
 /// In the target's folder; the name does not grow with the target's.
 std::filesystem::path aside_of(const std::filesystem::path& target) {
     static std::atomic<unsigned> count = 0;
-    std::array<char, 65> host{};
-    gethostname(host.data(), host.size() - 1);
-    return target.parent_path() / fmt::format(".{}.{}.{}{}", host.data(), getpid(), count++, AsideFile::extension);
+    return target.parent_path() / fmt::format(".{}.{}.{}{}", host_name(), getpid(), count++, AsideFile::extension);
 }
 
 }  // namespace
@@ -38,6 +46,17 @@ AsideFile::AsideFile(std::filesystem::path target) : target_(std::move(target)),
 AsideFile::~AsideFile() {
     if (descriptor_ >= 0) close(descriptor_);
     if (!file_.empty()) unlink(file_.c_str());
+}
+
+std::optional<bool> AsideFile::writer_runs(const std::filesystem::path& file) {
+    std::string name = file.stem().string();  // .host.process.count; a host's name may have dots
+    const std::string start = fmt::format(".{}.", host_name());
+    if (!name.starts_with(start)) return std::nullopt;
+    name.erase(0, start.size());
+    pid_t process = 0;
+    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), process);
+    if (error != std::errc() || process <= 0 || end == name.data() + name.size() || *end != '.') return std::nullopt;
+    return kill(process, 0) == 0 || errno != ESRCH;
 }
 
 void AsideFile::write(std::span<const std::byte> bytes) {

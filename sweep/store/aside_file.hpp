@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -22,6 +23,9 @@ public:
     void take_place();
 
     static constexpr std::string_view extension = ".aside";
+    /// Whether the process that writes, or wrote, this file aside still runs; nothing where that was on another host,
+    /// or the name says nothing about it.
+    [[nodiscard]] static std::optional<bool> writer_runs(const std::filesystem::path& file);
 
 private:
     std::filesystem::path target_, file_;

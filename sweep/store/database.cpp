@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <ctime>
 #include <limits>
 #include <new>
 #include <stdexcept>
@@ -56,7 +57,12 @@ std::string file_of(sqlite3* database) {
         case SQLITE_READONLY:
             throw BrokenWorld(fmt::format("{}: is not writable: {}", file, cause()));
         case SQLITE_NOMEM:
+            if (sqlite3_hard_heap_limit64(-1) > 0)
+                throw StatementLimit(
+                    fmt::format("it needs more than {} MiB of memory", sqlite3_hard_heap_limit64(-1) >> 20), file);
             throw std::bad_alloc();
+        case SQLITE_INTERRUPT:
+            throw StatementLimit("it takes too long", file);
         default:
             throw RefusedSql(words, file);
     }
@@ -295,6 +301,10 @@ std::int64_t Connection::last_row() const {
 std::int64_t Connection::changes() const {
     return sqlite3_changes64(handle_.get());
 }
+bool Connection::has_moved() const {
+    int moved = 0;
+    return sqlite3_file_control(handle_.get(), "main", SQLITE_FCNTL_HAS_MOVED, &moved) == SQLITE_OK && moved != 0;
+}
 bool Connection::in_transaction() const {
     return sqlite3_get_autocommit(handle_.get()) == 0;
 }
@@ -372,6 +382,39 @@ void finish_group(sqlite3_context* context) {
 void Connection::authorize(Authorizer authorizer) const {
     authorizer_ = authorizer ? std::make_unique<Authorizer>(std::move(authorizer)) : nullptr;
     sqlite3_set_authorizer(handle_.get(), authorizer_ ? call_authorizer : nullptr, authorizer_.get());
+}
+
+void limit_memory(std::int64_t bytes) {
+    sqlite3_hard_heap_limit64(bytes);
+}
+
+void Connection::limit_lengths(int value) const {
+    sqlite3_limit(handle_.get(), SQLITE_LIMIT_LENGTH, value);
+    sqlite3_limit(handle_.get(), SQLITE_LIMIT_LIKE_PATTERN_LENGTH, 1000);
+}
+
+/// Called every so many of SQLite's own instructions: a statement that is over before costs no look at a clock.
+int Connection::look_at_time(void* allowance) {
+    auto& allowed = *static_cast<Allowance*>(allowance);
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    const double seconds = static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+    if (allowed.since < 0) allowed.since = seconds;
+    return seconds - allowed.since > allowed.seconds ? 1 : 0;
+}
+
+void Connection::stop_after(double seconds) const {
+    constexpr int instructions = 1000;
+    if (!(seconds > 0)) {
+        sqlite3_progress_handler(handle_.get(), 0, nullptr, nullptr);
+        allowance_.reset();
+        return;
+    }
+    if (!allowance_) {
+        allowance_ = std::make_unique<Allowance>();
+        sqlite3_progress_handler(handle_.get(), instructions, look_at_time, allowance_.get());
+    }
+    *allowance_ = {seconds, -1};
 }
 
 void Connection::add_aggregate(const char* name, int arguments, Statistic statistic) {

@@ -41,6 +41,15 @@ private:
     std::string words_;
 };
 
+/// A statement was stopped by a limit of time or memory (Connection::stop_after, limit_memory).
+class StatementLimit : public RefusedSql {
+public:
+    using RefusedSql::RefusedSql;
+};
+
+/// Bytes that SQLite may take in this process, for all connections; 0: no limit.
+void limit_memory(std::int64_t bytes);
+
 /// NULL, integer, real, text.
 using SqlValue = std::variant<std::monostate, std::int64_t, double, std::string>;
 
@@ -164,9 +173,15 @@ public:
     [[nodiscard]] std::int64_t last_row() const;
     [[nodiscard]] std::int64_t changes() const;
     [[nodiscard]] bool in_transaction() const;
+    /// Whether the file's name no longer leads to the file that was opened: moved, deleted or replaced.
+    [[nodiscard]] bool has_moved() const;
 
     /// Every statement prepared from now on must please the authorizer; empty: all do.
     void authorize(Authorizer authorizer) const;
+    /// From now on statements may take so much processor time together before StatementLimit; 0: no limit.
+    void stop_after(double seconds) const;
+    /// Longest text, bytes: a statement that makes a longer one is refused.
+    void limit_lengths(int value) const;
     /// Adds an aggregate over the rows of a group, each of `arguments` numbers, one row after another; a row with a
     /// NULL is skipped, an empty answer is NULL. What the statistic throws (std::invalid_argument) refuses the
     /// statement.
@@ -189,6 +204,12 @@ private:
     std::unique_ptr<sqlite3, Close> handle_;
     mutable std::unordered_map<std::string, Statement, TextHash, std::equal_to<>> kept_;
     mutable std::unique_ptr<Authorizer> authorizer_;
+    struct Allowance {
+        double seconds = 0;
+        double since = -1;  ///< processor time of the thread; negative: not begun
+    };
+    mutable std::unique_ptr<Allowance> allowance_;
+    static int look_at_time(void* allowance);
 };
 
 /// BEGIN ... COMMIT; rolls back unless committed. A transaction that only reads sees one state of the file.

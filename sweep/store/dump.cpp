@@ -72,12 +72,13 @@ void dump_observations(const Connection& db, std::int64_t key, const Sink& sink)
 }
 
 void dump_cases(const Connection& db, const Sink& sink) {
+    // NOT INDEXED: what has checksums are the tables, not their indices.
     auto rows = db.ask(
         "SELECT case_key, case_id, scene, revision, seed, outcome, CASE WHEN outcome IN ('skipped', 'unstable', "
         "'rejected') "
-        "THEN (SELECT message FROM attempt AS t WHERE t.case_key = c.case_key AND t.outcome IS NOT NULL "
-        "ORDER BY number DESC LIMIT 1) END FROM sim_case AS c WHERE outcome <> 'abandoned' AND case_key IN "
-        "(SELECT p.case_key FROM campaign_case AS p JOIN campaign AS g ON g.campaign_id = p.campaign_id "
+        "THEN (SELECT message FROM attempt AS t WHERE t.case_key = c.case_key AND t.outcome = c.outcome "
+        "ORDER BY number DESC LIMIT 1) END FROM sim_case AS c NOT INDEXED WHERE outcome <> 'abandoned' AND case_key IN "
+        "(SELECT p.case_key FROM campaign_case AS p NOT INDEXED JOIN campaign AS g ON g.campaign_id = p.campaign_id "
         "WHERE g.stopped_at IS NULL OR p.point < g.stopped_at) ORDER BY case_id");
     while (rows.next()) {
         const auto key = rows.get<std::int64_t>(0);
@@ -106,8 +107,8 @@ void dump_convergence(const Connection& db, std::int64_t campaign, std::optional
 }
 
 void dump_campaigns(const Connection& db, const Sink& sink) {
-    auto campaigns =
-        db.ask("SELECT campaign_id, name, scene, revision, seed, design, stopped_at FROM campaign ORDER BY name");
+    auto campaigns = db.ask(
+        "SELECT campaign_id, name, scene, revision, seed, design, stopped_at FROM campaign NOT INDEXED ORDER BY name");
     while (campaigns.next()) {
         const auto key = campaigns.get<std::int64_t>(0);
         const auto stopped_at = campaigns.get<std::optional<std::int64_t>>(6);
@@ -116,8 +117,8 @@ void dump_campaigns(const Connection& db, const Sink& sink) {
                          static_cast<std::uint64_t>(campaigns.get<std::int64_t>(4)), campaigns.get<std::string_view>(5),
                          stopped_at ? fmt::format(" stopped_at={}", *stopped_at) : ""));
         auto places = db.ask(
-            "SELECT point, replicate, sequence, case_id FROM campaign_case AS p JOIN sim_case AS c ON c.case_key = "
-            "p.case_key "
+            "SELECT point, replicate, sequence, case_id FROM campaign_case AS p NOT INDEXED JOIN sim_case AS c NOT "
+            "INDEXED ON c.case_key = p.case_key "
             "WHERE p.campaign_id = ?1 AND (?2 IS NULL OR point < ?2) ORDER BY point, replicate",
             key, stopped_at);
         while (places.next()) {
@@ -132,6 +133,7 @@ void dump_campaigns(const Connection& db, const Sink& sink) {
 
 void Store::dump(const Sink& sink) const {
     const Transaction one_state(impl_->db, Transaction::Kind::read);
+    impl_->require_sound();
     dump_cases(impl_->db, sink);
     dump_campaigns(impl_->db, sink);
 }

@@ -2,6 +2,7 @@
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/store/archive.hpp"
 #include "sweep/store/moment.hpp"
+#include "sweep/store/soundness.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -31,14 +32,8 @@ void refuse_taken_name(const Connection& db, const Campaign& campaign) {
                                          : "names that begin with sqlite_ are SQLite's own");
 }
 
-struct Parameter {
-    std::string name;
-    std::int64_t key = 0;
-    Value default_value;
-};
-
 /// Declares what the scene takes and measures; returns its parameters sorted by name.
-std::vector<Parameter> declare_scene(Store::Impl& archive, const SceneInfo& scene) {
+std::vector<DeclaredParameter> declare_scene(Store::Impl& archive, const SceneInfo& scene) {
     auto& db = archive.db;
     for (const auto& parameter : scene.parameters) {
         db.run(
@@ -56,7 +51,7 @@ std::vector<Parameter> declare_scene(Store::Impl& archive, const SceneInfo& scen
             "shape = excluded.shape",
             scene.name, scene.revision, observable.name, observable.unit, observable.meaning, shape);
     }
-    std::vector<Parameter> parameters;
+    std::vector<DeclaredParameter> parameters;
     auto rows = db.ask(
         "SELECT name, parameter_id, default_value FROM parameter WHERE scene = ? AND revision = ? "
         "ORDER BY name",
@@ -80,25 +75,31 @@ std::vector<Parameter> declare_scene(Store::Impl& archive, const SceneInfo& scen
 void close_dead_attempts(Store::Impl& archive) {
     if (std::exchange(archive.dead_attempts_closed, true)) return;
     auto& db = archive.db;
-    std::vector<std::int64_t> cases;
+    std::vector<std::pair<std::int64_t, std::int64_t>> dead;
     {
-        auto rows = db.ask("SELECT case_key FROM attempt WHERE outcome IS NULL");
-        while (rows.next()) cases.push_back(rows.get<std::int64_t>(0));
+        auto rows = db.ask("SELECT case_key, number FROM attempt WHERE outcome IS NULL");
+        while (rows.next()) dead.emplace_back(rows.get<std::int64_t>(0), rows.get<std::int64_t>(1));
     }
-    for (const auto key : cases) {
+    for (const auto& [key, number] : dead) {
         db.run(
             "UPDATE attempt SET outcome = 'abandoned', message = 'the run that began it ended before it did' "
-            "WHERE case_key = ? AND outcome IS NULL",
+            "WHERE case_key = ? AND number = ?",
+            key, number);
+        renew_attempt(db, key, number);
+        const auto changed = db.run(  // an answer stands until the next one is there
+            "UPDATE sim_case SET outcome = 'abandoned', wall_seconds = NULL WHERE case_key = ? "
+            "AND coalesce(outcome, '') NOT IN ('completed', 'skipped', 'unstable', 'rejected')",
             key);
-        db.run("UPDATE sim_case SET outcome = 'abandoned', wall_seconds = NULL WHERE case_key = ?", key);
+        if (changed == 0) continue;
         db.run("DELETE FROM observation WHERE case_key = ?", key);
+        renew_answer(db, key);
     }
 }
 
 /// Looks cases up by id, or enters them with the inputs that differ from the defaults.
 class CaseBook {
 public:
-    CaseBook(Connection& db, const std::vector<Parameter>& parameters) : db_(&db), parameters_(&parameters) {}
+    CaseBook(Connection& db, const std::vector<DeclaredParameter>& parameters) : db_(&db), parameters_(&parameters) {}
 
     std::pair<std::int64_t, CaseState> enter(const campaign::Case& question) {
         {
@@ -113,27 +114,13 @@ public:
         db_->run("INSERT INTO sim_case (case_id, scene, revision, seed) VALUES (?, ?, ?, ?)", question.id,
                  question.scene, question.revision, static_cast<std::int64_t>(question.seed));
         const std::int64_t key = db_->last_row();
-        enter_inputs(key, question);
+        enter_inputs(*db_, key, question, *parameters_);
         return {key, {}};
     }
 
 private:
-    void enter_inputs(std::int64_t key, const campaign::Case& question) {
-        auto parameter = parameters_->begin();  // both are sorted by name
-        for (const auto& [name, value] : question.inputs) {
-            while (parameter != parameters_->end() && parameter->name < name) ++parameter;
-            if (parameter == parameters_->end() || parameter->name != name) {
-                throw std::logic_error(
-                    fmt::format("case {} has the input {}, which its scene does not", question.id, name));
-            }
-            if (value == parameter->default_value) continue;
-            db_->run("INSERT INTO case_input (case_key, parameter_id, value) VALUES (?, ?, ?)", key, parameter->key,
-                     value);
-        }
-    }
-
     Connection* db_;
-    const std::vector<Parameter>* parameters_;
+    const std::vector<DeclaredParameter>* parameters_;
 };
 
 struct Place {
@@ -157,9 +144,16 @@ std::vector<Place> stored_places(const Connection& db, std::int64_t campaign_key
     return places;
 }
 
+RowSum sum_of(std::span<const Place> places) {
+    RowSum sum;
+    for (const auto& it : places) sum.add(checksum_of_place(it.point, it.replicate, it.sequence, it.case_key));
+    return sum;
+}
+
 /// The verdicts given so far were about other places than there are now.
 void forget_convergence(Connection& db, std::int64_t campaign_key) {
     db.run("DELETE FROM convergence WHERE campaign_id = ?", campaign_key);
+    store_sum(db, "convergence", campaign_key, {});
     db.run("UPDATE campaign SET stopped_at = NULL WHERE campaign_id = ?", campaign_key);
 }
 
@@ -168,6 +162,8 @@ void place(Store::Impl& archive, const Campaign& campaign, std::int64_t campaign
     auto& db = archive.db;
     std::ranges::sort(asked, before);
     const auto stored = stored_places(db, campaign_key);
+    const RowSum written = stored_sum(db, "campaign_case", campaign_key);
+    const bool damaged = sum_of(stored) != written;
 
     std::vector<Place> fresh;
     const Place* moved = nullptr;
@@ -181,7 +177,19 @@ void place(Store::Impl& archive, const Campaign& campaign, std::int64_t campaign
             break;
         }
     }
-    if (moved != nullptr) {
+    if (damaged) {
+        if (static_cast<std::int64_t>(asked.size()) < written.rows) {
+            throw BrokenWorld(
+                fmt::format("database '{}': damaged: the design of campaign '{}' is not as written. A run of the whole "
+                            "campaign, {} "
+                            "cases, puts it right; this one asks for {}",
+                            archive.file.string(), campaign.name, written.rows, asked.size()));
+        }
+        archive.notes.push_back("the design was damaged in the database and is put right");
+        db.run("DELETE FROM campaign_case WHERE campaign_id = ?", campaign_key);
+        fresh = std::move(asked);
+        moved = nullptr;
+    } else if (moved != nullptr) {
         const auto& design = designs::design_named(campaign.design);
         if (design.beginning == designs::Beginning::listed) {
             throw campaign::wrong_question(
@@ -206,6 +214,9 @@ void place(Store::Impl& archive, const Campaign& campaign, std::int64_t campaign
         db.run("INSERT INTO campaign_case (campaign_id, point, replicate, sequence, case_key) VALUES (?, ?, ?, ?, ?)",
                campaign_key, it.point, it.replicate, it.sequence, it.case_key);
     }
+    RowSum sum = damaged || moved != nullptr ? RowSum{} : written;
+    sum.add(sum_of(fresh));
+    if (!fresh.empty()) store_sum(db, "campaign_case", campaign_key, sum);
     const bool inside = !stored.empty() && !fresh.empty() && fresh.front().point <= stored.back().point;
     if (moved != nullptr || inside) forget_convergence(db, campaign_key);
 }
@@ -320,13 +331,45 @@ private:
     bool closed_;
 };
 
+/// Verdicts that are not as written are given anew.
+void drop_damaged_verdicts(Store::Impl& archive, std::int64_t campaign_key) {
+    auto& db = archive.db;
+    if (sum_of_table(db, "convergence", campaign_key) == stored_sum(db, "convergence", campaign_key)) return;
+    archive.notes.push_back("the verdicts on convergence were damaged in the database and are given anew");
+    forget_convergence(db, campaign_key);
+}
+
 }  // namespace
+
+CaseState stored_state(const Connection& db, std::int64_t key) {
+    auto rows = db.ask("SELECT attempts, failures, outcome FROM sim_case WHERE case_key = ?", key);
+    if (!rows.next()) return {};
+    CaseState state{rows.get<std::int64_t>(0), rows.get<std::int64_t>(1), {}};
+    if (!rows.is_null(2)) state.outcome = campaign::outcome_named(rows.get<std::string_view>(2));
+    return state;
+}
+
+void enter_inputs(Connection& db, std::int64_t key, const campaign::Case& question,
+                  const std::vector<DeclaredParameter>& parameters) {
+    auto parameter = parameters.begin();  // both are sorted by name
+    for (const auto& [name, value] : question.inputs) {
+        while (parameter != parameters.end() && parameter->name < name) ++parameter;
+        if (parameter == parameters.end() || parameter->name != name) {
+            throw std::logic_error(
+                fmt::format("case {} has the input {}, which its scene does not", question.id, name));
+        }
+        if (value == parameter->default_value) continue;
+        db.run("INSERT INTO case_input (case_key, parameter_id, value) VALUES (?, ?, ?)", key, parameter->key, value);
+    }
+}
 
 std::vector<CaseState> Store::enrol(const Campaign& campaign, std::span<const PlacedCase> cases,
                                     const Provenance& provenance) {
     impl_->require_writer();
     Remembered remembered(*impl_);
     Transaction transaction(impl_->db);
+    impl_->notes.clear();
+    impl_->refuse_damage(damaged_descriptions(impl_->db), {});
     close_dead_attempts(*impl_);
     const std::int64_t key = store_campaign(*impl_, campaign, cases);
     const auto parameters = declare_scene(*impl_, campaign.scene());
@@ -343,9 +386,16 @@ std::vector<CaseState> Store::enrol(const Campaign& campaign, std::span<const Pl
         states.push_back(state);
         places.push_back({placed.point, placed.replicate, placed.sequence, case_key});
     }
+    std::vector<std::int64_t> keys;
+    keys.reserve(places.size());
+    for (const auto& it : places) keys.push_back(it.case_key);
+    ask_damaged_again(*impl_, cases, keys, parameters, states);
+    drop_damaged_verdicts(*impl_, key);
     place(*impl_, campaign, key, std::move(places));
     make_campaign_view(*impl_, campaign, key);
+    renew_descriptions(impl_->db);
     transaction.commit();
+    impl_->sound = true;
     remembered.keep();
     return states;
 }

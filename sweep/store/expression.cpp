@@ -15,6 +15,11 @@ namespace grainsweep::store {
 
 namespace {
 
+// A condition speaks of one case: what needs more than this is a mistake, or no condition.
+constexpr int longest_value = 10'000;
+constexpr std::size_t longest_expression = 100'000;
+constexpr double longest_time = 1;  // s
+
 /// Functions whose answer depends on nothing but their arguments.
 constexpr std::array deterministic = {
     "abs",     "acos",      "acosh",   "asin",   "asinh",   "atan",   "atan2",  "atanh",    "ceil",
@@ -121,6 +126,7 @@ class Condition {
 public:
     Condition(std::string_view expression, std::span<const std::string> names)
         : text_(expression), db_(Connection::in_memory()) {
+        db_.limit_lengths(longest_value);
         const auto read = check(db_, expression, names);
         columns_.assign(read.begin(), read.end());
         std::string row;
@@ -140,6 +146,7 @@ public:
             statement_.bind(++parameter, found->second);
         }
         const Rows rows(statement_);
+        db_.stop_after(longest_time);
         try {
             return statement_.step() && statement_.get<std::int64_t>(0) != 0;
         } catch (const RefusedSql& refused) {
@@ -162,6 +169,9 @@ campaign::Filter make_filter(std::string_view expression, std::span<const std::s
     }
     if (expression.find('\0') != std::string_view::npos)
         throw refusal("an expression with a NUL byte", "text is expected");
+    if (expression.size() > longest_expression)
+        throw refusal(fmt::format("an expression of {} characters", expression.size()),
+                      fmt::format("at most {} are read", longest_expression));
     if (names.empty()) throw refusal(expression, "the campaign has no factor and no fixed value it could use");
     auto condition = std::make_shared<Condition>(expression, names);
     return [condition = std::move(condition)](const Inputs& inputs) { return condition->holds(inputs); };

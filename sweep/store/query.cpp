@@ -49,7 +49,10 @@ private:
     const Connection* db_;
 };
 
-Table rows_of(const Connection& db, std::string_view sql) {
+using Columns = std::function<void(const std::vector<std::string>& columns)>;
+using Row = std::function<void(const std::vector<Table::Cell>& row)>;
+
+void visit_rows(const Connection& db, std::string_view sql, const Columns& begin, const Row& each) {
     Statement statement = db.prepare(sql);
     if (!statement.valid()) throw RefusedSql("the question is empty");
     for (auto rest = statement.tail(); !rest.empty();) {
@@ -60,15 +63,35 @@ Table rows_of(const Connection& db, std::string_view sql) {
     if (!statement.read_only() || statement.columns() == 0) throw RefusedSql("the archive is only read here");
     if (statement.parameters() > 0) throw RefusedSql("values are written out, not left open with ? or :name");
 
-    Table table;
-    for (int column = 0; column < statement.columns(); ++column) table.columns.push_back(statement.column_name(column));
+    std::vector<std::string> columns;
+    for (int column = 0; column < statement.columns(); ++column) columns.push_back(statement.column_name(column));
+    begin(columns);
+    std::vector<Table::Cell> row(columns.size());
     while (statement.step()) {
-        auto& row = table.rows.emplace_back();
-        row.reserve(table.columns.size());
-        for (int column = 0; column < statement.columns(); ++column) row.push_back(statement.cell(column));
+        for (int column = 0; column < statement.columns(); ++column)
+            row[static_cast<std::size_t>(column)] = statement.cell(column);
+        each(row);
     }
-    return table;
 }
+
+/// Limits of this process and connection, gone with it.
+class Limited {
+public:
+    Limited(const Connection& db, const Store::QueryLimits& limits) : db_(&db), memory_(limits.bytes > 0) {
+        db.stop_after(limits.seconds);
+        if (memory_) limit_memory(limits.bytes);
+    }
+    Limited(const Limited&) = delete;
+    Limited& operator=(const Limited&) = delete;
+    ~Limited() {
+        db_->stop_after(0);
+        if (memory_) limit_memory(0);
+    }
+
+private:
+    const Connection* db_;
+    bool memory_;
+};
 
 std::vector<std::string> names_from(const Connection& db, std::string_view sql, const std::string& argument = {}) {
     std::vector<std::string> names;
@@ -148,9 +171,22 @@ campaign::WrongQuestion refusal(const Connection& db, std::string_view sql, std:
 }  // namespace
 
 Table Store::query(std::string_view sql) const {
+    Table table;
+    query(
+        sql, {}, [&](const auto& columns) { table.columns = columns; },
+        [&](const auto& row) { table.rows.push_back(row); });
+    return table;
+}
+
+void Store::query(std::string_view sql, const QueryLimits& limits, const Columns& begin, const Row& each) const {
     const Authorized authorized(impl_->db);
     try {
-        return rows_of(impl_->db, sql);
+        const Limited limited(impl_->db, limits);
+        visit_rows(impl_->db, sql, begin, each);
+    } catch (const StatementLimit& limit) {
+        throw campaign::wrong_question("SQL", {},
+                                       fmt::format("{} (limits: {} s of processor time, {} MiB)", limit.words(),
+                                                   campaign::shortest(limits.seconds), limits.bytes >> 20U));
     } catch (const RefusedSql& refused) {
         throw refusal(impl_->db, sql, refused.words());
     }

@@ -109,6 +109,7 @@ std::string extent_columns(bool kept) {
 }  // namespace
 
 std::vector<CampaignRecord> Store::campaigns() const {
+    impl_->require_sound();
     std::vector<CampaignRecord> records;
     const auto extents = extent_columns(impl_->keeps_extents());
     auto rows = impl_->db.ask(fmt::format(
@@ -201,6 +202,7 @@ std::optional<campaign::Case> Store::find_case(std::string_view id_or_prefix) co
             "case", id_or_prefix,
             fmt::format("several cases begin so, {} and {} among them; give more digits", found[0].id, found[1].id));
     }
+    if (const auto key = case_key(impl_->db, found.front().id)) impl_->require_sound(*key);
     found.front().inputs = inputs_of(impl_->db, found.front().id);
     return std::move(found.front());
 }
@@ -259,13 +261,15 @@ std::vector<CasePlace> Store::places(std::string_view case_id) const {
 std::optional<campaign::CaseResult> Store::result(std::string_view case_id) const {
     const auto key = case_key(impl_->db, case_id);
     if (!key) return std::nullopt;
+    impl_->require_sound(*key);
     campaign::CaseResult result;
     std::string phases;
     {
         auto rows = impl_->db.ask(
             "SELECT number, outcome, coalesce(message, ''), coalesce(wall_seconds, 0.0), coalesce(cpu_seconds, 0.0), "
             "coalesce(particle_steps, 0.0), coalesce(phases, '{}') FROM attempt "
-            "WHERE case_key = ? AND outcome IS NOT NULL ORDER BY number DESC LIMIT 1",
+            "WHERE case_key = ?1 AND outcome = (SELECT outcome FROM sim_case WHERE case_key = ?1) "
+            "ORDER BY number DESC LIMIT 1",
             *key);
         if (!rows.next()) return std::nullopt;
         result.attempt = {std::string(case_id), rows.get<std::int64_t>(0)};
@@ -283,13 +287,15 @@ std::optional<campaign::CaseResult> Store::result(std::string_view case_id) cons
 }
 
 std::vector<PlacedValue> Store::values(std::string_view campaign, std::string_view observable) const {
+    impl_->require_sound();
     const auto& db = impl_->db;
     const std::int64_t key = impl_->campaign_key(campaign);
     std::int64_t observable_key = 0;
     std::vector<std::string> scalars;
     {
         auto rows = db.ask(
-            "SELECT b.name, b.observable_id FROM observable AS b JOIN campaign AS g ON b.scene = g.scene AND "
+            "SELECT b.name, b.observable_id FROM observable AS b NOT INDEXED JOIN campaign AS g NOT INDEXED ON b.scene "
+            "= g.scene AND "
             "b.revision = g.revision WHERE g.campaign_id = ? AND b.shape = 'scalar' ORDER BY b.observable_id",
             key);
         while (rows.next()) {
@@ -320,6 +326,7 @@ std::vector<PlacedValue> Store::values(std::string_view campaign, std::string_vi
 }
 
 std::vector<ConvergenceRow> Store::convergence(std::string_view campaign, std::string_view observable) const {
+    impl_->require_sound();
     std::vector<ConvergenceRow> history;
     const std::int64_t key = impl_->campaign_key(campaign);
     auto rows = impl_->db.ask(

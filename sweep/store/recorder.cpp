@@ -9,6 +9,7 @@ namespace {
 
 // A group is as large as what arrived while the last one was being synced, within these bounds.
 constexpr std::size_t group_rows = 256;
+constexpr auto idle_look = std::chrono::seconds(1);
 constexpr auto group_wait = std::chrono::milliseconds(10);
 
 // Entries and samples that may wait, some 100 MB: more than a disk that works leaves behind.
@@ -69,7 +70,17 @@ void Recorder::drain() {
 void Recorder::run() {
     std::unique_lock lock(mutex_);
     while (true) {
-        changed_.wait(lock, [this] { return closing_ || !waiting_.empty(); });
+        if (!changed_.wait_for(lock, idle_look, [this] { return closing_ || !waiting_.empty(); })) {
+            // Nothing to write; a file that is gone must not be found out an hour later.
+            try {
+                store_.require_in_place();
+                continue;
+            } catch (...) {
+                failure_ = std::current_exception();
+            }
+            changed_.notify_all();
+            return;
+        }
         if (waiting_.empty()) return;
         if (!closing_)
             changed_.wait_for(lock, group_wait, [this] { return closing_ || waiting_.size() >= group_rows; });

@@ -6,8 +6,10 @@
 #include "sweep/store/archive.hpp"
 #include "sweep/store/moment.hpp"
 #include "sweep/store/schema.hpp"
+#include "sweep/store/soundness.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -16,6 +18,7 @@
 #include <csignal>
 #include <cstdint>
 #include <fstream>
+#include <limits>
 #include <stdexcept>
 
 namespace grainsweep::store {
@@ -24,6 +27,7 @@ using campaign::WrongQuestion;
 
 namespace {
 
+constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t application = 0x67737770;  // "gswp" in the file's header: application_id
 
 std::int64_t pragma(const Connection& db, std::string_view name) {
@@ -97,8 +101,14 @@ void migrate(Connection& db, const std::filesystem::path& file) {
     if (schema_version(db, file) == static_cast<std::int64_t>(migrations.size())) return;
     Transaction transaction(db);
     const auto seen = static_cast<std::size_t>(schema_version(db, file));
+    const bool unprotected = !has_checksums(db);
     for (const auto migration : migrations.subspan(seen)) db.execute(migration);
     db.execute(schema_views());
+    // A migration that changes what has a checksum renews it itself: here damage would become the truth.
+    if (unprotected)
+        renew_everything(db);
+    else
+        renew_sum(db, "sqlite_schema");
     db.execute(fmt::format("PRAGMA user_version = {}; PRAGMA application_id = {}", migrations.size(), application));
     transaction.commit();
 }
@@ -125,27 +135,67 @@ std::string holder_of(const std::filesystem::path& file) {
                                   holder.empty() ? "another run" : "the run of " + holder));
 }
 
+/// A name that SQLite, or a shell's habit, would read as something else than a file.
+void check_name(const std::filesystem::path& file) {
+    const std::string name = file.string();
+    if (name == ":memory:") throw WrongQuestion("':memory:' is no database file: what a run stores must outlive it.");
+    if (name.starts_with("file:"))
+        throw WrongQuestion(fmt::format("'{}' is an address; a database is given by its file name.", name));
+    if (name.empty()) throw WrongQuestion("a database needs a file name.");
+}
+
+/// The journal of a file lies beside one of its names and is not found beside another.
+void refuse_several_names(const std::filesystem::path& file) {
+    struct stat status {};
+    if (stat(file.c_str(), &status) != 0 || status.st_nlink <= 1) return;
+    throw WrongQuestion(
+        fmt::format("'{}' has {} names (hard links): results written under one are not seen under another; remove the "
+                    "other names, or copy the file.",
+                    file.string(), status.st_nlink));
+}
+
+/// Pages and cells of all but the measured values, which have their checksums; an index that is not its table's would
+/// hide a stored case.
+void check_structure(const Connection& db, const std::filesystem::path& file) {
+    for (const char* const what :
+         {"integrity_check(sim_case)", "quick_check(campaign)", "quick_check(campaign_case)", "quick_check(case_input)",
+          "quick_check(attempt)", "integrity_check(parameter)", "integrity_check(observable)"}) {
+        auto rows = db.prepare(fmt::format("PRAGMA {}", what));
+        while (rows.step()) {
+            if (rows.get<std::string_view>(0) == "ok") continue;
+            throw BrokenWorld(
+                fmt::format("database '{}': damaged ({}); `grainsweep verify {}` names all that is "
+                            "damaged, and what is readable can be copied out with `sqlite3 FILE .recover`",
+                            file.string(), rows.get<std::string_view>(0), file.string()));
+        }
+    }
+}
+
 std::unique_ptr<Store::Impl> open_to_write(const std::filesystem::path& file, Store::Disk disk) {
+    check_name(file);
     std::error_code ignored;
     if (std::filesystem::exists(file, ignored)) check_readable(file);
     auto lock = WriterLock::take(file);
     if (!lock) refuse_second_writer(file);
+    refuse_several_names(file);
     Connection db(file, Connection::Access::write);
-    (void)schema_version(db, file);  // before anything is changed in a stranger's file
+    const bool empty = schema_version(db, file) == 0;  // before anything is changed in a stranger's file
     const bool network = disk == Store::Disk::network || (disk == Store::Disk::found_out && on_network(file));
     db.use(network ? Connection::Journal::rollback : Connection::Journal::write_ahead);
+    if (!empty) check_structure(db, file);
     migrate(db, file);
     return std::make_unique<Store::Impl>(file, std::move(lock), std::move(db));
 }
 
 std::unique_ptr<Store::Impl> open_to_read(const std::filesystem::path& file) {
+    check_name(file);
     check_readable(file);
     Connection db(file, Connection::Access::read);
     const std::int64_t version = schema_version(db, file);
     if (version == 0)
         throw WrongQuestion(fmt::format("'{}' is empty: no campaign has been run into it.", file.string()));
-    // An older schema is read as it is, and brought up to date by the next run: what a migration added is asked for only
-    // where it is (keeps_extents).
+    // An older schema is read as it is, and brought up to date by the next run: what a migration added is asked for
+    // only where it is (keeps_extents).
     return std::make_unique<Store::Impl>(file, std::nullopt, std::move(db));
 }
 
@@ -158,6 +208,37 @@ std::optional<std::string> phases_text(const Cost& cost) {
         text += fmt::format("{}\"{}\":{}", text.empty() ? "" : ",", name, campaign::shortest(seconds));
     }
     return "{" + text + "}";
+}
+
+/// Ends the attempt where it is under way; false where it is not.
+bool close_attempt(Connection& db, std::int64_t key, const campaign::CaseResult& result) {
+    const auto phases = phases_text(result.cost);
+    std::string started;
+    AttemptRow row{.key = key,
+                   .number = result.attempt.number,
+                   .outcome = campaign::to_string(result.outcome),
+                   .wall_seconds = result.cost.wall_seconds,
+                   .cpu_seconds = result.cost.cpu_seconds,
+                   .particle_steps = result.cost.particle_steps,
+                   .phases = phases};
+    if (!result.message.empty()) row.message = result.message;
+    {
+        auto rows = db.ask(
+            "SELECT provenance_id, started, computer_id FROM attempt WHERE case_key = ? AND number = ? AND outcome IS "
+            "NULL",
+            key, row.number);
+        if (!rows.next()) return false;
+        row.provenance = rows.get<std::int64_t>(0);
+        started = rows.get<std::string>(1);
+        row.computer = rows.get<std::int64_t>(2);
+    }
+    row.started = started;
+    db.run(
+        "UPDATE attempt SET outcome = ?1, message = ?2, wall_seconds = ?3, cpu_seconds = ?4, particle_steps = ?5, "
+        "phases = ?6, checksum = ?7 WHERE case_key = ?8 AND number = ?9",
+        row.outcome, row.message, row.wall_seconds, row.cpu_seconds, row.particle_steps, row.phases,
+        as_sql(checksum_of(row)), key, row.number);
+    return true;
 }
 
 }  // namespace
@@ -173,6 +254,20 @@ Store& Store::operator=(Store&&) noexcept = default;
 void Store::Impl::require_writer() const {
     if (!lock) throw std::logic_error("the store was opened to read");
 }
+void Store::Impl::require_in_place() const {
+    if (!db.has_moved()) return;
+    throw BrokenWorld(
+        fmt::format("database '{}': it was moved, deleted or replaced while this run was writing to it; put it back, "
+                    "with '{}-wal' beside it where there is one, and run again to resume",
+                    file.string(), file.string()));
+}
+void Store::require_in_place() const {
+    impl_->require_in_place();
+}
+const std::vector<std::string>& Store::notes() const {
+    return impl_->notes;
+}
+
 void Store::Impl::require_group() const {
     if (!in_group) throw std::logic_error("results are written inside Store::group()");
 }
@@ -196,6 +291,7 @@ std::int64_t Store::Impl::computer_key(const campaign::Computer& by) {
         "INSERT INTO attempt_computer (version, \"commit\", build, instruction_path, processor, host) "
         "VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING",
         by.version, by.commit, by.build, by.instruction_path, by.processor, by.host);
+    renew_sum(db, "attempt_computer");
     auto rows = db.ask(
         "SELECT computer_id FROM attempt_computer WHERE (version, \"commit\", build, instruction_path, processor, "
         "host) "
@@ -221,6 +317,7 @@ void Store::group(const std::function<void()>& writes) {
             if (!committed) impl.computers.clear();  // keys of rows that were rolled back
         }
     } membership(*impl_);
+    impl_->require_in_place();
     Transaction transaction(impl_->db);
     writes();
     if (impl_->settled_in_group > 0) {
@@ -229,6 +326,7 @@ void Store::group(const std::function<void()>& writes) {
     }
     transaction.commit();
     membership.committed = true;
+    impl_->require_in_place();  // else what was written is not where it will be looked for
 }
 
 void Store::begin(const campaign::Attempt& attempt, const campaign::Computer& computer) {
@@ -260,6 +358,7 @@ bool Store::finish(const campaign::CaseResult& result) {
     std::int64_t key = 0, revision = 0;
     std::string scene;
     bool answered_before = false;
+    bool keeps = false;  // an earlier answer
     {
         auto rows = db.ask("SELECT case_key, scene, revision, outcome, attempts FROM sim_case WHERE case_id = ?",
                            result.attempt.case_id);
@@ -269,50 +368,64 @@ bool Store::finish(const campaign::CaseResult& result) {
         scene = rows.get<std::string>(1);
         revision = rows.get<std::int64_t>(2);
         answered_before = !rows.is_null(3);
+        const auto before = campaign::outcome_named(rows.get<std::string_view>(3));
+        keeps = before && campaign::settles(*before) && !campaign::settles(result.outcome);
     }
     const auto outcome = campaign::to_string(result.outcome);
-    const std::optional<std::string> message = result.message.empty() ? std::nullopt : std::optional(result.message);
-    const auto closed = db.run(
-        "UPDATE attempt SET outcome = ?1, message = ?2, wall_seconds = ?3, cpu_seconds = ?4, particle_steps = ?5, "
-        "phases = ?6 WHERE case_key = ?7 AND number = ?8 AND outcome IS NULL",
-        outcome, message, result.cost.wall_seconds, result.cost.cpu_seconds, result.cost.particle_steps,
-        phases_text(result.cost), key, result.attempt.number);
-    if (closed != 1) return false;  // closed already: given up as abandoned, or told twice
+    if (!close_attempt(db, key, result)) return false;  // closed already: given up as abandoned, or told twice
+    ++impl_->settled_in_group;
 
     const bool failed = result.outcome == campaign::Outcome::crashed || result.outcome == campaign::Outcome::timed_out;
-    db.run("UPDATE sim_case SET outcome = ?1, failures = failures + ?2, wall_seconds = ?3 WHERE case_key = ?4", outcome,
-           failed, result.cost.wall_seconds, key);
+    if (keeps) {
+        db.run("UPDATE sim_case SET failures = failures + ? WHERE case_key = ?", failed, key);
+        return true;
+    }
     if (answered_before) db.run("DELETE FROM observation WHERE case_key = ?", key);
-
+    MeasuredSum measured;
     constexpr std::string_view insert =
         "INSERT INTO observation (case_key, observable_id, sample, time, bin, value) VALUES (?, ?, ?, ?, ?, ?)";
     for (const auto& [name, value] : result.observations.scalars) {
         if (std::isnan(value)) continue;  // undefined: no row, NULL in every view
         const auto observable = impl_->observable_key(scene, revision, name);
         db.run(insert, key, observable, 0, std::nullopt, std::nullopt, value);
+        measured.add(MeasuredSum::hash_of(name), 0, undefined, undefined, value);
     }
     for (const auto& [name, samples] : result.observations.series) {
         if (samples.empty()) continue;
         const auto observable = impl_->observable_key(scene, revision, name);
+        const auto hash = MeasuredSum::hash_of(name);
         std::int64_t number = 0;
-        for (const auto& sample : samples)
-            db.run(insert, key, observable, number++, sample.time, sample.bin, sample.value);
+        for (const auto& sample : samples) {
+            db.run(insert, key, observable, number, sample.time, sample.bin, sample.value);
+            measured.add(hash, number++, sample.time, sample.bin, sample.value);
+        }
     }
-    ++impl_->settled_in_group;
+    const auto head = checksum_of_case(key, result.attempt.case_id, outcome, result.cost.wall_seconds);
+    db.run(
+        "UPDATE sim_case SET outcome = ?1, failures = failures + ?2, wall_seconds = ?3, checksum = ?4, "
+        "checksum_by_observable = ?5 WHERE case_key = ?6",
+        outcome, failed, result.cost.wall_seconds, as_sql(head + measured.plain), as_sql(measured.by_observable), key);
     return true;
 }
 
 void Store::record(std::string_view campaign, const ConvergenceRow& row) {
     impl_->require_group();
-    impl_->db.run("INSERT OR REPLACE INTO convergence VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-                  impl_->campaign_key(campaign), row.observable, row.points, row.mean, row.sd, row.skewness, row.g1,
-                  row.kurtosis, row.mean_error, row.sd_error, row.skewness_error, row.g1_error, row.kurtosis_error,
-                  row.zero_share, row.excluded, row.converged);
+    auto& db = impl_->db;
+    const std::int64_t key = impl_->campaign_key(campaign);
+    RowSum sum = stored_sum(db, "convergence", key);
+    sum.remove(sum_of_verdict(db, key, row.observable, row.points));
+    db.run("INSERT OR REPLACE INTO convergence VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)", key,
+           row.observable, row.points, row.mean, row.sd, row.skewness, row.g1, row.kurtosis, row.mean_error,
+           row.sd_error, row.skewness_error, row.g1_error, row.kurtosis_error, row.zero_share, row.excluded,
+           row.converged);
+    sum.add(sum_of_verdict(db, key, row.observable, row.points));
+    store_sum(db, "convergence", key, sum);
 }
 
 void Store::stop(std::string_view campaign, std::int64_t points) {
     impl_->require_group();
     impl_->db.run("UPDATE campaign SET stopped_at = ? WHERE campaign_id = ?", points, impl_->campaign_key(campaign));
+    renew_sum(impl_->db, "campaign");
 }
 
 }  // namespace grainsweep::store

@@ -107,6 +107,15 @@ struct StoredPlace {
     CaseState state;
 };
 
+/// What is not as it was written.
+struct Damage {
+    std::string kind;        ///< "case", "table" or "file"
+    std::string case_id;     ///< of a case
+    std::string campaign;    ///< one or several, as far as it belongs to any
+    std::string observable;  ///< where one alone is damaged
+    std::string what;        ///< in words
+};
+
 class Store {
 public:
     enum class Mode { create, read };
@@ -133,20 +142,28 @@ public:
     std::vector<CaseState> enrol(const campaign::Campaign& campaign, std::span<const campaign::PlacedCase> cases,
                                  const Provenance& provenance);
 
+    /// What the last enrol found damaged and what it did about it, a sentence each.
+    [[nodiscard]] const std::vector<std::string>& notes() const;
+
+    /// Throws BrokenWorld where the file was moved, deleted or replaced since it was opened; group() does, too.
+    void require_in_place() const;
+
     /// Runs `writes` in one durable transaction: on disk when this returns, absent when it throws.
     void group(const std::function<void()>& writes);
     // Inside group():
     /// Numbers only grow: throws std::logic_error for a case that is unknown or has begun a later attempt.
     /// `computer`: what computes it; all empty where that is not known.
     void begin(const campaign::Attempt& attempt, const campaign::Computer& computer = {});
-    /// Replaces what an earlier attempt measured. A result whose attempt is not the case's latest, or is closed
+    /// An answer (completed, skipped, unstable, rejected) replaces what an earlier attempt left; an attempt that
+    /// brought none leaves an earlier answer in place. A result whose attempt is not the case's latest, or is closed
     /// already, is stale: dropped, returns false. NaN is stored as NULL, a scalar that is NaN not at all. Throws
     /// std::logic_error for an observable that the scene has not declared.
     bool finish(const campaign::CaseResult& result);
     void record(std::string_view campaign, const ConvergenceRow& row);
     void stop(std::string_view campaign, std::int64_t points);
 
-    // Questions
+    // Questions. Those about results compare what they read with its checksums, once per Store, and throw BrokenWorld
+    // naming what is damaged; status, places, attempts and query do not.
     [[nodiscard]] std::vector<CampaignRecord> campaigns() const;
     /// The names of a campaign's factors in the order that fixes the dimensions of its design; empty where there is
     /// no campaign of that name.
@@ -162,7 +179,7 @@ public:
     [[nodiscard]] std::optional<campaign::Case> find_case(std::string_view id_or_prefix) const;
     [[nodiscard]] std::vector<LoggedAttempt> attempts(std::string_view case_id) const;
     [[nodiscard]] std::vector<CasePlace> places(std::string_view case_id) const;
-    /// Of the last finished attempt.
+    /// The answer that stands, or how the last attempt ended where there is none.
     [[nodiscard]] std::optional<campaign::CaseResult> result(std::string_view case_id) const;
     /// One scalar over the campaign's design, ordered by (point, replicate).
     [[nodiscard]] std::vector<PlacedValue> values(std::string_view campaign, std::string_view observable) const;
@@ -176,9 +193,23 @@ public:
     /// One statement of read-only SQL: anything else throws WrongQuestion with SQLite's sentence, the names there are
     /// and the nearest. Beside SQLite's own functions those of aggregates.hpp.
     [[nodiscard]] Table query(std::string_view sql) const;
+    /// The same row by row: bounded memory, whatever there is to tell.
+    struct QueryLimits {
+        double seconds = 0;      ///< of processor time; 0: no limit
+        std::int64_t bytes = 0;  ///< that SQLite may take; 0: no limit
+    };
+    void query(std::string_view sql, const QueryLimits& limits,
+               const std::function<void(const std::vector<std::string>& columns)>& begin,
+               const std::function<void(const std::vector<Table::Cell>& row)>& each) const;
     /// Canonical text of all results, line by line without line breaks: no times, attempts, hosts; equal for equal
     /// science. The form is described in dump.cpp.
     void dump(const std::function<void(std::string_view line)>& sink) const;
+
+    /// Reads everything, compares every checksum, recomputes every id from the stored inputs. Empty: nothing is
+    /// damaged.
+    [[nodiscard]] std::vector<Damage> verify() const;
+    /// Whether the file has checksums: one from before has none until the next run brings it up to date.
+    [[nodiscard]] bool has_checksums() const;
 
     struct Impl;  ///< known to the files of this room only
 

@@ -155,6 +155,7 @@ std::optional<campaign::CaseResult> compute(const campaign::Case& question, std:
     const auto start = Clock::now();
     const double processor_start = processor_seconds();
     campaign::CaseResult result;
+    std::string remark;  // on a case that is completed all the same
     result.attempt = {question.id, attempt};
     const auto close = [&](campaign::Outcome outcome, std::string message) {
         result.outcome = outcome;
@@ -182,8 +183,9 @@ std::optional<campaign::CaseResult> compute(const campaign::Case& question, std:
         if (resume) {
             try {
                 scene->restore(*resume);
-            } catch (const std::invalid_argument&) {
-                scene = info->make(inputs, question.seed, artefacts, files);  // a checkpoint that does not fit
+            } catch (const std::invalid_argument& error) {
+                scene = info->make(inputs, question.seed, artefacts, files);
+                remark = fmt::format("computed from the beginning: its checkpoint was refused ({})", error.what());
             }
         }
         if (!drive(*scene, watch, camera)) return std::nullopt;
@@ -205,7 +207,7 @@ std::optional<campaign::CaseResult> compute(const campaign::Case& question, std:
         result.observations = {};
         return close(campaign::Outcome::unstable, "an observable became infinite");
     }
-    return close(campaign::Outcome::completed, "");
+    return close(campaign::Outcome::completed, remark);
 }
 
 }  // namespace grainsweep::workers

@@ -37,8 +37,9 @@ struct TimedOut {
 struct GivenBack {
     campaign::Attempt attempt;
     std::string reason;
-    double seconds = 0;  ///< since it was begun, 0 where it never was
-    bool asked = true;   ///< the worker had been asked to stop
+    double seconds = 0;   ///< since it was begun, 0 where it never was
+    bool asked = true;    ///< the worker had been asked to stop
+    bool broken = false;  ///< a file could not be written, a full disk say: no other case would fare better
 };
 
 struct Finished {

@@ -104,6 +104,14 @@ void Desk::give_back() {
     running_.reset();
 }
 
+void Desk::break_off(std::string reason) {
+    mutex_.lock();
+    reason_ = std::move(reason);
+    if (running_) write(GiveBack{*running_, reason_, true});
+    running_.reset();
+    leave();
+}
+
 void Desk::close() {
     mutex_.lock();
     leave();

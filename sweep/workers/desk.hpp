@@ -44,6 +44,8 @@ public:
     /// Ends the case under way.
     void answer(Done done);
     void give_back();
+    /// Gives back everything, for the reason that a file could not be written, and ends the process.
+    [[noreturn]] void break_off(std::string reason);
     /// Gives back what was never begun and ends the process.
     [[noreturn]] void close();
 

@@ -204,6 +204,7 @@ std::string encode(const ToBoss& message) {
                                       [](const GiveBack& back) -> Json {
                                           Json object = from_attempt(back.attempt);
                                           object["reason"] = back.reason;
+                                          if (back.broken) object["broken"] = true;
                                           return {{"give_back", std::move(object)}};
                                       }},
                            message));
@@ -238,7 +239,8 @@ ToBoss decode_to_boss(std::string_view text) {
             return Alive{to_attempt(object.at("alive")), number_or_nan(object.at("alive").at("progress"))};
         }
         if (object.contains("give_back")) {
-            return GiveBack{to_attempt(object.at("give_back")), object.at("give_back").at("reason").get<std::string>()};
+            const Json& back = object.at("give_back");
+            return GiveBack{to_attempt(back), back.at("reason").get<std::string>(), back.value("broken", false)};
         }
         return to_ready(object.at("ready"));
     } catch (const Json::exception& error) {

@@ -11,7 +11,8 @@
 //          {"begun": {"id": "...", "attempt": 2, "resumed": false}}     the next of the cases it was given
 //          {"alive": {"id": "...", "attempt": 2, "progress": 0.4}}      every second that the case makes headway
 //          {"done": {"id": "...", "attempt": 2, "outcome": "completed", ...}}
-//          {"give_back": {"id": "...", "attempt": 2, "reason": "..."}}  unfinished; a checkpoint may exist
+//          {"give_back": {"id": "...", "attempt": 2, "reason": "..."}}  unfinished; a checkpoint may exist.
+//                               With "broken": true: a file could not be written, and no other case would fare better
 //
 // The worker as the boss sees it (worker_state.hpp). Whatever has no arrow is answered by `dismissed`:
 //
@@ -84,6 +85,7 @@ struct Done {
 struct GiveBack {
     campaign::Attempt attempt;
     std::string reason;
+    bool broken = false;  ///< a file could not be written: the run ends
 };
 using ToBoss = std::variant<Ready, Begun, Alive, Done, GiveBack>;
 

@@ -1,15 +1,18 @@
 #include "sweep/workers/worker.hpp"
 
 #include "sweep/store/artefacts.hpp"
+#include "sweep/store/broken_world.hpp"
 #include "sweep/workers/compute.hpp"
 #include "sweep/workers/desk.hpp"
 #include "sweep/workers/message.hpp"
 
 #include <fmt/format.h>
+#include <gnu/libc-version.h>
 #include <sys/prctl.h>
 
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -21,12 +24,19 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// What a saved state belongs to besides its question: the machine code that made it and goes on from it. A version or
+/// a commit does not say that much: sources may have changes of their own, or be built by another compiler.
+std::string binding(const campaign::Computer& program) {
+    return fmt::format("version={} ({})\nbuild={}\nlibc={}\npath={}\n", program.version, program.commit, program.build,
+                       ::gnu_get_libc_version(), instruction_path());
+}
+
 /// Shared starting states, kept apart by build and instruction path: another one rounds differently, and a state found
 /// must be to the last bit the one that would be computed.
 class OwnArtefacts final : public Artefacts {
 public:
-    OwnArtefacts(store::ArtefactFolder* folder, const std::string& version)
-        : folder_(folder), suffix_(fmt::format("\nversion={}\npath={}\n", version, instruction_path())) {}
+    OwnArtefacts(store::ArtefactFolder* folder, const campaign::Computer& program)
+        : folder_(folder), suffix_("\n" + binding(program)) {}
     [[nodiscard]] std::optional<Bytes> get(std::string_view key) override {
         return folder_ != nullptr ? folder_->get(std::string(key) + suffix_) : std::nullopt;
     }
@@ -43,8 +53,8 @@ private:
 /// attempt: every attempt follows the same path bit for bit, so any attempt may continue any other's.
 class Checkpoints {
 public:
-    Checkpoints(store::ArtefactFolder* folder, const campaign::CaseId& id, const std::string& version)
-        : folder_(folder), key_(checkpoint_key(id, version)) {}
+    Checkpoints(store::ArtefactFolder* folder, const campaign::CaseId& id, const campaign::Computer& program)
+        : folder_(folder), key_(checkpoint_key(id, program)) {}
 
     std::optional<Bytes> load() {
         auto bytes = folder_ ? folder_->get(key_) : std::nullopt;
@@ -98,15 +108,28 @@ private:
     std::optional<Clock::time_point> ending_seen_;
 };
 
-void answer(const Run& run, const WorkerOptions& options, store::ArtefactFolder* folder, Desk& desk) {
-    OwnArtefacts artefacts(folder, options.version);
-    Checkpoints checkpoints(folder, run.question.id, options.version);
+void answer(const Run& run, const WorkerOptions& options, store::ArtefactFolder* folder, Desk& desk,
+            std::string& damage) {
+    damage.clear();
+    OwnArtefacts artefacts(folder, options.computer);
+    Checkpoints checkpoints(folder, run.question.id, options.computer);
     // Looking for a checkpoint costs a failed open; only a case tried before can have one.
     const auto resume = run.attempt > 1 ? checkpoints.load() : std::nullopt;
     desk.begin({run.question.id, run.attempt}, resume.has_value());
     CaseWatch watch(options, desk, checkpoints);
-    auto result = compute(run.question, run.attempt, artefacts, resume, std::ref(watch));
+    std::optional<campaign::CaseResult> result;
+    try {
+        result = compute(run.question, run.attempt, artefacts, resume, std::ref(watch));
+    } catch (const store::BrokenWorld& broken) {  // not the case's fault, and the next would meet it, too
+        desk.break_off(
+            fmt::format("the folder '{}' of checkpoints and shared starting states cannot be used: {}; mend "
+                        "that, free some space for one, and run again to resume",
+                        options.artefacts.string(), broken.what()));
+    }
     if (result) {
+        // Of an answer that is no other for it; the reasons of other outcomes are compared between runs.
+        if (result->outcome == campaign::Outcome::completed && !damage.empty())
+            result->message += (result->message.empty() ? "" : "; ") + damage;
         desk.answer(Done{std::move(*result), checkpoints.exists()});
     } else {
         desk.give_back();
@@ -115,19 +138,25 @@ void answer(const Run& run, const WorkerOptions& options, store::ArtefactFolder*
 
 }  // namespace
 
-std::string checkpoint_key(const campaign::CaseId& id, const std::string& version) {
-    return fmt::format("checkpoint\ncase={}\nversion={}\npath={}\n", id, version, instruction_path());
+std::string checkpoint_key(const campaign::CaseId& id, const campaign::Computer& program) {
+    return fmt::format("checkpoint\ncase={}\n{}", id, binding(program));
 }
 
 int work(const WorkerOptions& options) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // a local boss; a remote one is noticed by end of file and lease
     std::optional<store::ArtefactFolder> folder;
-    if (!options.artefacts.empty()) folder.emplace(options.artefacts);
+    std::string damage;  // met while computing the present case
+    if (!options.artefacts.empty()) {
+        folder.emplace(options.artefacts, [&damage](const std::string& sentence) {
+            std::fprintf(stderr, "grainsweep: %s\n", sentence.c_str());
+            damage += (damage.empty() ? "" : "; ") + sentence;
+        });
+    }
 
     // Outlives main: its threads are never joined.
     static Desk* desk = new Desk({options.lease_seconds, options.give_back_seconds});
     desk->open(options.computer);
-    while (const auto run = desk->next()) answer(*run, options, folder ? &*folder : nullptr, *desk);
+    while (const auto run = desk->next()) answer(*run, options, folder ? &*folder : nullptr, *desk, damage);
     desk->close();
 }
 

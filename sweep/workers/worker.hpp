@@ -20,12 +20,11 @@ struct WorkerOptions {
     double finish_seconds = 3;  ///< after the boss's stop, a case that can finish within this does
     /// After a stop or a signal, a case that has not come to a point where it can be saved is given back as it is.
     double give_back_seconds = 20;
-    std::string version;          ///< checkpoints of another version are not used
-    campaign::Computer computer;  ///< told to the boss
+    campaign::Computer computer;  ///< told to the boss; checkpoints of another build are not used
 };
 
 /// The name under which an unfinished case's state is kept beside the database.
-[[nodiscard]] std::string checkpoint_key(const campaign::CaseId& id, const std::string& version);
+[[nodiscard]] std::string checkpoint_key(const campaign::CaseId& id, const campaign::Computer& program);
 
 /// Returns the exit code of the process.
 int work(const WorkerOptions& options);

@@ -122,7 +122,7 @@ WorkerState::Meaning WorkerState::understand(GiveBack& back, double now) {
     if (found == given_.end()) return Complaint{"the worker gave back a case it was not given"};
     const bool running = is_running(back.attempt);
     GivenBack event{back.attempt, shortened(back.reason, longest_message), running_seconds(now),
-                    phase_ == Phase::leaving};
+                    phase_ == Phase::leaving, back.broken};
     if (!running) event.seconds = 0;
     given_.erase(found);
     if (running) begun_ = false;

@@ -93,6 +93,10 @@ void settle(store::Store& store, const campaign::Case& question, std::int64_t at
 
 void take_back_to_schema(int version, const std::filesystem::path& file) {
     store::Connection db(file, store::Connection::Access::write);
+    db.execute(  // 5
+        "DROP TABLE table_checksum; ALTER TABLE sim_case DROP COLUMN checksum; ALTER TABLE sim_case DROP COLUMN "
+        "checksum_by_observable; ALTER TABLE attempt DROP COLUMN checksum; PRAGMA user_version = 4");
+    if (version == 4) return;
     // 4: a column with a foreign key cannot be dropped
     db.execute(
         "CREATE TABLE attempt_1 (case_key INTEGER NOT NULL REFERENCES sim_case, number INTEGER NOT NULL, "

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace grainsweep::tests {
@@ -37,7 +38,7 @@ private:
 /// begin and finish, in one group.
 void settle(store::Store& store, const campaign::Case& question, std::int64_t attempt);
 
-/// Gives the file the form of an older schema (1 or 2), with what is in it.
+/// Gives the file the form of an older schema (1, 2 or 4), with what is in it.
 void take_back_to_schema(int version, const std::filesystem::path& file);
 
 [[nodiscard]] std::string dump_of(const store::Store& store);

@@ -86,3 +86,36 @@ TEST(Table, BytesThatAreNoUtf8DoNotBreakJson) {
     const store::Table table{{"x"}, {{std::string("\xFF\xFE")}}};
     EXPECT_TRUE(nlohmann::json::accept(written(table, Format::json)));
 }
+
+TEST(Table, CsvTextIsNoFormulaAndMovesNoCursor) {
+    using Text = std::string;
+    const store::Table table{{"=1+1"},
+                             {{Text("=HYPERLINK(\"http://x\")")},
+                              {Text("+1")},
+                              {Text("-1")},
+                              {Text("@SUM(A1)")},
+                              {Text("\x1B[2Jgone\x07")},
+                              {Text("caf\xC3\xA9 \xC2\x9B"
+                                    "31m")},
+                              {std::int64_t{-1}},
+                              {-0.5}}};
+    EXPECT_EQ(
+        written(table, Format::csv),
+        "'=1+1\n\"'=HYPERLINK(\"\"http://x\"\")\"\n'+1\n'-1\n'@SUM(A1)\n\\x1b[2Jgone\\x07\ncaf\xC3\xA9 \\x9b31m\n-1\n"
+        "-0.5\n");
+    const auto json = nlohmann::json::parse(written(table, Format::json));
+    EXPECT_EQ(json[1]["=1+1"], "+1") << "programs get the text as it is";
+}
+
+TEST(Table, RowsWrittenAsTheyComeAreTheTable) {
+    for (const auto format : {Format::csv, Format::json}) {
+        for (const auto& table : {mixed, store::Table{{"y", "y"}, {}}}) {
+            std::ostringstream out;
+            report::RowWriter rows(out, format);
+            rows.begin(table.columns);
+            for (const auto& row : table.rows) rows.add(row);
+            rows.end();
+            EXPECT_EQ(out.str(), written(table, format));
+        }
+    }
+}

@@ -265,3 +265,16 @@ TEST(VtkSeries, AFolderThatCannotBeMadeIsSaid) {
     report::VtkSeries empty(folder / "other", "cell");  // a series without a picture leaves no folder
     EXPECT_FALSE(std::filesystem::exists(folder / "other"));
 }
+
+TEST(VtkSeries, ReplacesNothingThroughASymbolicLink) {
+    const test::Folder folder;
+    std::filesystem::create_directory(folder / "p");
+    folder.write("precious", "kept");
+    for (const char* name : {"cell_0000.vtp", "cell_0001.vtp"})
+        std::filesystem::create_symlink(folder / "precious", folder / "p" / name);
+    report::VtkSeries series(folder / "p", "cell");
+    EXPECT_THROW(series.add(three_particles(), 0), store::BrokenWorld);
+    EXPECT_EQ(contents(folder / "precious"), "kept");
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "p/cell_0000.vtp"));
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "p/cell_0001.vtp"));
+}

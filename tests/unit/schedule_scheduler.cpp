@@ -265,6 +265,27 @@ TEST_F(SchedulerLoop, ACrashThatAWorkerTellsOfIsTriedAgain) {
     EXPECT_EQ(store.attempts(placed[0].question.id).size(), 3U);
 }
 
+TEST_F(SchedulerLoop, AFullDiskEndsTheRunAndIsNoFailureOfTheCase) {
+    ScriptedCrew full([&](const auto& attempt) -> workers::PoolEvent {
+        if (attempt.case_id != placed[3].question.id) return completed(attempt);
+        return workers::GivenBack{attempt, "folder 'x': no space left", 0, false, true};
+    });
+    try {
+        run(full);
+        ADD_FAILURE() << "a broken world ends the run";
+    } catch (const store::BrokenWorld& broken) {
+        EXPECT_EQ(std::string(broken.what()), "folder 'x': no space left");
+    }
+    const auto log = store.attempts(placed[3].question.id);
+    ASSERT_EQ(log.size(), 1U);
+    EXPECT_EQ(log[0].outcome, Outcome::abandoned);
+    EXPECT_EQ(log[0].message, "folder 'x': no space left");
+    EXPECT_EQ(store.result(placed[0].question.id)->outcome, Outcome::completed) << "what was computed before is stored";
+    ScriptedCrew second([](const auto& attempt) { return completed(attempt); });
+    EXPECT_EQ(run(second), Ending::finished);
+    EXPECT_EQ(stored("completed"), 10);
+}
+
 TEST_F(SchedulerLoop, GivenBackCasesAreAbandonedAndAskedAgain) {
     bool interrupted = false;
     ScriptedCrew crew(

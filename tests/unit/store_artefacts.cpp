@@ -7,8 +7,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <fstream>
 #include <iterator>
+#include <string>
+#include <vector>
 
 namespace grainsweep::tests {
 namespace {
@@ -123,6 +126,57 @@ TEST_F(StoreArtefacts, WhatAKilledWriterLeftIsSweptUpAfterADay) {
     ArtefactFolder(place).put("key", bytes(3));
     EXPECT_FALSE(std::filesystem::exists(place / "old.aside"));
     EXPECT_TRUE(std::filesystem::exists(place / "young.aside"));
+}
+
+TEST_F(StoreArtefacts, DamageIsNamed) {
+    std::vector<std::string> sentences;
+    ArtefactFolder watched(place, [&](const std::string& sentence) { sentences.push_back(sentence); });
+    EXPECT_FALSE(watched.get("key"));
+    EXPECT_TRUE(sentences.empty()) << "what is not there is not damaged";
+    watched.put("key", bytes(50));
+    EXPECT_TRUE(watched.get("key"));
+    EXPECT_TRUE(sentences.empty());
+    const auto whole = read(only_file());
+    const auto damaged = [&](const std::string& text) {
+        write(only_file(), text);
+        EXPECT_FALSE(watched.get("key"));
+        const std::string sentence = sentences.empty() ? "" : sentences.back();
+        EXPECT_NE(sentence.find(only_file().string()), std::string::npos) << sentence;
+        sentences.clear();
+        return sentence;
+    };
+    auto flipped = whole;
+    flipped.back() = static_cast<char>(flipped.back() ^ 1);
+    EXPECT_NE(damaged(whole.substr(0, 20)).find("is cut short"), std::string::npos);
+    EXPECT_NE(damaged(whole.substr(0, 60)).find("its length is not as written"), std::string::npos);
+    EXPECT_NE(damaged(std::string(100, 'x')).find("no such file"), std::string::npos);
+    EXPECT_NE(damaged(flipped).find("its checksum does not fit"), std::string::npos);
+    EXPECT_NE(damaged(flipped).find("computed anew"), std::string::npos);
+}
+
+TEST_F(StoreArtefacts, WhatADeadProcessLeftIsSweptAtOnce) {
+    artefacts.put("key", bytes(3));
+    std::array<char, 65> host{};
+    ASSERT_EQ(gethostname(host.data(), host.size() - 1), 0);
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) _exit(0);
+    ASSERT_EQ(waitpid(child, nullptr, 0), child);
+    const auto named = [&](const std::string& on, pid_t process) {
+        return place / ("." + on + "." + std::to_string(process) + ".0.aside");
+    };
+    const auto dead = named(host.data(), child), own = named(host.data(), getpid()),
+               elsewhere = named("far.away", child), long_ago = named("far.away", 7);
+    for (const auto& file : {dead, own, elsewhere, long_ago}) write(file, "half");
+    std::filesystem::last_write_time(long_ago,
+                                     std::filesystem::file_time_type::clock::now() - std::chrono::minutes(11));
+    ArtefactFolder(place).sweep();
+    EXPECT_FALSE(std::filesystem::exists(dead));
+    EXPECT_FALSE(std::filesystem::exists(long_ago));
+    EXPECT_TRUE(std::filesystem::exists(own));
+    EXPECT_TRUE(std::filesystem::exists(elsewhere)) << "another host's may be at work";
+    EXPECT_TRUE(artefacts.get("key"));
+    ArtefactFolder(folder / "not there").sweep();
 }
 
 TEST_F(StoreArtefacts, AFolderThatCannotBeMadeIsABrokenWorld) {

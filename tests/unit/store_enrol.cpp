@@ -229,6 +229,7 @@ TEST_F(StoreEnrol, OptionsAreComparedWhereverTheArchiveKeepsThem) {
     campaign.request.options = {{"grid", std::int64_t{4}}, {"trajectories", std::int64_t{2}}};
     store.enrol(campaign, small_design(campaign, 4), here());
     store = Store(folder / "other.db", Store::Mode::create);
+    take_back_to_schema(4, file);
     store::Connection(file, store::Connection::Access::write)
         .execute(
             "UPDATE campaign SET design_options = '', design_extent = 'grid = 4' || char(10) || 'trajectories = 2'");
@@ -312,7 +313,7 @@ TEST(CampaignName, AWordOfSqlIsRefused) {
         EXPECT_NO_THROW(store::check_campaign_name(name));
 }
 
-TEST_F(StoreEnrol, WhatADeadBossBeganIsAbandoned) {
+TEST_F(StoreEnrol, WhatADeadBossBeganIsAbandonedAndAnOldAnswerStands) {
     const auto campaign = small_campaign("c");
     const auto cases = small_design(campaign, 3);
     store.enrol(campaign, cases, here());
@@ -327,8 +328,11 @@ TEST_F(StoreEnrol, WhatADeadBossBeganIsAbandoned) {
     Store next(file, Store::Mode::create);
     const auto states = next.enrol(campaign, cases, here());
     EXPECT_EQ(states[0].outcome, Outcome::completed);
-    EXPECT_EQ(states[1].outcome, Outcome::abandoned);
+    EXPECT_EQ(states[1].outcome, Outcome::completed) << "asked again, and the old answer stands until there is a new";
     EXPECT_EQ(states[1].attempts, 2);
+    EXPECT_EQ(next.attempts(cases[1].question.id).at(1).outcome, Outcome::abandoned);
+    EXPECT_EQ(next.result(cases[1].question.id)->attempt.number, 1);
+    EXPECT_EQ(next.values("c", "y")[1].value, answer(cases[1].question, 1).observations.scalars.at("y"));
     EXPECT_EQ(states[2].outcome, Outcome::abandoned);
     EXPECT_EQ(states[2].failures, 0) << "not the case's fault";
     next.group([&] { EXPECT_FALSE(next.finish(answer(cases[2].question, 1))) << "a late answer is stale"; });

@@ -130,5 +130,22 @@ TEST(StoreExpression, AnErrorWhileEvaluatingIsAWrongQuestion) {
     EXPECT_TRUE(filter(inputs)) << "and the next case is judged as ever";
 }
 
+TEST(StoreExpression, TimeAndMemoryAreLimited) {
+    const auto evaluation = [](const std::string& expression) {
+        try {
+            (void)holds(expression);
+        } catch (const campaign::WrongQuestion& wrong) {
+            return std::string(wrong.what());
+        }
+        return std::string("answered");
+    };
+    EXPECT_FALSE(holds("length(format('%1000000000d', particles)) > 100000")) << "so long a text is not made";
+    std::string doubled = "'xxxxxxxxxx'";
+    for (int k = 0; k < 12; ++k) doubled = "replace(" + doubled + ", 'x', 'xxxxxxxxxx')";
+    EXPECT_THAT(evaluation("length(" + doubled + ") > 0"), HasSubstr("too big"));
+    EXPECT_THAT(evaluation("gap > 0" + std::string(200'000, ' ')), HasSubstr("at most 100000 are read"));
+    EXPECT_EQ(evaluation("gap > 0 AND cohesion_law LIKE 's%'"), "answered");
+}
+
 }  // namespace
 }  // namespace grainsweep::tests

@@ -107,7 +107,51 @@ TEST(StoreFiles, TheSecondWriterIsToldWhoTheFirstIs) {
         EXPECT_THAT(sentence<BrokenWorld>(hard_link, Store::Mode::create), HasSubstr("one run at a time"));
         EXPECT_EQ(sentence<BrokenWorld>(folder / "a.db", Store::Mode::read), "opened");
     }
+    EXPECT_THAT(sentence<WrongQuestion>(folder / "a.db", Store::Mode::create), HasSubstr("2 names (hard links)"));
+    EXPECT_THAT(sentence<WrongQuestion>(hard_link, Store::Mode::create), HasSubstr("2 names (hard links)"));
+    std::filesystem::remove(hard_link);
     EXPECT_EQ(sentence<BrokenWorld>(folder / "a.db", Store::Mode::create), "opened") << "the lock goes with its holder";
+}
+
+TEST(StoreFiles, WhatIsNoFileNameIsAWrongQuestion) {
+    for (const auto mode : {Store::Mode::read, Store::Mode::create}) {
+        EXPECT_THAT(sentence<WrongQuestion>(":memory:", mode), HasSubstr("no database file"));
+        EXPECT_THAT(sentence<WrongQuestion>("file:a.db?mode=rwc", mode), HasSubstr("is an address"));
+        EXPECT_THAT(sentence<WrongQuestion>("", mode), HasSubstr("needs a file name"));
+    }
+}
+
+TEST(StoreFiles, ADatabaseThatIsNoLongerInItsPlaceEndsTheRun) {
+    const auto campaign = small_campaign("c");
+    const auto cases = small_design(campaign, 3);
+    for (const auto disk : {Store::Disk::local, Store::Disk::network}) {
+        for (const std::string how : {"moved", "deleted", "replaced"}) {
+            const Folder folder;
+            const auto file = folder / "a.db";
+            {
+                Store store(file, Store::Mode::create, disk);
+                store.enrol(campaign, cases, here());
+                settle(store, cases[0].question, 1);
+                EXPECT_NO_THROW(store.require_in_place());
+                if (how == "deleted") std::filesystem::remove(file);
+                if (how != "deleted") std::filesystem::rename(file, folder / "elsewhere.db");
+                if (how == "replaced") write(file, "another file");
+                EXPECT_THROW(store.require_in_place(), BrokenWorld) << how;
+                try {
+                    settle(store, cases[1].question, 1);
+                    ADD_FAILURE() << how;
+                } catch (const BrokenWorld& broken) {
+                    EXPECT_THAT(broken.what(),
+                                AllOf(HasSubstr(file.string()), HasSubstr("moved, deleted or replaced")));
+                }
+            }
+            if (how != "moved") continue;
+            std::filesystem::rename(folder / "elsewhere.db", file);
+            Store store(file, Store::Mode::create, disk);
+            EXPECT_EQ(store.enrol(campaign, cases, here())[0].outcome, campaign::Outcome::completed)
+                << "put back, nothing is lost";
+        }
+    }
 }
 
 TEST(StoreFiles, WriterAndReadersLeaveOneFile) {

@@ -33,6 +33,27 @@ struct StoreQuery : testing::Test {
     }
 };
 
+TEST_F(StoreQuery, TimeAndMemoryAreLimited) {
+    const auto limited = [&](std::string_view sql, const Store::QueryLimits& limits) {
+        std::int64_t rows = 0;
+        try {
+            store.query(
+                sql, limits, [](const auto&) {}, [&](const auto&) { ++rows; });
+        } catch (const campaign::WrongQuestion& wrong) {
+            return std::string(wrong.what());
+        }
+        return std::to_string(rows) + " rows";
+    };
+    const std::string endless = "WITH RECURSIVE n (k) AS (SELECT 1 UNION ALL SELECT k + 1 FROM n) SELECT ";
+    EXPECT_THAT(limited(endless + "count(*) FROM n", {.seconds = 0.05}), HasSubstr("takes too long"));
+    EXPECT_THAT(limited("SELECT group_concat(format('%1000d', k)) FROM (" + endless + "k FROM n LIMIT 100000)",
+                        {.seconds = 30, .bytes = 32 << 20}),
+                HasSubstr("more than 32 MiB of memory"));
+    EXPECT_EQ(limited(endless + "k FROM n LIMIT 200000", {.seconds = 30, .bytes = 32 << 20}), "200000 rows");
+    EXPECT_EQ(limited("SELECT * FROM first", {.seconds = 0.05, .bytes = 32 << 20}), "8 rows") << "and goes on as ever";
+    settle(store, cases[0].question, 1);
+}
+
 TEST_F(StoreQuery, AViewOfTheCampaignsNameHasTheColumnsOfTheContract) {
     settle(store, cases[4].question, 1);
     const auto table = store.query("SELECT * FROM first ORDER BY point");
@@ -118,8 +139,9 @@ TEST_F(StoreQuery, TheFixedViewsHaveTheColumnsOfTheContract) {
     const auto tables = store.query("SELECT name FROM sqlite_schema WHERE type = 'table' ORDER BY name");
     std::vector<std::string> names;
     for (const auto& row : tables.rows) names.push_back(text_of(row[0]));
-    EXPECT_THAT(names, ElementsAre("attempt", "attempt_computer", "campaign", "campaign_case", "case_input",
-                                   "convergence", "observable", "observation", "parameter", "provenance", "sim_case"));
+    EXPECT_THAT(names,
+                ElementsAre("attempt", "attempt_computer", "campaign", "campaign_case", "case_input", "convergence",
+                            "observable", "observation", "parameter", "provenance", "sim_case", "table_checksum"));
     const auto by = store.query(
         "SELECT version, \"commit\", compiler, flags, instruction_path, processor, host, start, "
         "campaign_text, campaign_hash FROM provenance");
@@ -287,7 +309,7 @@ TEST_F(StoreQuery, AnUnknownNameGetsThoseThereAreAndTheNearest) {
     EXPECT_EQ(refusal("SELECT * FROM frist"),
               "SQL: no such table: frist; there are first, convergence_history, inputs, series, attempt, "
               "attempt_computer, campaign, campaign_case, case_input, convergence, observable, observation, parameter, "
-              "provenance, sim_case. Did you mean 'first'?");
+              "provenance, sim_case, table_checksum. Did you mean 'first'?");
     EXPECT_EQ(refusal("SELECT stdev(y) FROM first"), "SQL: no such function: stdev. Did you mean 'stddev'?");
     EXPECT_EQ(refusal("SELECT medain(y) FROM first"), "SQL: no such function: medain. Did you mean 'median'?");
 }

@@ -122,6 +122,38 @@ TEST_F(StoreResults, ALaterAnswerReplacesTheEarlierOne) {
     EXPECT_EQ(store.attempts(one.id)[0].outcome, Outcome::completed);
 }
 
+// `run --again completed`, and the second attempt brings nothing.
+TEST_F(StoreResults, AnAttemptWithoutAnAnswerLeavesTheEarlierOneInPlace) {
+    settle(store, one, 1);
+    const auto before = dump_of(store);
+    std::int64_t number = 1;
+    for (const auto outcome : {Outcome::abandoned, Outcome::crashed, Outcome::timed_out}) {
+        auto ended = answer(one, ++number);
+        ended.outcome = outcome;
+        ended.message = "no answer";
+        ended.observations = {};
+        ended.cost.wall_seconds = 7;
+        store.group([&] { store.begin(ended.attempt); });
+        EXPECT_EQ(dump_of(store), before) << "begun";
+        store.group([&] { EXPECT_TRUE(store.finish(ended)); });
+        EXPECT_EQ(dump_of(store), before) << to_string(outcome);
+        EXPECT_EQ(store.result(one.id)->attempt.number, 1);
+        EXPECT_EQ(store.result(one.id)->cost.wall_seconds, 0.25);
+        EXPECT_EQ(store.attempts(one.id).back().outcome, outcome) << "the log has it";
+    }
+    const auto state = store.enrol(asked, cases, here())[3];
+    EXPECT_EQ(state.outcome, Outcome::completed);
+    EXPECT_EQ(state.failures, 2);
+    auto later = answer(one, ++number);
+    later.observations.scalars["y"] = 3;
+    store.group([&] {
+        store.begin(later.attempt);
+        store.finish(later);
+    });
+    EXPECT_EQ(store.result(one.id)->observations.scalars.at("y"), 3);
+    EXPECT_TRUE(store.verify().empty());
+}
+
 TEST_F(StoreResults, FailuresAreCounted) {
     auto failed = answer(one, 1);
     failed.outcome = Outcome::crashed;

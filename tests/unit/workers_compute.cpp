@@ -43,6 +43,24 @@ TEST(Compute, RejectsACaseWhoseFileHasChanged) {
     EXPECT_THAT(answer(), HasSubstr("cannot read"));
 }
 
+TEST(Compute, ARefusedCheckpointIsNamedAndCostsNoAnswer) {
+    const SceneInfo& info = *find_scene("rehearsal");
+    campaign::Case question;
+    question.scene = info.name;
+    question.revision = info.revision;
+    question.inputs = info.defaults();
+    NoArtefacts none;
+    const auto compute = [&](const std::optional<Bytes>& checkpoint) {
+        return workers::compute(question, 2, none, checkpoint, [](const Scene&) { return true; }).value();
+    };
+    const auto calm = compute(std::nullopt);
+    EXPECT_EQ(calm.message, "");
+    const auto resumed = compute(Bytes(3));
+    EXPECT_EQ(resumed.outcome, campaign::Outcome::completed);
+    EXPECT_EQ(resumed.observations.scalars, calm.observations.scalars);
+    EXPECT_THAT(resumed.message, HasSubstr("its checkpoint was refused (checkpoint of another scene)"));
+}
+
 namespace {
 
 std::vector<double> moments_of(const char* scene, const Inputs& given, std::int64_t frames) {

@@ -82,6 +82,37 @@ void ClearEngine<Laws, case_needs>::save(std::vector<std::byte>& into) const {
     }
 }
 
+/// Whatever the bytes were: every index leads to something, every column has its length, and positions are where the
+/// cells reach. What moves too fast or overlaps too much, the steps find out.
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::require_possible() const {
+    constexpr auto require = particles::ByteReader::require;
+    constexpr std::int64_t most_steps = std::int64_t{1} << 53U;
+    const std::size_t n = p_.size();
+    require(n <= spheres_at_start_);
+    p_.for_each_column([&](const auto& column) { require(column.size() == n); });
+    require(position_at_build_.size() == n);
+    std::vector<bool> known(spheres_at_start_, false);
+    for (std::size_t i = 0; i < n; ++i) {
+        const auto id = static_cast<std::size_t>(p_.id[i]);
+        require(p_.id[i] >= 0 && id < spheres_at_start_ && !known[id]);
+        known[id] = true;
+        require(geometry::finite(p_.position[i]) && geometry::finite(p_.velocity[i]) &&
+                geometry::finite(position_at_build_[i]));
+        for (std::size_t k = 0; k < 3; ++k)
+            require(std::abs(p_.position[i][k] - domain_.low[k]) <= 4 * domain_.length(k));
+    }
+    for (const auto i : near_open_face_) require(i < n);
+    const std::size_t memories = needs.tangential_history ? list_.size() : 0;
+    require(pairs_.value.size() == memories && pairs_.live.size() == memories);
+    for (const auto& contacts : walls_) {
+        require(contacts.wall.index() < std::variant_size_v<Wall>);
+        for (const auto i : contacts.near) require(i < n);
+        if constexpr (needs.tangential_history) require(contacts.memory.size() == contacts.near.size());
+    }
+    require(wall_steps_ >= 0 && wall_steps_ < most_steps && work_.steps >= 0 && work_.steps < most_steps);
+}
+
 template <class Laws, Needs case_needs>
 void ClearEngine<Laws, case_needs>::restore(std::span<const std::byte> from) {
     particles::ByteReader in(from);
@@ -96,8 +127,18 @@ void ClearEngine<Laws, case_needs>::restore(std::span<const std::byte> from) {
     expect(static_cast<std::uint64_t>(spheres_at_start_));
     expect(time_step_);
     expect(shaking_);
+    [[maybe_unused]] std::pair<double, double> radii, inverse_masses;
+    const auto range = [](const auto& column) {
+        const auto [least, most] = std::ranges::minmax_element(column);
+        return column.empty() ? std::pair(0.0, 0.0) : std::pair(*least, *most);
+    };
+    if constexpr (needs.sizes) radii = range(p_.radius), inverse_masses = range(p_.inverse_mass);
     visit_state(*this, [&in](auto& value) { in.get(value); });
-    list_.restore(in);
+    if constexpr (needs.sizes) {  // those of the setup
+        for (const double r : p_.radius) in.require(r >= radii.first && r <= radii.second);
+        for (const double m : p_.inverse_mass) in.require(m >= inverse_masses.first && m <= inverse_masses.second);
+    }
+    list_.restore(in, p_.size());
     std::uint64_t walls = 0;
     in.get(walls);
     walls_.clear();
@@ -110,6 +151,7 @@ void ClearEngine<Laws, case_needs>::restore(std::span<const std::byte> from) {
         walls_.push_back(std::move(contacts));
     }
     in.finish();
+    require_possible();
     if (shaken_) shake();
 }
 

@@ -139,6 +139,7 @@ private:
     // checkpoint.hpp
     template <class Self, class Visit>
     static void visit_state(Self& self, Visit&& visit);
+    void require_possible() const;
 
     Laws laws_;
     geometry::Domain domain_;

@@ -1,6 +1,9 @@
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <stdexcept>
+#include <variant>
+#include <vector>
 
 #include "solver/dem/fast/mixed_stepping.hpp"
 
@@ -64,6 +67,81 @@ void MixedEngine::save(std::vector<std::byte>& into) const {
     pass(*this, writer);
 }
 
+/// Whatever the bytes were: every index leads to something, every count is that of its column. What moves too fast or
+/// overlaps too much, the steps find out.
+void MixedEngine::require_possible() const {
+    const auto require = [](bool possible) {
+        if (!possible) throw std::invalid_argument("the checkpoint holds values that no state has");
+    };
+    constexpr std::int64_t most_steps = std::int64_t{1} << 53U;
+    const std::int32_t n = field_.count, width = kernels_->width;
+    const Columns& c = columns_;
+    require(n >= 0 && n <= spheres_at_start_);
+    require(field_.outer_count >= 0 && field_.inner_count >= 0 && field_.inner_count % width == 0);
+    require(space_.skin > 0 && space_.skin <= largest_skin_ && (!adapts_skin_ || space_.skin <= 1));
+    require(drift_.steps >= 0 && drift_.steps < most_steps && wall_steps_ >= 0 && wall_steps_ < most_steps);
+    require(work_.steps >= 0 && work_.steps < most_steps);
+    require(watch_.spheres() == static_cast<std::size_t>(spheres_at_start_));
+    require(!resting_.wanted() || resting_.fits(n));
+
+    constexpr float rounding = 1e-5F;
+    std::vector<bool> known(static_cast<std::size_t>(spheres_at_start_), false);
+    for (std::int32_t i = 0; i < n; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const std::int32_t id = c.id[k];
+        require(id >= 0 && id < spheres_at_start_ && !known[static_cast<std::size_t>(id)]);
+        known[static_cast<std::size_t>(id)] = true;
+        const Record& r = c.records[k];
+        require(r.radius >= 0.5F * smallest_diameter_ * (1 - rounding) && r.radius <= 0.5F + rounding);
+        require(r.inverse_mass >= 0 && r.inverse_mass <= (1 + rounding) / (8 * r.radius * r.radius * r.radius));
+    }
+
+    // A list is sorted by its first particles; behind the particles two more fill vectors up.
+    const auto listed = [&](const Column<Place>& first, const Column<Place>& second, std::int32_t count) {
+        const auto known_place = [&](Place place) {
+            return place % places_per_index == 0 && place / places_per_index < static_cast<Place>(n) + 2;
+        };
+        Place before = 0;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+            require(known_place(first[k]) && known_place(second[k]) && first[k] >= before);
+            before = first[k];
+        }
+    };
+    listed(c.outer_first, c.outer_second, field_.outer_count);
+    listed(c.inner_first, c.inner_second, field_.inner_count);
+    for (std::size_t b = 0; b < static_cast<std::size_t>(field_.inner_count / width); ++b) {
+        require(static_cast<std::uint32_t>(c.touching[b]) >> static_cast<unsigned>(width) == 0);
+        for (unsigned m = c.touching[b]; m != 0; m &= m - 1) {
+            const auto k = b * static_cast<std::size_t>(width) + static_cast<std::size_t>(std::countr_zero(m));
+            require(c.inner_source[k] >= 0 && c.inner_source[k] < field_.outer_count);
+        }
+    }
+    for (const Wall& wall : walls_) require(wall.index() < std::variant_size_v<Wall>);
+    check_walls(walls_);
+    std::int32_t end = 0;
+    for (std::size_t w = 0; w < walls_.size(); ++w) {
+        const WallSegment& s = c.segments[w];
+        require(s.begin >= 0 && s.begin <= s.end && s.end >= end && (s.end - s.begin) % width == 0);
+        end = s.end;
+    }
+    for (std::size_t k = 0; k < static_cast<std::size_t>(end); ++k)
+        require(c.wall_particle[k] % places_per_index == 0 &&
+                c.wall_particle[k] / places_per_index < static_cast<Place>(n) + 3);
+}
+
+/// Behind a list's end entries are read ahead and never count; let them lead to something, too.
+void MixedEngine::tidy_spare_entries() {
+    const auto tidy = [this](Column<Place>& places, std::int32_t count) {
+        for (std::size_t k = 0; k < static_cast<std::size_t>(spare); ++k) {
+            Place& place = places[static_cast<std::size_t>(count) + k];
+            if (place % places_per_index != 0 || place / places_per_index > static_cast<Place>(field_.count) + 1)
+                place = static_cast<Place>(field_.count * places_per_index);
+        }
+    };
+    for (auto* column : {&columns_.outer_first, &columns_.outer_second}) tidy(*column, field_.outer_count);
+    for (auto* column : {&columns_.inner_first, &columns_.inner_second}) tidy(*column, field_.inner_count);
+}
+
 void MixedEngine::restore(std::span<const std::byte> from) {
     Reader reader(from);
     Seal theirs;
@@ -73,10 +151,13 @@ void MixedEngine::restore(std::span<const std::byte> from) {
         throw std::invalid_argument("the checkpoint belongs to another setup, instruction path or version");
     pass(*this, reader);
     if (!reader.finished()) throw std::invalid_argument("the checkpoint is longer than its state");
+    require_possible();
     columns_.hold_particles(size(), walls_.size());
     columns_.hold_pairs(static_cast<std::size_t>(std::max(field_.outer_count, field_.inner_count)) + spare);
     columns_.hold_wall_contacts(size());
     columns_.bind(field_);
+    tidy_spare_entries();
+    place_fillers(field_);
     list_advanced();
     place_walls(field_, walls_, space_, wall_time());
     if (shaken_) shake();

@@ -52,7 +52,7 @@ void MixedEngine::load(const Setup& setup) {
     columns_.hold_pairs(8 * n);
     columns_.hold_wall_contacts(n);
     columns_.bind(field_);
-    field_.count = static_cast<std::int32_t>(n);
+    field_.count = spheres_at_start_ = static_cast<std::int32_t>(n);
     field_.read_ahead = n > many_particles ? 1 : 0;
     const Scale& s = space_.scale;
     const bool all_periodic = setup.domain.periodic[0] && setup.domain.periodic[1] && setup.domain.periodic[2];

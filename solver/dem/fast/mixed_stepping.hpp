@@ -86,6 +86,8 @@ private:
     [[nodiscard]] bool too_deep() const { return tally_.overlap > sound_.pair || tally_.wall_overlap > sound_.wall; }
     template <class Self, class Archive>
     static void pass(Self& self, Archive& archive);
+    void require_possible() const;
+    void tidy_spare_entries();
 
     ListSpace space_;
     Material material_;
@@ -110,6 +112,7 @@ private:
     float inner_skin_ = 0;
     float largest_skin_ = std::numeric_limits<float>::infinity();
     bool adapts_skin_;
+    std::int32_t spheres_at_start_ = 0;
     std::int64_t wall_steps_ = 0;
     std::int64_t mobile_ = 0;
     Work work_;

@@ -56,6 +56,14 @@ Resting::Resting(const Setup& setup, const Scale& scale, double rest_speed)
     quiet_.resize(held_.size());
 }
 
+bool Resting::fits(std::int32_t particles) const {
+    const auto n = static_cast<std::size_t>(particles);
+    return held_.size() == n && quiet_.size() == n && count_ >= 0 && count_ <= particles &&
+           std::ranges::all_of(parked_, [&](const ParkedContact& p) {
+               return p.first >= 0 && p.first < particles && p.second >= 0 && p.second < particles;
+           });
+}
+
 void Resting::advance_all(const Field& f) {
     for (std::size_t i = 0; i < held_.size(); ++i) held_[i] = is_mobile(f, i) ? 0 : 1;
     std::ranges::fill(quiet_, std::uint16_t{0});

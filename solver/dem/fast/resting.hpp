@@ -45,6 +45,9 @@ public:
     /// Largest overlap among them, over the smaller diameter.
     [[nodiscard]] float overlap() const { return overlap_; }
 
+    /// Whether this can be the rest of `particles` particles.
+    [[nodiscard]] bool fits(std::int32_t particles) const;
+
     // The parts of a rebuild, in this order.
     /// Before particles are sorted: which of them the forces of the last `steps` steps have pushed.
     void compare_forces(const Field& f, std::int64_t steps);

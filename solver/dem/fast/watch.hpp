@@ -52,7 +52,8 @@ public:
     /// What is wrong and with which particle; empty: the balance is sound.
     [[nodiscard]] std::string check(const Moment& now, std::int32_t& particle);
 
-    [[nodiscard]] double speed_limit() const { return speed_limit_; }  ///< m/s
+    [[nodiscard]] std::size_t spheres() const { return seen_.size(); }  ///< at the start
+    [[nodiscard]] double speed_limit() const { return speed_limit_; }   ///< m/s
 
     /// Everything that changes.
     template <class Archive>

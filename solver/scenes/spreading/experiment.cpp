@@ -274,6 +274,12 @@ void Experiment::restore(std::span<const std::byte> from) {
     in.get(profile_.samples);
     in.get(engine);
     in.finish();
+    const auto samples = static_cast<std::int64_t>(behind_.size());
+    in.require(end_sample_ >= 0 && end_sample_ <= sweep_samples && place_.size() == volume_.size());
+    in.require(under_.size() == behind_.size() && samples <= sweep_samples + 1 && sweeping_ == (samples > 0));
+    in.require(step_ >= 0 && step_ <= (sweeping_ ? last_step() : study_.settle_steps));
+    in.require(!sweeping_ || (step_ >= step_of_sample(samples - 1) && step_ <= step_of_sample(samples)));
+    in.require(profile_.sum.size() == profile_layers && profile_.samples.size() == profile_layers);
     engine_->restore(engine);
 }
 

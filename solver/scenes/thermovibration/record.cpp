@@ -134,6 +134,9 @@ void Record::restore(std::span<const std::byte>& from) {
     flow::take_bytes(from, limited_share_);
     for (auto* column : {&times_, &k_, &k5_, &k20_, &k40_, &k_cells_}) restore_column(from, *column);
     restore_column(from, last_);
+    for (const auto* column : {&k_, &k5_, &k20_, &k40_, &k_cells_})
+        flow::require_possible(column->size() == times_.size());
+    flow::require_possible(last_.size() == (times_.empty() ? 0 : static_cast<std::size_t>(question_.particles)));
 }
 
 }  // namespace grainsweep::thermovibration

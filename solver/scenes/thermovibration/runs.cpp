@@ -160,6 +160,8 @@ void SpinUp::restore(std::span<const std::byte>& from) {
     flow::take_bytes(from, passes_);
     flow::take_bytes(from, stage_);
     flow::take_bytes(from, means_);
+    flow::require_possible(stage_ == Stage::settling || stage_ == Stage::storing || stage_ == Stage::stored);
+    flow::require_possible(passes_ >= 0 && passes_ <= 2 && thermovibration::fault(fluid_, time()).empty());
     if (stage_ != Stage::settling) stored_.restore(from);
 }
 

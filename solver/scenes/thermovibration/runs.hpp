@@ -64,6 +64,11 @@ public:
         flow::take_bytes(from, means_);
         flow::take_bytes(from, budget_);
         record_.restore(from);
+        flow::require_possible(from.empty() && steps() <= question_.total_steps());
+        flow::require_possible(fault(suspension_.fluid(), time()).empty());
+        flow::require_possible(fault(suspension_.cloud(), suspension_.fluid().time_step(),
+                                     1.0 / static_cast<double>(question_.cells), time())
+                                   .empty());
     }
     [[nodiscard]] Snapshot snapshot() const override {
         Snapshot now = picture(question_, suspension_.cloud());
@@ -159,9 +164,7 @@ public:
           cloud_(question.cloud(seed)),
           record_(question),
           flow_(grid_) {
-        if (const auto found = artefacts_.get(question_.flow_key()))
-            receive(*found);
-        else
+        if (const auto found = artefacts_.get(question_.flow_key()); !found || !received(*found))
             spin_up_.emplace(question_);
         record_.sample(0, cloud_);
     }
@@ -218,6 +221,9 @@ public:
             spin_up_.reset();
             flow_.restore(from);
         }
+        flow::require_possible(from.empty() && steps_ >= 0 && steps_ <= question_.total_steps());
+        flow::require_possible(
+            fault(cloud_, question_.step(), 1.0 / static_cast<double>(question_.cells), time()).empty());
     }
     /// Without temperature, which the stored flow has not.
     [[nodiscard]] Snapshot snapshot() const override {
@@ -248,10 +254,21 @@ private:
         receive(contents);
     }
 
+    /// False for bytes that are no such flow: it is found anew.
+    [[nodiscard]] bool received(std::span<const std::byte> contents) {
+        try {
+            receive(contents);
+            return true;
+        } catch (const std::invalid_argument&) {
+            return false;
+        }
+    }
+
     void receive(std::span<const std::byte> contents) {
         FlowMeans means;
         flow::take_bytes(contents, means);
         flow_.restore(contents);
+        flow::require_possible(contents.empty());
         record_.set_flow(means);
     }
 

@@ -116,6 +116,7 @@ void TpmsRecord::restore(particles::ByteReader& in) {
     in.get(moments_);
     in.get(overlaps_);
     in.get(forces_);
+    in.require(!moments_.empty());
 }
 
 }  // namespace grainsweep

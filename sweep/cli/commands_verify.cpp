@@ -1,0 +1,58 @@
+// verify: reads everything in an archive and names what is not as it was written.
+#include "sweep/cli/command.hpp"
+#include "sweep/store/store.hpp"
+
+#include <fmt/format.h>
+
+#include <iostream>
+#include <memory>
+#include <string>
+
+namespace grainsweep::cli {
+namespace {
+
+using report::Format;
+using store::Store;
+using store::Table;
+
+std::string counted(const Store& archive) {
+    const auto count = [&](const char* table) {
+        return std::get<std::int64_t>(archive.query(fmt::format("SELECT count(*) FROM {}", table)).rows.at(0).at(0));
+    };
+    return fmt::format("{} cases, {} attempts, {} measured values", count("sim_case"), count("attempt"),
+                       count("observation"));
+}
+
+std::string sound(const Store& archive) {
+    if (!archive.has_checksums())
+        return fmt::format(
+            "nothing is damaged as far as can be told: pages, indices and references agree. {} were written before "
+            "there were checksums; the next run adds them",
+            counted(archive));
+    return fmt::format("nothing is damaged: {}; pages, indices, references, checksums and ids agree", counted(archive));
+}
+
+int verify(const std::string& database, Format format) {
+    const Store archive(database, Store::Mode::read);
+    const auto damages = archive.verify();
+    Table table{{"kind", "case_id", "campaign", "observable", "damage"}, {}};
+    for (const auto& damage : damages)
+        table.rows.push_back({damage.kind, damage.case_id, damage.campaign, damage.observable, damage.what});
+    if (format != Format::text || !damages.empty()) report::write(std::cout, table, format);
+    if (format == Format::text && damages.empty()) std::cout << sound(archive) << '\n';
+    return damages.empty() ? 0 : 1;
+}
+
+}  // namespace
+
+std::vector<Command> verify_commands() {
+    return {{"verify", "reads everything, compares checksums and ids, names what is damaged",
+             [](Parser& parser, const Format& format) -> Action {
+                 const auto database = std::make_shared<std::string>();
+                 parser.add_option("DB", *database, "database")->required();
+                 return [database, &format] { return verify(*database, format); };
+             },
+             false}};
+}
+
+}  // namespace grainsweep::cli

@@ -1,0 +1,95 @@
+// Damage met while a campaign is enrolled: a damaged answer is not believed, its case is asked again.
+#include "sweep/store/archive.hpp"
+#include "sweep/store/soundness.hpp"
+
+#include <fmt/format.h>
+
+#include <unordered_map>
+
+namespace grainsweep::store {
+
+namespace {
+
+/// Puts scene, revision, seed and inputs back to what the campaign asks under this id.
+void restore_question(Connection& db, std::int64_t key, const campaign::Case& question,
+                      const std::vector<DeclaredParameter>& parameters) {
+    db.run("UPDATE sim_case SET scene = ?, revision = ?, seed = ? WHERE case_key = ?", question.scene,
+           question.revision, static_cast<std::int64_t>(question.seed), key);
+    db.run("DELETE FROM case_input WHERE case_key = ?", key);
+    enter_inputs(db, key, question, parameters);
+}
+
+/// The attempt that gave the case its outcome, or may have.
+std::optional<std::int64_t> standing_attempt(const Connection& db, std::int64_t key) {
+    auto rows = db.ask(
+        "SELECT number FROM attempt WHERE case_key = ?1 AND outcome IS NOT NULL ORDER BY outcome = (SELECT outcome "
+        "FROM sim_case WHERE case_key = ?1) DESC, number DESC LIMIT 1",
+        key);
+    return rows.next() ? std::optional(rows.get<std::int64_t>(0)) : std::nullopt;
+}
+
+void note_in_log(Connection& db, std::int64_t key, std::int64_t number, std::string_view note) {
+    db.run(
+        "UPDATE attempt SET message = iif(coalesce(message, '') = '', ?1, message || ' [' || ?1 || ']'), "
+        "outcome = iif(outcome IN ('completed', 'skipped', 'unstable', 'rejected', 'crashed', 'timed_out'), outcome, "
+        "'abandoned') WHERE case_key = ?2 AND number = ?3 AND outcome IS NOT NULL",
+        note, key, number);
+}
+
+void recount(Connection& db, std::int64_t key) {
+    db.run(
+        "UPDATE sim_case SET (attempts, failures) = (SELECT coalesce(max(number), 0), "
+        "coalesce(sum(outcome IN ('crashed', 'timed_out')), 0) FROM attempt WHERE case_key = ?1) WHERE case_key = ?1",
+        key);
+}
+
+/// The answer goes; its attempt says why.
+void forget_answer(Connection& db, const DamagedCase& damage) {
+    const auto number = standing_attempt(db, damage.key);
+    db.run("DELETE FROM observation WHERE case_key = ?", damage.key);
+    if (number) {
+        db.run("UPDATE attempt SET outcome = 'abandoned', message = ?, phases = NULL WHERE case_key = ? AND number = ?",
+               fmt::format("its stored answer was found damaged and is asked again: {}", damage.what), damage.key,
+               *number);
+    }
+    db.run(
+        "UPDATE sim_case SET outcome = ?1, wall_seconds = NULL, checksum = NULL, checksum_by_observable = NULL "
+        "WHERE case_key = ?2",
+        number ? std::optional(std::string("abandoned")) : std::nullopt, damage.key);
+}
+
+}  // namespace
+
+void ask_damaged_again(Store::Impl& archive, std::span<const campaign::PlacedCase> cases,
+                       std::span<const std::int64_t> keys, const std::vector<DeclaredParameter>& parameters,
+                       std::vector<CaseState>& states) {
+    auto& db = archive.db;
+    std::int64_t first = std::numeric_limits<std::int64_t>::max(), last = -1;
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+        if (states[k].attempts == 0 && !states[k].outcome) continue;
+        first = std::min(first, keys[k]);
+        last = std::max(last, keys[k]);
+    }
+    if (last < first) return;
+    const auto damaged = damaged_cases(db, first, last);
+    if (damaged.empty()) return;
+    std::unordered_multimap<std::int64_t, std::size_t> places;
+    for (std::size_t k = 0; k < keys.size(); ++k) places.emplace(keys[k], k);
+    for (const auto& damage : damaged) {
+        const auto [from, to] = places.equal_range(damage.key);
+        if (from == to) continue;  // of another campaign
+        const auto& question = cases[from->second].question;
+        if (damage.identity) restore_question(db, damage.key, question, parameters);
+        if (damage.identity || damage.answer) forget_answer(db, damage);
+        for (const auto number : damage.log) note_in_log(db, damage.key, number, "this row was found damaged");
+        recount(db, damage.key);
+        renew_case(db, damage.key);
+        const CaseState now = stored_state(db, damage.key);
+        for (auto place = from; place != to; ++place) states[place->second] = now;
+        archive.notes.push_back(fmt::format("{} is damaged in the database: {}{}", question.id.substr(0, 12),
+                                            damage.what,
+                                            damage.identity || damage.answer ? "; it is asked again" : ""));
+    }
+}
+
+}  // namespace grainsweep::store

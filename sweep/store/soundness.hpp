@@ -1,0 +1,65 @@
+// Whether what the archive holds is what was written: ids against inputs, checksums against contents. Pure reading.
+//
+// A file from before there were checksums has nothing to compare with: nothing of it is found damaged.
+#pragma once
+
+#include "sweep/store/checksum.hpp"
+#include "sweep/store/database.hpp"
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace grainsweep::store {
+
+struct DamagedCase {
+    std::int64_t key = 0;
+    std::string id;
+    bool identity = false;          ///< scene, revision, seed or inputs do not give the id
+    bool answer = false;            ///< outcome, reason, cost or observations are not as written
+    std::vector<std::int64_t> log;  ///< attempts that are not as written
+    std::string observable;         ///< the damaged one, where it is one
+    std::string what;               ///< in words
+};
+
+struct DamagedTable {
+    std::string name;
+    std::int64_t part = 0;  ///< campaign_id, or 0
+    std::string what;
+};
+
+[[nodiscard]] bool has_checksums(const Connection& db);
+
+/// Among the cases with these keys, in order of key. Rows of cases that are not there are counted in `strays`.
+[[nodiscard]] std::vector<DamagedCase> damaged_cases(const Connection& db, std::int64_t first = 0,
+                                                     std::int64_t last = std::numeric_limits<std::int64_t>::max(),
+                                                     std::int64_t* strays = nullptr);
+
+/// Tables that describe cases and campaigns: campaign, parameter, observable, provenance and the schema itself.
+[[nodiscard]] std::vector<DamagedTable> damaged_descriptions(const Connection& db);
+/// Designs and verdicts: campaign_case and convergence, campaign by campaign.
+[[nodiscard]] std::vector<DamagedTable> damaged_parts(const Connection& db);
+
+/// The rows of a table, or of its part, as they are now.
+[[nodiscard]] RowSum sum_of_table(const Connection& db, std::string_view name, std::int64_t part = 0);
+/// One row of convergence, or none.
+[[nodiscard]] RowSum sum_of_verdict(const Connection& db, std::int64_t campaign, std::string_view observable,
+                                    std::int64_t points);
+/// The checksum that is stored of it.
+[[nodiscard]] RowSum stored_sum(const Connection& db, std::string_view name, std::int64_t part = 0);
+void store_sum(Connection& db, std::string_view name, std::int64_t part, const RowSum& sum);
+/// After a change: makes the stored checksum that of the rows.
+void renew_sum(Connection& db, std::string_view name, std::int64_t part = 0);
+/// renew_sum of every table of damaged_descriptions().
+void renew_descriptions(Connection& db);
+
+/// Makes a checksum that of what is stored: of an attempt, of a case's answer, of a case with all its attempts.
+void renew_attempt(Connection& db, std::int64_t key, std::int64_t number);
+void renew_answer(Connection& db, std::int64_t key);
+void renew_case(Connection& db, std::int64_t key);
+/// Of everything: once, when a file gets its first checksums.
+void renew_everything(Connection& db);
+
+}  // namespace grainsweep::store

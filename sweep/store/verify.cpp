@@ -1,0 +1,150 @@
+// What is damaged: in words for the user, and before anything is read as data.
+#include "sweep/store/archive.hpp"
+#include "sweep/store/soundness.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <set>
+#include <utility>
+
+namespace grainsweep::store {
+
+namespace {
+
+std::string campaign_name(const Connection& db, std::int64_t campaign) {
+    auto rows = db.ask("SELECT name FROM campaign NOT INDEXED WHERE campaign_id = ?", campaign);
+    return rows.next() ? rows.get<std::string>(0) : "";
+}
+
+/// The campaigns whose designs hold the case, "a, b".
+std::string campaigns_of(const Connection& db, std::int64_t key) {
+    std::string text;
+    auto rows = db.ask(
+        "SELECT DISTINCT g.name FROM campaign_case AS p NOT INDEXED JOIN campaign AS g ON g.campaign_id = "
+        "p.campaign_id WHERE p.case_key = ? ORDER BY g.campaign_id",
+        key);
+    while (rows.next()) text.append(text.empty() ? "" : ", ").append(rows.get<std::string_view>(0));
+    return text;
+}
+
+Damage described(const Connection& db, const DamagedCase& damage) {
+    return {"case", damage.id, campaigns_of(db, damage.key), damage.observable, damage.what};
+}
+
+Damage described(const Connection& db, const DamagedTable& damage) {
+    const bool of_campaign = damage.part != 0;
+    return {"table", "", of_campaign ? campaign_name(db, damage.part) : "", "",
+            fmt::format("table {}: {}", damage.name, damage.what)};
+}
+
+/// SQLite's own checks: pages, cells, indices, constraints, references.
+void check_structure(const Connection& db, std::vector<Damage>& found) {
+    auto pages = db.prepare("PRAGMA integrity_check");
+    while (pages.step()) {
+        if (pages.get<std::string_view>(0) != "ok") found.push_back({"file", "", "", "", pages.get<std::string>(0)});
+    }
+    std::map<std::pair<std::string, std::string>, std::int64_t> dangling;
+    auto references = db.prepare("PRAGMA foreign_key_check");
+    while (references.step()) ++dangling[{references.get<std::string>(0), references.get<std::string>(2)}];
+    for (const auto& [tables, rows] : dangling) {
+        found.push_back({"table", "", "", "",
+                         fmt::format("table {}: {} rows refer to rows of {} that are not there", tables.first, rows,
+                                     tables.second)});
+    }
+}
+
+void check_texts(const Connection& db, std::vector<Damage>& found) {
+    auto rows = db.ask(
+        "SELECT g.name, v.provenance_id, v.campaign_text, v.campaign_hash FROM provenance AS v NOT INDEXED "
+        "JOIN campaign AS g ON g.campaign_id = v.campaign_id");
+    while (rows.next()) {
+        if (campaign::content_hash(rows.get<std::string_view>(2)) == rows.get<std::string_view>(3)) continue;
+        found.push_back({"table", "", rows.get<std::string>(0), "",
+                         fmt::format("table provenance: the campaign file of run {} is not as written",
+                                     rows.get<std::int64_t>(1))});
+    }
+}
+
+void check_cases(const Connection& db, std::vector<Damage>& found) {
+    std::int64_t strays = 0;
+    for (const auto& one :
+         damaged_cases(db, std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max(), &strays))
+        found.push_back(described(db, one));
+    if (strays > 0)
+        found.push_back({"table", "", "", "", fmt::format("{} rows belong to cases that are not there", strays)});
+}
+
+/// A part of the check that stops at a page that cannot be read has found damage, too.
+template <class Check>
+void guarded(Check&& check, std::vector<Damage>& found) {
+    try {
+        check();
+    } catch (const BrokenWorld& broken) {
+        found.push_back({"file", "", "", "", broken.what()});
+    }
+}
+
+std::string in_words(const Damage& damage) {
+    std::string text = damage.kind == "case" ? fmt::format("case {}", damage.case_id) : "";
+    if (!damage.campaign.empty()) text += fmt::format("{}campaign '{}'", text.empty() ? "" : " of ", damage.campaign);
+    return text.empty() ? damage.what : fmt::format("{}: {}", text, damage.what);
+}
+
+}  // namespace
+
+std::vector<Damage> Store::verify() const {
+    auto& db = impl_->db;
+    const Transaction one_state(db, Transaction::Kind::read);
+    std::vector<Damage> found;
+    guarded([&] { check_structure(db, found); }, found);
+    std::vector<DamagedTable> tables;
+    guarded([&] { tables = damaged_descriptions(db); }, found);
+    guarded(
+        [&] {
+            for (auto& part : damaged_parts(db)) tables.push_back(std::move(part));
+        },
+        found);
+    guarded(
+        [&] {
+            for (const auto& table : tables) found.push_back(described(db, table));
+        },
+        found);
+    guarded([&] { check_texts(db, found); }, found);
+    guarded([&] { check_cases(db, found); }, found);
+    return found;
+}
+
+bool Store::has_checksums() const {
+    return store::has_checksums(impl_->db);
+}
+
+void Store::Impl::refuse_damage(const std::vector<DamagedTable>& tables, const std::vector<DamagedCase>& cases) const {
+    if (tables.empty() && cases.empty()) return;
+    const Damage first = tables.empty() ? described(db, cases.front()) : described(db, tables.front());
+    const std::size_t count = tables.size() + cases.size();
+    const std::string more = count > 1 ? fmt::format(" (the first of {})", count) : "";
+    throw BrokenWorld(fmt::format("database '{}': damaged: {}{}. `grainsweep verify {}` names all that is damaged{}",
+                                  file.string(), in_words(first), more, file.string(),
+                                  tables.empty() ? "; the next run of its campaign asks a damaged case again" : ""));
+}
+
+void Store::Impl::require_sound() {
+    if (sound) return;
+    std::optional<Transaction> one_state;
+    if (!db.in_transaction()) one_state.emplace(db, Transaction::Kind::read);
+    auto tables = damaged_descriptions(db);
+    for (auto& part : damaged_parts(db)) tables.push_back(std::move(part));
+    refuse_damage(tables, tables.empty() ? damaged_cases(db) : std::vector<DamagedCase>{});
+    sound = true;
+}
+
+void Store::Impl::require_sound(std::int64_t key) {
+    if (sound) return;
+    std::optional<Transaction> one_state;
+    if (!db.in_transaction()) one_state.emplace(db, Transaction::Kind::read);
+    const auto tables = damaged_descriptions(db);
+    refuse_damage(tables, tables.empty() ? damaged_cases(db, key, key) : std::vector<DamagedCase>{});
+}
+
+}  // namespace grainsweep::store
