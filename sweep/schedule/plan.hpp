@@ -78,9 +78,9 @@ public:
     }
     /// Nothing running and nothing that could still be started.
     [[nodiscard]] bool over() const { return running_ == 0 && !next_predicted(); }
-    /// Length of the longest prefix of the placed cases all of whose questions have their last word.
+    /// Length of the longest prefix of the placed cases all of whose questions are decided.
     [[nodiscard]] std::size_t settled_prefix();
-    /// Whether the question of placed case i has its last word.
+    /// Whether the question of placed case i is settled or given up.
     [[nodiscard]] bool decided(std::size_t placed) const { return entries_[places_[placed]].decided; }
 
     struct Tally {
@@ -88,7 +88,7 @@ public:
         std::size_t decided = 0;      ///< settled or given up, before or in this run
         std::size_t settled_now = 0;  ///< completed or skipped in this run
         std::size_t failed_now = 0;   ///< given up, unstable or rejected in this run
-        std::size_t failed = 0;       ///< given up or settled as unstable or rejected, all told
+        std::size_t failed = 0;       ///< given up or settled as unstable or rejected, in all runs
         double predicted_left = 0;    ///< seconds, less what running cases have done
         double predicted_done = 0;    ///< seconds, in this run
     };

@@ -168,7 +168,7 @@ void Scheduler::judge_prefix() {
     if (judge_ == nullptr || (judge_->converged_at() && judge_->stops())) return;
     for (auto& row : judge_->judge(plan_.settled_prefix())) recorder_.write(store::Recorder::Checked{campaign_, row});
     progress_.judgement = judge_->verdict();
-    // Also when interrupted: where the campaign stops must not depend on when somebody looked.
+    // Also when interrupted: where the campaign stops must not depend on the time of the check.
     if (judge_->converged_at() && judge_->stops()) {
         plan_.close();
         early_ = Ending::converged;

@@ -15,14 +15,14 @@
 namespace grainsweep::schedule {
 
 enum class Ending {
-    finished,   ///< every question has its last word
+    finished,   ///< every question is settled or given up
     converged,  ///< the statistics were good enough
     limited,    ///< as many cases as asked for in this run
     too_many_failures,
     interrupted,
 };
 
-/// What is told to whoever watches. Counts are of results on disk.
+/// What watchers get. Counts are of results on disk.
 struct Progress {
     Plan::Tally tally;
     std::size_t durable = 0;  ///< results of this run on disk

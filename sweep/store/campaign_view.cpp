@@ -26,7 +26,7 @@ std::string literal(const Value& value) {
     return text;
 }
 
-/// Column names of one view: SQL does not tell upper from lower case, and a name already taken gets a suffix.
+/// Column names of one view: SQL does not distinguish upper from lower case, and a name already taken gets a suffix.
 class Columns {
 public:
     void add(const std::string& name, std::string_view suffix, const std::string& expression) {

@@ -240,7 +240,7 @@ Connection::Connection(const std::filesystem::path& file, Access access) {
     } catch (const BrokenWorld&) {
         const int code = sqlite3_extended_errcode(handle_.get());
         // A write-ahead database needs its shared-memory file beside it. Where that cannot be made and no journal
-        // is waiting, nobody writes either.
+        // is waiting, there is no writer either.
         const bool closed_folder = (code & 0xff) == SQLITE_CANTOPEN || (code & 0xff) == SQLITE_READONLY;
         if (!closed_folder || waits("-wal") || waits("-journal")) throw;
         handle_.reset(open(uri(file, "immutable=1").c_str(), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI));
@@ -440,7 +440,7 @@ Transaction::~Transaction() {
     if (connection_ == nullptr || !connection_->in_transaction()) return;  // a full disk may have rolled back already
     try {
         connection_->run("ROLLBACK");
-    } catch (const std::exception&) {  // the file is rolled back by whoever opens it next
+    } catch (const std::exception&) {  // the file is rolled back when it is opened next
     }
 }
 

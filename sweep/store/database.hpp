@@ -29,7 +29,7 @@ struct sqlite3_stmt;
 namespace grainsweep::store {
 
 /// SQLite does not accept the statement: syntax, unknown name, not authorised, a constraint. Of a statement of our
-/// own this says that the file is not as we made it; one who passes on a stranger's statement catches it.
+/// own this says that the file is not as we made it; callers that pass on a user's statement catch it.
 class RefusedSql : public BrokenWorld {
 public:
     explicit RefusedSql(std::string words, const std::string& file = "the database")

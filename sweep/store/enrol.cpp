@@ -71,7 +71,7 @@ std::vector<DeclaredParameter> declare_scene(Store::Impl& archive, const SceneIn
     return parameters;
 }
 
-/// The writer's lock is ours, so whoever began these attempts is dead.
+/// The writer's lock is ours, so the program that began these attempts has ended.
 void close_dead_attempts(Store::Impl& archive) {
     if (std::exchange(archive.dead_attempts_closed, true)) return;
     auto& db = archive.db;

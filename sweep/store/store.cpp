@@ -51,7 +51,7 @@ std::uint32_t big_endian(const char* bytes) {
 }
 
 /// A file that never was SQLite's, or is another program's, is a wrong question; one whose header is gone is damage.
-/// Told from the header alone, before a lock or a journal is made beside a stranger's file.
+/// Decided by the header alone, before a lock or a journal is made beside a foreign file.
 void check_header(const std::filesystem::path& file) {
     std::array<char, 100> header{};
     std::ifstream stream(file, std::ios::binary);

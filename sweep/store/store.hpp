@@ -1,4 +1,4 @@
-// The archive: every result of every campaign in one SQLite file. The only file that speaks SQL.
+// The archive: every result of every campaign in one SQLite file.
 //
 // One writer: an advisory lock on the file itself, which ends with its holder. Readers go on beside it, and the last
 // one to close the file, reader or writer, leaves nothing beside it. WAL, synchronous FULL; on network file systems a

@@ -77,8 +77,8 @@ private:
 /// Calls until `condition` no longer holds, or for so long, with growing pauses.
 void wait_while(const std::function<bool()>& condition, std::chrono::milliseconds at_most);
 
-// What the status of a process that ended tells.
-/// The signal that ended it, also where a launcher or a shell tells of it by an exit code; 0: none.
+// What the status of a process that ended says.
+/// The signal that ended it, also where a launcher or a shell reports it by an exit code; 0: none.
 [[nodiscard]] int ending_signal(int status);
 /// Whether it was ended by something else than what it computed: by a signal that asks, or by Slurm, which says in the
 /// log where it ends a step for its time limit, a pre-emption or a failed node.

@@ -431,8 +431,8 @@ bool Pool::can_start(const std::string& program) {
 }
 
 // A launcher has things to do after its worker has ended (srun gives its part of the machine back), so both are
-// asked, then told, and killed last. Workers that were retired and have nothing left to do end by themselves. What
-// cannot even be killed (it waits for a dead file server) is left behind.
+// asked by a message, then by a signal, and killed last. Workers that were retired and have nothing left to do end by
+// themselves. What cannot even be killed (it waits for a dead file server) is left behind.
 void Pool::dismiss() {
     std::vector<std::shared_ptr<Child>> all;
     for (const auto& worker : impl_->workers) {
