@@ -34,7 +34,7 @@ using store::Store;
 /// Which campaign and which observable of a database.
 struct Subject {
     std::string database, campaign, observable;
-    bool check = false;  ///< of `converge`: the exit code tells whether everything shown has converged
+    bool check = false;  ///< of `converge`: the exit code says whether everything shown has converged
 };
 
 void append(store::Table& all, store::Table more) {

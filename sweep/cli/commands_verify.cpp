@@ -26,7 +26,7 @@ std::string counted(const Store& archive) {
 std::string sound(const Store& archive) {
     if (!archive.has_checksums())
         return fmt::format(
-            "nothing is damaged as far as can be told: pages, indices and references agree. {} were written before "
+            "no damage was found: pages, indices and references agree. {} were written before "
             "there were checksums; the next run adds them",
             counted(archive));
     return fmt::format("nothing is damaged: {}; pages, indices, references, checksums and ids agree", counted(archive));

@@ -57,7 +57,7 @@ public:
     /// How many next() could return one after the other now.
     [[nodiscard]] std::size_t waiting() const;
 
-    /// A running attempt has come so far, 0 to 1. What it had done when first heard of, from a checkpoint, was not done
+    /// A running attempt has come so far, 0 to 1. What it had done when first reported, from a checkpoint, was not done
     /// in this run.
     void advanced(const campaign::Attempt& attempt, double share);
 
@@ -100,7 +100,7 @@ private:
         std::int64_t attempts = 0, failures = 0;
         double predicted = 0;
         bool decided = false, running = false;
-        std::optional<double> share = {};  ///< done by the running attempt, as last heard
+        std::optional<double> share = {};  ///< done by the running attempt, as last reported
     };
     /// Long cases first near the end: of the queue or of what this run may settle.
     void order_the_end(std::span<const std::int64_t> blocks);

@@ -109,7 +109,7 @@ void Scheduler::handle(workers::PoolEvent event) {
 }
 
 void Scheduler::handle_finished(workers::Finished& finished) {
-    if (!settles(finished.result.outcome)) {  // a worker that tells of a crash or a time-out of what it started
+    if (!settles(finished.result.outcome)) {  // a worker that reports a crash or a time-out of what it started
         const auto& result = finished.result;
         return handle_failure(result.attempt, result.outcome, result.message, result.cost.wall_seconds);
     }

@@ -15,7 +15,7 @@ namespace grainsweep::store {
 
 namespace {
 
-// A condition speaks of one case: what needs more than this is a mistake, or no condition.
+// A condition is about one case: what needs more than this is a mistake, or no condition.
 constexpr int longest_value = 10'000;
 constexpr std::size_t longest_expression = 100'000;
 constexpr double longest_time = 1;  // s

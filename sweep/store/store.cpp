@@ -179,7 +179,7 @@ std::unique_ptr<Store::Impl> open_to_write(const std::filesystem::path& file, St
     if (!lock) refuse_second_writer(file);
     refuse_several_names(file);
     Connection db(file, Connection::Access::write);
-    const bool empty = schema_version(db, file) == 0;  // before anything is changed in a stranger's file
+    const bool empty = schema_version(db, file) == 0;  // before anything is changed in a foreign file
     const bool network = disk == Store::Disk::network || (disk == Store::Disk::found_out && on_network(file));
     db.use(network ? Connection::Journal::rollback : Connection::Journal::write_ahead);
     if (!empty) check_structure(db, file);
@@ -372,7 +372,7 @@ bool Store::finish(const campaign::CaseResult& result) {
         keeps = before && campaign::settles(*before) && !campaign::settles(result.outcome);
     }
     const auto outcome = campaign::to_string(result.outcome);
-    if (!close_attempt(db, key, result)) return false;  // closed already: given up as abandoned, or told twice
+    if (!close_attempt(db, key, result)) return false;  // closed already: given up as abandoned, or reported twice
     ++impl_->settled_in_group;
 
     const bool failed = result.outcome == campaign::Outcome::crashed || result.outcome == campaign::Outcome::timed_out;

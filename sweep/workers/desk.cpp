@@ -192,7 +192,8 @@ void Desk::attend() {
 }
 
 void Desk::tick() {
-    if (++silence_ > limits_.lease_seconds) end(Ending::silence, "its worker heard nothing from the boss for too long");
+    if (++silence_ > limits_.lease_seconds)
+        end(Ending::silence, "its worker got no message from the main program for too long");
     const std::lock_guard lock(mutex_);
     if (ending_ != Ending::none && ++ending_for_ > limits_.give_back_seconds) leave();
     if (!running_ || !makes_headway()) return;

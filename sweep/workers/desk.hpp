@@ -19,7 +19,7 @@ enum class Ending {
     none,
     asked,    ///< the boss wrote stop
     signal,   ///< a signal that asks a process to end
-    silence,  ///< nothing heard from the boss for too long
+    silence,  ///< no message from the boss for too long
 };
 
 /// Belongs to the thread that computes, which makes it. Blocks the signals it waits for: make it before any thread.

@@ -5,7 +5,7 @@
 // direction means that the other side is gone. Heartbeats stay short: some launchers delay lines above 1 kB.
 //
 //   boss   {"run": {"attempt": 2, "id": "...", "scene": "...", "revision": 1, "seed": 7, "inputs": {...}}}
-//          {"lease": true}      the boss lives; a worker that hears nothing for long gives back what it has and ends
+//          {"lease": true}      the boss lives; a worker that gets no message for long gives back what it has and ends
 //          {"stop": true}       no more cases; finish soon or give back, then end
 //   worker {"ready": {"protocol": 2, "version": "...", "commit": "...", "build": "...", "path": "avx2", ...}}
 //          {"begun": {"id": "...", "attempt": 2, "resumed": false}}     the next of the cases it was given

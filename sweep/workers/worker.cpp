@@ -76,7 +76,7 @@ private:
     bool exists_ = false;
 };
 
-/// Looked at between the slices of a running case: tells that it makes headway, saves it now and then, and gives it up
+/// Looked at between the slices of a running case: reports that it makes headway, saves it now and then, and gives it up
 /// when the worker is to end.
 class CaseWatch {
 public:

@@ -168,7 +168,7 @@ TEST(Interference, ABossThatIsStoppedForLongFindsItsCasesGivenBack) {
     EXPECT_EQ(ended.code, 130) << ended.err;
     EXPECT_EQ(campaign.ask("SELECT outcome FROM attempt"), "abandoned");
     EXPECT_THAT(campaign.ask("SELECT message FROM attempt").get<std::string>(),
-                HasSubstr("heard nothing from the boss"));
+                HasSubstr("got no message from the main program"));
     EXPECT_EQ(campaign.ask("SELECT failures FROM sim_case"), 0);
 }
 
