@@ -3,6 +3,7 @@
 #include "tests/support/places.hpp"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -59,8 +60,15 @@ Process::~Process() {
 
 bool Process::running() {
     if (reaped_) return false;
-    if (::waitpid(pid_, &status_, WNOHANG) == pid_) reaped_ = true;
+    reap(WNOHANG);
     return !reaped_;
+}
+
+void Process::reap(int options) {
+    rusage usage{};
+    if (::wait4(pid_, &status_, options, &usage) != pid_) return;
+    reaped_ = true;
+    most_memory_ = usage.ru_maxrss / 1024;
 }
 
 void Process::signal(int number) const {
@@ -68,10 +76,9 @@ void Process::signal(int number) const {
 }
 
 Ended Process::wait() {
-    if (!reaped_) ::waitpid(pid_, &status_, 0);
-    reaped_ = true;
+    if (!reaped_) reap(0);
     const int code = WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_);
-    return {code, contents(out_), contents(err_)};
+    return {code, contents(out_), contents(err_), most_memory_};
 }
 
 std::vector<pid_t> Process::children() const {

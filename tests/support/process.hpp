@@ -12,6 +12,7 @@ namespace grainsweep::test {
 struct Ended {
     int code = -1;  ///< exit code, or 128 + signal
     std::string out, err;
+    long most_memory = 0;  ///< resident at once, of it or one of the processes it waited for, MB
 };
 
 /// A child process whose output goes to files in a folder of its own; killed when it goes out of scope.
@@ -30,8 +31,11 @@ public:
     [[nodiscard]] std::vector<pid_t> children() const;
 
 private:
+    void reap(int options);
+
     pid_t pid_ = -1;
     int status_ = 0;
+    long most_memory_ = 0;
     bool reaped_ = false;
     std::filesystem::path out_, err_;
 };
