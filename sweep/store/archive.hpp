@@ -47,6 +47,7 @@ struct Store::Impl {
     void require_sound();
     /// The same for one case.
     void require_sound(std::int64_t key);
+    void require_order() const;
     void refuse_damage(const std::vector<DamagedTable>& tables, const std::vector<DamagedCase>& cases) const;
     /// Throws WrongQuestion with the nearest name where there is none.
     [[nodiscard]] std::int64_t campaign_key(std::string_view name) const;

@@ -154,12 +154,12 @@ void refuse_several_names(const std::filesystem::path& file) {
                     file.string(), status.st_nlink));
 }
 
-/// Pages and cells of all but the measured values, which have their checksums; an index that is not its table's would
+/// Pages, cells and the order of rows; an index that is not its table's would
 /// hide a stored case.
 void check_structure(const Connection& db, const std::filesystem::path& file) {
-    for (const char* const what :
-         {"integrity_check(sim_case)", "quick_check(campaign)", "quick_check(campaign_case)", "quick_check(case_input)",
-          "quick_check(attempt)", "integrity_check(parameter)", "integrity_check(observable)"}) {
+    for (const char* const what : {"integrity_check(sim_case)", "quick_check(campaign)", "quick_check(campaign_case)",
+                                   "quick_check(case_input)", "quick_check(attempt)", "quick_check(observation)",
+                                   "integrity_check(parameter)", "integrity_check(observable)"}) {
         auto rows = db.prepare(fmt::format("PRAGMA {}", what));
         while (rows.step()) {
             if (rows.get<std::string_view>(0) == "ok") continue;

@@ -133,10 +133,24 @@ void Store::Impl::require_sound() {
     if (sound) return;
     std::optional<Transaction> one_state;
     if (!db.in_transaction()) one_state.emplace(db, Transaction::Kind::read);
+    require_order();
     auto tables = damaged_descriptions(db);
     for (auto& part : damaged_parts(db)) tables.push_back(std::move(part));
     refuse_damage(tables, tables.empty() ? damaged_cases(db) : std::vector<DamagedCase>{});
     sound = true;
+}
+
+/// Rows that are whole and not in their order are passed by when they are looked for.
+void Store::Impl::require_order() const {
+    if (!store::has_checksums(db)) return;
+    for (const char* const table :
+         {"campaign", "campaign_case", "sim_case", "case_input", "attempt", "observation", "convergence"}) {
+        auto rows = db.prepare(fmt::format("PRAGMA quick_check({})", table));
+        while (rows.step()) {
+            if (rows.get<std::string_view>(0) == "ok") continue;
+            refuse_damage({{table, 0, rows.get<std::string>(0)}}, {});
+        }
+    }
 }
 
 void Store::Impl::require_sound(std::int64_t key) {
