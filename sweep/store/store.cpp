@@ -113,7 +113,7 @@ void migrate(Connection& db, const std::filesystem::path& file) {
     transaction.commit();
 }
 
-/// "process 4711 on node3 since 2026-01-01T12:00:00Z", as far as the archive knows who writes: the last run that
+/// "process 4711 on node3 since 2026-01-01T12:00:00Z", as far as the archive can tell: the last run that
 /// recorded itself, unless it has ended and another one is about to.
 std::string holder_of(const std::filesystem::path& file) {
     try {

@@ -211,7 +211,7 @@ public:
     /// Whether the file has checksums: one from before has none until the next run brings it up to date.
     [[nodiscard]] bool has_checksums() const;
 
-    struct Impl;  ///< known to the files of this room only
+    struct Impl;  ///< known to the files of this folder only
 
 private:
     std::unique_ptr<Impl> impl_;
