@@ -18,8 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json notes_schema() {
-    return {
-        {"description", "any text; ignored"}, {"type", {"string", "array"}}, {"items", {{"type", "string"}}}};
+    return {{"description", "any text; ignored"}, {"type", {"string", "array"}}, {"items", {{"type", "string"}}}};
 }
 
 Json number_of(double x) {
@@ -113,10 +112,10 @@ Json factor_schema(const ParameterSpec& parameter) {
     Json schema = section(factor_keys());
     schema["description"] = meaning;
     schema["properties"]["name"] = {{"const", parameter.name}, {"description", meaning}};
-    schema["properties"]["levels"].update({{"type", "array"}, {"minItems", 1}, {"uniqueItems", true}, {"items", value}});
+    schema["properties"]["levels"].update(
+        {{"type", "array"}, {"minItems", 1}, {"uniqueItems", true}, {"items", value}});
     if (std::holds_alternative<double>(parameter.default_value)) {
-        schema["properties"]["between"].update(
-            {{"type", "array"}, {"minItems", 2}, {"maxItems", 2}, {"items", value}});
+        schema["properties"]["between"].update({{"type", "array"}, {"minItems", 2}, {"maxItems", 2}, {"items", value}});
         schema["oneOf"] = {{{"required", {"between"}}}, {{"required", {"levels"}}}};
     } else {
         schema["properties"].erase("between");

@@ -6,10 +6,11 @@
 namespace grainsweep::report {
 
 struct PageFiles {
-    std::string_view skeleton;  ///< page.html, with {{style}}, {{library}}, {{films}}, {{data}}, {{program}} where the rest goes
-    std::string_view style;     ///< page.css
-    std::string_view program;   ///< the page's scripts, one after the other: the body of a function
-    std::string_view library;   ///< Chart.js (MIT licence)
+    std::string_view
+        skeleton;  ///< page.html, with {{style}}, {{library}}, {{films}}, {{data}}, {{program}} where the rest goes
+    std::string_view style;    ///< page.css
+    std::string_view program;  ///< the page's scripts, one after the other: the body of a function
+    std::string_view library;  ///< Chart.js (MIT licence)
 };
 
 [[nodiscard]] PageFiles page_files();

@@ -76,8 +76,8 @@ private:
     bool exists_ = false;
 };
 
-/// Looked at between the slices of a running case: reports that it makes headway, saves it now and then, and gives it up
-/// when the worker is to end.
+/// Looked at between the slices of a running case: reports that it makes headway, saves it now and then, and gives it
+/// up when the worker is to end.
 class CaseWatch {
 public:
     CaseWatch(const WorkerOptions& options, Desk& desk, Checkpoints& checkpoints)

@@ -99,7 +99,8 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{R"([{"op": "replace", "path": "/factors/0/between", "value": [0.1]}])",
               "$.factors[0].between: got [0.1]; must be [low, high]."},
         Wrong{R"([{"op": "replace", "path": "/factors/0/between", "value": "0.1"}])",
-              "$.factors[0].between: got \"0.1\"; must be [low, high]; what is the same in every case goes into \"fixed\"."},
+              "$.factors[0].between: got \"0.1\"; must be [low, high]; what is the same in every case goes into "
+              "\"fixed\"."},
         Wrong{R"([{"op": "replace", "path": "/factors/0/between", "value": [0, 1.5]}])",
               "$.factors[0].between[1]: got 1.5; 'x1' must be a number from 0 to 1."},
         Wrong{R"([{"op": "replace", "path": "/factors/0/between", "value": ["0", 1]}])",

@@ -59,8 +59,8 @@ private:
     std::vector<double> behind_;  // volume behind the front face, by sample, with what left the box there
     std::vector<double> under_;   // volume under the blade and below the gap, by sample
     enum class Place : char { ahead, behind, left };
-    std::vector<Place> place_;  // by id: of the front face at the last sample, or out of the box
-    double left_behind_ = 0;    // volume that left the box behind the front face
+    std::vector<Place> place_;      // by id: of the front face at the last sample, or out of the box
+    double left_behind_ = 0;        // volume that left the box behind the front face
     dem::Domain domain_;            // for pictures, as the walls
     std::vector<dem::Wall> gates_;  // base and gates, between which the layer settles
     observables::VelocityProfile profile_{profile_layers};
