@@ -157,8 +157,8 @@ void Flow<Heat>::assemble(int d, const FaceVectors* acceleration, const Field* o
     each_row(right_, first, cells_, [&, nw = now_weight, bw = before_weight](std::ptrdiff_t row, int j, int k) {
         assemble_row({right_.data() + row, now.data() + row, convection_[1][m].data() + row, change_.data() + row,
                       pressure_.data() + row, d == 0 ? inverse_spacing_[0].data() : nullptr,
-                      inverse_spacing_[m][at(d == 1 ? j : k)], right_.stride(d), first[0], cells_[0], nw, bw,
-                      setup_.time_step});
+                      d == 0 ? 0.0 : inverse_spacing_[m][at(d == 1 ? j : k)], right_.stride(d), first[0], cells_[0], nw,
+                      bw, setup_.time_step});
     });
 }
 
