@@ -6,19 +6,13 @@
 // surface by O(h^2). Where two sheets pass through one cell they share its corner.
 #pragma once
 
-#include "solver/geometry/vector.hpp"
+#include "solver/geometry/triangle_surface.hpp"
 
-#include <cstdint>
 #include <functional>
-#include <vector>
 
 namespace grainsweep::geometry {
 
-struct TriangleSurface {
-    std::vector<Vec3> corners;
-    std::vector<std::array<std::int32_t, 3>> triangles;  ///< counter-clockwise seen from where f > 0
-};
-
+/// Triangles are counter-clockwise seen from where f > 0.
 /// cells >= 1: of the grid along each axis of the box. Throws std::invalid_argument otherwise.
 [[nodiscard]] TriangleSurface level_surface(const std::function<double(const Vec3&)>& f, const Vec3& low,
                                             const Vec3& high, int cells);

@@ -1,0 +1,157 @@
+#include "solver/geometry/mesh.hpp"
+
+#include "solver/geometry/weld.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <tuple>
+
+namespace grainsweep::geometry {
+namespace {
+
+MeshContact contact_with(const Triangle& t, std::uint32_t number, const Vec3& x) {
+    const Nearest nearest = t.nearest(x);
+    // A face's own normal is exact however near the centre is, and so is that of a centre on the surface.
+    const Vec3 of_plane = t.height(x) >= 0 ? t.normal : -t.normal;
+    const bool on_face = nearest.feature == Feature::face || nearest.distance <= 0;
+    return {on_face ? of_plane : (1 / nearest.distance) * (x - nearest.point), nearest.distance, nearest.point,
+            nearest.feature, number};
+}
+
+bool within(const Vec3& a, const Vec3& b, double distance) {
+    const Vec3 apart = a - b;
+    return dot(apart, apart) <= distance * distance;
+}
+
+}  // namespace
+
+Mesh::Mesh(const TriangleSurface& surface, double one_contact_angle) : one_contact_angle_(one_contact_angle) {
+    if (!(one_contact_angle >= 0 && one_contact_angle < std::numbers::pi / 4))
+        throw std::invalid_argument("the angle below which contacts with a mesh are one must lie in [0, pi/4)");
+    if (surface.triangles.empty()) throw std::invalid_argument("a mesh needs a triangle");
+    triangles_.reserve(surface.triangles.size());
+    for (const auto& ids : surface.triangles) {
+        std::array<Vec3, 3> corners{};
+        for (std::size_t k = 0; k < 3; ++k) corners[k] = surface.corners.at(static_cast<std::size_t>(ids[k]));
+        triangles_.push_back(Triangle::of(corners));
+        if (!finite(triangles_.back().normal))
+            throw std::invalid_argument("every triangle of a mesh must have an area");
+    }
+    grid_ = TriangleGrid(triangles_);
+    tolerance_ = weld_tolerance * norm(high() - low());
+}
+
+Mesh Mesh::repeated(const Domain& domain, double margin) const {
+    Mesh all = *this;
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (!domain.periodic[k]) continue;
+        const double period = domain.length(k);
+        std::vector<Triangle> images;
+        for (const Triangle& t : all.triangles_) {
+            const auto [least, most] = std::minmax({t.corner[0][k], t.corner[1][k], t.corner[2][k]});
+            const auto first = std::ceil((domain.low[k] - margin - most) / period);
+            const auto last = std::floor((domain.high[k] + margin - least) / period);
+            for (double n = first; n <= last; ++n) {
+                Triangle image = t;
+                for (Vec3& corner : image.corner) corner[k] += n * period;
+                images.push_back(image);
+            }
+        }
+        all.triangles_ = std::move(images);
+    }
+    all.grid_ = TriangleGrid(all.triangles_);
+    return all;
+}
+
+void Mesh::near(const Vec3& position, double reach, std::vector<std::uint32_t>& into) const {
+    const Vec3 margin = {reach, reach, reach};
+    grid_.in_box(position - margin, position + margin, into);
+    std::erase_if(into, [&](std::uint32_t t) { return !(triangles_[t].nearest(position).distance < reach); });
+}
+
+void Mesh::contacts(const Vec3& position, double reach, std::vector<MeshContact>& into) const {
+    std::vector<std::uint32_t> triangles;
+    near(position, reach, triangles);
+    contacts(position, reach, triangles, into);
+}
+
+void Mesh::contacts(const Vec3& position, double reach, std::span<const std::uint32_t> triangles,
+                    std::vector<MeshContact>& into) const {
+    into.clear();
+    for (const std::uint32_t t : triangles) {
+        const MeshContact touched = contact_with(triangles_[t], t, position);
+        if (touched.distance < reach) into.push_back(touched);
+    }
+    if (into.size() < 2) return;
+    std::ranges::sort(into, {},
+                      [](const MeshContact& c) { return std::tuple(c.feature, c.distance, c.point, c.normal); });
+    keep_places(into);
+    if (into.size() < 2) return;
+    std::ranges::sort(into, {},
+                      [](const MeshContact& c) { return std::tuple(c.distance, c.feature, c.point, c.normal); });
+    if (one_contact_angle_ > 0) unite_normals(into);
+}
+
+/// Steps 2 and 3, to the sorted nearest points: faces before edges before vertices.
+void Mesh::keep_places(std::vector<MeshContact>& touched) const {
+    // Points in one place: those within two tolerances of one another, and of those again.
+    std::vector<std::size_t> place(touched.size());
+    for (std::size_t k = 0; k < touched.size(); ++k) {
+        place[k] = k;
+        for (std::size_t n = 0; n < k; ++n) {
+            const std::size_t from = std::max(place[n], place[k]), to = std::min(place[n], place[k]);
+            if (from == to || !within(touched[n].point, touched[k].point, 2 * tolerance_)) continue;
+            for (std::size_t m = 0; m <= k; ++m)
+                if (place[m] == from) place[m] = to;
+        }
+    }
+    // A place without a face is none where one of its points lies on a triangle that is nearest elsewhere.
+    std::vector<bool> passed_over(touched.size(), false);
+    for (std::size_t k = 0; k < touched.size(); ++k) {
+        const std::size_t mine = place[k];
+        if (touched[mine].feature == Feature::face || passed_over[mine]) continue;
+        for (std::size_t n = 0; n < touched.size() && !passed_over[mine]; ++n)
+            passed_over[mine] =
+                place[n] != mine && triangles_[touched[n].triangle].nearest(touched[k].point).distance <= tolerance_;
+    }
+    const MeshContact nearest = *std::ranges::min_element(touched, {}, &MeshContact::distance);
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < touched.size(); ++k)
+        if (place[k] == k && !passed_over[k]) touched[kept++] = touched[k];
+    // The nearest of all is passed over by rounding only, between triangles that meet within the tolerance.
+    if (kept == 0) touched[kept++] = nearest;
+    touched.resize(kept);
+}
+
+/// Step 4, to places sorted by distance.
+void Mesh::unite_normals(std::vector<MeshContact>& places) const {
+    const double chord = 2 * std::sin(one_contact_angle_ / 2);
+    std::size_t kept = 0;
+    for (const MeshContact& place : std::vector<MeshContact>(places)) {
+        const auto is_one = [&](const MeshContact& other) { return within(other.normal, place.normal, chord); };
+        if (std::none_of(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(kept), is_one))
+            places[kept++] = place;
+    }
+    places.resize(kept);
+}
+
+std::optional<std::uint32_t> Mesh::crossed(const Vec3& from, const Vec3& to) const {
+    Vec3 low = from, high = to;
+    for (std::size_t k = 0; k < 3; ++k)
+        if (low[k] > high[k]) std::swap(low[k], high[k]);
+    std::vector<std::uint32_t> beside;
+    grid_.in_box(low, high, beside);
+    for (const std::uint32_t n : beside) {
+        const Triangle& t = triangles_[n];
+        const double before = t.height(from);
+        const double after = t.height(to);
+        if ((before > 0) == (after > 0)) continue;
+        const Vec3 through = from + (before / (before - after)) * (to - from);
+        if (t.nearest(through).distance <= tolerance_) return n;
+    }
+    return std::nullopt;
+}
+
+}  // namespace grainsweep::geometry

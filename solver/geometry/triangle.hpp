@@ -1,0 +1,46 @@
+// One triangle: the point of it that is nearest to another point, and on which of its features that lies.
+//
+// A point whose foot on the plane lies in the triangle is nearest to its face, by the distance from the plane: exact
+// for needles and slivers too. For any other the nearest point is on one of the sides, whatever the angles are.
+#pragma once
+
+#include "solver/geometry/vector.hpp"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace grainsweep::geometry {
+
+enum class Feature : std::uint8_t { face, edge, vertex };
+
+struct Nearest {
+    Vec3 point{};
+    double distance = 0;  ///< m, not negative
+    Feature feature = Feature::face;
+    std::uint8_t number = 0;  ///< of a side (from corner 0 to 1, 1 to 2, 0 to 2) or of a corner
+};
+
+/// Its corners ascend in x, y, z: two triangles with a side in common compute the same bits for a point on it, and no
+/// result depends on the order in which a file names them.
+struct Triangle {
+    std::array<Vec3, 3> corner{};
+    Vec3 normal{};  ///< unit; either side of the triangle is a wall
+
+    /// No two corners the same, not all on one line.
+    [[nodiscard]] static Triangle of(std::array<Vec3, 3> corners);
+
+    /// Height of x above the plane on the side of the normal, m.
+    [[nodiscard]] double height(const Vec3& x) const { return dot(normal, x - corner[0]); }
+
+    /// The foot of x on the plane lies in the triangle, its sides included.
+    [[nodiscard]] bool below(const Vec3& x) const {
+        const auto side = [&](std::size_t a, std::size_t b) {
+            return dot(cross(corner[b] - corner[a], x - corner[a]), normal);
+        };
+        return side(0, 1) >= 0 && side(1, 2) >= 0 && side(2, 0) >= 0;
+    }
+
+    [[nodiscard]] Nearest nearest(const Vec3& x) const;
+};
+
+}  // namespace grainsweep::geometry

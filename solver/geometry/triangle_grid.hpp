@@ -1,0 +1,39 @@
+// Cubic cells over a set of triangles: each knows the triangles that reach into it, by their true extent.
+#pragma once
+
+#include "solver/geometry/triangle.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace grainsweep::geometry {
+
+class TriangleGrid {
+public:
+    TriangleGrid() = default;
+    explicit TriangleGrid(std::span<const Triangle> triangles);
+
+    /// Of the box around all triangles.
+    [[nodiscard]] const Vec3& low() const { return low_; }
+    [[nodiscard]] const Vec3& high() const { return high_; }
+
+    /// Triangles with a part in the box, ascending, and some beside it.
+    void in_box(const Vec3& low, const Vec3& high, std::vector<std::uint32_t>& into) const;
+
+private:
+    using Range = std::array<std::size_t, 2>;  // first and last
+
+    [[nodiscard]] std::size_t cell_along(std::size_t axis, double x) const;
+    [[nodiscard]] std::array<Range, 3> range(const Vec3& low, const Vec3& high) const;
+    template <class Visit>
+    void for_each_cell(const std::array<Range, 3>& box, Visit&& visit) const;
+
+    Vec3 low_{}, high_{};
+    double edge_ = 1;                     // of a cell, m
+    std::array<std::size_t, 3> cells_{};  // along each axis
+    std::vector<std::uint32_t> begin_;    // of a cell's part of entries_
+    std::vector<std::uint32_t> entries_;  // triangles, ascending in each cell
+};
+
+}  // namespace grainsweep::geometry
