@@ -190,6 +190,17 @@ schedule::Rules rules_of(const campaign::Campaign& campaign, const RunRequest& r
             .workers = workers};
 }
 
+/// The lock is held: what dead processes left half written belongs to no run. A checkpoint is of no use once its case
+/// is settled; those of other builds and instruction paths are found by their contents alone.
+void sweep(const store::ArtefactFolder& folder, const store::Store& store) {
+    folder.sweep([&](std::string_view key) {
+        PlacedCase place;
+        const auto id = workers::checkpointed_case(key);
+        if (id) place.question.id = *id;
+        return id && store.settled({&place, 1}) == 1;
+    });
+}
+
 /// What must be known before the first answer comes.
 void say_first(ProgressLine& line, const campaign::Campaign& campaign, const campaign::Forecast& forecast,
                const store::CampaignRecord& record) {
@@ -244,7 +255,7 @@ RunReport run_campaign(const RunRequest& request) {
 
     workers::Pool pool(pool_options(campaign, artefacts, request));
     store::ArtefactFolder folder(artefacts);
-    folder.sweep();  // the lock is held: what dead processes left belongs to no run
+    sweep(folder, store);
     schedule::Watchers watchers;
     watchers.progress = [&](const schedule::Progress& progress) { line.update(progress); };
     watchers.note = [&](const std::string& text) { line.note(text); };
@@ -258,6 +269,7 @@ RunReport run_campaign(const RunRequest& request) {
         schedule::Scheduler scheduler(campaign.name, plan, pool, recorder, judge.get(), watchers);
         ending = scheduler.run();
     }
+    sweep(folder, store);
     const auto tally = plan.tally();
     return {exit_code(ending, tally), campaign.name, database, describe(ending, tally, judge.get()),
             judge ? std::optional(judge->converged_at().has_value()) : std::nullopt};

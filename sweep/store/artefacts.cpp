@@ -67,6 +67,19 @@ std::filesystem::path file_of(const std::filesystem::path& folder, std::string_v
     return folder / (campaign::content_hash(key) + ".artefact");
 }
 
+/// The key that a file says it is of.
+std::optional<std::string> key_in(const std::filesystem::path& file) {
+    constexpr std::uint64_t longest_key = 1U << 20U;
+    if (file.extension() != ".artefact") return std::nullopt;
+    std::ifstream stream(file, std::ios::binary);
+    Header header;
+    if (!stream.read(reinterpret_cast<char*>(&header), sizeof header)) return std::nullopt;
+    if (header.magic != magic || header.key_length > longest_key) return std::nullopt;
+    std::string key(header.key_length, '\0');
+    if (!stream.read(key.data(), static_cast<std::streamsize>(key.size()))) return std::nullopt;
+    return key;
+}
+
 /// Removes files being written, or left so, of which `gone` (with how long ago they were last written to) is true.
 template <class Gone>
 void sweep_leftovers(const std::filesystem::path& folder, Gone&& gone) {
@@ -128,11 +141,16 @@ std::optional<Bytes> ArtefactFolder::get(std::string_view key) {
     return contents;
 }
 
-void ArtefactFolder::sweep() const {
+void ArtefactFolder::sweep(const std::function<bool(std::string_view key)>& over) const {
     sweep_leftovers(folder_, [](const std::filesystem::path& file, auto silent) {
         const auto running = AsideFile::writer_runs(file);
         return running ? !*running : silent > std::chrono::minutes(10);
     });
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_, ignored)) {
+        const auto key = entry.is_regular_file(ignored) ? key_in(entry.path()) : std::nullopt;
+        if (key && over(*key)) std::filesystem::remove(entry.path(), ignored);
+    }
 }
 
 void ArtefactFolder::put(std::string_view key, std::span<const std::byte> contents) {

@@ -24,9 +24,10 @@ public:
     [[nodiscard]] std::optional<Bytes> get(std::string_view key) override;
     void put(std::string_view key, std::span<const std::byte> contents) override;
     void remove(std::string_view key);
-    /// Removes what writers that are gone left half written: at once where that was a process of this host, after
-    /// ten minutes elsewhere. Call it with the writer's lock of the database held.
-    void sweep() const;
+    /// Removes what writers that are gone left half written, at once where that was a process of this host, after
+    /// ten minutes elsewhere; and files of whose key `over` is true. Call it with the writer's lock of the database
+    /// held.
+    void sweep(const std::function<bool(std::string_view key)>& over) const;
 
 private:
     [[nodiscard]] std::optional<Bytes> read(const std::filesystem::path& file, std::string_view key,

@@ -13,6 +13,8 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -28,6 +30,15 @@ std::string host_name() {
     std::array<char, 65> host{};
     gethostname(host.data(), host.size() - 1);
     return host.data();
+}
+
+/// Also one whose end its parent has not taken note of, as first processes of containers do late or never, has ended.
+bool runs(pid_t process) {
+    if (kill(process, 0) != 0) return errno != ESRCH;
+    std::ifstream stream(fmt::format("/proc/{}/stat", process));
+    const std::string line{std::istreambuf_iterator<char>(stream), {}};
+    const auto name_end = line.rfind(") ");  // the name before it may hold anything
+    return name_end == std::string::npos || line.compare(name_end + 2, 1, "Z") != 0;
 }
 
 /// In the target's folder; the name does not grow with the target's.
@@ -56,7 +67,7 @@ std::optional<bool> AsideFile::writer_runs(const std::filesystem::path& file) {
     pid_t process = 0;
     const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), process);
     if (error != std::errc() || process <= 0 || end == name.data() + name.size() || *end != '.') return std::nullopt;
-    return kill(process, 0) == 0 || errno != ESRCH;
+    return runs(process);
 }
 
 void AsideFile::write(std::span<const std::byte> bytes) {

@@ -1,15 +1,22 @@
 #include "sweep/workers/compute.hpp"
 
+#include "sweep/store/broken_world.hpp"
+
 #include <fmt/format.h>
 #include <time.h>
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <fstream>
-#include <iterator>
+#include <cstdio>
+#include <cstring>
 #include <limits>
+#include <memory>
 #include <stdexcept>
+#include <string>
+#include <utility>
 #include <variant>
 
 namespace grainsweep::workers {
@@ -102,6 +109,24 @@ bool drive(Scene& scene, const Watch& watch, const Camera& camera) {
     return true;
 }
 
+/// Nothing where there is no such file. One that is there and cannot be read is no matter of the case: BrokenWorld.
+std::optional<std::string> contents_of(const std::string& path) {
+    const auto broken = [&](int number) {
+        return store::BrokenWorld(fmt::format("'{}': cannot be read: {}", path, std::strerror(number)));
+    };
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(path.c_str(), "rb"), std::fclose);
+    if (!stream && errno == ENOENT) return std::nullopt;
+    if (!stream) throw broken(errno);
+    std::string text;
+    std::array<char, 65536> part{};
+    for (std::size_t got = 1; got > 0;) {
+        got = std::fread(part.data(), 1, part.size(), stream.get());
+        text.append(part.data(), got);
+    }
+    if (std::ferror(stream.get()) != 0) throw broken(errno);
+    return text;
+}
+
 /// The files that inputs name, or why they cannot be used: they are part of the question by their contents, so what has
 /// changed since the campaign was read must not be computed under its name.
 std::variant<Files, std::string> read_files(const Inputs& inputs) {
@@ -110,9 +135,9 @@ std::variant<Files, std::string> read_files(const Inputs& inputs) {
         const auto* word = std::get_if<std::string>(&value);
         const auto file = word == nullptr ? std::nullopt : file_word(*word);
         if (!file) continue;
-        std::ifstream stream{std::string(file->path), std::ios::binary};
-        if (!stream) return fmt::format("{}: cannot read {}", name, file->path);
-        std::string contents{std::istreambuf_iterator<char>(stream), {}};
+        auto read = contents_of(std::string(file->path));
+        if (!read) return fmt::format("{}: cannot read {}", name, file->path);
+        std::string contents = std::move(*read);
         if (campaign::content_hash(contents) != file->hash)
             return fmt::format("{}: {} has changed since the campaign was read; run the campaign file again", name,
                                file->path);

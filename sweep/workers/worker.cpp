@@ -17,12 +17,15 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace grainsweep::workers {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr std::string_view checkpoint_of_case = "checkpoint\ncase=";  // begins the key of every checkpoint
 
 /// What a saved state belongs to besides its question: the machine code that made it and goes on from it. A version or
 /// a commit does not say that much: sources may have changes of their own, or be built by another compiler.
@@ -122,9 +125,9 @@ void answer(const Run& run, const WorkerOptions& options, store::ArtefactFolder*
         result = compute(run.question, run.attempt, artefacts, resume, std::ref(watch));
     } catch (const store::BrokenWorld& broken) {  // not the case's fault, and the next would meet it, too
         desk.break_off(
-            fmt::format("the folder '{}' of checkpoints and shared starting states cannot be used: {}; mend "
-                        "that, free some space for one, and run again to resume",
-                        options.artefacts.string(), broken.what()));
+            fmt::format("what its cases need cannot be read or written: {}; mend that, free some space for "
+                        "one, and run again to resume",
+                        broken.what()));
     }
     if (result) {
         // Of an answer that is no other for it; the reasons of other outcomes are compared between runs.
@@ -139,7 +142,13 @@ void answer(const Run& run, const WorkerOptions& options, store::ArtefactFolder*
 }  // namespace
 
 std::string checkpoint_key(const campaign::CaseId& id, const campaign::Computer& program) {
-    return fmt::format("checkpoint\ncase={}\n{}", id, binding(program));
+    return fmt::format("{}{}\n{}", checkpoint_of_case, id, binding(program));
+}
+
+std::optional<campaign::CaseId> checkpointed_case(std::string_view key) {
+    if (!key.starts_with(checkpoint_of_case)) return std::nullopt;
+    key.remove_prefix(checkpoint_of_case.size());
+    return campaign::CaseId(key.substr(0, key.find('\n')));
 }
 
 int work(const WorkerOptions& options) {

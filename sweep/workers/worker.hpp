@@ -7,7 +7,9 @@
 #include "sweep/campaign/case.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace grainsweep::workers {
 
@@ -25,6 +27,8 @@ struct WorkerOptions {
 
 /// The name under which an unfinished case's state is kept beside the database.
 [[nodiscard]] std::string checkpoint_key(const campaign::CaseId& id, const campaign::Computer& program);
+/// The case of a checkpoint of any build and instruction path; nothing where the key is of something else.
+[[nodiscard]] std::optional<campaign::CaseId> checkpointed_case(std::string_view key);
 
 /// Returns the exit code of the process.
 int work(const WorkerOptions& options);

@@ -72,4 +72,21 @@ TEST(Checkpoints, AKilledBosssCaseIsContinued) {
     EXPECT_EQ(files_in(folder / "hit.artefacts"), 0U);
 }
 
+// A checkpoint says of which build and instruction path it is; once its case is settled it is of no use to any.
+TEST(Checkpoints, ThoseOfAnotherInstructionPathAreSweptWithTheirCase) {
+    const Folder folder(in_memory());
+    folder.write("c.json", R"({"campaign": "c", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
+        "fixed": {"wait_seconds": 0.1}, "design": {"kind": "halton", "points": 2},
+        "execution": {"workers": 2, "launcher": ["/bin/sh", "-c", "exec \"$@\" --checkpoint-seconds 0", "sh"]}})");
+    {
+        Process run(program_command({"run", "c.json", "--quiet", "--path", "baseline"}), folder.path());
+        await_checkpoint(run, folder / "c.artefacts");
+        run.signal(SIGKILL);
+        run.wait();
+    }
+    EXPECT_GT(files_in(folder / "c.artefacts"), 0U);
+    EXPECT_EQ(run_program({"run", "c.json", "--quiet"}, folder.path()).code, 0);
+    EXPECT_EQ(files_in(folder / "c.artefacts"), 0U);
+}
+
 }  // namespace

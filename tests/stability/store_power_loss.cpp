@@ -1,6 +1,7 @@
 // The power goes after any write or sync. What was not synced is lost, kept, or reached the disk in scattered
 // sectors; whatever was shown before is there, and the archive is whole.
 #include "tests/support/failing_disk.hpp"
+#include "tests/support/tried.hpp"
 #include "tests/support/whole_campaign.hpp"
 
 #include <gtest/gtest.h>
@@ -59,6 +60,12 @@ TEST_P(StorePowerLoss, WhatWasShownIsThere) {
     }
     EXPECT_EQ(shown, 12);
     EXPECT_GT(resumed, 10);
+    tried(std::string(on == store::Store::Disk::local ? "write-ahead log" : "rollback journal") +
+              ": power lost after each write and sync, what was not synced " +
+              (unsynced == Unsynced::lost   ? "lost"
+               : unsynced == Unsynced::kept ? "kept"
+                                            : "torn by sectors"),
+          static_cast<std::int64_t>(recorded.events.size()) + 1);
 }
 
 std::string kind_name(const testing::TestParamInfo<StorePowerLoss::ParamType>& kind) {

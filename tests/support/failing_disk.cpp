@@ -16,10 +16,11 @@ struct FailingDisk::State {
     std::vector<Event> events;
     std::int64_t count = 0, fail_at = 0;
     Fault fault = Fault::input_output;
+    Calls calls = Calls::changes;
     bool from_then_on = false, failed = false;
 
-    [[nodiscard]] bool fails() {
-        if (fail_at == 0) return false;
+    [[nodiscard]] bool fails(Calls kind = Calls::changes) {
+        if (fail_at == 0 || kind != calls) return false;
         ++count;
         const bool now = from_then_on ? count >= fail_at : count == fail_at;
         failed = failed || now;
@@ -43,6 +44,7 @@ File& self(sqlite3_file* file) {
 }
 
 using Event = FailingDisk::Event;
+constexpr auto looks = FailingDisk::Calls::looks;
 
 int failure(int otherwise) {
     return current->fault == FailingDisk::Fault::full ? SQLITE_FULL : otherwise;
@@ -52,6 +54,7 @@ int x_close(sqlite3_file* file) {
     return self(file).real()->pMethods->xClose(self(file).real());
 }
 int x_read(sqlite3_file* file, void* into, int n, sqlite3_int64 at) {
+    if (current->fails(looks)) return SQLITE_IOERR_READ;
     return self(file).real()->pMethods->xRead(self(file).real(), into, n, at);
 }
 int x_write(sqlite3_file* file, const void* from, int n, sqlite3_int64 at) {
@@ -71,9 +74,11 @@ int x_sync(sqlite3_file* file, int flags) {
     return self(file).real()->pMethods->xSync(self(file).real(), flags);
 }
 int x_size(sqlite3_file* file, sqlite3_int64* size) {
+    if (current->fails(looks)) return SQLITE_IOERR_FSTAT;
     return self(file).real()->pMethods->xFileSize(self(file).real(), size);
 }
 int x_lock(sqlite3_file* file, int kind) {
+    if (current->fails(looks)) return SQLITE_IOERR_LOCK;
     return self(file).real()->pMethods->xLock(self(file).real(), kind);
 }
 int x_unlock(sqlite3_file* file, int kind) {
@@ -92,9 +97,12 @@ int x_characteristics(sqlite3_file*) {
     return 0;
 }  // promises nothing: no atomic, no ordered writes
 int x_shm_map(sqlite3_file* file, int page, int size, int extend, void volatile** out) {
+    if (current->fails(looks)) return SQLITE_IOERR_SHMMAP;
     return self(file).real()->pMethods->xShmMap(self(file).real(), page, size, extend, out);
 }
 int x_shm_lock(sqlite3_file* file, int offset, int n, int flags) {
+    const bool taking = (flags & SQLITE_SHM_LOCK) != 0;  // giving a lock back does not fail
+    if (taking && current->fails(looks)) return SQLITE_IOERR_SHMLOCK;
     return self(file).real()->pMethods->xShmLock(self(file).real(), offset, n, flags);
 }
 void x_shm_barrier(sqlite3_file* file) {
@@ -115,11 +123,17 @@ std::string base_name(const char* path) {
 
 int x_open(sqlite3_vfs*, const char* path, sqlite3_file* file, int flags, int* out_flags) {
     file->pMethods = nullptr;
+    if (current->fails(looks)) return SQLITE_CANTOPEN;
     const int code = current->real->xOpen(current->real, path, self(file).real(), flags, out_flags);
     if (code != SQLITE_OK) return code;
     std::strncpy(self(file).name, base_name(path).c_str(), sizeof(File::name) - 1);
     file->pMethods = &methods;
     return SQLITE_OK;
+}
+
+int x_access(sqlite3_vfs*, const char* path, int flags, int* out) {
+    if (current->fails(looks)) return SQLITE_IOERR_ACCESS;
+    return current->real->xAccess(current->real, path, flags, out);
 }
 
 int x_delete(sqlite3_vfs*, const char* path, int sync_folder) {
@@ -164,6 +178,7 @@ FailingDisk::FailingDisk() : state_(std::make_unique<State>()) {
     state_->vfs.szOsFile = static_cast<int>(sizeof(File)) + state_->real->szOsFile;
     state_->vfs.xOpen = x_open;
     state_->vfs.xDelete = x_delete;
+    state_->vfs.xAccess = x_access;
     current = state_.get();
     sqlite3_vfs_register(&state_->vfs, 1);
 }
@@ -174,7 +189,8 @@ FailingDisk::~FailingDisk() {
     current = nullptr;
 }
 
-void FailingDisk::fail_at(std::int64_t n, Fault fault, bool from_then_on) {
+void FailingDisk::fail_at(std::int64_t n, Fault fault, bool from_then_on, Calls calls) {
+    state_->calls = calls;
     state_->count = 0;
     state_->fail_at = n;
     state_->fault = fault;

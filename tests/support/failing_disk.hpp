@@ -21,8 +21,12 @@ public:
     ~FailingDisk();
 
     enum class Fault { input_output, full };
-    /// The n-th write, sync, truncation or removal from now on fails (n = 1, 2, ...), once or from then on.
-    void fail_at(std::int64_t n, Fault fault, bool from_then_on);
+    enum class Calls {
+        changes,  ///< write, sync, truncate, remove
+        looks,    ///< open, read, lock, map shared memory, ask for a size or whether a file is there
+    };
+    /// The n-th call from now on fails (n = 1, 2, ...), once or from then on.
+    void fail_at(std::int64_t n, Fault fault, bool from_then_on, Calls calls = Calls::changes);
     void work_again();
     [[nodiscard]] bool has_failed() const;
 

@@ -11,6 +11,10 @@ std::filesystem::path executable() {
     return GRAINSWEEP_EXECUTABLE;
 }
 
+std::filesystem::path failing_calls() {
+    return GRAINSWEEP_FAILING_CALLS;
+}
+
 std::filesystem::path reference(const std::string& part) {
     return source("tests/reference") / part;
 }

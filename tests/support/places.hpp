@@ -12,6 +12,9 @@ namespace grainsweep::tests {
 /// The program under test.
 [[nodiscard]] std::filesystem::path executable();
 
+/// The library that makes one of its system calls go wrong.
+[[nodiscard]] std::filesystem::path failing_calls();
+
 /// A file of tests/reference (numbers made by other programs), e.g. "designs/halton_plain.csv".
 [[nodiscard]] std::filesystem::path reference(const std::string& part);
 

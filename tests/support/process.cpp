@@ -119,8 +119,13 @@ std::vector<pid_t> processes_with(const std::string& text) {
     return found;
 }
 
-Folder::Folder() {
-    std::string name = (fs::temp_directory_path() / "grainsweep_test_XXXXXX").string();
+fs::path in_memory() {
+    const fs::path memory = "/dev/shm";
+    return ::access(memory.c_str(), W_OK) == 0 ? memory : fs::temp_directory_path();
+}
+
+Folder::Folder(const fs::path& parent) {
+    std::string name = (parent / "grainsweep_test_XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a folder for the test");
     path_ = name;
 }

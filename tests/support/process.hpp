@@ -50,7 +50,7 @@ Ended run_program(const std::vector<std::string>& arguments, const std::filesyst
 /// A new empty folder, removed at the end of the test program's life of this object.
 class Folder {
 public:
-    Folder();
+    explicit Folder(const std::filesystem::path& parent = std::filesystem::temp_directory_path());
     ~Folder();
     Folder(const Folder&) = delete;
     Folder& operator=(const Folder&) = delete;
@@ -61,5 +61,8 @@ public:
 private:
     std::filesystem::path path_;
 };
+
+/// Where files are in memory, if the system offers it: syncs cost nothing there, and files are files all the same.
+[[nodiscard]] std::filesystem::path in_memory();
 
 }  // namespace grainsweep::test

@@ -197,18 +197,6 @@ TEST(ListedRows, FromAFileAreThoseWrittenIn) {
     EXPECT_EQ(sentence("x1,respons\n0,sum\n"),
               "$.design.file: got \"rows.csv\"; column 2 of its header, \"respons\", is no factor of the campaign. Did "
               "you mean 'response'?");
-    // A disk that fails in the middle must not pass for the end of a shorter list.
-    std::filesystem::remove(folder / "rows.csv");
-    std::filesystem::create_symlink("/proc/self/mem", folder / "rows.csv");
-    try {
-        (void)read(text(R"("file": "rows.csv")"), folder);
-        ADD_FAILURE() << "a file that cannot be read was read";
-    } catch (const WrongQuestion& wrong) {
-        EXPECT_NE(std::string(wrong.what()).find("rows.csv' cannot be read beyond line 1: Input/output error"),
-                  std::string::npos)
-            << wrong.what();
-    }
-    std::filesystem::remove(folder / "rows.csv");
     EXPECT_EQ(sentence("x1\n0\n"), "$.design.file: got \"rows.csv\"; its header has no column for factor 'response'.");
     EXPECT_EQ(sentence("x1,response\n0\n"), "$.design.file: got \"rows.csv\"; record 2 has 1 cells and the header 2.");
     EXPECT_EQ(sentence("x1,response\n0,sum\n1e,sum\n"),
@@ -217,6 +205,25 @@ TEST(ListedRows, FromAFileAreThoseWrittenIn) {
               "$.design.file: rows.csv, record 2, column 'response': got \"g_function\"; is none of the levels of "
               "factor 'response'.");
     EXPECT_EQ(sentence("x1,response\n"), "$.design.file: got \"rows.csv\"; it has no row below its header.");
+    std::filesystem::remove_all(folder);
+}
+
+// A disk that fails in the middle must not pass for the end of a shorter list.
+TEST(ListedRows, OfAFileThatCannotBeReadToItsEndAreRefused) {
+    const auto folder = std::filesystem::temp_directory_path() / "grainsweep_rows_of_a_failing_disk";
+    std::filesystem::create_directories(folder);
+    std::filesystem::remove(folder / "rows.csv");
+    std::filesystem::create_symlink("/proc/self/mem", folder / "rows.csv");
+    try {
+        (void)read(R"({"campaign": "trial", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
+            "design": {"kind": "list", "file": "rows.csv"}})",
+                   folder);
+        ADD_FAILURE() << "a file that cannot be read was read";
+    } catch (const WrongQuestion& wrong) {
+        EXPECT_NE(std::string(wrong.what()).find("rows.csv' cannot be read beyond line 1: Input/output error"),
+                  std::string::npos)
+            << wrong.what();
+    }
     std::filesystem::remove_all(folder);
 }
 

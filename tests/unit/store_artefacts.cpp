@@ -161,7 +161,8 @@ TEST_F(StoreArtefacts, WhatADeadProcessLeftIsSweptAtOnce) {
     const pid_t child = fork();
     ASSERT_GE(child, 0);
     if (child == 0) _exit(0);
-    ASSERT_EQ(waitpid(child, nullptr, 0), child);
+    siginfo_t ended{};  // and it stays in the list of processes
+    ASSERT_EQ(waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT), 0);
     const auto named = [&](const std::string& on, pid_t process) {
         return place / ("." + on + "." + std::to_string(process) + ".0.aside");
     };
@@ -170,13 +171,29 @@ TEST_F(StoreArtefacts, WhatADeadProcessLeftIsSweptAtOnce) {
     for (const auto& file : {dead, own, elsewhere, long_ago}) write(file, "half");
     std::filesystem::last_write_time(long_ago,
                                      std::filesystem::file_time_type::clock::now() - std::chrono::minutes(11));
-    ArtefactFolder(place).sweep();
+    ArtefactFolder(place).sweep([](std::string_view) { return false; });
+    ASSERT_EQ(waitpid(child, nullptr, 0), child);
     EXPECT_FALSE(std::filesystem::exists(dead));
     EXPECT_FALSE(std::filesystem::exists(long_ago));
     EXPECT_TRUE(std::filesystem::exists(own));
     EXPECT_TRUE(std::filesystem::exists(elsewhere)) << "another host's may be at work";
     EXPECT_TRUE(artefacts.get("key"));
-    ArtefactFolder(folder / "not there").sweep();
+    ArtefactFolder(folder / "not there").sweep([](std::string_view) { return true; });
+}
+
+TEST_F(StoreArtefacts, WhatIsOverIsSweptByItsKey) {
+    for (const char* key : {"checkpoint of a", "checkpoint of b", "packing"}) artefacts.put(key, bytes(3));
+    write(place / "short.artefact", "gswpart1");
+    std::vector<std::string> keys;
+    artefacts.sweep([&](std::string_view key) {
+        keys.emplace_back(key);
+        return key == "checkpoint of a";
+    });
+    EXPECT_EQ(keys.size(), 3U);
+    EXPECT_FALSE(artefacts.get("checkpoint of a"));
+    EXPECT_TRUE(artefacts.get("checkpoint of b"));
+    EXPECT_TRUE(artefacts.get("packing"));
+    EXPECT_EQ(files(), 3U) << "what says of nothing that it is over stays";
 }
 
 TEST_F(StoreArtefacts, AFolderThatCannotBeMadeIsABrokenWorld) {

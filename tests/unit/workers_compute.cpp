@@ -1,6 +1,8 @@
 // What a worker refuses to compute.
 #include "sweep/workers/compute.hpp"
 
+#include "sweep/store/broken_world.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -41,6 +43,10 @@ TEST(Compute, RejectsACaseWhoseFileHasChanged) {
                             "file again");
     std::filesystem::remove(file);
     EXPECT_THAT(answer(), HasSubstr("cannot read"));
+    // A disk that fails in the middle of the file says nothing about the case: it must not be settled by that.
+    std::filesystem::create_symlink("/proc/self/mem", file);
+    EXPECT_THROW((void)answer(), store::BrokenWorld);
+    std::filesystem::remove(file);
 }
 
 TEST(Compute, ARefusedCheckpointIsNamedAndCostsNoAnswer) {
