@@ -69,7 +69,7 @@ quiet() {
 configure() {  # PRESET OPTIONS...
     local preset=$1
     shift
-    quiet "configuring" cmake -S "$here" --preset "$preset" "$@"
+    quiet "configuring" cmake -S "$here" --preset "$preset" -DGRAINSWEEP_ONCE=ON "$@"
 }
 
 build_program() {

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t largest_file = 1ULL << 30U;
+constexpr std::uintmax_t largest_named_file = 1ULL << 30U;
 
 /// Unit and meaning for a message: " m".
 std::string unit_of(const ParameterSpec& parameter) {
@@ -37,7 +37,8 @@ Value read_file_word(const Cursor& place, const Words& words, const fs::path& fo
                                  in_words(words.allowed), words.allowed.empty() ? "" : " or "),
                      nearest_word(name, known));
     }
-    if (fs::file_size(path, error) > largest_file || error) place.refuse("the file must be readable and at most 1 GiB");
+    if (fs::file_size(path, error) > largest_named_file || error)
+        place.refuse("the file must be readable and at most 1 GiB");
     std::ifstream stream(path, std::ios::binary);
     const std::string contents{std::istreambuf_iterator<char>(stream), {}};
     if (!stream.good() && !stream.eof()) place.refuse("the file cannot be read");

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t largest_file = 256ULL << 20U;
+constexpr std::uintmax_t largest_rows_file = 256ULL << 20U;
 
 using Record = std::vector<std::string>;
 
@@ -55,7 +55,7 @@ Record take_record(std::string_view& rest) {
 std::string read_text(const Cursor& file, const fs::path& path) {
     std::error_code error;
     if (!fs::is_regular_file(path, error)) file.refuse("there is no such file beside the campaign file");
-    if (fs::file_size(path, error) > largest_file || error)
+    if (fs::file_size(path, error) > largest_rows_file || error)
         file.refuse("the file must be readable and at most 256 MiB");
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(path.c_str(), "rb"), std::fclose);
     if (!stream) file.refuse(fmt::format("'{}' cannot be read: {}", path.string(), std::strerror(errno)));

@@ -15,24 +15,24 @@ namespace grainsweep::campaign {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-Json notes_schema() {
+OrderedJson notes_schema() {
     return {{"description", "any text; ignored"}, {"type", {"string", "array"}}, {"items", {{"type", "string"}}}};
 }
 
-Json number_of(double x) {
+OrderedJson number_of(double x) {
     const bool whole = x == std::floor(x) && std::abs(x) < 0x1p63;
-    return whole ? Json(static_cast<std::int64_t>(x)) : Json(x);
+    return whole ? OrderedJson(static_cast<std::int64_t>(x)) : OrderedJson(x);
 }
 
-void add_bounds(Json& schema, const Interval& bounds) {
+void add_bounds(OrderedJson& schema, const Interval& bounds) {
     if (std::isfinite(bounds.low)) schema[bounds.low_open ? "exclusiveMinimum" : "minimum"] = number_of(bounds.low);
     if (std::isfinite(bounds.high)) schema[bounds.high_open ? "exclusiveMaximum" : "maximum"] = number_of(bounds.high);
 }
 
-Json schema_of(const Key& key) {
-    Json schema = {{"description", key.meaning}};
+OrderedJson schema_of(const Key& key) {
+    OrderedJson schema = {{"description", key.meaning}};
     switch (key.kind) {
         case Key::Kind::text:
             schema["type"] = "string";
@@ -67,14 +67,14 @@ Json schema_of(const Key& key) {
         case Key::Kind::value:
             break;
     }
-    if (!key.standard.empty()) schema["default"] = Json::parse(key.standard);
+    if (!key.standard.empty()) schema["default"] = OrderedJson::parse(key.standard);
     return schema;
 }
 
 /// An object with the keys of a table, its notes and nothing else.
-Json section(std::span<const Key> keys) {
-    Json schema = {{"type", "object"}, {"properties", Json::object()}};
-    Json required = Json::array();
+OrderedJson section(std::span<const Key> keys) {
+    OrderedJson schema = {{"type", "object"}, {"properties", OrderedJson::object()}};
+    OrderedJson required = OrderedJson::array();
     for (const auto& key : keys) {
         schema["properties"][key.name] = schema_of(key);
         if (key.required) required.push_back(key.name);
@@ -86,8 +86,8 @@ Json section(std::span<const Key> keys) {
 }
 
 /// What one value of a parameter may be.
-Json value_schema(const ParameterSpec& parameter) {
-    Json schema;
+OrderedJson value_schema(const ParameterSpec& parameter) {
+    OrderedJson schema;
     const bool dimensionless = parameter.unit.empty() || parameter.unit == "1";
     schema["description"] =
         dimensionless ? parameter.meaning : fmt::format("{} [{}]", parameter.meaning, parameter.unit);
@@ -104,12 +104,12 @@ Json value_schema(const ParameterSpec& parameter) {
 }
 
 /// A factor that is this parameter.
-Json factor_schema(const ParameterSpec& parameter) {
-    Json value = value_schema(parameter);
+OrderedJson factor_schema(const ParameterSpec& parameter) {
+    OrderedJson value = value_schema(parameter);
     const std::string meaning = value["description"];
     value.erase("description");
     value.erase("default");
-    Json schema = section(factor_keys());
+    OrderedJson schema = section(factor_keys());
     schema["description"] = meaning;
     schema["properties"]["name"] = {{"const", parameter.name}, {"description", meaning}};
     schema["properties"]["levels"].update(
@@ -126,39 +126,39 @@ Json factor_schema(const ParameterSpec& parameter) {
 }
 
 /// If the campaign asks this scene, then its parameters, scalars and accuracy settings are these.
-Json scene_rule(const SceneInfo& scene) {
-    Json factors = Json::array();
-    Json fixed = Json::object();
+OrderedJson scene_rule(const SceneInfo& scene) {
+    OrderedJson factors = OrderedJson::array();
+    OrderedJson fixed = OrderedJson::object();
     for (const auto& parameter : scene.parameters) {
         factors.push_back(factor_schema(parameter));
         fixed[parameter.name] = value_schema(parameter);
     }
     fixed[std::string(notes_key)] = notes_schema();
-    Json scalars = Json::array();
+    OrderedJson scalars = OrderedJson::array();
     for (const auto& observable : scene.observables) {
         if (observable.shape == Shape::scalar) scalars.push_back(observable.name);
     }
-    Json then = Json::object();
+    OrderedJson then = OrderedJson::object();
     then["factors"]["items"]["oneOf"] = factors;
     then["fixed"] = {{"properties", fixed}, {"additionalProperties", false}};
     then["convergence"]["properties"]["observable"]["enum"] = scalars;
-    Json offered = Json::array();
+    OrderedJson offered = OrderedJson::array();
     for (const auto& [name, inputs] : scene.accuracy) offered.push_back(name);
-    then["accuracy"] = offered.empty() ? Json(false) : Json{{"enum", offered}};
-    Json condition;
+    then["accuracy"] = offered.empty() ? OrderedJson(false) : OrderedJson{{"enum", offered}};
+    OrderedJson condition;
     condition["properties"]["scene"]["const"] = scene.name;
     return {{"if", condition}, {"then", {{"properties", then}}}};
 }
 
-Json design_schema(const designs::DesignInfo& design) {
+OrderedJson design_schema(const designs::DesignInfo& design) {
     const auto keys = design_keys(design);
-    Json schema = section(keys);
+    OrderedJson schema = section(keys);
     schema["description"] = design.summary;
     schema["properties"]["kind"] = {{"const", design.name}, {"description", design.summary}};
     for (const auto& option : design.options) {
         auto& property = schema["properties"][option.name];
         if (option.kind == designs::OptionSpec::Kind::counts) {
-            Json count = {{"type", "integer"}};
+            OrderedJson count = {{"type", "integer"}};
             add_bounds(count, {static_cast<double>(option.minimum), static_cast<double>(option.maximum)});
             property["oneOf"] = {count, {{"type", "array"}, {"items", count}}};
         } else if (option.kind == designs::OptionSpec::Kind::rows) {
@@ -186,9 +186,10 @@ std::string pattern_of_reserved_names() {
 }  // namespace
 
 std::string campaign_schema() {
-    Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-                   {"title", "grainsweep campaign"},
-                   {"description", "one scene, factors that vary, a design over them, and when to stop; SI units"}};
+    OrderedJson schema = {
+        {"$schema", "https://json-schema.org/draft/2020-12/schema"},
+        {"title", "grainsweep campaign"},
+        {"description", "one scene, factors that vary, a design over them, and when to stop; SI units"}};
     schema.update(section(campaign_keys()));
     auto& properties = schema["properties"];
     properties["campaign"]["pattern"] = "^[A-Za-z_][A-Za-z0-9_]*$";
@@ -198,11 +199,11 @@ std::string campaign_schema() {
     properties["convergence"].update(section(convergence_keys()));
     properties["limits"].update(section(limits_keys()));
     properties["execution"].update(section(execution_keys()));
-    properties["design"]["oneOf"] = Json::array();
+    properties["design"]["oneOf"] = OrderedJson::array();
     for (const auto& design : designs::design_catalogue())
         properties["design"]["oneOf"].push_back(design_schema(design));
-    Json scenes = Json::array();
-    schema["allOf"] = Json::array();
+    OrderedJson scenes = OrderedJson::array();
+    schema["allOf"] = OrderedJson::array();
     for (const auto& scene : scene_catalogue()) {
         scenes.push_back(scene.name);
         schema["allOf"].push_back(scene_rule(scene));

@@ -64,6 +64,12 @@ WrongQuestion wrong_question(std::string_view where, std::string_view value, std
     return WrongQuestion(sentence);
 }
 
+std::string listed(std::span<const std::string> names) {
+    std::string text;
+    for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text.empty() ? "none" : text;
+}
+
 std::string nearest_word(std::string_view word, std::span<const std::string> candidates) {
     if (word.empty() || word.size() > longest_word) return {};
     std::string nearest = synonym_of(word, candidates);

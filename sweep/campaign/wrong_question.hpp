@@ -29,6 +29,9 @@ auto asked_in(const std::filesystem::path& file, const Ask& ask) {
     }
 }
 
+/// The names, separated by commas; "none" where there are none.
+[[nodiscard]] std::string listed(std::span<const std::string> names);
+
 /// What to suggest for `word`: the candidate it is a synonym of (synonyms.hpp), else the one with the smallest edit
 /// distance, else the only one that has `word` between its underscores; empty where none is near.
 [[nodiscard]] std::string nearest_word(std::string_view word, std::span<const std::string> candidates);

@@ -26,7 +26,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t shown_extremes = 8;
+constexpr std::size_t extremes_on_page = 8;
 constexpr std::size_t most_drawn_checks = 150;
 
 /// Six digits are more than a picture shows, and half the bytes.
@@ -128,7 +128,7 @@ Json case_of(const Responses& responses, std::size_t row) {
 
 Json extremes_of(const Responses& responses, const ResponseColumn& response, bool largest) {
     Json list = Json::array();
-    for (const auto row : extreme_rows(responses.judged(response), shown_extremes, largest)) {
+    for (const auto row : extreme_rows(responses.judged(response), extremes_on_page, largest)) {
         Json one = case_of(responses, row);
         one["value"] = drawn(response.values[row]);
         list.push_back(std::move(one));

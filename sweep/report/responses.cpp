@@ -20,19 +20,12 @@
 namespace grainsweep::report {
 namespace {
 
-using campaign::Json;
 using Cell = store::Table::Cell;
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 // Columns of a campaign's view before its factors: point, sequence, replicate, case_id, seed, outcome, attempts,
 // wall_seconds.
 constexpr std::size_t point_column = 0, replicate_column = 2, case_column = 3, outcome_column = 5, first_factor = 8;
-
-std::string listed(const std::vector<std::string>& names) {
-    std::string text;
-    for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
-    return text;
-}
 
 std::int64_t integer(const Cell& cell) {
     const auto* value = std::get_if<std::int64_t>(&cell);
@@ -54,7 +47,7 @@ std::string level_text(const Cell& cell) {
     return fmt::format("{:.6g}", number(cell));
 }
 
-std::string level_text(const Json& level) {
+std::string level_text(const campaign::Json& level) {
     return level.is_string() ? level.get<std::string>() : fmt::format("{:.6g}", level.get<double>());
 }
 
@@ -66,7 +59,7 @@ std::vector<Cell> column_of(const store::Table& table, std::size_t column) {
 }
 
 /// Levels that occur, in the order of the campaign file; those it does not name (files) after them.
-void read_levels(FactorColumn& factor, const std::vector<Cell>& cells, const Json* listed) {
+void read_levels(FactorColumn& factor, const std::vector<Cell>& cells, const campaign::Json* listed) {
     std::vector<std::string> texts;
     texts.reserve(cells.size());
     for (const auto& cell : cells) texts.push_back(level_text(cell));
@@ -82,7 +75,7 @@ void read_levels(FactorColumn& factor, const std::vector<Cell>& cells, const Jso
     for (const auto& text : texts) factor.values.push_back(static_cast<double>(index.at(text)));
 }
 
-FactorColumn read_factor(const Json& given, const std::vector<Cell>& cells, const SceneInfo* scene) {
+FactorColumn read_factor(const campaign::Json& given, const std::vector<Cell>& cells, const SceneInfo* scene) {
     FactorColumn factor;
     factor.name = given.at("name").get<std::string>();
     if (const auto* parameter = scene == nullptr ? nullptr : scene->find_parameter(factor.name)) {
@@ -198,7 +191,7 @@ const ResponseColumn& Responses::observable(std::string_view name) const {
     for (const auto& response : observables) names.push_back(response.name);
     throw campaign::wrong_question(
         "--observable", fmt::format("'{}'", name),
-        fmt::format("scene '{}' measures no such scalar; it measures {}", campaign.scene, listed(names)),
+        fmt::format("scene '{}' measures no such scalar; it measures {}", campaign.scene, campaign::listed(names)),
         campaign::nearest_word(name, names));
 }
 
@@ -245,7 +238,7 @@ Responses read_responses(const store::Store& store, const store::CampaignRecord&
         responses.outcomes.push_back(outcome_of(row));
     }
 
-    const Json text = campaign::parse_json(record.text);
+    const campaign::Json text = campaign::parse_json(record.text);
     std::size_t column = first_factor;
     for (const auto& given : text.at("factors"))
         responses.factors.push_back(read_factor(given, column_of(table, column++), scene));
@@ -298,7 +291,7 @@ std::vector<store::CampaignRecord> find_campaigns(const store::Store& store, std
     std::erase_if(records, [&](const auto& record) { return record.name != name; });
     if (!records.empty()) return records;
     throw campaign::wrong_question("--campaign", fmt::format("'{}'", name),
-                                   fmt::format("the database holds {}", listed(names)),
+                                   fmt::format("the database holds {}", campaign::listed(names)),
                                    campaign::nearest_word(name, names));
 }
 

@@ -12,7 +12,7 @@
 namespace grainsweep::report {
 namespace {
 
-constexpr std::size_t shown_extremes = 3;
+constexpr std::size_t extremes_in_text = 3;
 
 std::vector<const ResponseColumn*> main_first(const Responses& responses) {
     std::vector<const ResponseColumn*> order;
@@ -143,7 +143,7 @@ std::string closing_summary(const store::Store& store, const std::string& campai
             text << '\n' << moments_heading(responses, history) << '\n';
             write(text, moments_table(responses), Format::text);
             text << '\n';
-            write(text, extremes_table(responses, *main, shown_extremes), Format::text);
+            write(text, extremes_table(responses, *main, extremes_in_text), Format::text);
         }
     }
     text << fmt::format(

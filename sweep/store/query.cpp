@@ -108,12 +108,6 @@ std::vector<std::string> tables_of(const Connection& db) {
                       "ORDER BY name NOT IN (SELECT name FROM campaign), type = 'table', name");
 }
 
-std::string listed(const std::vector<std::string>& names) {
-    std::string text;
-    for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
-    return text;
-}
-
 /// Whether the text names the word, as a word of its own.
 bool mentions(std::string_view sql, std::string_view word) {
     const auto letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
@@ -138,13 +132,13 @@ campaign::WrongQuestion refusal_of_column(const Connection& db, std::string_view
     for (const auto& table : tables_of(db)) {
         const auto columns = names_from(db, "SELECT name FROM pragma_table_info(?)", table);
         if (mentions(sql, table)) {
-            rule += fmt::format("; {} has {}", table, listed(columns));
+            rule += fmt::format("; {} has {}", table, campaign::listed(columns));
             near.insert(near.end(), columns.begin(), columns.end());
         } else if (std::ranges::find(columns, plain) != columns.end()) {
             elsewhere.push_back(table);
         }
     }
-    if (!elsewhere.empty()) rule += fmt::format("; '{}' is a column of {}", plain, listed(elsewhere));
+    if (!elsewhere.empty()) rule += fmt::format("; '{}' is a column of {}", plain, campaign::listed(elsewhere));
     const std::string quoted = fmt::format("\"{}\"", plain);
     if (sql.find(quoted) != std::string_view::npos)
         return campaign::wrong_question("SQL", {}, rule + "; a text stands in single quotes", std::string(plain));
@@ -160,7 +154,7 @@ campaign::WrongQuestion refusal(const Connection& db, std::string_view sql, std:
     }
     if (const auto table = after("no such table: "); !table.empty()) {
         const auto tables = tables_of(db);
-        return campaign::wrong_question("SQL", {}, fmt::format("{}; there are {}", words, listed(tables)),
+        return campaign::wrong_question("SQL", {}, fmt::format("{}; there are {}", words, campaign::listed(tables)),
                                         campaign::nearest_word(table, tables));
     }
     if (const auto function = after("no such function: "); !function.empty())

@@ -26,12 +26,6 @@ std::vector<std::string> words_of(std::string_view text) {
     return words;
 }
 
-std::string listed(const std::vector<std::string>& names) {
-    std::string text;
-    for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
-    return text.empty() ? "none" : text;
-}
-
 std::optional<campaign::Convergence> rule_at(const Rows& rows, int first) {
     if (rows.is_null(first)) return std::nullopt;
     campaign::Convergence rule;
@@ -85,7 +79,8 @@ std::int64_t Store::Impl::campaign_key(std::string_view name) const {
     std::vector<std::string> names;
     auto rows = db.ask("SELECT name FROM campaign ORDER BY campaign_id");
     while (rows.next()) names.push_back(rows.get<std::string>(0));
-    throw campaign::wrong_question("campaign", name, fmt::format("'{}' holds {}", file.string(), listed(names)),
+    throw campaign::wrong_question("campaign", name,
+                                   fmt::format("'{}' holds {}", file.string(), campaign::listed(names)),
                                    campaign::nearest_word(name, names));
 }
 
@@ -305,7 +300,7 @@ std::vector<PlacedValue> Store::values(std::string_view campaign, std::string_vi
     }
     if (observable_key == 0) {
         throw campaign::wrong_question("observable", observable,
-                                       fmt::format("the scalars of '{}' are {}", campaign, listed(scalars)),
+                                       fmt::format("the scalars of '{}' are {}", campaign, campaign::listed(scalars)),
                                        campaign::nearest_word(observable, scalars));
     }
     std::vector<PlacedValue> values;
