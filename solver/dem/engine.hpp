@@ -6,6 +6,8 @@
 // for the laws a case needs; make_engine chooses once per case.
 #pragma once
 
+#include "solver/dem/walls/wall.hpp"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -14,12 +16,9 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 namespace grainsweep::dem {
-
-using Vec3 = std::array<double, 3>;
 
 /// Area of the cohesive neck over which the cohesion energy density acts; overlap d, first order in d for
 /// equal spheres: sjkr pi R d (LIGGGHTS 3.8 `sjkr`), sjkr2 2 pi R d, paper pi R d/4 (Gupta, eq. 15 as printed).
@@ -28,7 +27,7 @@ enum class CohesionArea { sjkr, sjkr2, paper };
 /// The force in Coulomb's limit: the contact force without the cohesive part, or the net normal force.
 enum class FrictionLimit { contact, net };
 
-/// One material for particles and walls.
+/// One material for particles and walls; a wall's Surface may differ in part.
 struct Material {
     double youngs_modulus = 21e6;  ///< Pa
     double poisson_ratio = 0.3;
@@ -60,24 +59,6 @@ struct Domain {
     Vec3 high{};
     std::array<bool, 3> periodic{};
 };
-
-/// Infinite frictional plane; particles are on the side the unit normal points to.
-struct Plane {
-    Vec3 point{};
-    Vec3 normal{0, 0, 1};
-};
-
-/// Bar without end along y: front - thickness <= x <= front, bottom <= z <= top, moving with
-/// x velocity `speed` and vertical displacement amplitude sin(2 pi frequency t), t since the walls were set.
-/// A sphere touches the closest point of the bar, once; the lower edges have radius edge_radius (0: sharp).
-struct Blade {
-    double front = 0, thickness = 0, bottom = 0, top = 0;  ///< m, at t = 0
-    double speed = 0;                                      ///< m/s
-    double amplitude = 0, frequency = 0;                   ///< m, Hz
-    double edge_radius = 0;                                ///< m
-};
-
-using Wall = std::variant<Plane, Blade>;
 
 /// Everything frozen, the walls and the domain together are a vessel that is shaken: its displacement is
 /// amplitude sin(2 pi frequency t), t since the start. Positions and velocities in this interface, those of the start
@@ -131,6 +112,15 @@ struct ContactForce {
     Vec3 rolling_moment{};    ///< N m on `first` besides that of the forces, minus that on `second`
 };
 
+/// What the particles do to a wall, as of the last step: the reaction to their forces, moments and torques, so that
+/// momentum and angular momentum are conserved. The work is that of the force on the material of the wall at the closest
+/// point, with the velocity that the laws see.
+struct WallLoad {
+    Vec3 force{};     ///< on the wall, N
+    Vec3 torque{};    ///< on the wall about the point asked for, N m
+    double work = 0;  ///< of the wall on the particles since the walls were set, J
+};
+
 /// Work done, for cost and benchmarks.
 struct Work {
     std::int64_t steps = 0;
@@ -151,7 +141,8 @@ public:
     /// Advances by `steps` time steps; stops at once when the state is no longer sound (fault()).
     virtual void run(std::int64_t steps) = 0;
     /// New walls: wall time starts at 0, wall histories are dropped, particle histories stay; forces are
-    /// recomputed once without touching histories.
+    /// recomputed once without touching histories. Throws std::invalid_argument with one sentence on walls that cannot
+    /// be, or whose surface has friction or rolling friction where nothing in the Setup had.
     virtual void set_walls(std::vector<Wall> walls) = 0;
     /// Removes particles by id; absent ids are ignored.
     virtual void remove(std::span<const std::int32_t> ids) = 0;
@@ -166,6 +157,8 @@ public:
     virtual void forget_peak_overlap() = 0;
     /// Every touching pair with a mobile partner, and every wall touched; the order depends on the state only.
     virtual void contacts(std::vector<ContactForce>& into) const = 0;
+    /// Of the wall with this number, about a point.
+    [[nodiscard]] virtual WallLoad wall_load(std::size_t wall, const Vec3& about) const = 0;
     /// What became unsound, where and when; empty: the state is sound.
     [[nodiscard]] virtual const std::string& fault() const = 0;
     [[nodiscard]] virtual Work work() const = 0;

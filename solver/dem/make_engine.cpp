@@ -35,19 +35,6 @@ void check(const Material& m) {
     require(m.rolling_damping >= 0 && m.rolling_damping <= 1, "the rolling damping must lie in [0, 1]");
 }
 
-void check(const Plane& plane) {
-    require(geometry::finite(plane.point) && geometry::finite(plane.normal), "a plane must be finite");
-    require(std::abs(geometry::norm(plane.normal) - 1) < 1e-12, "the normal of a plane must have unit length");
-}
-
-void check(const Blade& b) {
-    for (const double x : {b.front, b.thickness, b.bottom, b.top, b.speed, b.amplitude, b.frequency, b.edge_radius})
-        require(std::isfinite(x), "a blade must be finite");
-    require(b.thickness > 0 && b.top > b.bottom, "a blade must have a thickness and a height");
-    require(b.edge_radius >= 0 && 2 * b.edge_radius <= std::min(b.thickness, b.top - b.bottom),
-            "the edge radius of a blade must not exceed half its thickness or height");
-}
-
 void check_spheres(const Setup& setup) {
     require(setup.spheres.size() < particles::Neighbour::most_particles,
             "there are more particles than can be numbered");
@@ -85,9 +72,8 @@ std::unique_ptr<Engine> make_engine(const Setup& setup, const Method& method) {
         require(geometry::norm(setup.gravity) > 0,
                 "a rest speed needs gravity: net forces are compared with the weight");
         for (const Wall& wall : setup.walls)
-            require(std::holds_alternative<Plane>(wall), "powder among blades has no rest speed");
+            require(std::ranges::all_of(wall.motions, geometry::is_still), "powder among moving walls has no rest speed");
     }
-    for (const Wall& wall : setup.walls) std::visit([](const auto& w) { check(w); }, wall);
     if (method.skin > 0) {
         double largest = 0;
         for (const Sphere& s : setup.spheres) largest = std::max(largest, s.radius);

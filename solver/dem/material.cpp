@@ -28,6 +28,14 @@ double sphere_mass(double radius, double density) {
     return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius * density;
 }
 
+Material at_surface(const Material& material, const Surface& surface) {
+    Material m = material;
+    m.friction = surface.friction.value_or(m.friction);
+    m.rolling_friction = surface.rolling_friction.value_or(m.rolling_friction);
+    m.restitution = surface.restitution.value_or(m.restitution);
+    return m;
+}
+
 Hertz hertz(const Material& m) {
     const double modulus = effective_modulus(m);
     return {.stiffness = 4.0 / 3.0 * modulus,

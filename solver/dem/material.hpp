@@ -19,6 +19,9 @@ namespace grainsweep::dem {
 [[nodiscard]] double damping_ratio(double restitution);                  ///< beta, <= 0; restitution in (0, 1]
 [[nodiscard]] double sphere_mass(double radius, double density);         ///< kg
 
+/// The material as it is in contacts with a wall of this surface.
+[[nodiscard]] Material at_surface(const Material& material, const Surface& surface);
+
 [[nodiscard]] Hertz hertz(const Material& material);
 [[nodiscard]] Mindlin mindlin(const Material& material, double time_step);  ///< without friction: no force at all
 [[nodiscard]] RollingResistance rolling_resistance(const Material& material, double time_step);

@@ -15,6 +15,7 @@ Closest from_skeleton(double dx, double dz, double radius) {
 }  // namespace
 
 Closest Bar::closest(const Vec3& x) const {
+    const double rear = this->rear();
     const double px = x[0];
     const double pz = x[2];
     // Beyond the centre of a rounded lower edge, seen from the solid, the surface is that edge's arc.
@@ -47,6 +48,21 @@ Closest Bar::closest(const Vec3& x) const {
     if (depth == to_rear) return {-depth, {-1, 0, 0}};
     if (depth == to_bottom) return {-depth, {0, 0, -1}};
     return {-depth, {0, 0, 1}};
+}
+
+Extent Bar::extent(std::size_t axis) const {
+    if (axis == 0) return {rear(), front};
+    if (axis == 2) return {bottom, top};
+    return {};
+}
+
+std::string Bar::flaw() const {
+    for (const double x : {front, thickness, bottom, top, edge_radius})
+        if (!std::isfinite(x)) return "a blade must be finite";
+    if (!(thickness > 0 && top > bottom)) return "a blade must have a thickness and a height";
+    if (!(edge_radius >= 0 && 2 * edge_radius <= std::min(thickness, top - bottom)))
+        return "the edge radius of a blade must not exceed half its thickness or height";
+    return {};
 }
 
 }  // namespace grainsweep::geometry

@@ -1,6 +1,6 @@
 #include "solver/scenes/dem_picture.hpp"
 
-#include "solver/dem/moving_wall.hpp"
+#include "solver/geometry/motion.hpp"
 #include "solver/observables/particle_loads.hpp"
 
 #include <algorithm>
@@ -38,7 +38,8 @@ void close_polygon(WallSurface& surface, std::int32_t first, std::int32_t corner
     for (std::int32_t k = 1; k + 1 < corners; ++k) surface.triangles.push_back({first, first + k, first + k + 1});
 }
 
-void show(const geometry::Plane& plane, const Vec3& low, const Vec3& high, WallSurface& surface) {
+void show(const geometry::Plane& given, const geometry::Pose& pose, const Vec3& low, const Vec3& high, WallSurface& surface) {
+    const geometry::Plane plane{pose.from_body(given.point), pose.turn(given.normal)};
     // A square beyond the box in the plane: the smallest component of the normal shows a direction across it.
     const auto least = [](double a, double b) { return std::abs(a) < std::abs(b); };
     const auto axis = std::ranges::min_element(plane.normal, least) - plane.normal.begin();
@@ -64,7 +65,7 @@ void show(const geometry::Plane& plane, const Vec3& low, const Vec3& high, WallS
 std::vector<std::array<double, 2>> outline(const geometry::Bar& bar, double top) {
     constexpr int steps = 6;  // of a quarter circle
     const double r = bar.edge_radius;
-    std::vector<std::array<double, 2>> line{{bar.rear, top}};
+    std::vector<std::array<double, 2>> line{{bar.rear(), top}};
     const auto round_edge = [&](double x, double start) {
         for (int k = 0; k <= steps; ++k) {
             const double angle = start + std::numbers::pi / 2 * k / steps;
@@ -72,17 +73,18 @@ std::vector<std::array<double, 2>> outline(const geometry::Bar& bar, double top)
         }
     };
     if (r > 0) {
-        round_edge(bar.rear + r, std::numbers::pi);
+        round_edge(bar.rear() + r, std::numbers::pi);
         round_edge(bar.front - r, 1.5 * std::numbers::pi);
     } else {
-        line.push_back({bar.rear, bar.bottom});
+        line.push_back({bar.rear(), bar.bottom});
         line.push_back({bar.front, bar.bottom});
     }
     line.push_back({bar.front, top});
     return line;
 }
 
-void show(const geometry::Bar& bar, const Vec3& low, const Vec3& high, WallSurface& surface) {
+void show(const geometry::Bar& given, const geometry::Pose& pose, const Vec3& low, const Vec3& high, WallSurface& surface) {
+    const geometry::Bar bar = pose.turned ? given : given.moved(pose.shift);
     const double top = std::min(bar.top, high[2]);
     if (!(bar.bottom + bar.edge_radius < top)) return;
     const auto line = outline(bar, top);
@@ -98,6 +100,57 @@ void show(const geometry::Bar& bar, const Vec3& low, const Vec3& high, WallSurfa
     }
     close_polygon(surface, 0, n);
     close_polygon(surface, n, n);
+    if (pose.turned)
+        for (Vec3& corner : surface.corners) corner = pose.from_body(corner);
+}
+
+/// Body of revolution between two circles about a line; solid ones with their flat ends.
+void show_round(const Vec3& first, const Vec3& second, double first_radius, double second_radius, bool ends,
+                WallSurface& surface) {
+    constexpr std::int32_t sides = 48;
+    const Vec3 axis = (1 / geometry::norm(second - first)) * (second - first);
+    const Vec3 across = std::abs(axis[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+    const Vec3 u = (1 / geometry::norm(geometry::cross(axis, across))) * geometry::cross(axis, across);
+    const Vec3 v = geometry::cross(axis, u);
+    const auto circle = [&](const Vec3& centre, double radius) {
+        for (std::int32_t k = 0; k < sides; ++k) {
+            const double angle = 2 * std::numbers::pi * k / sides;
+            surface.corners.push_back(centre + (radius * std::cos(angle)) * u + (radius * std::sin(angle)) * v);
+        }
+    };
+    circle(first, first_radius);
+    circle(second, second_radius);
+    for (std::int32_t k = 0; k < sides; ++k) {
+        const std::int32_t next = (k + 1) % sides;
+        surface.triangles.push_back({k, next, sides + next});
+        surface.triangles.push_back({k, sides + next, sides + k});
+        surface.edges.push_back({k, next});
+        surface.edges.push_back({sides + k, sides + next});
+    }
+    if (!ends) return;
+    close_polygon(surface, 0, sides);
+    close_polygon(surface, sides, sides);
+}
+
+void show(const geometry::Cylinder& given, const geometry::Pose& pose, const Vec3& low, const Vec3& high,
+          WallSurface& surface) {
+    const Vec3 point = pose.from_body(given.point), axis = pose.turn(given.axis);
+    const bool ends = std::isfinite(given.length);
+    double from = ends ? -given.length / 2 : 1e300, to = ends ? given.length / 2 : -1e300;
+    for (unsigned c = 0; c < 8 && !ends; ++c) {  // along the whole box
+        const Vec3 corner{(c & 1U) != 0 ? high[0] : low[0], (c & 2U) != 0 ? high[1] : low[1],
+                          (c & 4U) != 0 ? high[2] : low[2]};
+        from = std::min(from, geometry::dot(corner - point, axis));
+        to = std::max(to, geometry::dot(corner - point, axis));
+    }
+    show_round(point + from * axis, point + to * axis, given.radius, given.radius,
+               ends && given.side == geometry::Side::outside, surface);
+}
+
+void show(const geometry::Cone& given, const geometry::Pose& pose, const Vec3&, const Vec3&, WallSurface& surface) {
+    const Vec3 base = pose.from_body(given.base);
+    show_round(base, base + given.length * pose.turn(given.axis), given.base_radius, given.end_radius,
+               given.side == geometry::Side::outside, surface);
 }
 
 }  // namespace
@@ -105,7 +158,8 @@ void show(const geometry::Bar& bar, const Vec3& low, const Vec3& high, WallSurfa
 WallSurface surface_of(const dem::Wall& wall, std::string name, const Vec3& low, const Vec3& high, double time) {
     WallSurface surface;
     surface.name = std::move(name);
-    std::visit([&](const auto& w) { show(dem::shape_at(w, time), low, high, surface); }, wall);
+    const geometry::Pose pose = geometry::pose_at(wall.motions, time);
+    std::visit([&](const auto& shape) { show(shape, pose, low, high, surface); }, wall.shape);
     return surface;
 }
 

@@ -171,22 +171,26 @@ void PlainDem::wall(std::size_t i, std::size_t w, bool update) {
     const double ri = setup_.spheres[i].radius, t = static_cast<double>(wall_steps_) * setup_.time_step;
     Contact c{};
     double distance = 0;
-    if (const auto* plane = std::get_if<dem::Plane>(&setup_.walls[w])) {
+    const dem::Wall& wall = setup_.walls[w];
+    const auto pose = geometry::pose_at(wall.motions, t);
+    const Vec3 in_body = pose.to_body(x_[i]);
+    if (const auto* plane = std::get_if<dem::Plane>(&wall.shape)) {
         c.n = (1 / norm(plane->normal)) * plane->normal;
-        distance = dot(x_[i] - plane->point, c.n);
-        c.velocity = v_[i];
-    } else {
-        const auto& b = std::get<dem::Blade>(setup_.walls[w]);
-        const double pulse = 2 * pi * b.frequency, lift = b.amplitude * std::sin(pulse * t);
-        const double front = b.front + b.speed * t, bottom = b.bottom + lift, top = b.top + lift;
-        const double shrink = x_[i][2] < bottom + b.edge_radius ? b.edge_radius : 0;
-        const Vec3 closest{std::clamp(x_[i][0], front - b.thickness + shrink, front - shrink), x_[i][1],
-                           std::clamp(x_[i][2], bottom + shrink, top)};
-        const Vec3 d = x_[i] - closest;
+        distance = dot(in_body - plane->point, c.n);
+    } else if (const auto* b = std::get_if<dem::Bar>(&wall.shape)) {
+        const double shrink = in_body[2] < b->bottom + b->edge_radius ? b->edge_radius : 0;
+        const Vec3 closest{std::clamp(in_body[0], b->front - b->thickness + shrink, b->front - shrink), in_body[1],
+                           std::clamp(in_body[2], b->bottom + shrink, b->top)};
+        const Vec3 d = in_body - closest;
         distance = norm(d) - shrink;
         c.n = (1 / norm(d)) * d;
-        c.velocity = v_[i] - Vec3{b.speed, 0, b.amplitude * pulse * std::cos(pulse * t)};
+    } else {  // which have tests of their own
+        const auto closest = std::visit([&](const auto& shape) { return shape.closest(in_body); }, wall.shape);
+        distance = closest.distance;
+        c.n = closest.normal;
     }
+    c.n = pose.turn(c.n);
+    c.velocity = v_[i] - geometry::twist_at(wall.motions, t).at(x_[i] - distance * c.n);
     c.overlap = ri - distance;
     if (c.overlap <= 0) {
         wall_history_.erase({i, w});

@@ -1,7 +1,7 @@
 #include "solver/dem/laws/contact.hpp"
 #include "solver/dem/limits.hpp"
 #include "solver/dem/material.hpp"
-#include "solver/dem/moving_wall.hpp"
+#include "solver/dem/walls/moving_wall.hpp"
 #include "solver/dem/time_step.hpp"
 
 #include <gtest/gtest.h>
@@ -140,16 +140,20 @@ TEST(TimeStep, LimitsAreThoseOfThePapers) {
     EXPECT_NEAR(hertz_contact_time(m, 0.001, 3.2) / hertz_contact_time(m, 0.001, 0.1), 0.5, 1e-12);
 }
 
-TEST(MovingWall, FollowsItsLaw) {
-    const Blade blade{0.015, 0.005, 0.002, 0.15, 1.4, 1e-4, 50, 0};
+TEST(MovingWall, ABladeFollowsItsLaw) {
+    const Wall blade = Blade{0.015, 0.005, 0.002, 0.15, 1.4, 1e-4, 50, 0};
+    MovingWall moving(blade, {{-1, -1, -1}, {1, 1, 1}, {}}, 1e-3);
     const double t = 0.003;
-    const auto bar = shape_at(blade, t);
-    EXPECT_NEAR(bar.front, 0.015 + 1.4 * t, 1e-15);
-    EXPECT_NEAR(bar.front - bar.rear, 0.005, 1e-15);
-    EXPECT_NEAR(bar.bottom, 0.002 + 1e-4 * std::sin(2 * pi * 50 * t), 1e-15);
+    moving.place(t);
+    EXPECT_NEAR(moving.pose().shift[0], 1.4 * t, 1e-15);
+    EXPECT_NEAR(moving.pose().shift[2], 1e-4 * std::sin(2 * pi * 50 * t), 1e-15);
     const double h = 1e-6;
-    const auto v = velocity_at(blade, t);
-    EXPECT_NEAR(v[2], (shape_at(blade, t + h).bottom - shape_at(blade, t - h).bottom) / (2 * h), 1e-7);
-    EXPECT_EQ(velocity_at(Plane{}, t), Vec3{});
-    EXPECT_GE(fastest(blade), std::hypot(v[0], v[2]));
+    const auto v = moving.twist().velocity;
+    EXPECT_NEAR(v[2], (moving.pose_at(t + h).shift[2] - moving.pose_at(t - h).shift[2]) / (2 * h), 1e-7);
+    EXPECT_GE(moving.fastest(), std::hypot(v[0], v[2]));
+    std::vector<WallTouch> touched;
+    moving.find(7, {0.0155 + 1.4 * t, 0.3, 0.05}, 1e-3, touched);
+    ASSERT_EQ(touched.size(), 1U);
+    EXPECT_EQ(touched[0].entry, 7U);
+    EXPECT_NEAR(touched[0].place.distance, 0.5e-3, 1e-12);
 }

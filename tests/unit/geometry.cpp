@@ -1,4 +1,7 @@
 #include "solver/geometry/bar.hpp"
+#include "solver/geometry/cone.hpp"
+#include "solver/geometry/cylinder.hpp"
+#include "solver/geometry/motion.hpp"
 #include "solver/geometry/domain.hpp"
 #include "solver/geometry/plane.hpp"
 #include "stats/random.hpp"
@@ -22,21 +25,21 @@ double sampled_distance(const Bar& bar, double x, double z) {
     constexpr int n = 3000;
     for (int k = 0; k <= n; ++k) {
         const double u = static_cast<double>(k) / n;
-        look(bar.rear + u * (bar.front - bar.rear), bar.top);
-        look(bar.rear + r + u * (bar.front - bar.rear - 2 * r), bar.bottom);
+        look(bar.rear() + u * (bar.front - bar.rear()), bar.top);
+        look(bar.rear() + r + u * (bar.front - bar.rear() - 2 * r), bar.bottom);
         look(bar.front, bar.bottom + r + u * (bar.top - bar.bottom - r));
-        look(bar.rear, bar.bottom + r + u * (bar.top - bar.bottom - r));
+        look(bar.rear(), bar.bottom + r + u * (bar.top - bar.bottom - r));
         const double a = u * std::numbers::pi / 2;
         look(bar.front - r + r * std::sin(a), bar.bottom + r - r * std::cos(a));
-        look(bar.rear + r - r * std::sin(a), bar.bottom + r - r * std::cos(a));
+        look(bar.rear() + r - r * std::sin(a), bar.bottom + r - r * std::cos(a));
     }
     return least;
 }
 
 bool inside(const Bar& bar, double x, double z) {
-    if (x < bar.rear || x > bar.front || z < bar.bottom || z > bar.top) return false;
+    if (x < bar.rear() || x > bar.front || z < bar.bottom || z > bar.top) return false;
     const double r = bar.edge_radius;
-    const double dx = std::max({bar.rear + r - x, x - (bar.front - r), 0.0});
+    const double dx = std::max({bar.rear() + r - x, x - (bar.front - r), 0.0});
     const double dz = std::max(bar.bottom + r - z, 0.0);
     return dx == 0 || dz == 0 || std::hypot(dx, dz) <= r;
 }
@@ -45,7 +48,7 @@ bool inside(const Bar& bar, double x, double z) {
 
 TEST(Bar, FindsTheClosestPointOfSharpAndRoundedEdges) {
     for (const double radius : {0.0, 0.7, 2.5}) {
-        const Bar bar{.rear = -5, .front = 0, .bottom = 2, .top = 12, .edge_radius = radius};
+        const Bar bar{.front = 0, .thickness = 5, .bottom = 2, .top = 12, .edge_radius = radius};
         const stats::Stream random(7, 1);
         for (std::uint64_t k = 0; k < 150; ++k) {
             const double x = -9 + 14 * random.uniform(2 * k);
@@ -65,7 +68,7 @@ TEST(Bar, FindsTheClosestPointOfSharpAndRoundedEdges) {
 }
 
 TEST(Bar, IsContinuousAcrossItsRegions) {
-    const Bar bar{.rear = -5, .front = 0, .bottom = 2, .top = 12, .edge_radius = 0.7};
+    const Bar bar{.front = 0, .thickness = 5, .bottom = 2, .top = 12, .edge_radius = 0.7};
     const auto on_circle = [&](int k) {
         const double a = k * 2 * std::numbers::pi / 4000;
         return bar.closest({-2.5 + 5.5 * std::cos(a), 0, 5 + 6 * std::sin(a)}).distance;
@@ -97,4 +100,78 @@ TEST(Domain, WrapsIntoThePeriodAndSeesTheNearestImage) {
     EXPECT_TRUE(domain.outside({1, 0, std::nan("")}));
     EXPECT_EQ(domain.image_shifts()[13], Vec3{});
     EXPECT_EQ(domain.image_shifts()[14], (Vec3{2, 0, 0}));
+}
+
+namespace {
+
+/// Distance from a body of revolution about z between two radii, by brute force: the least over points of its meridian
+/// in the half plane of the point, negative in the solid.
+double sampled_round(const Cone& cone, const Vec3& x) {
+    const double rho = std::hypot(x[0], x[1]), s = x[2] - cone.base[2];
+    const double far = cone.side == Side::inside ? 50 : 0;  // where the flat ends end
+    double least = 1e9;
+    constexpr int n = 20000;
+    for (int k = 0; k <= n; ++k) {
+        const double u = static_cast<double>(k) / n;
+        const auto look = [&](double r, double z) { least = std::min(least, std::hypot(rho - r, s - z)); };
+        look(cone.base_radius + u * (cone.end_radius - cone.base_radius), u * cone.length);
+        look(cone.base_radius + u * (far - cone.base_radius), 0);
+        look(cone.end_radius + u * (far - cone.end_radius), cone.length);
+    }
+    const double radius = cone.base_radius + s / cone.length * (cone.end_radius - cone.base_radius);
+    const bool between = s > 0 && s < cone.length;
+    return between && (cone.side == Side::inside ? rho > radius : rho < radius) ? -least : least;
+}
+
+/// A turned copy: the axis from z to (0.6, 0, 0.8) about y.
+Vec3 tilted(const Vec3& a) {
+    return {0.8 * a[0] + 0.6 * a[2], a[1], -0.6 * a[0] + 0.8 * a[2]};
+}
+
+}  // namespace
+
+TEST(RoundBody, FindsTheClosestPointOfConesAndCylinders) {
+    const stats::Stream random(3, 2);
+    std::uint64_t draw = 0;
+    for (const auto side : {Side::inside, Side::outside})
+        for (const auto& [base, end] : {std::pair{3.0, 1.0}, {0.0, 2.0}, {2.0, 2.0}})
+            for (int k = 0; k < 40; ++k) {
+                const Cone cone{{0, 0, -1}, {0, 0, 1}, base, end, 4, side};
+                const auto place = [&] { return -6 + 12 * random.uniform(draw++); };
+                const Vec3 x{place(), place(), place() + 1};
+                const auto closest = cone.closest(x);
+                ASSERT_NEAR(closest.distance, sampled_round(cone, x), 3e-3) << x[0] << " " << x[1] << " " << x[2];
+                ASSERT_NEAR(norm(closest.normal), 1, 1e-12);
+                const Cone turned{tilted(cone.base), tilted(cone.axis), base, end, 4, side};
+                ASSERT_NEAR(turned.closest(tilted(x)).distance, closest.distance, 1e-12);
+                ASSERT_NEAR(norm(turned.closest(tilted(x)).normal - tilted(closest.normal)), 0, 1e-10);
+                if (base != end) continue;
+                const Cylinder same{{0, 0, 1}, {0, 0, 1}, base, side, 4};
+                ASSERT_NEAR(same.closest(x).distance, closest.distance, 1e-13);
+                ASSERT_NEAR(norm(same.closest(x).normal - closest.normal), 0, 1e-12);
+                const Cylinder endless{{0, 0, 77}, {0, 0, 1}, base, side};
+                const double from_axis = std::hypot(x[0], x[1]);
+                ASSERT_NEAR(endless.closest(x).distance, side == Side::inside ? base - from_axis : from_axis - base, 1e-13);
+            }
+}
+
+TEST(Motions, ComposeInClosedForm) {
+    const std::vector<Motion> motions = {
+        Translation{.velocity = {0.3, -0.2, 0.1}, .start = 0.5, .end = 2.5},
+        Rotation{.point = {1, 0, 0}, .axis = {0, 0, 1}, .speed = 2},
+        Vibration{.amplitude = {0, 0.05, 0}, .frequency = 0.7, .phase = 0.4},
+        Rotation{.point = {0, 0.5, 0}, .axis = {0.6, 0, 0.8}, .speed = -1.3, .start = 1},
+    };
+    const Vec3 body{0.7, -0.4, 1.1};
+    EXPECT_EQ(pose_at(motions, 0).from_body(body), body);
+    for (const double t : {0.2, 0.9, 1.7, 3.1}) {
+        const auto pose = pose_at(motions, t);
+        EXPECT_NEAR(norm(pose.to_body(pose.from_body(body)) - body), 0, 1e-14);
+        const double h = 1e-5;
+        const Vec3 rate = (1 / (2 * h)) * (pose_at(motions, t + h).from_body(body) - pose_at(motions, t - h).from_body(body));
+        EXPECT_NEAR(norm(twist_at(motions, t).at(pose.from_body(body)) - rate), 0, 1e-8) << t;
+    }
+    // A million turns leave it where it is: nothing adds up.
+    const std::vector<Motion> turns = {Rotation{.axis = {0, 0, 1}, .speed = 2 * std::numbers::pi}};
+    EXPECT_NEAR(norm(pose_at(turns, 1e6).from_body({1, 0, 0}) - Vec3{1, 0, 0}), 0, 1e-9);
 }

@@ -4,10 +4,11 @@
 #pragma once
 
 #include "solver/dem/clear/engine.hpp"
+#include "solver/dem/walls/wall_bytes.hpp"
 
 namespace grainsweep::dem::clear {
 
-inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'0002ULL;  // "grnscl", version 2
+inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'0003ULL;  // "grnscl", version 3
 
 template <class Laws, Needs case_needs>
 void ClearEngine<Laws, case_needs>::state(State& into) const {
@@ -75,10 +76,23 @@ void ClearEngine<Laws, case_needs>::save(std::vector<std::byte>& into) const {
     list_.save(out);
     out.put(static_cast<std::uint64_t>(walls_.size()));
     for (const auto& contacts : walls_) {
-        out.put(contacts.wall);
+        write_wall(contacts.wall.wall(), [&out](const auto& value) { out.put(value); });
         out.put(contacts.near);
+        out.put(contacts.built);
+        std::vector<std::uint32_t> entries;
+        std::vector<double> distances;
+        std::vector<Vec3> normals;
+        for (const WallTouch& touch : contacts.touches) {
+            entries.push_back(touch.entry);
+            distances.push_back(touch.place.distance);
+            normals.push_back(touch.place.normal);
+        }
+        out.put(entries);
+        out.put(distances);
+        out.put(normals);
         if constexpr (needs.tangential_history) out.put(contacts.memory);
-        out.put(contacts.displacement_at_build);
+        out.put(contacts.load);
+        out.put(contacts.load_about);
     }
 }
 
@@ -106,11 +120,48 @@ void ClearEngine<Laws, case_needs>::require_possible() const {
     const std::size_t memories = needs.tangential_history ? list_.size() : 0;
     require(pairs_.value.size() == memories && pairs_.live.size() == memories);
     for (const auto& contacts : walls_) {
-        require(contacts.wall.index() < std::variant_size_v<Wall>);
-        for (const auto i : contacts.near) require(i < n);
-        if constexpr (needs.tangential_history) require(contacts.memory.size() == contacts.near.size());
+        std::uint32_t least = 0;  // listed in ascending order
+        for (const auto i : contacts.near) {
+            require(i < n && i >= least && mobile(i));
+            least = i + 1;
+        }
+        least = 0;
+        for (const auto& touch : contacts.touches) {
+            require(touch.entry < contacts.near.size() && touch.entry >= least);
+            least = touch.entry;
+        }
+        if constexpr (needs.tangential_history) require(contacts.memory.size() == contacts.touches.size());
     }
     require(wall_steps_ >= 0 && wall_steps_ < most_steps && work_.steps >= 0 && work_.steps < most_steps);
+}
+
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::restore_walls(particles::ByteReader& in) {
+    std::uint64_t walls = 0;
+    in.get(walls);
+    walls_.clear();
+    for (std::uint64_t w = 0; w < walls; ++w) {
+        auto made = make_walls({read_wall([&in](auto& value) { in.get(value); })});
+        Contacts& contacts = made.front();
+        in.get(contacts.near);
+        in.get(contacts.built);
+        in.require(std::isfinite(contacts.built));
+        std::vector<std::uint32_t> entries;
+        std::vector<double> distances;
+        std::vector<Vec3> normals;
+        in.get(entries);
+        in.get(distances);
+        in.get(normals);
+        in.require(entries.size() == distances.size() && entries.size() == normals.size());
+        for (std::size_t k = 0; k < entries.size(); ++k)
+            contacts.touches.push_back({entries[k], {distances[k], normals[k]}});
+        if constexpr (needs.tangential_history) in.get(contacts.memory);
+        in.get(contacts.load);
+        in.get(contacts.load_about);
+        contacts.pose_when_built = contacts.wall.pose_at(contacts.built);
+        contacts.wall.place(wall_time());
+        walls_.push_back(std::move(contacts));
+    }
 }
 
 template <class Laws, Needs case_needs>
@@ -139,17 +190,7 @@ void ClearEngine<Laws, case_needs>::restore(std::span<const std::byte> from) {
         for (const double m : p_.inverse_mass) in.require(m >= inverse_masses.first && m <= inverse_masses.second);
     }
     list_.restore(in, p_.size());
-    std::uint64_t walls = 0;
-    in.get(walls);
-    walls_.clear();
-    for (std::uint64_t w = 0; w < walls; ++w) {
-        WallContacts<needs> contacts;
-        in.get(contacts.wall);
-        in.get(contacts.near);
-        if constexpr (needs.tangential_history) in.get(contacts.memory);
-        in.get(contacts.displacement_at_build);
-        walls_.push_back(std::move(contacts));
-    }
+    restore_walls(in);
     in.finish();
     require_possible();
     if (shaken_) shake();

@@ -11,7 +11,7 @@
 
 #include "solver/dem/engine.hpp"
 #include "solver/dem/laws/contact.hpp"
-#include "solver/dem/moving_wall.hpp"
+#include "solver/dem/walls/moving_wall.hpp"
 #include "solver/geometry/domain.hpp"
 #include "solver/particles/bytes.hpp"
 #include "solver/particles/neighbour_list.hpp"
@@ -24,13 +24,19 @@ namespace grainsweep::dem::clear {
 
 using particles::Needs;
 
-/// Particles that may touch one wall before the next rebuild, ascending, and their contact histories.
-template <Needs needs>
+/// One wall, the particles that may touch it before the next rebuild, ascending, and its contacts.
+template <class Laws>
 struct WallContacts {
-    Wall wall;
+    MovingWall wall;
+    Laws laws;  // of its surface
     std::vector<std::uint32_t> near;
-    [[no_unique_address]] particles::Column<needs.tangential_history, MemoryFor<needs>> memory;
-    Vec3 displacement_at_build{};
+    double built = 0;  // wall time when they were listed, s
+    geometry::Pose pose_when_built;
+    // Of the last evaluation, in the order of `near`; several of one particle are told apart by their normals.
+    std::vector<WallTouch> touches;
+    [[no_unique_address]] particles::Column<Laws::needs.tangential_history, typename Laws::Memory> memory;
+    WallLoad load;  // about load_about
+    Vec3 load_about{};
 };
 
 template <class Laws, Needs case_needs>
@@ -38,7 +44,10 @@ class ClearEngine final : public Engine {
 public:
     static constexpr Needs needs = Laws::needs | case_needs;
 
-    ClearEngine(const Setup& setup, const Method& method, Laws laws);
+    /// The laws of a material and a time step: of the powder, and of the surfaces of walls.
+    using MakeLaws = Laws (*)(const Material&, double);
+
+    ClearEngine(const Setup& setup, const Method& method, MakeLaws make_laws);
 
     void run(std::int64_t steps) override;
     void set_walls(std::vector<Wall> walls) override;
@@ -51,6 +60,7 @@ public:
     [[nodiscard]] double peak_overlap() const override { return peak_overlap_; }
     void forget_peak_overlap() override { peak_overlap_ = 0; }
     void contacts(std::vector<ContactForce>& into) const override;
+    [[nodiscard]] WallLoad wall_load(std::size_t wall, const Vec3& about) const override;
     [[nodiscard]] const std::string& fault() const override { return fault_; }
     [[nodiscard]] Work work() const override { return work_; }
     void save(std::vector<std::byte>& into) const override;
@@ -58,6 +68,7 @@ public:
 
 private:
     using Memory = typename Laws::Memory;
+    using Contacts = WallContacts<Laws>;
     using StoredMemory = std::conditional_t<needs.tangential_history, Memory, Vec3>;
 
     // One radius for all, or a column: the same words for both.
@@ -108,7 +119,8 @@ private:
     template <bool advance>
     void pair_contacts();
     template <bool advance>
-    void wall_contacts(WallContacts<needs>& contacts);
+    void wall_contacts(Contacts& contacts);
+    void find_touches(Contacts& contacts);
     [[nodiscard]] Touch<Partner::particle> touch(std::size_t i, std::size_t j, const Vec3& branch, double r2) const;
     [[nodiscard]] Touch<Partner::wall> touch(std::size_t i, const geometry::Closest& closest, const Vec3& v) const;
     [[nodiscard]] Memory memory_of(std::size_t entry) const;
@@ -126,13 +138,18 @@ private:
     [[nodiscard]] Vec3 momentum() const;
     void rebuild(std::span<const std::int32_t> removed = {});
     void forget_separated();
+    [[nodiscard]] std::vector<Contacts> make_walls(const std::vector<Wall>& walls) const;
+    void place_walls();
     void list_walls(std::span<const std::uint32_t> fresh_index);
+    static void carry_touches(Contacts& contacts, std::span<const std::uint32_t> before,
+                              std::span<const std::uint32_t> fresh_index);
     [[nodiscard]] bool list_is_stale() const;
 
     // soundness.hpp
     [[nodiscard]] bool sound();
     void check_energy();
     void set_speed_limit();
+    void judge_wall_speeds();
     void report(const std::string& what, std::size_t i);
     void report_contacts();
 
@@ -140,7 +157,10 @@ private:
     template <class Self, class Visit>
     static void visit_state(Self& self, Visit&& visit);
     void require_possible() const;
+    void restore_walls(particles::ByteReader& in);
 
+    MakeLaws make_laws_;
+    Material material_;
     Laws laws_;
     geometry::Domain domain_;
     std::array<Vec3, 27> image_shifts_;
@@ -150,6 +170,7 @@ private:
     Vec3 body_;  // acceleration of a free particle at the present step: gravity and shaking
     double time_step_;
     double radius_ = 0, mass_ = 0, inverse_mass_ = 0;  // of all particles, unless needs.sizes
+    double largest_radius_ = 0;
     double density_;
     double swing_factor_;  // dt^2 2 E*: times sqrt(R* d)/m* it is the square of a contact's phase per step
     double skin_;
@@ -161,7 +182,7 @@ private:
     std::vector<std::uint32_t> near_open_face_;
     particles::NeighbourList list_;
     particles::PairMemory<StoredMemory> pairs_;  // empty unless needs.tangential_history
-    std::vector<WallContacts<needs>> walls_;
+    std::vector<Contacts> walls_;
     particles::Cells cells_;
     struct Touching {
         Vec3 branch;
@@ -169,6 +190,8 @@ private:
         std::uint32_t i, entry;
     };
     std::vector<Touching> touching_;  // scratch of pair_contacts
+    std::vector<WallTouch> touched_before_;  // scratch of find_touches
+    std::vector<StoredMemory> memory_before_;  // likewise
 
     std::int64_t wall_steps_ = 0;
     bool displaced_ = false;  // a particle has moved half the skin, or is not a number

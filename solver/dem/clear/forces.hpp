@@ -164,40 +164,80 @@ void ClearEngine<Laws, case_needs>::pair_contacts() {
     largest_overlap_ = largest;
 }
 
+/// The places where a wall is touched now; a contact keeps its memory, and takes it along.
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::find_touches(Contacts& contacts) {
+    touched_before_.swap(contacts.touches);
+    contacts.wall.find(contacts.near, p_.position, radii(), 0, contacts.touches);
+    if constexpr (needs.tangential_history) {
+        memory_before_.swap(contacts.memory);
+        const auto& before = touched_before_;
+        const auto& now = contacts.touches;
+        contacts.memory.assign(now.size(), Memory{});
+        std::vector<std::int32_t> from;
+        std::size_t b = 0;
+        for (std::size_t n = 0; n < now.size();) {  // particle by particle
+            const std::uint32_t entry = now[n].entry;
+            while (b < before.size() && before[b].entry < entry) ++b;
+            std::size_t b_end = b, n_end = n;
+            while (b_end < before.size() && before[b_end].entry == entry) ++b_end;
+            while (n_end < now.size() && now[n_end].entry == entry) ++n_end;
+            inherit({before.data() + b, b_end - b}, {now.data() + n, n_end - n}, from);
+            for (std::size_t k = 0; k < from.size(); ++k)
+                if (from[k] >= 0) contacts.memory[n + k] = memory_before_[b + static_cast<std::size_t>(from[k])];
+            n = n_end;
+        }
+    }
+}
+
 template <class Laws, Needs case_needs>
 template <bool advance>
-void ClearEngine<Laws, case_needs>::wall_contacts(WallContacts<needs>& contacts) {
-    const Vec3 wall_velocity = velocity_at(contacts.wall, wall_time());
-    Vec3 total{};
-    double largest = 0;
-    const auto each_near = [&](const auto& shape) {
-        for (std::size_t k = 0; k < contacts.near.size(); ++k) {
-            const std::size_t i = contacts.near[k];
-            const Closest closest = shape.closest(p_.position[i]);
-            if (closest.distance >= radius(i)) {
-                if constexpr (needs.tangential_history) contacts.memory[k] = {};
-                continue;
-            }
-            const auto t = touch(i, closest, wall_velocity);
-            largest = std::max(largest, t.overlap / (2 * t.radius_i));
-            stiffest_ = std::max(stiffest_, t.root * inverse_mass(i));
-            Response r;
-            if constexpr (needs.tangential_history) {
-                r = laws_.template respond<advance>(t, contacts.memory[k]);
-            } else {
-                NoMemory none;
-                r = laws_.template respond<advance>(t, none);
-            }
-            const Vec3 f = r.normal * t.normal + r.tangential;
-            p_.force[i] += f;
-            total += f;
-            if constexpr (needs.spin) p_.torque[i] -= (t.radius_i - t.overlap / 2) * cross(t.normal, r.tangential);
-            if constexpr (needs.rolling_history) p_.torque[i] += r.rolling;
+void ClearEngine<Laws, case_needs>::wall_contacts(Contacts& contacts) {
+    find_touches(contacts);
+    const Twist& twist = contacts.wall.twist();
+    Vec3 total{}, turn{};
+    double largest = 0, power = 0;
+    for (std::size_t k = 0; k < contacts.touches.size(); ++k) {
+        const auto& [entry, place] = contacts.touches[k];
+        const std::size_t i = contacts.near[entry];
+        const Vec3 wall_velocity = twist.at(p_.position[i] - place.distance * place.normal);
+        const auto t = touch(i, place, wall_velocity);
+        largest = std::max(largest, t.overlap / (2 * t.radius_i));
+        stiffest_ = std::max(stiffest_, t.root * inverse_mass(i));
+        Response r;
+        if constexpr (needs.tangential_history) {
+            r = contacts.laws.template respond<advance>(t, contacts.memory[k]);
+        } else {
+            NoMemory none;
+            r = contacts.laws.template respond<advance>(t, none);
         }
-    };
-    std::visit([&](const auto& wall) { each_near(shape_at(wall, wall_time())); }, contacts.wall);
+        const Vec3 f = r.normal * t.normal + r.tangential;
+        const double arm = t.radius_i - t.overlap / 2;
+        p_.force[i] += f;
+        total += f;
+        power += dot(f, wall_velocity);
+        turn += cross(p_.position[i] - arm * t.normal - twist.pivot, f);
+        if constexpr (needs.spin) p_.torque[i] -= arm * cross(t.normal, r.tangential);
+        if constexpr (needs.rolling_history) {
+            p_.torque[i] += r.rolling;
+            turn += r.rolling;
+        }
+    }
     largest_wall_overlap_ = std::max(largest_wall_overlap_, largest);
-    if constexpr (advance) work_of_walls_ += dot(total, wall_velocity) * time_step_;
+    contacts.load.force = -total;
+    contacts.load.torque = -turn;
+    contacts.load_about = twist.pivot;
+    if constexpr (advance) {
+        contacts.load.work += power * time_step_;
+        work_of_walls_ += power * time_step_;
+    }
+}
+
+template <class Laws, Needs case_needs>
+WallLoad ClearEngine<Laws, case_needs>::wall_load(std::size_t wall, const Vec3& about) const {
+    WallLoad load = walls_.at(wall).load;
+    load.torque += cross(walls_[wall].load_about - about, load.force);
+    return load;
 }
 
 template <class Laws, Needs case_needs>
@@ -228,32 +268,30 @@ template <class Visit>
 void ClearEngine<Laws, case_needs>::for_each_touched_wall(Visit&& visit) const {
     for (std::size_t w = 0; w < walls_.size(); ++w) {
         const auto& contacts = walls_[w];
-        const Vec3 wall_velocity = velocity_at(contacts.wall, wall_time());
-        const auto each_near = [&](const auto& shape) {
-            for (std::size_t k = 0; k < contacts.near.size(); ++k) {
-                const std::size_t i = contacts.near[k];
-                const Closest closest = shape.closest(p_.position[i]);
-                if (closest.distance >= radius(i)) continue;
-                Memory memory{};
-                if constexpr (needs.tangential_history) memory = contacts.memory[k];
-                visit(i, w, touch(i, closest, wall_velocity), memory);
-            }
-        };
-        std::visit([&](const auto& wall) { each_near(shape_at(wall, wall_time())); }, contacts.wall);
+        for (std::size_t k = 0; k < contacts.touches.size(); ++k) {
+            const auto& [entry, place] = contacts.touches[k];
+            const std::size_t i = contacts.near[entry];
+            Memory memory{};
+            if constexpr (needs.tangential_history) memory = contacts.memory[k];
+            const Vec3 v = contacts.wall.twist().at(p_.position[i] - place.distance * place.normal);
+            visit(i, w, touch(i, place, v), memory);
+        }
     }
 }
 
 template <class Laws, Needs case_needs>
 void ClearEngine<Laws, case_needs>::contacts(std::vector<ContactForce>& into) const {
     into.clear();
-    const auto add = [&](std::size_t i, std::int32_t second, const auto& t, Memory memory) {
-        const Response r = laws_.template respond<false>(t, memory);
+    const auto add = [&](const Laws& laws, std::size_t i, std::int32_t second, const auto& t, Memory memory) {
+        const Response r = laws.template respond<false>(t, memory);
         into.push_back({p_.id[i], second, t.overlap, t.normal, r.normal, r.tangential, r.rolling});
     };
     for_each_touching_pair(
-        [&](std::size_t i, std::size_t j, const auto& t, const Memory& memory) { add(i, p_.id[j], t, memory); });
+        [&](std::size_t i, std::size_t j, const auto& t, const Memory& memory) {
+        add(laws_, i, p_.id[j], t, memory);
+    });
     for_each_touched_wall([&](std::size_t i, std::size_t w, const auto& t, const Memory& memory) {
-        add(i, -1 - static_cast<std::int32_t>(w), t, memory);
+        add(walls_[w].laws, i, -1 - static_cast<std::int32_t>(w), t, memory);
     });
 }
 
@@ -268,11 +306,11 @@ double ClearEngine<Laws, case_needs>::mechanical_energy(double& active) const {
         stored += energy;
         squeezed += std::abs(energy);
     };
-    const auto add_contact = [&](std::size_t, std::size_t, const auto& t, const Memory& memory) {
-        add(laws_.energy(t, memory));
-    };
-    for_each_touching_pair(add_contact);
-    for_each_touched_wall(add_contact);
+    for_each_touching_pair(
+        [&](std::size_t, std::size_t, const auto& t, const Memory& memory) { add(laws_.energy(t, memory)); });
+    for_each_touched_wall([&](std::size_t, std::size_t w, const auto& t, const Memory& memory) {
+        add(walls_[w].laws.energy(t, memory));
+    });
     for (std::size_t i = 0; i < p_.size(); ++i) {
         if (!mobile(i)) continue;
         const double mass = 1 / inverse_mass(i);

@@ -8,8 +8,20 @@ namespace grainsweep::dem::clear {
 namespace {
 
 template <Needs case_needs, class Laws>
-std::unique_ptr<Engine> make(const Setup& setup, const Method& method, Laws laws) {
-    return std::make_unique<ClearEngine<Laws, case_needs>>(setup, method, std::move(laws));
+std::unique_ptr<Engine> make(const Setup& setup, const Method& method, Laws (*make_laws)(const Material&, double)) {
+    return std::make_unique<ClearEngine<Laws, case_needs>>(setup, method, make_laws);
+}
+
+Frictionless frictionless(const Material& m, double) {
+    return {{hertz(m)}};
+}
+
+Frictional frictional(const Material& m, double time_step) {
+    return {{hertz(m), mindlin(m, time_step)}};
+}
+
+FrictionalSjkr frictional_sjkr(const Material& m, double time_step) {
+    return {{hertz(m), mindlin(m, time_step), {m.cohesion, {}}}};
 }
 
 /// Cohesion stands before friction where friction sees it, behind it otherwise; the other one is zero.
@@ -39,23 +51,27 @@ std::unique_ptr<Engine> make_clear_engine(const Setup& setup, const Method& meth
     const auto& spheres = setup.spheres;
     const bool frozen = std::ranges::any_of(spheres, [](const Sphere& s) { return !s.mobile; });
     const bool sizes = std::ranges::any_of(spheres, [&](const Sphere& s) { return s.radius != spheres[0].radius; });
-    const bool friction = m.friction > 0;
+    const auto somewhere = [&](auto part) {  // in the powder or at a wall
+        return part(m) > 0 || std::ranges::any_of(setup.walls, [&](const Wall& w) {
+                   return part(at_surface(m, w.surface)) > 0;
+               });
+    };
+    const bool friction = somewhere([](const Material& of) { return of.friction; });
+    const bool rolling = somewhere([](const Material& of) { return of.rolling_friction; });
     const bool cohesion = m.cohesion > 0;
     const bool plain_sjkr =
         cohesion && m.cohesion_area == CohesionArea::sjkr && m.friction_limit == FrictionLimit::contact;
 
-    if (m.rolling_friction > 0) return make<many_sizes>(setup, method, any_rolling_laws(m, setup.time_step));
-    const Frictional frictional{{hertz(m), mindlin(m, setup.time_step)}};
-    const FrictionalSjkr frictional_sjkr{{hertz(m), mindlin(m, setup.time_step), {m.cohesion, {}}}};
+    if (rolling) return make<many_sizes>(setup, method, any_rolling_laws);
     if (!sizes && !frozen) {
-        if (!friction && !cohesion) return make<equal_spheres>(setup, method, Frictionless{{hertz(m)}});
+        if (!friction && !cohesion) return make<equal_spheres>(setup, method, frictionless);
         if (friction && !cohesion) return make<equal_spheres>(setup, method, frictional);
         if (friction && plain_sjkr) return make<equal_spheres>(setup, method, frictional_sjkr);
     }
     if (!sizes && friction && !cohesion) return make<some_frozen>(setup, method, frictional);
     if (!sizes && friction && plain_sjkr) return make<some_frozen>(setup, method, frictional_sjkr);
     if (friction && !cohesion) return make<many_sizes>(setup, method, frictional);
-    return make<many_sizes>(setup, method, any_laws(m, setup.time_step));
+    return make<many_sizes>(setup, method, any_laws);
 }
 
 }  // namespace grainsweep::dem::clear

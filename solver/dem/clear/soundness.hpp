@@ -54,7 +54,7 @@ void ClearEngine<Laws, case_needs>::set_speed_limit() {
         lightest = std::min(lightest, 1 / inverse_mass(i));
     }
     double wall = fastest(shaking_);
-    for (const auto& contacts : walls_) wall = std::max(wall, fastest(contacts.wall));
+    for (const auto& contacts : walls_) wall = std::max(wall, contacts.wall.fastest());
     double fall = 0;  // through the domain; without limit along a periodic axis
     for (std::size_t k = 0; k < 3; ++k) {
         if (gravity_[k] == 0) continue;
@@ -68,6 +68,22 @@ void ClearEngine<Laws, case_needs>::set_speed_limit() {
         p_.size() > 0 && lightest < std::numeric_limits<double>::infinity() ? std::sqrt(2 * active / lightest) : 0.0;
     speed_limit_ = largest_sound_speed_factor * (still + wall + fall + released);
     lowest_energy_ = std::numeric_limits<double>::infinity();
+    judge_wall_speeds();
+}
+
+/// A wall that moves farther than a radius in a step could pass particles unseen.
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::judge_wall_speeds() {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < p_.size(); ++i) least = std::min(least, radius(i));
+    for (std::size_t w = 0; w < walls_.size() && fault_.empty(); ++w) {
+        const double share = walls_[w].wall.fastest_surface() * time_step_ / least;
+        char text[200];
+        std::snprintf(text, sizeof text,
+                      "wall %zu moves %.3g of the smallest radius in one time step (limit %.3g), after %lld steps", w,
+                      share, largest_sound_displacement, static_cast<long long>(work_.steps));
+        if (!(share <= largest_sound_displacement)) fault_ = text;
+    }
 }
 
 /// Energy minus the work of moving walls and of shaking must not grow: contacts store or dissipate.
@@ -126,11 +142,9 @@ void ClearEngine<Laws, case_needs>::report_contacts() {
                   "particle " + std::to_string(p_.id[j]));
         }
     for (std::size_t w = 0; w < walls_.size(); ++w)
-        for (const auto i : walls_[w].near) {
-            const double distance = std::visit(
-                [&](const auto& wall) { return shape_at(wall, wall_time()).closest(p_.position[i]).distance; },
-                walls_[w].wall);
-            const double overlap = radius(i) - distance;
+        for (const auto& [entry, place] : walls_[w].touches) {
+            const std::size_t i = walls_[w].near[entry];
+            const double overlap = radius(i) - place.distance;
             judge(i, overlap, overlap / (2 * radius(i)), std::sqrt(radius(i) * overlap) * inverse_mass(i),
                   "wall " + std::to_string(w));
         }

@@ -17,8 +17,10 @@ namespace grainsweep::dem::clear {
 inline constexpr double default_skin = 0.3;
 
 template <class Laws, Needs case_needs>
-ClearEngine<Laws, case_needs>::ClearEngine(const Setup& setup, const Method& method, Laws laws)
-    : laws_(std::move(laws)),
+ClearEngine<Laws, case_needs>::ClearEngine(const Setup& setup, const Method& method, MakeLaws make_laws)
+    : make_laws_(make_laws),
+      material_(setup.material),
+      laws_(make_laws(setup.material, setup.time_step)),
       domain_{setup.domain.low, setup.domain.high, setup.domain.periodic},
       image_shifts_(domain_.image_shifts()),
       gravity_(setup.gravity),
@@ -48,6 +50,7 @@ ClearEngine<Laws, case_needs>::ClearEngine(const Setup& setup, const Method& met
         largest = std::max(largest, s.radius);
         smallest = std::min(smallest, s.radius);
     }
+    largest_radius_ = largest;
     if constexpr (!needs.spin) {
         spin_at_start_.resize(n);
         for (std::size_t i = 0; i < n; ++i) spin_at_start_[i] = setup.spheres[i].angular_velocity;
@@ -64,7 +67,7 @@ ClearEngine<Laws, case_needs>::ClearEngine(const Setup& setup, const Method& met
         for (std::size_t k = 0; k < 3; ++k)
             if (domain_.periodic[k]) skin_ = std::min(skin_, 0.999 * (domain_.length(k) / 2 - 2 * largest));
     }
-    for (const auto& wall : setup.walls) walls_.push_back({wall, {}, {}, {}});
+    walls_ = make_walls(setup.walls);
     rebuild();
     set_speed_limit();
     evaluate<false>();
@@ -81,6 +84,7 @@ void ClearEngine<Laws, case_needs>::step() {
     kick_and_drift();
     ++wall_steps_;
     ++work_.steps;
+    place_walls();
     if (shaken_) shake();
     if (list_is_stale()) {
         if (!sound()) return;
@@ -142,7 +146,7 @@ template <class Laws, Needs case_needs>
 bool ClearEngine<Laws, case_needs>::list_is_stale() const {
     if (displaced_) return true;
     for (const auto& contacts : walls_) {
-        const Vec3 moved = displacement_at(contacts.wall, wall_time()) - contacts.displacement_at_build;
+        const Vec3 moved = contacts.wall.moved_since(contacts.pose_when_built);
         if (!(dot(moved, moved) <= skin_ * skin_ / 4)) return true;
     }
     return std::ranges::any_of(near_open_face_, [&](std::uint32_t i) { return domain_.outside(p_.position[i]); });
@@ -207,33 +211,68 @@ void ClearEngine<Laws, case_needs>::forget_separated() {
 }
 
 template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::list_walls([[maybe_unused]] std::span<const std::uint32_t> fresh_index) {
-    [[maybe_unused]] std::vector<StoredMemory> remembered;
+auto ClearEngine<Laws, case_needs>::make_walls(const std::vector<Wall>& walls) const -> std::vector<Contacts> {
+    std::vector<Contacts> made;
+    for (const Wall& wall : walls) {
+        const Material m = at_surface(material_, wall.surface);
+        if ((m.friction > 0 && !needs.tangential_history) || (m.rolling_friction > 0 && !needs.rolling_history))
+            throw std::invalid_argument("the surface of a wall has friction that nothing at the start had");
+        made.push_back({MovingWall(wall, domain_, largest_radius_), make_laws_(m, time_step_), {}, 0, {}, {}, {}, {}, {}});
+    }
+    return made;
+}
+
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::place_walls() {
+    for (auto& contacts : walls_) contacts.wall.place(wall_time());
+}
+
+/// Lists who is near; contacts go with their particles.
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::list_walls(std::span<const std::uint32_t> fresh_index) {
+    std::vector<std::uint32_t> all;
+    for (std::uint32_t i = 0; i < p_.size(); ++i)
+        if (mobile(i)) all.push_back(i);
+    std::vector<WallTouch> within;
     for (auto& contacts : walls_) {
-        if constexpr (needs.tangential_history) {
-            remembered.assign(p_.size(), StoredMemory{});
-            for (std::size_t k = 0; k < contacts.near.size(); ++k)
-                if (const auto i = fresh_index[contacts.near[k]]; i != particles::gone)
-                    remembered[i] = contacts.memory[k];
-        }
+        const auto before = std::move(contacts.near);
         contacts.near.clear();
-        contacts.displacement_at_build = displacement_at(contacts.wall, wall_time());
-        const auto each = [&](const auto& shape) {
-            for (std::uint32_t i = 0; i < p_.size(); ++i)
-                if (mobile(i) && shape.closest(p_.position[i]).distance < radius(i) + skin_) contacts.near.push_back(i);
-        };
-        std::visit([&](const auto& wall) { each(shape_at(wall, wall_time())); }, contacts.wall);
-        if constexpr (needs.tangential_history) {
-            contacts.memory.resize(contacts.near.size());
-            for (std::size_t k = 0; k < contacts.near.size(); ++k) contacts.memory[k] = remembered[contacts.near[k]];
-        }
+        contacts.wall.find(all, p_.position, radii(), skin_, within);
+        for (const WallTouch& touch : within)
+            if (contacts.near.empty() || contacts.near.back() != all[touch.entry])
+                contacts.near.push_back(all[touch.entry]);
+        contacts.built = wall_time();
+        contacts.pose_when_built = contacts.wall.pose();
+        carry_touches(contacts, before, fresh_index);
+    }
+}
+
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::carry_touches(Contacts& contacts, std::span<const std::uint32_t> before,
+                                                  std::span<const std::uint32_t> fresh_index) {
+    std::vector<std::size_t> order;
+    for (std::size_t k = 0; k < contacts.touches.size(); ++k) {
+        WallTouch& touch = contacts.touches[k];
+        const std::uint32_t i = fresh_index[before[touch.entry]];
+        const auto at = std::ranges::lower_bound(contacts.near, i);
+        if (i == particles::gone || at == contacts.near.end() || *at != i) continue;
+        touch.entry = static_cast<std::uint32_t>(at - contacts.near.begin());
+        order.push_back(k);
+    }
+    std::ranges::stable_sort(order, {}, [&](std::size_t k) { return contacts.touches[k].entry; });
+    const auto touches = contacts.touches;
+    const auto memory = contacts.memory;
+    contacts.touches.clear();
+    for (const std::size_t k : order) contacts.touches.push_back(touches[k]);
+    if constexpr (needs.tangential_history) {
+        contacts.memory.clear();
+        for (const std::size_t k : order) contacts.memory.push_back(memory[k]);
     }
 }
 
 template <class Laws, Needs case_needs>
 void ClearEngine<Laws, case_needs>::set_walls(std::vector<Wall> walls) {
-    walls_.clear();
-    for (const auto& wall : walls) walls_.push_back({wall, {}, {}, {}});
+    walls_ = make_walls(walls);
     wall_steps_ = 0;
     work_of_walls_ = 0;
     lowest_energy_ = std::numeric_limits<double>::infinity();

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "solver/dem/material.hpp"
-#include "solver/dem/moving_wall.hpp"
 
 namespace grainsweep::dem::fast {
 
@@ -150,19 +149,17 @@ void ContactReader::pairs(std::vector<ContactForce>& into) const {
 }
 
 template <class Visit>
-void ContactReader::for_each_at_wall(const Wall& wall, std::size_t w, double time, Visit&& visit) const {
-    const auto each_near = [&](const auto& shape, double middle) {
-        for (std::int32_t k = field_.segments[w].begin; k < field_.segments[w].end; ++k) {
-            const auto i = static_cast<std::int32_t>(field_.wall_particle[k] / places_per_index);
-            if (i >= field_.count) continue;  // fills the segment up
-            Vec3 x{};
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                x[axis] = space_.scale.centre[axis] + field_.records[i].position[axis] * space_.scale.unit[axis];
-            if (space_.domain.periodic[0]) {  // the image nearest to the wall
-                const double period = space_.domain.high[0] - space_.domain.low[0];
-                x[0] -= period * std::nearbyint((x[0] - middle) / period);
-            }
-            const Closest closest = shape.closest(x);
+void ContactReader::for_each_at_wall(const MovingWall& wall, std::size_t w, Visit&& visit) const {
+    std::vector<WallTouch> touched;
+    for (std::int32_t k = field_.segments[w].begin; k < field_.segments[w].end; ++k) {
+        const auto i = static_cast<std::int32_t>(field_.wall_particle[k] / places_per_index);
+        if (i >= field_.count) continue;  // fills the segment up
+        Vec3 x{};
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            x[axis] = space_.scale.centre[axis] + field_.records[i].position[axis] * space_.scale.unit[axis];
+        touched.clear();
+        wall.find(0, x, radius(i), touched);
+        for (const auto& [entry, closest] : touched) {
             Touch<Partner::wall> t;
             t.radius_i = t.effective_radius = radius(i);
             t.distance = closest.distance;
@@ -170,20 +167,13 @@ void ContactReader::for_each_at_wall(const Wall& wall, std::size_t w, double tim
             if (!(t.overlap > 0)) continue;
             t.normal = closest.normal;
             t.root = std::sqrt(t.effective_radius * t.overlap);
-            visit(i, t, memory(field_.wall_history, k));
+            visit(i, wall.twist().at(x - closest.distance * closest.normal), t, memory(field_.wall_history, k));
         }
-    };
-    if (const auto* plane = std::get_if<Plane>(&wall)) {
-        each_near(shape_at(*plane, time), space_.scale.centre[0]);  // no plane cuts a periodic axis
-    } else {
-        const Bar bar = shape_at(std::get<Blade>(wall), time);
-        each_near(bar, (bar.rear + bar.front) / 2);
     }
 }
 
-void ContactReader::wall(const Wall& wall, std::size_t w, double time, std::vector<ContactForce>& into) const {
-    const Vec3 velocity = velocity_at(wall, time);
-    for_each_at_wall(wall, w, time, [&](std::int32_t i, Touch<Partner::wall>& t, const Memory& memory) {
+void ContactReader::wall(const MovingWall& wall, std::size_t w, std::vector<ContactForce>& into) const {
+    for_each_at_wall(wall, w, [&](std::int32_t i, const Vec3& velocity, Touch<Partner::wall>& t, const Memory& memory) {
         t.reduced_mass = mass(i);
         t.rolling_inertia = inertia_about_contact * t.reduced_mass * t.radius_i * t.radius_i;
         const Motion& motion = motions_[static_cast<std::size_t>(i)];
@@ -192,7 +182,7 @@ void ContactReader::wall(const Wall& wall, std::size_t w, double time, std::vect
     });
 }
 
-StoredEnergy ContactReader::stored(std::span<const Wall> walls, double time) const {
+StoredEnergy ContactReader::stored(std::span<const MovingWall> walls) const {
     StoredEnergy e;
     const auto add_energy = [&](const auto& t, const Memory& memory) {
         const double energy = laws_.energy(t, memory);
@@ -201,8 +191,9 @@ StoredEnergy ContactReader::stored(std::span<const Wall> walls, double time) con
     };
     for_each_pair([&](std::int32_t, std::int32_t, const auto& t, const Memory& memory) { add_energy(t, memory); });
     for (std::size_t w = 0; w < walls.size(); ++w)
-        for_each_at_wall(walls[w], w, time,
-                         [&](std::int32_t, const auto& t, const Memory& memory) { add_energy(t, memory); });
+        for_each_at_wall(walls[w], w, [&](std::int32_t, const Vec3&, const auto& t, const Memory& memory) {
+            add_energy(t, memory);
+        });
     return e;
 }
 

@@ -40,10 +40,10 @@ public:
     void stand_still(ParkedContact& contact) const;
     /// Appends the touching pairs, in list order, then the parked ones.
     void pairs(std::vector<ContactForce>& into) const;
-    /// Appends the particles that touch wall number w at time t since the walls were set.
-    void wall(const Wall& wall, std::size_t w, double time, std::vector<ContactForce>& into) const;
-    /// The energy of all contacts; `walls` as they are at time t since they were set.
-    [[nodiscard]] StoredEnergy stored(std::span<const Wall> walls, double time) const;
+    /// Appends the particles that touch wall number w.
+    void wall(const MovingWall& wall, std::size_t w, std::vector<ContactForce>& into) const;
+    /// The energy of all contacts.
+    [[nodiscard]] StoredEnergy stored(std::span<const MovingWall> walls) const;
 
 private:
     // Any material: what it lacks has zero coefficients.
@@ -60,7 +60,7 @@ private:
     void for_each_pair(Visit&& visit) const;
     /// Calls visit(i, touch, memory) for the particles that touch the wall.
     template <class Visit>
-    void for_each_at_wall(const Wall& wall, std::size_t w, double time, Visit&& visit) const;
+    void for_each_at_wall(const MovingWall& wall, std::size_t w, Visit&& visit) const;
     void complete(std::int32_t i, std::int32_t j, Touch<Partner::particle>& t) const;
     [[nodiscard]] Memory memory(const ParkedContact& contact) const;
     template <Partner partner>

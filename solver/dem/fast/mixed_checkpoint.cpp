@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solver/dem/fast/mixed_stepping.hpp"
+#include "solver/dem/walls/wall_bytes.hpp"
 
 namespace grainsweep::dem::fast {
 
@@ -29,7 +30,7 @@ void MixedEngine::pass(Self& self, Archive& archive) {
     archive.value(self.work_.pair_visits);
     archive.value(self.work_.rebuilds);
     archive.text(self.fault_);
-    archive.list(self.walls_);
+    pass_walls(self, archive);
     if (self.resting_.wanted()) Resting::pass(self.resting_, archive);
     auto& c = self.columns_;
     const auto particles = static_cast<std::size_t>(self.field_.count) + 3 + self.walls_.size();
@@ -52,6 +53,19 @@ void MixedEngine::pass(Self& self, Archive& archive) {
     const auto near_walls = self.walls_.empty() ? 0 : static_cast<std::size_t>(c.segments[self.walls_.size() - 1].end);
     archive.column(c.wall_particle, near_walls);
     for (int a = 0; a < c.histories; ++a) archive.column(c.wall_history[a], near_walls);
+}
+
+void MixedEngine::pass_walls(const MixedEngine& self, Writer& archive) {
+    archive.value(self.walls_.size());
+    for (const MovingWall& wall : self.walls_) write_wall(wall.wall(), [&](const auto& value) { archive.value(value); });
+}
+
+void MixedEngine::pass_walls(MixedEngine& self, Reader& archive) {
+    std::size_t count = 0;
+    archive.value(count);
+    std::vector<Wall> walls;
+    for (std::size_t w = 0; w < count; ++w) walls.push_back(read_wall([&](auto& value) { archive.value(value); }));
+    self.walls_ = self.make_walls(walls);
 }
 
 /// Of the case, the same at every step.
@@ -116,8 +130,6 @@ void MixedEngine::require_possible() const {
             require(c.inner_source[k] >= 0 && c.inner_source[k] < field_.outer_count);
         }
     }
-    for (const Wall& wall : walls_) require(wall.index() < std::variant_size_v<Wall>);
-    check_walls(walls_);
     std::int32_t end = 0;
     for (std::size_t w = 0; w < walls_.size(); ++w) {
         const WallSegment& s = c.segments[w];
@@ -159,7 +171,7 @@ void MixedEngine::restore(std::span<const std::byte> from) {
     tidy_spare_entries();
     place_fillers(field_);
     list_advanced();
-    place_walls(field_, walls_, space_, wall_time());
+    stand_walls();
     if (shaken_) shake();
 }
 

@@ -26,12 +26,11 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
       needs_(make_needs(setup, rest_speed > 0)),
       rest_speed_(rest_speed),
       kernels_(&kernels_of(path, needs_)),
-      walls_(setup.walls),
+      walls_(make_walls(setup.walls)),
       sound_(sound_overlaps(setup)),
       watch_(setup, space_.scale),
       resting_(setup, space_.scale, rest_speed),
       adapts_skin_(!(skin > 0)) {
-    check_walls(walls_);
     for (std::size_t a = 0; a < 3; ++a)  // a pair must not meet across both ends of a period
         if (setup.domain.periodic[a]) {
             const double period = (setup.domain.high[a] - setup.domain.low[a]) / space_.scale.length;
@@ -88,21 +87,16 @@ void MixedEngine::load(const Setup& setup) {
     place_fillers(field_);
 }
 
-void MixedEngine::check_walls(const std::vector<Wall>& walls) const {
+std::vector<MovingWall> MixedEngine::make_walls(const std::vector<Wall>& walls) const {
+    const geometry::Domain domain{space_.domain.low, space_.domain.high, space_.domain.periodic};
+    std::vector<MovingWall> made;
     for (const Wall& wall : walls) {
-        if (const auto* plane = std::get_if<Plane>(&wall)) {
-            const double norm = std::hypot(plane->normal[0], plane->normal[1], plane->normal[2]);
-            if (!(norm > 0) || !std::isfinite(norm)) throw std::invalid_argument("a plane's normal must not be zero");
-            for (std::size_t a = 0; a < 3; ++a)
-                if (space_.domain.periodic[a] && std::abs(plane->normal[a]) > 1e-12 * norm)
-                    throw std::invalid_argument("a plane must not cut a periodic axis");
-        } else {
-            const auto& blade = std::get<Blade>(wall);
-            if (!(blade.thickness > 0) || !(blade.top > blade.bottom) || space_.domain.periodic[2])
-                throw std::invalid_argument(
-                    "a blade needs a positive thickness, its top above its bottom and an open z axis");
-        }
+        made.emplace_back(wall, domain, 0.5 * space_.scale.length);
+        const bool known = std::holds_alternative<Plane>(wall.shape) || std::holds_alternative<Bar>(wall.shape);
+        if (!known || made.back().pose_at(1e300).turned || wall.surface != Surface{})
+            throw std::invalid_argument("this wall is computed in double precision only");
     }
+    return made;
 }
 
 std::unique_ptr<Engine> make_mixed_engine(const Setup& setup, Method::Path path, double skin, double rest_speed) {

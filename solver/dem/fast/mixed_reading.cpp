@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <stdexcept>
 #include <vector>
 
 #include "solver/dem/fast/mixed_stepping.hpp"
@@ -75,12 +76,16 @@ void MixedEngine::contacts(std::vector<ContactForce>& into) const {
     const ContactReader reader(material_, space_, field_, columns_.id.data(), now, kernels_->width, resting_.parked());
     into.clear();
     reader.pairs(into);
-    for (std::size_t w = 0; w < walls_.size(); ++w) reader.wall(walls_[w], w, wall_time(), into);
+    for (std::size_t w = 0; w < walls_.size(); ++w) reader.wall(walls_[w], w, into);
+}
+
+WallLoad MixedEngine::wall_load(std::size_t, const Vec3&) const {
+    throw std::invalid_argument("loads of walls are read in double precision only");
 }
 
 Moment MixedEngine::moment(std::span<const Motion> motions) const {
     const ContactReader reader(material_, space_, field_, columns_.id.data(), {}, kernels_->width, resting_.parked());
-    return {field_, space_, columns_.id.data(), motions, reader.stored(walls_, wall_time())};
+    return {field_, space_, columns_.id.data(), motions, reader.stored(walls_)};
 }
 
 void MixedEngine::set_limits() {

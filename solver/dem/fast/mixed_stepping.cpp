@@ -36,7 +36,7 @@ void MixedEngine::run(std::int64_t steps) {
         work_.resting_steps += static_cast<double>(resting_.count());
         account_travel();
         if (!fault_.empty()) return;
-        place_walls(field_, walls_, space_, wall_time());
+        stand_walls();
         make_lists();
         const bool checked = watch_.due(work_.steps);  // at the full step: no particle is advanced before
         advanced = s + 1 < steps && !checked;
@@ -79,6 +79,12 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
         std::clamp(std::sqrt(inner_balance * drift_.last_step), inner_skin_least, static_cast<double>(space_.skin)));
     refresh(field_, columns_, *kernels_, inner_skin_, rebuilt);
     drift_.inner = 0;
+}
+
+/// Lets the walls stand where they are now.
+void MixedEngine::stand_walls() {
+    for (MovingWall& wall : walls_) wall.place(wall_time());
+    place_walls(field_, walls_, space_);
 }
 
 void MixedEngine::list_advanced() {
@@ -169,7 +175,7 @@ void MixedEngine::full_step_velocities() {
 /// Lists anew, forces at the present full-step velocities without touching histories, velocities then set back by
 /// half a step: a leapfrog whose first kick is a half one.
 void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
-    place_walls(field_, walls_, space_, wall_time());
+    stand_walls();
     drift_ = Drift{};
     make_lists(removed);
     begin_tally();
@@ -194,10 +200,10 @@ void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
 }
 
 void MixedEngine::set_walls(std::vector<Wall> walls) {
-    check_walls(walls);
+    std::vector<MovingWall> fresh = make_walls(walls);
     full_step_velocities();
     if (needs_.resting) resting_.advance_all(field_);
-    walls_ = std::move(walls);
+    walls_ = std::move(fresh);
     wall_steps_ = 0;
     columns_.hold_particles(size(), walls_.size());
     columns_.bind(field_);

@@ -52,6 +52,7 @@ public:
     [[nodiscard]] double peak_overlap() const override { return static_cast<double>(peak_overlap_); }
     void forget_peak_overlap() override { peak_overlap_ = 0; }
     void contacts(std::vector<ContactForce>& into) const override;
+    [[nodiscard]] WallLoad wall_load(std::size_t wall, const Vec3& about) const override;
     [[nodiscard]] const std::string& fault() const override { return fault_; }
     [[nodiscard]] Work work() const override { return work_; }
     void save(std::vector<std::byte>& into) const override;
@@ -59,7 +60,8 @@ public:
 
 private:
     void load(const Setup& setup);
-    void check_walls(const std::vector<Wall>& walls) const;
+    [[nodiscard]] std::vector<MovingWall> make_walls(const std::vector<Wall>& walls) const;
+    void stand_walls();
     void begin_tally();
     [[nodiscard]] std::vector<Motion> motions() const;
     [[nodiscard]] Moment moment(std::span<const Motion> motions) const;
@@ -88,6 +90,8 @@ private:
     static void pass(Self& self, Archive& archive);
     void require_possible() const;
     void tidy_spare_entries();
+    static void pass_walls(const MixedEngine& self, Writer& archive);
+    static void pass_walls(MixedEngine& self, Reader& archive);
 
     ListSpace space_;
     Material material_;
@@ -97,7 +101,7 @@ private:
     Needs needs_;
     double rest_speed_;
     const Kernels* kernels_;
-    std::vector<Wall> walls_;
+    std::vector<MovingWall> walls_;
     float smallest_diameter_ = 1;
     SoundOverlaps sound_;
     bool box_includes_rest_ = true;  ///< something at rest, or a face, bounds displacements besides the particles

@@ -265,35 +265,34 @@ void place_fillers(Field& f) {
     }
 }
 
-void place_walls(Field& f, const std::vector<Wall>& walls, const ListSpace& space, double time) {
+void place_walls(Field& f, const std::vector<MovingWall>& walls, const ListSpace& space) {
     const Scale& s = space.scale;
     for (std::size_t w = 0; w < walls.size(); ++w) {
         WallShape shape{};
         shape.record = f.count + 3 + static_cast<std::int32_t>(w);
         Record r{};
-        if (const auto* plane = std::get_if<Plane>(&walls[w])) {
+        const Vec3& shift = walls[w].pose().shift;
+        if (const auto* plane = std::get_if<Plane>(&walls[w].wall().shape)) {
             const double norm = std::hypot(plane->normal[0], plane->normal[1], plane->normal[2]);
             for (std::size_t a = 0; a < 3; ++a) {
                 shape.normal[a] = plane->normal[a] / norm;
-                shape.offset += shape.normal[a] * (plane->point[a] - s.centre[a]) / s.length;
+                shape.offset += shape.normal[a] * (plane->point[a] + shift[a] - s.centre[a]) / s.length;
             }
         } else {
-            const auto& blade = std::get<Blade>(walls[w]);
-            const double pulse = 2 * std::numbers::pi * blade.frequency;
-            const double lift = blade.amplitude * std::sin(pulse * time);
+            const auto& bar = std::get<Bar>(walls[w].wall().shape);
             shape.is_blade = 1;
-            shape.half_width = 0.5 * blade.thickness / s.length;
-            shape.centre = (blade.front + blade.speed * time - s.centre[0]) / s.length - shape.half_width;
-            shape.bottom = (blade.bottom + lift - s.centre[2]) / s.length;
-            shape.top = (blade.top + lift - s.centre[2]) / s.length;
-            shape.edge_radius = std::min(blade.edge_radius, 0.5 * blade.thickness) / s.length;
+            shape.half_width = 0.5 * bar.thickness / s.length;
+            shape.centre = (bar.front + shift[0] - s.centre[0]) / s.length - shape.half_width;
+            shape.bottom = (bar.bottom + shift[2] - s.centre[2]) / s.length;
+            shape.top = (bar.top + shift[2] - s.centre[2]) / s.length;
+            shape.edge_radius = std::min(bar.edge_radius, 0.5 * bar.thickness) / s.length;
             if (space.domain.periodic[0]) {
                 shape.period = (space.domain.high[0] - space.domain.low[0]) / s.length;
                 shape.inverse_period = 1 / shape.period;
             }
-            r.velocity[0] = static_cast<float>(blade.speed / s.speed());
-            r.velocity[2] = static_cast<float>(blade.amplitude * pulse * std::cos(pulse * time) / s.speed());
         }
+        for (std::size_t a = 0; a < 3; ++a)
+            r.velocity[a] = static_cast<float>(walls[w].twist().velocity[a] / s.speed());
         f.walls[w] = shape;
         f.records[shape.record] = r;
     }

@@ -7,6 +7,7 @@
 #include "solver/dem/engine.hpp"
 #include "solver/dem/fast/columns.hpp"
 #include "solver/dem/fast/scale.hpp"
+#include "solver/dem/walls/moving_wall.hpp"
 
 namespace grainsweep::dem::fast {
 
@@ -32,8 +33,8 @@ void refresh(Field& field, Columns& columns, const Kernels& kernels, float skin,
 /// Lists the particles near each wall. `keep`: histories follow their contacts; else they start at zero.
 void list_wall_contacts(Field& field, Columns& columns, const Kernels& kernels, const ListSpace& space, bool keep);
 
-/// Gives the walls their shapes at time t (s) and their records the velocities (engine's units).
-void place_walls(Field& field, const std::vector<Wall>& walls, const ListSpace& space, double time);
+/// Gives the walls the shapes and their records the velocities they have now (engine's units).
+void place_walls(Field& field, const std::vector<MovingWall>& walls, const ListSpace& space);
 
 /// Gap between a particle and a wall, largest diameters; never more than the true one.
 [[nodiscard]] double wall_gap(const Field& field, const WallShape& wall, std::int32_t particle);

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "solver/dem/limits.hpp"
-#include "solver/dem/moving_wall.hpp"
 #include "solver/dem/shaking.hpp"
 #include "solver/geometry/vector.hpp"
 
@@ -62,7 +61,7 @@ void Watch::add_gravity_work(const Moment& now) {
     covered_ = 0;
 }
 
-void Watch::set_limit(const Moment& now, std::span<const Wall> walls) {
+void Watch::set_limit(const Moment& now, std::span<const MovingWall> walls) {
     double start = 0, lightest = std::numeric_limits<double>::infinity(), wall = 0, free_fall = 0;
     for (std::int32_t i = 0; i < now.field.count; ++i) {
         const Record& r = now.field.records[i];
@@ -72,7 +71,7 @@ void Watch::set_limit(const Moment& now, std::span<const Wall> walls) {
         start = std::max({start, norm(m.velocity), radius * norm(m.spin)});
         lightest = std::min(lightest, now.space.scale.mass / static_cast<double>(r.inverse_mass));
     }
-    for (const Wall& w : walls) wall = std::max(wall, fastest(w));
+    for (const MovingWall& w : walls) wall = std::max(wall, w.fastest());
     for (std::size_t a = 0; a < 3; ++a)  // through the domain; without limit along a periodic axis
         if (gravity_[a] != 0)
             free_fall =

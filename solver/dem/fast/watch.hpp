@@ -38,7 +38,7 @@ public:
     Watch(const Setup& setup, const Scale& scale);
 
     /// Sets the largest speed that can occur, from the state of the start or with new walls.
-    void set_limit(const Moment& now, std::span<const Wall> walls);
+    void set_limit(const Moment& now, std::span<const MovingWall> walls);
     /// Adds a step by the largest component of its velocities, engine's units.
     void add_travel(double fastest);
     /// Adds work of the walls on the particles, engine's units.

@@ -1,0 +1,236 @@
+#include "solver/dem/walls/moving_wall.hpp"
+
+#include "solver/geometry/contact_memory.hpp"
+#include "solver/geometry/lines.hpp"
+
+#include <algorithm>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+namespace grainsweep::dem {
+
+using namespace geometry;
+
+namespace {
+
+constexpr std::array<Vec3, 3> unit_vectors{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+
+/// The motions without those that leave the surface where it is: a turn that comes first, or after such turns only; a
+/// shift where nothing turns the shape.
+std::vector<Motion> displacing(const Shape& shape, std::span<const Motion> motions) {
+    bool turns = false;
+    std::vector<bool> moves(motions.size(), true);
+    for (std::size_t k = 0; k < motions.size(); ++k)
+        if (const auto* r = std::get_if<Rotation>(&motions[k])) {
+            moves[k] = turns || !std::visit([r](const auto& s) { return s.unchanged_by_turn(r->point, r->axis); }, shape);
+            turns = turns || moves[k];
+        }
+    const auto stays = [&](const Vec3& direction) {
+        return !turns && std::visit([&](const auto& s) { return s.unchanged_by_shift(direction); }, shape);
+    };
+    std::vector<Motion> kept;
+    for (std::size_t k = 0; k < motions.size(); ++k) {
+        if (const auto* t = std::get_if<Translation>(&motions[k])) moves[k] = !stays(t->velocity);
+        if (const auto* v = std::get_if<Vibration>(&motions[k])) moves[k] = !stays(v->amplitude);
+        if (moves[k]) kept.push_back(motions[k]);
+    }
+    return kept;
+}
+
+std::string flaw(const Surface& s) {
+    if (s.friction && !(std::isfinite(*s.friction) && *s.friction >= 0))
+        return "the friction of a wall must not be negative";
+    if (s.rolling_friction && !(*s.rolling_friction >= 0 && *s.rolling_friction <= 1))
+        return "the rolling friction of a wall must lie in [0, 1]";
+    if (s.restitution && !(*s.restitution > 0 && *s.restitution <= 1))
+        return "the restitution of a wall must lie in (0, 1]";
+    return {};
+}
+
+bool switches(const Motion& motion) {
+    return std::visit([](const auto& m) { return m.start > 0 || std::isfinite(m.end); }, motion);
+}
+
+/// Calls visit(shape, to_shape, from_shape): positions into the frame of the shape, normals out of it.
+template <class S, class Visit>
+void in_frame(const S& shape, const Pose& pose, const NearestImage& image, Visit&& visit) {
+    if constexpr (Movable<S>)
+        if (!pose.turned) {
+            visit(shape.moved(pose.shift), [&](const Vec3& x) { return image.of(x); }, [](const Vec3& n) { return n; });
+            return;
+        }
+    visit(
+        shape, [&](const Vec3& x) { return pose.to_body(image.of(x)); },
+        [&](const Vec3& n) { return pose.turned ? pose.turn(n) : n; });
+}
+
+/// Appends the places of one particle; a distance that is not a number counts, so that it is reported.
+template <class S>
+void append(const S& shape, const Vec3& x, double reach, std::uint32_t entry, auto&& from_shape,
+            std::vector<Closest>& places, std::vector<WallTouch>& into) {
+    if constexpr (SingleContact<S>) {
+        const Closest c = shape.closest(x);
+        if (!(c.distance >= reach)) into.push_back({entry, {c.distance, from_shape(c.normal)}});
+    } else {
+        places.clear();
+        shape.touching(x, reach, places);
+        for (const Closest& p : places) into.push_back({entry, {p.distance, from_shape(p.normal)}});
+    }
+}
+
+}  // namespace
+
+MovingWall::MovingWall(Wall wall, const Domain& domain, double largest) : wall_(std::move(wall)) {
+    const auto refuse_flaw = [](const std::string& flaw) {
+        if (!flaw.empty()) throw std::invalid_argument(flaw);
+    };
+    refuse_flaw(std::visit([](const auto& s) { return s.flaw(); }, wall_.shape));
+    for (const Motion& m : wall_.motions) refuse_flaw(flaw(m));
+    refuse_flaw(flaw(wall_.surface));
+    std::erase_if(wall_.motions, is_still);
+    single_contact_ = std::visit([](const auto& s) { return SingleContact<decltype(s)>; }, wall_.shape);
+    displacing_ = displacing(wall_.shape, wall_.motions);
+    switches_ = std::ranges::any_of(displacing_, switches);
+    bounded_ = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Extent e = std::visit([k](const auto& s) { return s.extent(k); }, wall_.shape);
+        bounded_ = bounded_ && e.bounded();
+        low_[k] = e.low;
+        high_[k] = e.high;
+        const bool has_ends = !std::visit([k](const auto& s) { return s.unchanged_by_shift(unit_vectors[k]); }, wall_.shape);
+        if (!domain.periodic[k] || !has_ends) continue;
+        body_image_.middle[k] = 0.5 * (e.low + e.high);
+        body_image_.period[k] = domain.length(k);
+    }
+    require_possible(domain);
+    if (!bounded_)
+        for (std::size_t k = 0; k < 3; ++k) {
+            low_[k] = domain.low[k] - 4 * largest;
+            high_[k] = domain.high[k] + 4 * largest;
+        }
+    fastest_ = bound_of_speed(wall_.motions);
+    fastest_surface_ = bound_of_speed(displacing_);
+    place(0);
+}
+
+void MovingWall::require_possible(const Domain& domain) const {
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (!domain.periodic[k]) continue;
+        for (const Motion& m : displacing_)
+            if (const auto* r = std::get_if<Rotation>(&m); r != nullptr && !parallel(r->axis, unit_vectors[k]))
+                throw std::invalid_argument("a wall that turns about an axis across a periodic one has no image");
+        if (body_image_.period[k] == 0) continue;
+        if (!std::isfinite(body_image_.middle[k]))
+            throw std::invalid_argument("a wall without end must not cut a periodic axis");
+        const Extent e = std::visit([k](const auto& s) { return s.extent(k); }, wall_.shape);
+        if (e.high - e.low > domain.length(k))
+            throw std::invalid_argument("a wall must not be longer than the period of its axis");
+    }
+}
+
+void MovingWall::place(double time) {
+    pose_ = geometry::pose_at(displacing_, time);
+    twist_ = twist_at(wall_.motions, time);
+    image_ = body_image_;
+    for (std::size_t k = 0; k < 3; ++k)  // turns are about this axis and leave its coordinate
+        if (image_.period[k] > 0) image_.middle[k] += pose_.shift[k];
+}
+
+/// Of the box within which displacements and velocities are linear in the place, so that their extremes are here.
+std::array<Vec3, 8> MovingWall::corners(const Pose& pose) const {
+    std::array<Vec3, 8> all{};
+    for (std::size_t c = 0; c < 8; ++c) {
+        const Vec3 corner{(c & 1U) != 0 ? high_[0] : low_[0], (c & 2U) != 0 ? high_[1] : low_[1],
+                          (c & 4U) != 0 ? high_[2] : low_[2]};
+        all[c] = bounded_ ? pose.from_body(corner) : corner;
+    }
+    return all;
+}
+
+Vec3 MovingWall::moved_since(const Pose& before) const {
+    if (!pose_.turned) return pose_.shift - before.shift;
+    Vec3 farthest{};
+    for (const Vec3& x : corners(pose_)) {
+        const Vec3 moved = x - before.from_body(pose_.to_body(x));
+        if (dot(moved, moved) > dot(farthest, farthest)) farthest = moved;
+    }
+    return farthest;
+}
+
+void MovingWall::surface_velocities(double time, double step, Vec3& low, Vec3& high) const {
+    const auto include = [&](const Vec3& v) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            low[k] = std::min(low[k], v[k]);
+            high[k] = std::max(high[k], v[k]);
+        }
+    };
+    const auto include_at = [&](double t) {
+        const Twist twist = twist_at(displacing_, t);
+        if (!twist.turns) return include(twist.velocity);
+        for (const Vec3& x : corners(geometry::pose_at(displacing_, t))) include(twist.at(x));
+    };
+    low.fill(std::numeric_limits<double>::infinity());
+    high.fill(-std::numeric_limits<double>::infinity());
+    include_at(time);
+    if (switches_) include_at(time + step);
+}
+
+double MovingWall::bound_of_speed(std::span<const Motion> motions) const {
+    Vec3 shifts{};
+    double turns = 0;
+    for (const Motion& motion : motions) {
+        const auto* r = std::get_if<Rotation>(&motion);
+        const auto* t = std::get_if<Translation>(&motion);
+        const auto* v = std::get_if<Vibration>(&motion);
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (t != nullptr) shifts[k] += std::abs(t->velocity[k]);
+            if (v != nullptr) shifts[k] += std::abs(2 * std::numbers::pi * v->frequency * v->amplitude[k]);
+        }
+        double arm = 0;
+        if (r != nullptr)
+            for (const Vec3& x : corners(Pose{})) arm = std::max(arm, norm(cross(r->axis, x - r->point)));
+        if (r != nullptr) turns += std::abs(r->speed) * arm;
+    }
+    return norm(shifts) + turns;
+}
+
+void MovingWall::find(std::span<const std::uint32_t> list, std::span<const Vec3> position,
+                      const particles::Radii& radii, double beyond, std::vector<WallTouch>& into) const {
+    into.clear();
+    std::vector<Closest> places;
+    const auto each = [&](const auto& shape, auto&& to_shape, auto&& from_shape) {
+        for (std::uint32_t k = 0; k < list.size(); ++k)
+            append(shape, to_shape(position[list[k]]), radii[list[k]] + beyond, k, from_shape, places, into);
+    };
+    std::visit([&](const auto& shape) { in_frame(shape, pose_, image_, each); }, wall_.shape);
+}
+
+void MovingWall::find(std::uint32_t entry, const Vec3& position, double reach, std::vector<WallTouch>& into) const {
+    std::vector<Closest> places;
+    const auto one = [&](const auto& shape, auto&& to_shape, auto&& from_shape) {
+        append(shape, to_shape(position), reach, entry, from_shape, places, into);
+    };
+    std::visit([&](const auto& shape) { in_frame(shape, pose_, image_, one); }, wall_.shape);
+}
+
+void MovingWall::inherit(std::span<const WallTouch> before, std::span<const WallTouch> now,
+                         std::vector<std::int32_t>& from) const {
+    from.assign(now.size(), -1);
+    if (before.empty() || now.empty()) return;
+    if (single_contact_) {
+        from[0] = 0;
+        return;
+    }
+    const auto normals = [](std::span<const WallTouch> touches) {
+        std::vector<Vec3> all;
+        for (const WallTouch& touch : touches) all.push_back(touch.place.normal);
+        return all;
+    };
+    std::vector<std::uint32_t> matched(now.size());
+    match_contacts(normals(before), normals(now), matched);
+    for (std::size_t k = 0; k < now.size(); ++k)
+        if (matched[k] != no_contact) from[k] = static_cast<std::int32_t>(matched[k]);
+}
+
+}  // namespace grainsweep::dem

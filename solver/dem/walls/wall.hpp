@@ -1,0 +1,55 @@
+// A wall is a shape, motions that are added up, and a surface that may differ from the powder's.
+#pragma once
+
+#include "solver/geometry/motion.hpp"
+#include "solver/geometry/shapes.hpp"
+
+#include <concepts>
+#include <optional>
+#include <vector>
+
+namespace grainsweep::dem {
+
+using geometry::Bar;
+using geometry::Cone;
+using geometry::Cylinder;
+using geometry::Plane;
+using geometry::Rotation;
+using geometry::Shape;
+using geometry::Side;
+using geometry::Translation;
+using geometry::Vec3;
+using geometry::Vibration;
+
+/// What differs from the powder's material in contacts with a wall.
+struct Surface {
+    std::optional<double> friction, rolling_friction, restitution;
+
+    bool operator==(const Surface&) const = default;
+};
+
+/// A shape alone is a wall at rest. Times of motions count from when the walls were set.
+struct Wall {
+    Shape shape;
+    std::vector<geometry::Motion> motions;
+    Surface surface;
+
+    Wall() = default;
+    template <class S>
+    requires(std::constructible_from<Shape, S> && !std::same_as<std::remove_cvref_t<S>, Wall>)
+    Wall(S&& of, std::vector<geometry::Motion> in_motion = {}, Surface with = {})  // NOLINT: a shape is a wall
+        : shape(std::forward<S>(of)), motions(std::move(in_motion)), surface(with) {}
+};
+
+/// A bar that moves with x velocity `speed` and the vertical displacement amplitude sin(2 pi frequency t): the blade
+/// that spreads powder. A sphere touches its closest point, once.
+struct Blade {
+    double front = 0, thickness = 0, bottom = 0, top = 0;  ///< m, at t = 0
+    double speed = 0;                                      ///< m/s
+    double amplitude = 0, frequency = 0;                   ///< m, Hz
+    double edge_radius = 0;                                ///< m
+
+    operator Wall() const;  // NOLINT: a blade is a wall
+};
+
+}  // namespace grainsweep::dem

@@ -1,0 +1,64 @@
+// A wall in a checkpoint: its parameters, one after the other. Where it stands follows from them and its time.
+#pragma once
+
+#include "solver/dem/walls/wall.hpp"
+
+#include <cstdint>
+#include <stdexcept>
+#include <utility>
+
+namespace grainsweep::dem {
+
+/// put(value) writes a number or an array of numbers.
+template <class Put>
+void write_wall(const Wall& wall, Put&& put) {
+    const auto write = [&](const auto& alternatives) {
+        put(static_cast<std::uint64_t>(alternatives.index()));
+        std::visit([&](const auto& one) { one.fields(one, put); }, alternatives);
+    };
+    write(wall.shape);
+    put(static_cast<std::uint64_t>(wall.motions.size()));
+    for (const geometry::Motion& motion : wall.motions) write(motion);
+    for (const auto* part : {&wall.surface.friction, &wall.surface.rolling_friction, &wall.surface.restitution}) {
+        put(static_cast<std::uint64_t>(part->has_value()));
+        put(part->value_or(0));
+    }
+}
+
+/// The alternative with this number, to be filled.
+template <class Variant, std::size_t k = 0>
+[[nodiscard]] Variant alternative(std::uint64_t index) {
+    if constexpr (k == std::variant_size_v<Variant>)
+        throw std::invalid_argument("the checkpoint holds a wall that this program does not know");
+    else
+        return index == k ? Variant(std::in_place_index<k>) : alternative<Variant, k + 1>(index);
+}
+
+/// get(value) reads what put wrote. What the wall then is, MovingWall judges.
+template <class Get>
+[[nodiscard]] Wall read_wall(Get&& get) {
+    const auto read = [&](auto& alternatives) {
+        std::uint64_t index = 0;
+        get(index);
+        alternatives = alternative<std::remove_cvref_t<decltype(alternatives)>>(index);
+        std::visit([&](auto& one) { one.fields(one, get); }, alternatives);
+    };
+    Wall wall;
+    read(wall.shape);
+    std::uint64_t motions = 0;
+    get(motions);
+    for (std::uint64_t k = 0; k < motions; ++k) {
+        geometry::Motion motion;
+        read(motion);
+        wall.motions.push_back(motion);
+    }
+    for (auto* part : {&wall.surface.friction, &wall.surface.rolling_friction, &wall.surface.restitution}) {
+        std::uint64_t given = 0;
+        double value = 0;
+        get(given), get(value);
+        if (given != 0) *part = value;
+    }
+    return wall;
+}
+
+}  // namespace grainsweep::dem

@@ -1,0 +1,36 @@
+// Circular cylinder: a drum from inside, a roller from outside; with a length, a bore through a plate or a solid with
+// flat ends. Its surface turns and slides in itself, so that a turning drum stays where it is.
+#pragma once
+
+#include "solver/geometry/closest.hpp"
+#include "solver/geometry/round_body.hpp"
+
+#include <string>
+
+namespace grainsweep::geometry {
+
+struct Cylinder {
+    Vec3 point{};         ///< on the axis, of one with ends: its middle
+    Vec3 axis{0, 0, 1};   ///< unit
+    double radius = 0;    ///< m
+    Side side = Side::inside;
+    double length = std::numeric_limits<double>::infinity();  ///< m
+
+    static void fields(auto& s, auto&& visit) {
+        visit(s.point), visit(s.axis), visit(s.radius), visit(s.side), visit(s.length);
+    }
+    [[nodiscard]] Closest closest(const Vec3& x) const;
+    [[nodiscard]] Cylinder moved(const Vec3& by) const { return {point + by, axis, radius, side, length}; }
+    [[nodiscard]] bool unchanged_by_shift(const Vec3& direction) const;
+    [[nodiscard]] bool unchanged_by_turn(const Vec3& on_axis, const Vec3& turn) const;
+    [[nodiscard]] Extent extent(std::size_t along) const;
+    /// What is wrong with it, in one sentence; empty: nothing.
+    [[nodiscard]] std::string flaw() const;
+
+    /// Where s = 0: the middle, of one with ends the centre of the first.
+    [[nodiscard]] Vec3 foot() const;
+    /// In units of `unit` m.
+    [[nodiscard]] Meridian meridian(double unit) const;
+};
+
+}  // namespace grainsweep::geometry

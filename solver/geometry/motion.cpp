@@ -1,0 +1,123 @@
+#include "solver/geometry/motion.hpp"
+
+#include "solver/geometry/lines.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace grainsweep::geometry {
+namespace {
+
+double elapsed(const auto& motion, double t) {
+    return std::min(std::max(t, motion.start), motion.end) - motion.start;
+}
+bool runs(const auto& motion, double t) {
+    return t >= motion.start && t < motion.end;
+}
+double pulsation(const Vibration& v) {
+    return 2 * std::numbers::pi * v.frequency;
+}
+
+Vec3 displacement(const Translation& m, double t) {
+    return elapsed(m, t) * m.velocity;
+}
+Vec3 displacement(const Vibration& m, double t) {
+    const double sine = std::sin(pulsation(m) * elapsed(m, t) + m.phase) - std::sin(m.phase);
+    return sine * m.amplitude;
+}
+Vec3 displacement(const Rotation&, double) {
+    return {};
+}
+
+Vec3 velocity(const Translation& m, double) {
+    return m.velocity;
+}
+Vec3 velocity(const Vibration& m, double t) {
+    const double cosine = std::cos(pulsation(m) * elapsed(m, t) + m.phase);
+    return cosine * (pulsation(m) * m.amplitude);
+}
+Vec3 velocity(const Rotation&, double) {
+    return {};
+}
+
+/// Rodrigues: R a = cos a + sin (k x a) + (1 - cos) (k . a) k, column by column.
+std::array<Vec3, 3> rotation_rows(const Rotation& m, double t) {
+    const double angle = m.speed * elapsed(m, t);
+    const double c = std::cos(angle), s = std::sin(angle);
+    const Vec3& k = m.axis;
+    const double u = 1 - c;
+    return {{{c + u * k[0] * k[0], u * k[0] * k[1] - s * k[2], u * k[0] * k[2] + s * k[1]},
+             {u * k[1] * k[0] + s * k[2], c + u * k[1] * k[1], u * k[1] * k[2] - s * k[0]},
+             {u * k[2] * k[0] - s * k[1], u * k[2] * k[1] + s * k[0], c + u * k[2] * k[2]}}};
+}
+
+/// The pose after turning what stands in `pose` about a point.
+Pose turned(const Pose& pose, const std::array<Vec3, 3>& rows, const Vec3& point) {
+    const Pose rotation{.turned = true, .rows = rows, .shift = {}};
+    Pose result{.turned = true, .rows = {}, .shift = {}};
+    for (std::size_t column = 0; column < 3; ++column) {
+        const Vec3 a = rotation.turn({pose.rows[0][column], pose.rows[1][column], pose.rows[2][column]});
+        for (std::size_t row = 0; row < 3; ++row) result.rows[row][column] = a[row];
+    }
+    result.shift = point + rotation.turn(pose.shift - point);
+    return result;
+}
+
+}  // namespace
+
+Pose pose_at(std::span<const Motion> motions, double time) {
+    Pose pose;
+    Vec3 total{};
+    for (const Motion& motion : motions) {
+        total += std::visit([time](const auto& m) { return displacement(m, time); }, motion);
+        if (const auto* m = std::get_if<Rotation>(&motion)) pose = turned(pose, rotation_rows(*m, time), m->point);
+    }
+    pose.shift += total;
+    return pose;
+}
+
+Twist twist_at(std::span<const Motion> motions, double time) {
+    Twist twist;
+    Vec3 total{}, rate{};
+    for (const Motion& motion : motions) {
+        total += std::visit([time](const auto& m) { return displacement(m, time); }, motion);
+        if (std::visit([time](const auto& m) { return runs(m, time); }, motion))
+            rate += std::visit([time](const auto& m) { return velocity(m, time); }, motion);
+        const auto* m = std::get_if<Rotation>(&motion);
+        if (m == nullptr) continue;
+        if (twist.turns) {  // carried along, then seen from the new point
+            const Pose carry{.turned = true, .rows = rotation_rows(*m, time), .shift = {}};
+            twist.spin = carry.turn(twist.spin);
+            const Vec3 pivot = m->point + carry.turn(twist.pivot - m->point);
+            twist.velocity = carry.turn(twist.velocity) + cross(twist.spin, m->point - pivot);
+        }
+        if (runs(*m, time)) twist.spin += m->speed * m->axis;
+        twist.pivot = m->point;
+        twist.turns = true;
+    }
+    twist.velocity += rate;
+    twist.pivot += total;
+    return twist;
+}
+
+bool is_still(const Motion& motion) {
+    if (const auto* m = std::get_if<Translation>(&motion)) return m->velocity == Vec3{};
+    if (const auto* m = std::get_if<Vibration>(&motion)) return m->amplitude == Vec3{} || m->frequency == 0;
+    return std::get<Rotation>(motion).speed == 0;
+}
+
+std::string flaw(const Motion& motion) {
+    const bool ordered = std::visit([](const auto& m) { return std::isfinite(m.start) && m.end >= m.start; }, motion);
+    if (!ordered) return "a motion must start at a finite time and not end before it";
+    bool sound = true;
+    if (const auto* m = std::get_if<Translation>(&motion)) sound = finite(m->velocity);
+    if (const auto* m = std::get_if<Vibration>(&motion))
+        sound = finite(m->amplitude) && std::isfinite(m->frequency) && std::isfinite(m->phase);
+    if (const auto* m = std::get_if<Rotation>(&motion)) {
+        sound = finite(m->point) && finite(m->axis) && std::isfinite(m->speed);
+        if (sound && !is_unit(m->axis)) return "the axis of a rotation must have unit length";
+    }
+    return sound ? "" : "a motion must be finite";
+}
+
+}  // namespace grainsweep::geometry

@@ -1,0 +1,30 @@
+// What the closest points of curved shapes are written in, so that one text serves a number and vectors of numbers: a
+// type R with + - * /, and fma, sqrt, min, max, where_less and like, found beside it. Here for a single double.
+#pragma once
+
+#include <cmath>
+
+namespace grainsweep::geometry::number {
+
+/// `value` in the type of `example`.
+[[gnu::always_inline]] inline double like(double, double value) {
+    return value;
+}
+[[gnu::always_inline]] inline double fma(double a, double b, double c) {
+    return a * b + c;
+}
+[[gnu::always_inline]] inline double sqrt(double a) {
+    return std::sqrt(a);
+}
+[[gnu::always_inline]] inline double min(double a, double b) {
+    return b < a ? b : a;
+}
+[[gnu::always_inline]] inline double max(double a, double b) {
+    return a < b ? b : a;
+}
+/// a < b ? c : d
+[[gnu::always_inline]] inline double where_less(double a, double b, double c, double d) {
+    return a < b ? c : d;
+}
+
+}  // namespace grainsweep::geometry::number

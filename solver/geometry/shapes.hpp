@@ -1,0 +1,37 @@
+// The shapes a wall can have: the list. A shape lives in its body frame; all it owes is its closest point.
+//
+// A shape with one contact at a time has closest(x) and moved(by). One that may be touched in several places has instead
+//
+//     void touching(const Vec3& x, double reach, std::vector<Closest>& into) const    appends the places, nearest first
+//
+// whose contacts go on from step to step by their normals (contact_memory.hpp),
+// and all have: unchanged_by_shift, unchanged_by_turn (motions that leave its surface where it is), extent, flaw, and
+// fields, which visits what it is made of in one order, for checkpoints.
+#pragma once
+
+#include "solver/geometry/bar.hpp"
+#include "solver/geometry/cone.hpp"
+#include "solver/geometry/cylinder.hpp"
+#include "solver/geometry/plane.hpp"
+
+#include <concepts>
+#include <variant>
+#include <vector>
+
+namespace grainsweep::geometry {
+
+using Shape = std::variant<Plane, Bar, Cylinder, Cone>;
+
+/// A shape that is touched in one place at most.
+template <class S>
+concept SingleContact = requires(const std::remove_cvref_t<S>& shape, const Vec3& x) {
+    { shape.closest(x) } -> std::same_as<Closest>;
+};
+
+/// A shape that can be given displaced, so that its numbers round as if it had been given there.
+template <class S>
+concept Movable = requires(const S& shape, const Vec3& by) {
+    { shape.moved(by) } -> std::same_as<S>;
+};
+
+}  // namespace grainsweep::geometry
