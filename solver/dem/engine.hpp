@@ -113,8 +113,8 @@ struct ContactForce {
 };
 
 /// What the particles do to a wall, as of the last step: the reaction to their forces, moments and torques, so that
-/// momentum and angular momentum are conserved. The work is that of the force on the material of the wall at the closest
-/// point, with the velocity that the laws see.
+/// momentum and angular momentum are conserved. The work is that of the force on the material of the wall at the
+/// closest point, with the velocity that the laws see.
 struct WallLoad {
     Vec3 force{};     ///< on the wall, N
     Vec3 torque{};    ///< on the wall about the point asked for, N m

@@ -72,7 +72,8 @@ std::unique_ptr<Engine> make_engine(const Setup& setup, const Method& method) {
         require(geometry::norm(setup.gravity) > 0,
                 "a rest speed needs gravity: net forces are compared with the weight");
         for (const Wall& wall : setup.walls)
-            require(std::ranges::all_of(wall.motions, geometry::is_still), "powder among moving walls has no rest speed");
+            require(std::ranges::all_of(wall.motions, geometry::is_still),
+                    "powder among moving walls has no rest speed");
     }
     if (method.skin > 0) {
         double largest = 0;

@@ -56,6 +56,16 @@ Extent Bar::extent(std::size_t axis) const {
     return {};
 }
 
+Bar::Numbers Bar::numbers(const Vec3& centre, double unit, Vec3& origin) const {
+    Numbers n{};
+    n.half_width = 0.5 * thickness / unit;
+    n.bottom = (bottom - centre[2]) / unit;
+    n.top = (top - centre[2]) / unit;
+    n.edge_radius = std::min(edge_radius, 0.5 * thickness) / unit;
+    origin = {(front - centre[0]) / unit - n.half_width, 0, 0};
+    return n;
+}
+
 std::string Bar::flaw() const {
     for (const double x : {front, thickness, bottom, top, edge_radius})
         if (!std::isfinite(x)) return "a blade must be finite";

@@ -21,8 +21,8 @@ Meridian Cone::meridian(double unit) const {
 
 Closest Cone::closest(const Vec3& x) const {
     const Vec3 r = x - base;
-    const auto near = near_round_body(meridian(1), r[0], r[1], r[2]);
-    return {near.distance, {near.x, near.y, near.z}};
+    const auto found = near(meridian(1), r[0], r[1], r[2]);
+    return {found.distance, {found.x, found.y, found.z}};
 }
 
 bool Cone::unchanged_by_turn(const Vec3& on_axis, const Vec3& turn) const {

@@ -28,6 +28,11 @@ struct Cone {
 
     /// In units of `unit` m.
     [[nodiscard]] Meridian meridian(double unit) const;
+    using Numbers = Meridian;
+    [[nodiscard]] Numbers numbers(const Vec3& centre, double unit, Vec3& origin) const {
+        origin = (1 / unit) * (base - centre);
+        return meridian(unit);
+    }
 };
 
 }  // namespace grainsweep::geometry

@@ -23,8 +23,8 @@ Meridian Cylinder::meridian(double unit) const {
 Closest Cylinder::closest(const Vec3& x) const {
     const Vec3 r = x - foot();
     const Meridian m = meridian(1);
-    const auto near = std::isfinite(length) ? near_round_body(m, r[0], r[1], r[2]) : near_cylinder(m, r[0], r[1], r[2]);
-    return {near.distance, {near.x, near.y, near.z}};
+    const auto found = near(m, r[0], r[1], r[2]);
+    return {found.distance, {found.x, found.y, found.z}};
 }
 
 bool Cylinder::unchanged_by_shift(const Vec3& direction) const {
@@ -39,7 +39,8 @@ Extent Cylinder::extent(std::size_t along) const {
     if (side == Side::inside) return {};
     const double cosine = std::abs(axis[along]);
     if (!std::isfinite(length) && cosine > 0) return {};
-    const double half = (cosine > 0 ? 0.5 * length * cosine : 0) + radius * std::sqrt(std::max(0.0, 1 - cosine * cosine));
+    const double half =
+        (cosine > 0 ? 0.5 * length * cosine : 0) + radius * std::sqrt(std::max(0.0, 1 - cosine * cosine));
     return {point[along] - half, point[along] + half};
 }
 

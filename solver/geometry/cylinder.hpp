@@ -10,9 +10,9 @@
 namespace grainsweep::geometry {
 
 struct Cylinder {
-    Vec3 point{};         ///< on the axis, of one with ends: its middle
-    Vec3 axis{0, 0, 1};   ///< unit
-    double radius = 0;    ///< m
+    Vec3 point{};        ///< on the axis, of one with ends: its middle
+    Vec3 axis{0, 0, 1};  ///< unit
+    double radius = 0;   ///< m
     Side side = Side::inside;
     double length = std::numeric_limits<double>::infinity();  ///< m
 
@@ -31,6 +31,11 @@ struct Cylinder {
     [[nodiscard]] Vec3 foot() const;
     /// In units of `unit` m.
     [[nodiscard]] Meridian meridian(double unit) const;
+    using Numbers = Meridian;
+    [[nodiscard]] Numbers numbers(const Vec3& centre, double unit, Vec3& origin) const {
+        origin = (1 / unit) * (foot() - centre);
+        return meridian(unit);
+    }
 };
 
 }  // namespace grainsweep::geometry

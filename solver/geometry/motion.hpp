@@ -22,16 +22,16 @@
 namespace grainsweep::geometry {
 
 struct Translation {
-    Vec3 velocity{};  ///< m/s
+    Vec3 velocity{};                                                  ///< m/s
     double start = 0, end = std::numeric_limits<double>::infinity();  ///< s
 
     static void fields(auto& m, auto&& visit) { visit(m.velocity), visit(m.start), visit(m.end); }
 };
 
 struct Vibration {
-    Vec3 amplitude{};      ///< m
-    double frequency = 0;  ///< Hz
-    double phase = 0;      ///< rad
+    Vec3 amplitude{};                                                 ///< m
+    double frequency = 0;                                             ///< Hz
+    double phase = 0;                                                 ///< rad
     double start = 0, end = std::numeric_limits<double>::infinity();  ///< s; where it ends, it stays
 
     static void fields(auto& m, auto&& visit) {
@@ -40,9 +40,9 @@ struct Vibration {
 };
 
 struct Rotation {
-    Vec3 point{};        ///< on the axis, m
-    Vec3 axis{0, 0, 1};  ///< unit
-    double speed = 0;    ///< rad/s
+    Vec3 point{};                                                     ///< on the axis, m
+    Vec3 axis{0, 0, 1};                                               ///< unit
+    double speed = 0;                                                 ///< rad/s
     double start = 0, end = std::numeric_limits<double>::infinity();  ///< s
 
     static void fields(auto& m, auto&& visit) {

@@ -28,3 +28,13 @@ namespace grainsweep::geometry::number {
 }
 
 }  // namespace grainsweep::geometry::number
+
+namespace grainsweep::geometry {
+
+/// Distance and normal of a closest point, for a number or vectors of them.
+template <class R>
+struct Near {
+    R distance, x, y, z;
+};
+
+}  // namespace grainsweep::geometry

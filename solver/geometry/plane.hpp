@@ -3,10 +3,24 @@
 
 #include "solver/geometry/closest.hpp"
 #include "solver/geometry/lines.hpp"
+#include "solver/geometry/number.hpp"
 
 #include <string>
 
 namespace grainsweep::geometry {
+
+/// A plane in units about a centre.
+struct PlaneNumbers {
+    double normal[3];
+    double offset;  ///< normal . point
+};
+
+template <class R>
+[[gnu::always_inline]] inline Near<R> near(const PlaneNumbers& p, R x, R y, R z) {
+    using namespace number;
+    const R nx = like(x, p.normal[0]), ny = like(x, p.normal[1]), nz = like(x, p.normal[2]);
+    return {fma(nx, x, fma(ny, y, nz * z)) - like(x, p.offset), nx, ny, nz};
+}
 
 struct Plane {
     Vec3 point{};
@@ -18,6 +32,17 @@ struct Plane {
     [[nodiscard]] bool unchanged_by_shift(const Vec3& direction) const { return perpendicular(normal, direction); }
     [[nodiscard]] bool unchanged_by_turn(const Vec3&, const Vec3& axis) const { return parallel(normal, axis); }
     [[nodiscard]] Extent extent(std::size_t) const { return {}; }
+    using Numbers = PlaneNumbers;
+    [[nodiscard]] Numbers numbers(const Vec3& centre, double unit, Vec3& origin) const {
+        Numbers n{};
+        const double length = std::hypot(normal[0], normal[1], normal[2]);
+        for (std::size_t a = 0; a < 3; ++a) {
+            n.normal[a] = normal[a] / length;
+            n.offset += n.normal[a] * (point[a] - centre[a]) / unit;
+        }
+        origin = {};
+        return n;
+    }
     /// What is wrong with it, in one sentence; empty: nothing.
     [[nodiscard]] std::string flaw() const {
         if (!finite(point) || !finite(normal)) return "a plane must be finite";

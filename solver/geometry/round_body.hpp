@@ -1,10 +1,10 @@
 // Closest point of a body of revolution whose meridian is a straight line between two flat ends: the frustum of a cone,
 // a cylinder, from outside, or the bore of that shape in a plate, from inside.
 //
-// With rho, s the distance from the axis and the place along it, the solid is { g (rho - r(s)) >= 0, 0 <= s <= length },
-// g = 1 inside, -1 outside, r(s) = base + slope s. In the half plane of the point it is convex, its boundary a segment
-// and two rays; the closest of their closest points is the closest of all, for turning a boundary point into the half
-// plane of x brings it nearer. The normal points from there to x, or from x to there where x is in the solid.
+// With rho, s the distance from the axis and the place along it, the solid is { g (rho - r(s)) >= 0, 0 <= s <= length
+// }, g = 1 inside, -1 outside, r(s) = base + slope s. In the half plane of the point it is convex, its boundary a
+// segment and two rays; the closest of their closest points is the closest of all, for turning a boundary point into
+// the half plane of x brings it nearer. The normal points from there to x, or from x to there where x is in the solid.
 #pragma once
 
 #include "solver/geometry/number.hpp"
@@ -19,12 +19,6 @@ struct Meridian {
     double along, across;  ///< unit vector from the base to the end: along the axis, away from it
     double slant;          ///< distance between both
     double side;           ///< g
-};
-
-/// Distance and normal, for a number or vectors of them.
-template <class R>
-struct Near {
-    R distance, x, y, z;
 };
 
 /// Of a cylinder without ends; (x, y, z) from a point of its axis.
@@ -74,6 +68,11 @@ template <class R>
     const R inverse = sign / max(distance, tiny);
     const R n_rho = inverse * v_rho / max(rho, tiny), n_s = inverse * v_s;
     return {sign * distance, fma(n_s, ax, n_rho * rx), fma(n_s, ay, n_rho * ry), fma(n_s, az, n_rho * rz)};
+}
+
+template <class R>
+[[gnu::always_inline]] inline Near<R> near(const Meridian& m, R x, R y, R z) {
+    return m.length < 1e300 ? near_round_body(m, x, y, z) : near_cylinder(m, x, y, z);
 }
 
 }  // namespace grainsweep::geometry

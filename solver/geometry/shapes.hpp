@@ -1,11 +1,16 @@
 // The shapes a wall can have: the list. A shape lives in its body frame; all it owes is its closest point.
 //
-// A shape with one contact at a time has closest(x) and moved(by). One that may be touched in several places has instead
+// A shape with one contact at a time has closest(x) and moved(by). One that may be touched in several places has
+// instead
 //
 //     void touching(const Vec3& x, double reach, std::vector<Closest>& into) const    appends the places, nearest first
 //
 // whose contacts go on from step to step by their normals (contact_memory.hpp),
-// and all have: unchanged_by_shift, unchanged_by_turn (motions that leave its surface where it is), extent, flaw, and
+// One with closest(x) may have the same for vectors of positions (number.hpp): Numbers, plain doubles in units of its
+// user's choice, numbers(centre, unit, origin), which gives them and what positions are then relative to, and
+// near(numbers, x, y, z).
+//
+// All have: unchanged_by_shift, unchanged_by_turn (motions that leave its surface where it is), extent, flaw, and
 // fields, which visits what it is made of in one order, for checkpoints.
 #pragma once
 
@@ -26,6 +31,12 @@ using Shape = std::variant<Plane, Bar, Cylinder, Cone>;
 template <class S>
 concept SingleContact = requires(const std::remove_cvref_t<S>& shape, const Vec3& x) {
     { shape.closest(x) } -> std::same_as<Closest>;
+};
+
+/// A shape whose closest points can be found for vectors of positions.
+template <class S>
+concept Vectorised = requires(const S& shape, const Vec3& centre, Vec3& origin) {
+    { shape.numbers(centre, 1.0, origin) } -> std::same_as<typename S::Numbers>;
 };
 
 /// A shape that can be given displaced, so that its numbers round as if it had been given there.

@@ -38,7 +38,8 @@ void close_polygon(WallSurface& surface, std::int32_t first, std::int32_t corner
     for (std::int32_t k = 1; k + 1 < corners; ++k) surface.triangles.push_back({first, first + k, first + k + 1});
 }
 
-void show(const geometry::Plane& given, const geometry::Pose& pose, const Vec3& low, const Vec3& high, WallSurface& surface) {
+void show(const geometry::Plane& given, const geometry::Pose& pose, const Vec3& low, const Vec3& high,
+          WallSurface& surface) {
     const geometry::Plane plane{pose.from_body(given.point), pose.turn(given.normal)};
     // A square beyond the box in the plane: the smallest component of the normal shows a direction across it.
     const auto least = [](double a, double b) { return std::abs(a) < std::abs(b); };
@@ -83,7 +84,8 @@ std::vector<std::array<double, 2>> outline(const geometry::Bar& bar, double top)
     return line;
 }
 
-void show(const geometry::Bar& given, const geometry::Pose& pose, const Vec3& low, const Vec3& high, WallSurface& surface) {
+void show(const geometry::Bar& given, const geometry::Pose& pose, const Vec3& low, const Vec3& high,
+          WallSurface& surface) {
     const geometry::Bar bar = pose.turned ? given : given.moved(pose.shift);
     const double top = std::min(bar.top, high[2]);
     if (!(bar.bottom + bar.edge_radius < top)) return;

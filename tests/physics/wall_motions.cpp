@@ -2,6 +2,7 @@
 // energy that walls give.
 #include "solver/dem/engine.hpp"
 #include "solver/dem/material.hpp"
+#include "tests/support/moving_walls.hpp"
 #include "tests/support/spheres.hpp"
 
 #include <gtest/gtest.h>
@@ -14,68 +15,18 @@ using namespace grainsweep;
 using dem::Vec3;
 using namespace geometry;
 using std::numbers::pi;
+using tests::moving_walls;
+using tests::one_sphere;
 
 namespace {
 
-constexpr double radius = 1e-3;
+constexpr double radius = tests::sphere_at_walls;
 constexpr double gravity = 9.81;
-
-dem::Setup one_sphere(const Vec3& x, const Vec3& v, std::vector<dem::Wall> walls) {
-    dem::Setup s;
-    s.domain = {{-0.05, -0.05, -0.05}, {0.05, 0.05, 0.05}, {}};
-    s.material = {.youngs_modulus = 21e6, .density = 2500, .restitution = 0.5, .friction = 0.3};
-    s.gravity = {};
-    s.time_step = 1e-6;
-    s.spheres = {{x, v, {}, radius, true}};
-    s.walls = std::move(walls);
-    return s;
-}
 
 /// Overlap that carries the weight on a plane.
 double resting_overlap(const dem::Setup& s) {
     const double mass = dem::sphere_mass(radius, s.material.density);
     return std::pow(mass * gravity / (dem::hertz(s.material).stiffness * std::sqrt(radius)), 2.0 / 3);
-}
-
-/// Walls that move and turn in all ways, each met by the sphere at (0, 0, z): the first hit is soon.
-struct Moving {
-    const char* name;
-    dem::Wall wall;
-    Vec3 position, velocity;
-};
-
-std::vector<Moving> moving_walls() {
-    const dem::Plane floor;
-    const dem::Cylinder drum{.point = {}, .axis = {0, 1, 0}, .radius = 0.01, .side = dem::Side::inside};
-    const dem::Cylinder roller{
-        .point = {}, .axis = {0, 1, 0}, .radius = 0.01, .side = dem::Side::outside, .length = 0.02};
-    const dem::Cone funnel{.base = {0, 0, -0.01}, .base_radius = 0.002, .end_radius = 0.012, .length = 0.02};
-    const Vec3 above{0.002, 0.001, 1.01e-3}, down{0.05, 0.02, -0.3};
-    return {
-        {"translation", {floor, {dem::Translation{.velocity = {0.1, -0.05, 0.2}}}}, above, down},
-        {"vibration",
-         {floor, {dem::Vibration{.amplitude = {1e-4, 0, 2e-4}, .frequency = 400, .phase = 0.7}}},
-         above,
-         down},
-        {"flap", {floor, {dem::Rotation{.point = {-0.02, 0, 0}, .axis = {0, -1, 0}, .speed = 8}}}, above, down},
-        {"turntable", {floor, {dem::Rotation{.speed = 40}}}, above, down},
-        {"flap on a carriage",
-         {floor,
-          {dem::Translation{.velocity = {0.3, 0, 0.1}},
-           dem::Rotation{.point = {-0.02, 0, 0}, .axis = {0, -1, 0}, .speed = 8},
-           dem::Rotation{.axis = {0, 0, 1}, .speed = 20}}},
-         above,
-         down},
-        {"drum", {drum, {dem::Rotation{.axis = {0, 1, 0}, .speed = 30}}}, {0, 0, -0.00899}, down},
-        {"roller that travels",
-         {roller, {dem::Rotation{.axis = {0, 1, 0}, .speed = -30}, dem::Translation{.velocity = {0.2, 0, 0}}}},
-         {0.0005, 0.002, 0.01101},
-         down},
-        {"cone about another axis",
-         {funnel, {dem::Rotation{.point = {0.001, 0, 0}, .axis = {0, 0, 1}, .speed = 50}}},
-         {0.0058, 0, 0},
-         {0.4, 0.1, 0}},
-    };
 }
 
 /// Runs `steps` steps one by one and sums what the wall's loads give.
@@ -164,7 +115,8 @@ TEST(WallMotions, EnergyIsConservedUpToTheWorkOfTheWall) {
             setup.material.restitution = 1;
             setup.time_step = k == 0 ? 1e-6 : 2.5e-7;
             const auto b = booked(setup, k == 0 ? long_enough : 4 * long_enough);
-            error[k] = std::abs(b.energy - b.work) / (0.5 * dem::sphere_mass(radius, 2500) * dot(m.velocity, m.velocity));
+            error[k] =
+                std::abs(b.energy - b.work) / (0.5 * dem::sphere_mass(radius, 2500) * dot(m.velocity, m.velocity));
         }
         EXPECT_LT(error[0], 2e-3);
         EXPECT_LT(error[1], 0.2 * error[0] + 5e-7) << "of the integrator";
@@ -200,7 +152,8 @@ TEST(WallMotions, TheSameInAMovingFrame) {
     const std::vector<dem::Wall> walls = {
         dem::Plane{}, {roller, {turns}}, funnel, dem::Bar{0.01, 0.02, -0.01, 0, 1e-3}};
     for (std::size_t w = 0; w < walls.size(); ++w) {
-        const Vec3 x = w == 2 ? Vec3{0.01477, 0, 0} : Vec3{0.001, 0, 1.01e-3}, v = w == 2 ? Vec3{0.3, 0, 0} : Vec3{0.05, 0, -0.3};
+        const Vec3 x = w == 2 ? Vec3{0.01477, 0, 0} : Vec3{0.001, 0, 1.01e-3},
+                   v = w == 2 ? Vec3{0.3, 0, 0} : Vec3{0.05, 0, -0.3};
         auto moving = walls[w];
         moving.motions.emplace_back(dem::Translation{.velocity = frame});
         const auto here = dem::make_engine(one_sphere(x, v, {walls[w]}), {});
@@ -223,7 +176,8 @@ TEST(WallMotions, TheSameInAMovingFrame) {
 // v' = u + e (u - v); v' = 2u - v without damping. The damped Hertz contact keeps e to 1e-4 without gravity.
 TEST(WallMotions, AWallInMotionGivesItsVelocityToARebound) {
     for (const double e : {0.5, 1.0}) {
-        auto setup = one_sphere({0, 0, 1.001e-3}, {0, 0, -0.3}, {{dem::Plane{}, {dem::Translation{.velocity = {0, 0, 0.2}}}}});
+        auto setup =
+            one_sphere({0, 0, 1.001e-3}, {0, 0, -0.3}, {{dem::Plane{}, {dem::Translation{.velocity = {0, 0, 0.2}}}}});
         setup.material.restitution = e;
         const auto engine = dem::make_engine(setup, {});
         engine->run(400);
@@ -246,7 +200,8 @@ TEST(WallMotions, ListsFollowTheSurfaceOnly) {
     const dem::Plane floor{{0, 0, -0.0205}, {0, 0, 1}};
     const dem::Cylinder drum{.point = {}, .axis = {0, 1, 0}, .radius = 0.0205};
     const dem::Cylinder roller{.point = {0, 0, 0.002}, .axis = {0, 1, 0}, .radius = 0.001, .side = dem::Side::outside};
-    const dem::Rotation about_y{.axis = {0, 1, 0}, .speed = 50}, beside{.point = {1e-3, 0, 0}, .axis = {0, 1, 0}, .speed = 50};
+    const dem::Rotation about_y{.axis = {0, 1, 0}, .speed = 50},
+        beside{.point = {1e-3, 0, 0}, .axis = {0, 1, 0}, .speed = 50};
     const std::vector<std::pair<dem::Wall, bool>> walls = {
         {{floor, {dem::Translation{.velocity = {3, 1, 0}}}}, true},
         {{floor, {dem::Rotation{.axis = {0, 0, -1}, .speed = 90}}}, true},
@@ -291,12 +246,14 @@ TEST(WallMotions, ATurntableTurnsTheVelocityAtTwoSeventhsOfItsRate) {
 // Down the inside of a cone of half angle a, sliding: g (cos a - mu sin a).
 TEST(WallMotions, SlidesDownAConeWithItsFriction) {
     constexpr double a = pi / 6, mu = 0.1;
-    const dem::Cone funnel{.base = {0, 0, -0.03}, .base_radius = 0.005, .end_radius = 0.005 + 0.07 * std::tan(a), .length = 0.07};
+    const dem::Cone funnel{
+        .base = {0, 0, -0.03}, .base_radius = 0.005, .end_radius = 0.005 + 0.07 * std::tan(a), .length = 0.07};
     auto setup = one_sphere({}, {}, {funnel});
     setup.material.friction = mu;
     setup.gravity = {0, 0, -gravity};
     const double mass = dem::sphere_mass(radius, setup.material.density);
-    const double overlap = std::pow(mass * gravity * std::sin(a) / (dem::hertz(setup.material).stiffness * std::sqrt(radius)), 2.0 / 3);
+    const double overlap =
+        std::pow(mass * gravity * std::sin(a) / (dem::hertz(setup.material).stiffness * std::sqrt(radius)), 2.0 / 3);
     const double at_height = 0.005 + 0.05 * std::tan(a);
     setup.spheres[0].position = {at_height - (radius - overlap) / std::cos(a), 0, 0.02};
     const auto engine = dem::make_engine(setup, {});

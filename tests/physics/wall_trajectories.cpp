@@ -1,5 +1,5 @@
-// One sphere at planes, cylinders and cones, at rest and in motion, against LIGGGHTS 3.8 and the exact evaluation beside
-// it (tests/reference/walls): the same law and time step give the same numbers up to rounding.
+// One sphere at planes, cylinders and cones, at rest and in motion, against LIGGGHTS 3.8 and the exact evaluation
+// beside it (tests/reference/walls): the same law and time step give the same numbers up to rounding.
 #include "solver/dem/engine.hpp"
 #include "tests/support/reference.hpp"
 #include "tests/support/wall_case.hpp"
@@ -59,7 +59,8 @@ std::vector<std::pair<std::string, json>> cases() {
         for (const auto& [name, c] : all.items()) {
             if (!c["meshes"].empty()) continue;
             const json& wall = c["primitives"][0];
-            const bool slides = wall.contains("shear") && wall["shear"][0].get<std::string>()[0] == wall["kind"].get<std::string>()[0];
+            const bool slides =
+                wall.contains("shear") && wall["shear"][0].get<std::string>()[0] == wall["kind"].get<std::string>()[0];
             if (wall.contains("shear") && !slides && !wall.contains("surface")) continue;  // of the centre: see README
             chosen.emplace_back(name, c);
         }

@@ -69,7 +69,8 @@ std::vector<geometry::Motion> motions_of(const json& mesh) {
         if (kind == "linear")
             motions.push_back(dem::Translation{.velocity = vec(m["v"])});
         else if (kind == "wiggle")
-            motions.push_back(dem::Vibration{.amplitude = vec(m["amplitude"]), .frequency = 1 / m["period"].get<double>()});
+            motions.push_back(
+                dem::Vibration{.amplitude = vec(m["amplitude"]), .frequency = 1 / m["period"].get<double>()});
         else if (kind == "rotate")
             motions.push_back(dem::Rotation{.point = vec(m["origin"]),
                                             .axis = vec(m["axis"]),

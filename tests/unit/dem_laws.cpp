@@ -1,8 +1,8 @@
 #include "solver/dem/laws/contact.hpp"
 #include "solver/dem/limits.hpp"
 #include "solver/dem/material.hpp"
-#include "solver/dem/walls/moving_wall.hpp"
 #include "solver/dem/time_step.hpp"
+#include "solver/dem/walls/moving_wall.hpp"
 
 #include <gtest/gtest.h>
 

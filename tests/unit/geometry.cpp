@@ -1,8 +1,8 @@
 #include "solver/geometry/bar.hpp"
 #include "solver/geometry/cone.hpp"
 #include "solver/geometry/cylinder.hpp"
-#include "solver/geometry/motion.hpp"
 #include "solver/geometry/domain.hpp"
+#include "solver/geometry/motion.hpp"
 #include "solver/geometry/plane.hpp"
 #include "stats/random.hpp"
 
@@ -151,7 +151,8 @@ TEST(RoundBody, FindsTheClosestPointOfConesAndCylinders) {
                 ASSERT_NEAR(norm(same.closest(x).normal - closest.normal), 0, 1e-12);
                 const Cylinder endless{{0, 0, 77}, {0, 0, 1}, base, side};
                 const double from_axis = std::hypot(x[0], x[1]);
-                ASSERT_NEAR(endless.closest(x).distance, side == Side::inside ? base - from_axis : from_axis - base, 1e-13);
+                ASSERT_NEAR(endless.closest(x).distance, side == Side::inside ? base - from_axis : from_axis - base,
+                            1e-13);
             }
 }
 
@@ -168,7 +169,8 @@ TEST(Motions, ComposeInClosedForm) {
         const auto pose = pose_at(motions, t);
         EXPECT_NEAR(norm(pose.to_body(pose.from_body(body)) - body), 0, 1e-14);
         const double h = 1e-5;
-        const Vec3 rate = (1 / (2 * h)) * (pose_at(motions, t + h).from_body(body) - pose_at(motions, t - h).from_body(body));
+        const Vec3 rate =
+            (1 / (2 * h)) * (pose_at(motions, t + h).from_body(body) - pose_at(motions, t - h).from_body(body));
         EXPECT_NEAR(norm(twist_at(motions, t).at(pose.from_body(body)) - rate), 0, 1e-8) << t;
     }
     // A million turns leave it where it is: nothing adds up.

@@ -189,8 +189,8 @@ private:
         double r2;
         std::uint32_t i, entry;
     };
-    std::vector<Touching> touching_;  // scratch of pair_contacts
-    std::vector<WallTouch> touched_before_;  // scratch of find_touches
+    std::vector<Touching> touching_;           // scratch of pair_contacts
+    std::vector<WallTouch> touched_before_;    // scratch of find_touches
     std::vector<StoredMemory> memory_before_;  // likewise
 
     std::int64_t wall_steps_ = 0;

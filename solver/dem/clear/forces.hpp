@@ -182,7 +182,7 @@ void ClearEngine<Laws, case_needs>::find_touches(Contacts& contacts) {
             std::size_t b_end = b, n_end = n;
             while (b_end < before.size() && before[b_end].entry == entry) ++b_end;
             while (n_end < now.size() && now[n_end].entry == entry) ++n_end;
-            inherit({before.data() + b, b_end - b}, {now.data() + n, n_end - n}, from);
+            contacts.wall.inherit({before.data() + b, b_end - b}, {now.data() + n, n_end - n}, from);
             for (std::size_t k = 0; k < from.size(); ++k)
                 if (from[k] >= 0) contacts.memory[n + k] = memory_before_[b + static_cast<std::size_t>(from[k])];
             n = n_end;
@@ -287,9 +287,7 @@ void ClearEngine<Laws, case_needs>::contacts(std::vector<ContactForce>& into) co
         into.push_back({p_.id[i], second, t.overlap, t.normal, r.normal, r.tangential, r.rolling});
     };
     for_each_touching_pair(
-        [&](std::size_t i, std::size_t j, const auto& t, const Memory& memory) {
-        add(laws_, i, p_.id[j], t, memory);
-    });
+        [&](std::size_t i, std::size_t j, const auto& t, const Memory& memory) { add(laws_, i, p_.id[j], t, memory); });
     for_each_touched_wall([&](std::size_t i, std::size_t w, const auto& t, const Memory& memory) {
         add(walls_[w].laws, i, -1 - static_cast<std::int32_t>(w), t, memory);
     });

@@ -52,9 +52,8 @@ std::unique_ptr<Engine> make_clear_engine(const Setup& setup, const Method& meth
     const bool frozen = std::ranges::any_of(spheres, [](const Sphere& s) { return !s.mobile; });
     const bool sizes = std::ranges::any_of(spheres, [&](const Sphere& s) { return s.radius != spheres[0].radius; });
     const auto somewhere = [&](auto part) {  // in the powder or at a wall
-        return part(m) > 0 || std::ranges::any_of(setup.walls, [&](const Wall& w) {
-                   return part(at_surface(m, w.surface)) > 0;
-               });
+        return part(m) > 0 ||
+               std::ranges::any_of(setup.walls, [&](const Wall& w) { return part(at_surface(m, w.surface)) > 0; });
     };
     const bool friction = somewhere([](const Material& of) { return of.friction; });
     const bool rolling = somewhere([](const Material& of) { return of.rolling_friction; });

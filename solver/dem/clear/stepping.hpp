@@ -217,7 +217,8 @@ auto ClearEngine<Laws, case_needs>::make_walls(const std::vector<Wall>& walls) c
         const Material m = at_surface(material_, wall.surface);
         if ((m.friction > 0 && !needs.tangential_history) || (m.rolling_friction > 0 && !needs.rolling_history))
             throw std::invalid_argument("the surface of a wall has friction that nothing at the start had");
-        made.push_back({MovingWall(wall, domain_, largest_radius_), make_laws_(m, time_step_), {}, 0, {}, {}, {}, {}, {}});
+        made.push_back(
+            {MovingWall(wall, domain_, largest_radius_), make_laws_(m, time_step_), {}, 0, {}, {}, {}, {}, {}});
     }
     return made;
 }

@@ -57,7 +57,8 @@ void MixedEngine::pass(Self& self, Archive& archive) {
 
 void MixedEngine::pass_walls(const MixedEngine& self, Writer& archive) {
     archive.value(self.walls_.size());
-    for (const MovingWall& wall : self.walls_) write_wall(wall.wall(), [&](const auto& value) { archive.value(value); });
+    for (const MovingWall& wall : self.walls_)
+        write_wall(wall.wall(), [&](const auto& value) { archive.value(value); });
 }
 
 void MixedEngine::pass_walls(MixedEngine& self, Reader& archive) {

@@ -23,7 +23,8 @@ std::vector<Motion> displacing(const Shape& shape, std::span<const Motion> motio
     std::vector<bool> moves(motions.size(), true);
     for (std::size_t k = 0; k < motions.size(); ++k)
         if (const auto* r = std::get_if<Rotation>(&motions[k])) {
-            moves[k] = turns || !std::visit([r](const auto& s) { return s.unchanged_by_turn(r->point, r->axis); }, shape);
+            moves[k] =
+                turns || !std::visit([r](const auto& s) { return s.unchanged_by_turn(r->point, r->axis); }, shape);
             turns = turns || moves[k];
         }
     const auto stays = [&](const Vec3& direction) {
@@ -57,7 +58,8 @@ template <class S, class Visit>
 void in_frame(const S& shape, const Pose& pose, const NearestImage& image, Visit&& visit) {
     if constexpr (Movable<S>)
         if (!pose.turned) {
-            visit(shape.moved(pose.shift), [&](const Vec3& x) { return image.of(x); }, [](const Vec3& n) { return n; });
+            visit(
+                shape.moved(pose.shift), [&](const Vec3& x) { return image.of(x); }, [](const Vec3& n) { return n; });
             return;
         }
     visit(
@@ -98,7 +100,8 @@ MovingWall::MovingWall(Wall wall, const Domain& domain, double largest) : wall_(
         bounded_ = bounded_ && e.bounded();
         low_[k] = e.low;
         high_[k] = e.high;
-        const bool has_ends = !std::visit([k](const auto& s) { return s.unchanged_by_shift(unit_vectors[k]); }, wall_.shape);
+        const bool has_ends =
+            !std::visit([k](const auto& s) { return s.unchanged_by_shift(unit_vectors[k]); }, wall_.shape);
         if (!domain.periodic[k] || !has_ends) continue;
         body_image_.middle[k] = 0.5 * (e.low + e.high);
         body_image_.period[k] = domain.length(k);

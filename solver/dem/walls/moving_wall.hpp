@@ -73,7 +73,7 @@ private:
 
     Wall wall_;
     std::vector<geometry::Motion> displacing_;  // those that move the surface
-    bool switches_ = false;           // one of them starts late or ends
+    bool switches_ = false;                     // one of them starts late or ends
     bool bounded_ = false;
     bool single_contact_ = true;
     Vec3 low_{}, high_{};  // of the body where it has ends everywhere, else of the space particles can reach

@@ -23,7 +23,7 @@ using geometry::Vibration;
 
 /// What differs from the powder's material in contacts with a wall.
 struct Surface {
-    std::optional<double> friction, rolling_friction, restitution;
+    std::optional<double> friction{}, rolling_friction{}, restitution{};
 
     bool operator==(const Surface&) const = default;
 };
@@ -37,7 +37,7 @@ struct Wall {
     Wall() = default;
     template <class S>
     requires(std::constructible_from<Shape, S> && !std::same_as<std::remove_cvref_t<S>, Wall>)
-    Wall(S&& of, std::vector<geometry::Motion> in_motion = {}, Surface with = {})  // NOLINT: a shape is a wall
+        Wall(S&& of, std::vector<geometry::Motion> in_motion = {}, Surface with = {})  // NOLINT: a shape is a wall
         : shape(std::forward<S>(of)), motions(std::move(in_motion)), surface(with) {}
 };
 
