@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace grainsweep::particles {
 namespace {
@@ -46,6 +47,18 @@ SizeDistribution SizeDistribution::lognormal(double spread) {
     return sizes;
 }
 
+SizeDistribution SizeDistribution::uniform(double half_width) {
+    SizeDistribution sizes;
+    sizes.law_ = Uniform{half_width};
+    return sizes;
+}
+
+SizeDistribution SizeDistribution::table(SizeTable table) {
+    SizeDistribution sizes;
+    sizes.law_ = std::move(table);
+    return sizes;
+}
+
 double SizeDistribution::diameter(double u) const {
     if (const auto* classes = std::get_if<Classes>(&law_)) {
         std::size_t k = 0;
@@ -54,6 +67,8 @@ double SizeDistribution::diameter(double u) const {
     }
     if (const auto* law = std::get_if<Lognormal>(&law_))
         return law->median * std::exp(law->spread * normal_quantile(cut + (1 - 2 * cut) * u));
+    if (const auto* law = std::get_if<Uniform>(&law_)) return 1 + law->half_width * (2 * u - 1);
+    if (const auto* table = std::get_if<SizeTable>(&law_)) return table->diameter(u);
     return 1;
 }
 
@@ -74,6 +89,13 @@ double SizeDistribution::moment(int power) const {
     }
     if (const auto* law = std::get_if<Lognormal>(&law_))
         return std::pow(law->median, power) * truncated_moment(law->spread, power);
+    if (const auto* law = std::get_if<Uniform>(&law_)) {
+        double sum = 0;  // ((1 + w)^(n + 1) - (1 - w)^(n + 1))/(2 w (n + 1)) without the division by w
+        for (int k = 0; k <= power; ++k)
+            sum += std::pow(1 + law->half_width, k) * std::pow(1 - law->half_width, power - k);
+        return sum / (power + 1);
+    }
+    if (const auto* table = std::get_if<SizeTable>(&law_)) return table->moment(power);
     return 1;
 }
 

@@ -6,12 +6,15 @@
 //                w = 0.15 (wide) or 0.1 (narrow). Their mean is (1 + 0.0549 w) D.
 //     lognormal  ln d normal with standard deviation s, without its 0.5 % smallest and 0.5 % largest; the median is
 //                chosen so that the mean of what is left is D
+//     uniform    d evenly between (1 - w) D and (1 + w) D
+//     table      as measured: size_table.hpp
 // With a = Phi^-1(0.995) and median m the moments of the truncated lognormal are
 //     E[d^k] = m^k exp(k^2 s^2/2) (Phi(a - k s) - Phi(-a - k s))/0.99.
 #pragma once
 
+#include "solver/particles/size_table.hpp"
+
 #include <variant>
-#include <vector>
 
 namespace grainsweep::particles {
 
@@ -23,6 +26,10 @@ public:
     [[nodiscard]] static SizeDistribution weibull_classes(double width);
     /// Standard deviation of ln d before truncation; spread >= 0.
     [[nodiscard]] static SizeDistribution lognormal(double spread);
+    /// Relative half-width; 0 <= half_width < 1.
+    [[nodiscard]] static SizeDistribution uniform(double half_width);
+    /// Its diameters in units of D.
+    [[nodiscard]] static SizeDistribution table(SizeTable sizes);
 
     /// One size, without any draw. A lognormal without spread is not asked here: it draws, and gets D each time.
     [[nodiscard]] bool equal() const { return std::holds_alternative<Equal>(law_); }
@@ -30,7 +37,7 @@ public:
     [[nodiscard]] double diameter(double u) const;
     [[nodiscard]] double smallest() const;
     [[nodiscard]] double largest() const;
-    /// E[(d/D)^power].
+    /// E[(d/D)^power], power >= 0.
     [[nodiscard]] double moment(int power) const;
 
 private:
@@ -41,7 +48,10 @@ private:
     struct Lognormal {
         double spread = 0, median = 1;
     };
-    std::variant<Equal, Classes, Lognormal> law_;
+    struct Uniform {
+        double half_width = 0;
+    };
+    std::variant<Equal, Classes, Lognormal, Uniform, SizeTable> law_;
 };
 
 }  // namespace grainsweep::particles

@@ -22,6 +22,7 @@
 #include "solver/scenes/catalogue.hpp"
 #include "solver/scenes/dem_picture.hpp"
 #include "solver/scenes/drawn_box.hpp"
+#include "solver/scenes/tpms/observables.hpp"
 #include "solver/scenes/tpms/question.hpp"
 #include "solver/scenes/tpms/record.hpp"
 #include "solver/scenes/tpms/warnings.hpp"
@@ -46,13 +47,9 @@ constexpr std::int64_t samples_per_force_sample = 10;
 constexpr double quiet_speed = 1e-3;  // sqrt(2 g L)
 constexpr std::size_t layers = 20;
 
-particles::Packing packing_of(const TpmsQuestion& question, Artefacts& artefacts, const Files& files) {
-    if (const auto file = file_word(question.packing)) {
-        const auto given = files.find("packing");
-        if (given == files.end())
-            throw std::invalid_argument("packing: the contents of " + std::string(file->path) + " are not given");
-        return particles::read_packing(given->second, question.edge);
-    }
+particles::Packing packing_of(const TpmsQuestion& question, const Inputs& inputs, Artefacts& artefacts,
+                              const Files& files) {
+    if (question.packing_given) return particles::read_packing(tpms_packing_text(inputs, files), question.edge);
     const particles::PackingRequest request{
         .edge = question.edge, .fraction = question.packing_fraction, .seed = question.packing_seed};
     const std::string key = particles::packing_key(request);
@@ -226,7 +223,7 @@ void TpmsDischarge::observe_profile(Observations& into) const {
     std::array<std::int64_t, layers> now{};
     for (std::size_t i = 0; i < state.id.size(); ++i)
         if (state.mobile[i] != 0 && in_cell(state.position[i])) ++now[layer(state.position[i])];
-    auto& profile = into.series["retained_profile"];
+    auto& profile = tpms_record::retained_profile.in(into);
     for (std::size_t k = 0; k < layers; ++k) {
         if (start_layers_[k] == 0) continue;
         const double centre = (static_cast<double>(k) + 0.5) / static_cast<double>(layers);
@@ -238,11 +235,12 @@ void TpmsDischarge::observe_profile(Observations& into) const {
 void TpmsDischarge::observe(Observations& into) const {
     record_.observe(into);
     observe_profile(into);
-    into.scalars["beverloo_rate"] = beverloo();
-    into.scalars["outlet_diameter"] = outlet_;
-    into.scalars["max_overlap"] = max_overlap_;
-    into.scalars["particles"] = static_cast<double>(start_count_);
-    into.scalars["wall_particles"] = static_cast<double>(wall_spheres_);
+    kit::record_bond_number(into, question_.material, question_.diameter, question_.gravity);
+    tpms_record::beverloo_rate.record(into, beverloo());
+    tpms_record::outlet_diameter.record(into, outlet_);
+    tpms_record::max_overlap.record(into, max_overlap_);
+    tpms_record::particles.record(into, static_cast<double>(start_count_));
+    tpms_record::wall_particles.record(into, static_cast<double>(wall_spheres_));
 }
 
 void TpmsDischarge::save(Bytes& into) const {
@@ -311,7 +309,7 @@ SceneInfo tpms_discharge_scene() {
     info.summary = "powder leaving a cell walled by a triply periodic minimal surface under gravity";
     info.revision = 4;
     info.parameters = tpms_discharge_parameters();
-    info.observables = tpms_discharge_observables();
+    info.observables = tpms_record::observables();
     // Twice the study's step, for 0.6 of the cost: retention at 1 t* differs by -0.1 +- 0.07 %, of a jammed cell at 3
     // t* by -0.5 +- 1.4 %; but that comes to rest later, and at 3 us it never does (solver/dem/README.md).
     info.accuracy["fast"] = {{"precision", std::string("mixed")}, {"time_step", 2e-6}};
@@ -321,7 +319,7 @@ SceneInfo tpms_discharge_scene() {
                     const Files& files) -> std::unique_ptr<Scene> {
         const TpmsQuestion question(inputs, seed);
         const geometry::TpmsShell shell(question.cell, question.side, question.edge, question.shell);
-        const particles::Packing packing = packing_of(question, artefacts, files);
+        const particles::Packing packing = packing_of(question, inputs, artefacts, files);
         const auto filling = particles::fill_tpms(packing, shell, 1 - most_overlap);
         if (filling.mobile.empty())
             throw std::invalid_argument(

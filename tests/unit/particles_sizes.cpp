@@ -1,6 +1,7 @@
 // Size distributions and the loose start of unequal spheres.
 #include "solver/particles/random_addition.hpp"
 #include "solver/particles/size_distribution.hpp"
+#include "solver/particles/size_table.hpp"
 #include "stats/random.hpp"
 
 #include <gtest/gtest.h>
@@ -8,6 +9,8 @@
 #include <cmath>
 #include <map>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 
 using namespace grainsweep;
 using namespace grainsweep::particles;
@@ -31,6 +34,14 @@ TEST(SizeDistribution, EqualIsOne) {
     EXPECT_EQ(equal.moment(3), 1);
     EXPECT_FALSE(SizeDistribution::lognormal(0).equal());
     EXPECT_NEAR(SizeDistribution::lognormal(0).largest(), 1, 1e-15);
+}
+
+TEST(SizeDistribution, UniformHasItsMoments) {
+    const auto sizes = SizeDistribution::uniform(0.3);
+    EXPECT_DOUBLE_EQ(sizes.smallest(), 0.7);
+    EXPECT_DOUBLE_EQ(sizes.moment(2), 1 + 0.3 * 0.3 / 3);
+    EXPECT_NEAR(sizes.moment(3), quadrature(sizes, 3), 1e-8);
+    EXPECT_EQ(SizeDistribution::uniform(0).moment(3), 1);
 }
 
 // Shares of 20,000 draws against those printed: chi-square with 4 degrees of freedom, 18.5 at one in a thousand.
@@ -108,4 +119,73 @@ TEST(RandomAddition, SaysWhenThereIsNoRoom) {
     EXPECT_THROW((void)random_addition(tray, std::vector<double>(40, 0.5), 1), std::invalid_argument);  // 0.65
     EXPECT_THROW((void)random_addition(tray, std::vector<double>{1.01}, 1), std::invalid_argument);
     EXPECT_TRUE(random_addition(tray, {}, 1).empty());
+}
+
+// Sampled moments against the table's, and those against what its text says.
+TEST(SizeTable, SamplesHaveTheMomentsOfTheFile) {
+    for (const char* header : {"number_fraction", "volume_fraction", "number_below", "volume_below"}) {
+        const bool below = std::string_view(header).ends_with("below");
+        const auto table = SizeTable::read("diameter," + std::string(header) +
+                                           (below ? "\n20e-6,0\n30e-6,0.25\n40e-6,0.7\n60e-6,1\n"
+                                                  : "\n20e-6,0.3\n 30e-6, 0.5 \r\n\n60e-6,0.2\n"))
+                               .over(30e-6);
+        const auto sizes = SizeDistribution::table(table);
+        for (const int power : {1, 2, 3})
+            EXPECT_NEAR(sizes.moment(power) / quadrature(sizes, power), 1, 2e-4) << header << " " << power;
+        const stats::Stream random(7, 3);
+        constexpr std::uint64_t draws = 40'000;
+        double sum = 0, squares = 0;
+        for (std::uint64_t k = 0; k < draws; ++k) {
+            const double v = std::pow(sizes.diameter(random.uniform(k)), 3);
+            sum += v, squares += v * v;
+        }
+        const double mean = sum / draws, error = std::sqrt((squares / draws - mean * mean) / draws);
+        EXPECT_NEAR(mean, sizes.moment(3), 4 * error) << header;
+        EXPECT_NEAR(sizes.smallest(), 2.0 / 3, 1e-12);
+        EXPECT_NEAR(sizes.largest(), 2, 1e-12);
+    }
+}
+
+TEST(SizeTable, SharesOfTheVolumeAreThose) {
+    const auto classes = SizeTable::read("diameter,volume_fraction\n1e-4,0.5\n2e-4,0.5\n").over(1e-4);
+    // Half of the volume in spheres of eight times the volume: one in nine.
+    EXPECT_NEAR(classes.moment(1), (8 + 2) / 9.0, 1e-12);
+    EXPECT_EQ(classes.diameter(0.888), 1);
+    EXPECT_EQ(classes.diameter(0.889), 2);
+    const auto even = SizeTable::read("diameter,volume_below\n1e-4,0\n3e-4,1\n").over(1e-4);
+    double volume = 0, lower = 0;
+    constexpr int n = 100'000;
+    for (int k = 0; k < n; ++k) {
+        const double d = even.diameter((k + 0.5) / n);
+        volume += d * d * d;
+        if (d < 2) lower += d * d * d;
+    }
+    EXPECT_NEAR(lower / volume, 0.5, 1e-4);  // evenly from 1 to 3
+}
+
+TEST(SizeTable, OtherTextsAreRefusedInOneSentence) {
+    const auto why = [](std::string_view text) -> std::string {
+        try {
+            (void)SizeTable::read(text);
+        } catch (const std::invalid_argument& refusal) {
+            return refusal.what();
+        }
+        return "";
+    };
+    const auto says = [&](std::string_view text, const char* part) {
+        EXPECT_NE(why(text).find(part), std::string::npos) << why(text);
+    };
+    says("", "no diameter");
+    says("diameter,fraction\n1e-3,1\n", "header");
+    says("diameter,number_fraction\n", "no diameter");
+    says("diameter,number_fraction\n1e-3;1\n", "line 2");
+    says("diameter,number_fraction\n1200,1\n", "in m");
+    says("diameter,number_fraction\n2e-3,0.5\n1e-3,0.5\n", "line 3");
+    says("diameter,number_fraction\n1e-3,0.5\n2e-3,0.3\n", "add up to 0.8");
+    says("diameter,number_fraction\n1e-3,-0.1\n", "outside 0 to 1");
+    says("diameter,number_below\n1e-3,0\n2e-3,0.5\n3e-3,0.4\n4e-3,1\n", "must not fall");
+    says("diameter,volume_below\n1e-3,0.1\n2e-3,1\n", "begin with 0");
+    EXPECT_EQ(why("\xEF\xBB\xBF"
+                  "diameter , number_fraction\n1e-3,1\n"),
+              "");
 }

@@ -2,6 +2,7 @@
 
 #include "solver/particles/bytes.hpp"
 #include "solver/scenes/dem_picture.hpp"
+#include "solver/scenes/spreading/record.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -148,17 +149,18 @@ double Experiment::flux_scale() const {
 }
 
 void Experiment::observe(Observations& into) const {
-    into.scalars["particles"] = static_cast<double>(engine_->size());
+    record::particles.record(into, static_cast<double>(engine_->size()));
+    kit::record_bond_number(into, study_.material, study_.diameter, study_.gravity);
     if (!sweeping_) return;
-    into.scalars["max_overlap"] = engine_->peak_overlap();
+    record::max_overlap.record(into, engine_->peak_overlap());
     observe_flux(into);
     if (!finished()) return;
-    into.scalars["end_of_travel"] = study_.speed * time_of_sample(static_cast<std::size_t>(end_sample_));
+    record::end_of_travel.record(into, study_.speed * time_of_sample(static_cast<std::size_t>(end_sample_)));
     observe_layer(into);
 }
 
 void Experiment::observe_flux(Observations& into) const {
-    auto& series = into.series["flux_series"];
+    auto& series = record::flux_series.in(into);
     for (std::size_t k = 1; k < behind_.size(); ++k) {
         const double value = flux_scale() * (behind_[k] - behind_[k - 1]) / (time_of_sample(k) - time_of_sample(k - 1));
         series.push_back({.time = time_of_sample(k), .bin = nan, .value = value});
@@ -168,25 +170,25 @@ void Experiment::observe_flux(Observations& into) const {
 
     const std::size_t first = first_measured_sample;
     const std::size_t last = behind_.size() - 1;
-    into.scalars["mfr"] =
-        flux_scale() * (behind_[last] - behind_[first]) / (time_of_sample(last) - time_of_sample(first));
+    record::mfr.record(
+        into, flux_scale() * (behind_[last] - behind_[first]) / (time_of_sample(last) - time_of_sample(first)));
     // Where nothing has passed, the blocks have no spread, and that says nothing of the error.
     const bool passed = std::ranges::any_of(flux, [](double value) { return value != 0; });
     if (const double error = observables::block_standard_error(flux, blocks); passed && !std::isnan(error))
-        into.scalars["mfr_standard_error"] = error;
+        record::mfr_standard_error.record(into, error);
     double mean = 0;
     for (std::size_t k = first; k <= last; ++k) mean += under_[k];
     mean /= static_cast<double>(last - first + 1);
     const double mass = mean * study_.particle_mass();
     const double slot = study_.width * study_.gap * study_.material.density;
-    into.scalars["mfr_window"] = mass / (slot * study_.blade_thickness);
-    into.scalars["mfr_thesis"] = mass / (slot * study_.speed);
+    record::mfr_window.record(into, mass / (slot * study_.blade_thickness));
+    record::mfr_thesis.record(into, mass / (slot * study_.speed));
 
     std::vector<double> velocity;
     // Ahead of the blade lies powder only where layers hold a particle per sample on average: one thrown up crosses
     // several at the same velocity, which is no even profile.
     std::size_t filled = 0, most_filled = 0;  // neighbouring layers
-    auto& profile = into.series["vx_profile"];
+    auto& profile = record::vx_profile.in(into);
     for (std::size_t k = 0; k < profile_layers; ++k) {
         const auto n = profile_.samples[k];
         filled = n > static_cast<std::int64_t>(last - first) ? filled + 1 : 0;
@@ -194,7 +196,7 @@ void Experiment::observe_flux(Observations& into) const {
         velocity.push_back(n > 0 ? profile_.sum[k] / static_cast<double>(n) : nan);
         profile.push_back({.time = nan, .bin = layer_thickness * static_cast<double>(k + 1), .value = velocity[k]});
     }
-    if (most_filled >= 3) into.scalars["vx_unevenness"] = observables::unevenness(velocity) / study_.speed;
+    if (most_filled >= 3) record::vx_unevenness.record(into, observables::unevenness(velocity) / study_.speed);
 }
 
 void Experiment::observe_layer(Observations& into) const {
@@ -206,11 +208,11 @@ void Experiment::observe_layer(Observations& into) const {
     dem::State state;
     engine_->state(state);
     const observables::Relief relief(state, from, to, study_.width, relief_pitch * study_.diameter);
-    into.scalars["packing_fraction"] =
-        observables::solid_volume(state, from, to) / ((to - from) * study_.width * study_.gap);
-    into.scalars["empty_share"] = relief.empty_share();
+    record::packing_fraction.record(
+        into, observables::solid_volume(state, from, to) / ((to - from) * study_.width * study_.gap));
+    record::empty_share.record(into, relief.empty_share());
     // Single particles on the bare base deviate from its height the less, the fewer they are: not a smooth layer.
-    if (relief.empty_share() <= most_bare) into.scalars["layer_roughness"] = relief.roughness() / study_.diameter;
+    if (relief.empty_share() <= most_bare) record::layer_roughness.record(into, relief.roughness() / study_.diameter);
 }
 
 double Experiment::progress() const {

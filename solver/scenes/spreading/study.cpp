@@ -1,9 +1,9 @@
 #include "solver/scenes/spreading/study.hpp"
 
 #include "solver/dem/material.hpp"
-#include "solver/dem/time_step.hpp"
 #include "solver/particles/random_addition.hpp"
 #include "solver/scenes/scene.hpp"
+#include "solver/scenes/spreading/question.hpp"
 #include "stats/random.hpp"
 
 #include <algorithm>
@@ -38,10 +38,6 @@ enum : std::uint64_t {
     start_stream = 6
 };
 
-double number(const Inputs& inputs, const char* name) {
-    return std::get<double>(inputs.at(name));
-}
-
 std::string text(const char* format, double a, double b = 0) {
     char buffer[240];
     std::snprintf(buffer, sizeof buffer, format, a, b);
@@ -50,19 +46,6 @@ std::string text(const char* format, double a, double b = 0) {
 
 void require(bool holds, const std::string& sentence) {
     if (!holds) throw std::invalid_argument(sentence);
-}
-
-dem::CohesionArea area_of(const std::string& word) {
-    if (word == "sjkr2") return dem::CohesionArea::sjkr2;
-    if (word == "paper") return dem::CohesionArea::paper;
-    return dem::CohesionArea::sjkr;
-}
-
-particles::SizeDistribution sizes_of(const std::string& word, double spread) {
-    if (word == "weibull_wide") return particles::SizeDistribution::weibull_classes(0.15);
-    if (word == "weibull_narrow") return particles::SizeDistribution::weibull_classes(0.1);
-    if (word == "lognormal") return particles::SizeDistribution::lognormal(spread);
-    return {};
 }
 
 double sphere_volume(double diameter) {
@@ -124,7 +107,10 @@ std::string key_of_bed(const Inputs& inputs, const Study& s) {
     for (const auto& [name, value] : inputs) {
         if (without_effect.contains(name)) continue;
         key += name + "=";
-        if (const auto* word = std::get_if<std::string>(&value)) key += *word;
+        if (const auto* word = std::get_if<std::string>(&value)) {
+            const auto file = file_word(*word);
+            key += file ? "file:" + std::string(file->hash) : *word;
+        }
         if (const auto* count = std::get_if<std::int64_t>(&value)) key += std::to_string(*count);
         if (const auto* real = std::get_if<double>(&value)) key += text("%.17g", *real + 0.0);
         key += "\n";
@@ -146,31 +132,25 @@ double Study::front(double time) const {
     return blade_start + speed * time;
 }
 
-Study study_of(const Inputs& in) {
+Study study_of(const Inputs& in, const Files* files) {
+    namespace ask = question;
     Study s;
-    s.material.friction = number(in, "friction");
-    s.material.rolling_friction = number(in, "rolling_friction");
-    s.material.restitution = number(in, "restitution");
-    s.material.cohesion = number(in, "cohesion");
-    s.material.cohesion_area = area_of(std::get<std::string>(in.at("cohesion_law")));
-    s.material.youngs_modulus = number(in, "youngs_modulus");
-    s.material.poisson_ratio = number(in, "poisson_ratio");
-    s.material.density = number(in, "density");
-    s.sizes = sizes_of(std::get<std::string>(in.at("size_distribution")), number(in, "size_spread"));
-    s.diameter = number(in, "diameter");
-    s.gap = number(in, "gap");
-    s.speed = number(in, "speed");
-    s.gravity = number(in, "gravity");
-    s.vibration_amplitude = number(in, "vibration_amplitude");
-    s.vibration_frequency = number(in, "vibration_frequency");
-    s.width = number(in, "width") * s.diameter;
-    s.layer_area = number(in, "layer_area");
-    s.travel = number(in, "travel");
-    s.blade_thickness = number(in, "blade_thickness");
-    s.blade_edge_radius = number(in, "blade_edge_radius");
+    s.material = ask::powder.material(in);
+    s.sizes = ask::powder.sizes(in, files);
+    s.diameter = ask::powder.diameter(in);
+    s.gap = ask::gap(in);
+    s.speed = ask::speed(in);
+    s.gravity = ask::gravity(in);
+    s.vibration_amplitude = ask::vibration_amplitude(in);
+    s.vibration_frequency = ask::vibration_frequency(in);
+    s.width = ask::width(in) * s.diameter;
+    s.layer_area = ask::layer_area(in);
+    s.travel = ask::travel(in);
+    s.blade_thickness = ask::blade_thickness(in);
+    s.blade_edge_radius = ask::blade_edge_radius(in);
     s.blade_start = first_gate;
-    s.standard_error = number(in, "standard_error");
-    s.bed_seed = std::get<std::int64_t>(in.at("bed_seed"));
+    s.standard_error = ask::standard_error(in);
+    s.bed_seed = ask::bed_seed(in);
     lay_out(s);
     require(s.vibration_frequency == 0 || s.vibration_amplitude < s.gap,
             text("a blade vibrating by %.4g m at a gap of %.4g m strikes the base: make vibration_amplitude smaller "
@@ -180,14 +160,8 @@ Study study_of(const Inputs& in) {
             text("blade_edge_radius of %.4g m exceeds half the blade_thickness of %.4g m", s.blade_edge_radius,
                  s.blade_thickness));
 
-    s.time_step = number(in, "time_step");
-    if (s.time_step == 0) {
-        const double radius = s.sizes.smallest() * s.diameter / 2;
-        s.time_step =
-            number(in, "time_step_fraction") * std::min(dem::rayleigh_time(s.material, radius),
-                                                        dem::hertz_contact_time(s.material, radius, fastest_impact(s)));
-    }
-    const double settle = std::round(number(in, "settle_time") / s.time_step);
+    s.time_step = ask::powder.step(in, s.sizes.smallest() * s.diameter / 2, fastest_impact(s));
+    const double settle = std::round(ask::settle_time(in) / s.time_step);
     const double sweep = std::round(s.travel / s.speed / s.time_step);
     require(settle + sweep <= most_steps,
             text("%.4g time steps of %.4g s are more than can be counted on: soften the particles or speed up the "

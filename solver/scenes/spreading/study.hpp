@@ -46,8 +46,9 @@ struct Study {
 /// Of the layer before the blade moves, m.
 [[nodiscard]] double layer_length(const Study& study);
 
-/// Throws std::invalid_argument with one sentence where the inputs are impossible together.
-[[nodiscard]] Study study_of(const Inputs& inputs);
+/// Throws std::invalid_argument with one sentence where the inputs are impossible together. Without files, as for an
+/// estimate, sizes in a file are taken as all equal.
+[[nodiscard]] Study study_of(const Inputs& inputs, const Files* files = nullptr);
 
 /// The layer before it settles, a pure function of the study and a seed.
 [[nodiscard]] dem::Setup settling(const Study& study, std::uint64_t seed);

@@ -14,14 +14,15 @@
 namespace grainsweep {
 
 [[nodiscard]] std::vector<ParameterSpec> tpms_discharge_parameters();
-[[nodiscard]] std::vector<ObservableSpec> tpms_discharge_observables();
+/// The packing's file. Throws std::invalid_argument where it is not among the files.
+[[nodiscard]] const std::string& tpms_packing_text(const Inputs& inputs, const Files& files);
 
 struct TpmsQuestion {
     geometry::TpmsCell cell = geometry::TpmsCell::schwarz_p;
     int side = +1;
-    double edge = 100;  ///< L, diameters
-    double shell = 4;   ///< diameters
-    std::string packing;
+    double edge = 100;           ///< L, diameters
+    double shell = 4;            ///< diameters
+    bool packing_given = false;  ///< as a file
     double packing_fraction = 0.62;
     std::uint64_t packing_seed = 1;
     double diameter = 45e-6;  ///< m

@@ -2,6 +2,7 @@
 
 #include "solver/geometry/vector.hpp"
 #include "solver/observables/histogram.hpp"
+#include "solver/scenes/tpms/observables.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -72,10 +73,10 @@ double TpmsRecord::time_to(double share) const {
 void TpmsRecord::observe(Observations& into) const {
     const auto start = static_cast<double>(start_);
     double peak = 0;
-    auto& retention = into.series["retention_series"];
-    auto& velocity = into.series["velocity_series"];
-    auto& mobile = into.series["mobile_series"];
-    auto& at_rest = into.series["at_rest_series"];
+    auto& retention = tpms_record::retention_series.in(into);
+    auto& velocity = tpms_record::velocity_series.in(into);
+    auto& mobile = tpms_record::mobile_series.in(into);
+    auto& at_rest = tpms_record::at_rest_series.in(into);
     for (const Moment& moment : moments_) {
         const double t = in_t_star(static_cast<double>(moment.step));
         const double speed = moment.fastest_down / question_->free_fall_speed();
@@ -85,19 +86,19 @@ void TpmsRecord::observe(Observations& into) const {
         at_rest.push_back({.time = t, .value = static_cast<double>(moment.at_rest) / start});
         if (moment.in_cell > 0) peak = std::max(peak, speed);
     }
-    const auto add_bins = [&](const char* name, const std::vector<Bin>& bins) {
-        auto& series = into.series[name];
+    const auto add_bins = [&](const kit::Profile& histogram, const std::vector<Bin>& bins) {
+        auto& series = histogram.in(into);
         for (const Bin& bin : bins)
             series.push_back({.time = in_t_star(static_cast<double>(bin.step)), .bin = bin.centre, .value = bin.share});
     };
-    add_bins("overlap_histogram", overlaps_);
-    add_bins("force_histogram", forces_);
-    into.scalars["retention"] = static_cast<double>(moments_.back().in_cell) / start;
-    into.scalars["time_to_half"] = time_to(0.5);
-    into.scalars["time_to_tenth"] = time_to(0.1);
-    into.scalars["discharge_rate"] = 0.25 / (time_to(0.5) - time_to(0.75));
-    into.scalars["peak_velocity"] = peak;
-    into.scalars["max_force"] = max_force_;
+    add_bins(tpms_record::overlap_histogram, overlaps_);
+    add_bins(tpms_record::force_histogram, forces_);
+    tpms_record::retention.record(into, static_cast<double>(moments_.back().in_cell) / start);
+    tpms_record::time_to_half.record(into, time_to(0.5));
+    tpms_record::time_to_tenth.record(into, time_to(0.1));
+    tpms_record::discharge_rate.record(into, 0.25 / (time_to(0.5) - time_to(0.75)));
+    tpms_record::peak_velocity.record(into, peak);
+    tpms_record::max_force.record(into, max_force_);
 }
 
 void TpmsRecord::save(particles::ByteWriter& out) const {

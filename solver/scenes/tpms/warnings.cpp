@@ -61,7 +61,7 @@ void warn_of_cell(std::vector<Warning>& warnings, const TpmsQuestion& q) {
             {"closed outlet", text("the largest opening of the lower face is %.2g diameters wide with an "
                                    "edge of %.3g and a shell of %.3g: nothing can leave there",
                                    std::max(outlet, 0.0), q.edge, q.shell)});
-    if (q.packing == "generated" && q.packing_fraction < loosest_packing)
+    if (!q.packing_given && q.packing_fraction < loosest_packing)
         warnings.push_back({"packing looser than powder at rest",
                             text("a packing_fraction of %.3g is below random loose packing, %.2f: the powder collapses "
                                  "before it flows",

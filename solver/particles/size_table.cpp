@@ -1,0 +1,180 @@
+#include "solver/particles/size_table.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+namespace grainsweep::particles {
+namespace {
+
+constexpr double largest_diameter = 0.1;  // m: a larger number is in another unit
+constexpr double smallest_diameter = 1e-8;
+constexpr double tolerance = 0.01;  // by which printed shares may miss 1
+
+struct Header {
+    std::string_view text;
+    bool by_volume, cumulative;
+};
+constexpr std::array<Header, 4> headers = {{{"diameter,number_fraction", false, false},
+                                            {"diameter,volume_fraction", true, false},
+                                            {"diameter,number_below", false, true},
+                                            {"diameter,volume_below", true, true}}};
+
+struct Line {
+    double diameter = 0, fraction = 0;
+};
+
+std::string shortest(double x) {
+    std::array<char, 32> text{};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), x).ptr;
+    return {text.data(), end};
+}
+
+[[noreturn]] void refuse(const std::string& what) {
+    throw std::invalid_argument("sizes" + what);
+}
+[[noreturn]] void refuse(std::size_t line, const std::string& what) {
+    refuse(", line " + std::to_string(line) + ": " + what);
+}
+
+std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view blank = " \t\r";
+    const auto first = text.find_first_not_of(blank);
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(blank) - first + 1);
+}
+
+std::optional<double> number(std::string_view word) {
+    word = trimmed(word);
+    double x = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
+    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(x)) return std::nullopt;
+    return x;
+}
+
+const Header& header_of(std::string_view line) {
+    std::string plain(line);
+    std::erase_if(plain, [](char c) { return c == ' ' || c == '\t'; });
+    const auto found = std::ranges::find(headers, plain, &Header::text);
+    if (found == headers.end())
+        refuse(1,
+               "the header must be diameter and one of number_fraction, volume_fraction, number_below and "
+               "volume_below, with a comma between, not '" +
+                   std::string(line.substr(0, 40)) + "'");
+    return *found;
+}
+
+Line line_of(std::string_view text, std::size_t at, const std::vector<Line>& before) {
+    const auto comma = std::min(text.find(','), text.size());
+    const auto diameter = number(text.substr(0, comma));
+    const auto fraction = number(text.substr(std::min(comma + 1, text.size())));
+    if (!diameter || !fraction)
+        refuse(at, "'" + std::string(text.substr(0, 60)) + "' is not two numbers with a comma between");
+    if (!(*diameter >= smallest_diameter && *diameter <= largest_diameter))
+        refuse(at, "a diameter of " + shortest(*diameter) + " lies outside 1e-8 to 0.1 m (diameters are in m)");
+    if (!before.empty() && !(*diameter > before.back().diameter))
+        refuse(at, "diameters must grow from line to line, and " + shortest(*diameter) + " follows " +
+                       shortest(before.back().diameter));
+    if (!(*fraction >= 0 && *fraction <= 1 + tolerance))
+        refuse(at, "a share of " + shortest(*fraction) + " lies outside 0 to 1");
+    return {*diameter, *fraction};
+}
+
+/// Rows and whether they add up; sum: of classes, or the last of a cumulative table.
+double total_of(const Header& header, const std::vector<Line>& lines) {
+    double sum = 0;
+    for (std::size_t k = 0; k < lines.size(); ++k) {
+        sum += header.cumulative ? 0 : lines[k].fraction;
+        if (header.cumulative && k > 0 && lines[k].fraction < lines[k - 1].fraction)
+            refuse(": shares below a diameter must not fall, and " + shortest(lines[k].fraction) + " follows " +
+                   shortest(lines[k - 1].fraction));
+    }
+    if (!header.cumulative) return sum;
+    if (lines.size() < 2 || lines.front().fraction != 0)
+        refuse(": shares below a diameter must begin with 0, at the smallest diameter");
+    return lines.back().fraction;
+}
+
+}  // namespace
+
+double SizeTable::Piece::diameter(double u) const {
+    if (from == to) return from;
+    if (even == Even::number) return from + u * (to - from);
+    const double first = 1 / (from * from), last = 1 / (to * to);
+    return std::clamp(1 / std::sqrt(first - u * (first - last)), from, to);
+}
+
+double SizeTable::Piece::moment(int power) const {
+    const auto integral = [this](int of) {  // of d^of from `from` to `to`
+        if (of == -1) return std::log(to / from);
+        return (std::pow(to, of + 1) - std::pow(from, of + 1)) / (of + 1);
+    };
+    if (from == to) return std::pow(from, power);
+    if (even == Even::number) return integral(power) / (to - from);
+    return integral(power - 3) / integral(-3);
+}
+
+SizeTable SizeTable::read(std::string_view csv) {
+    if (csv.starts_with("\xEF\xBB\xBF")) csv.remove_prefix(3);  // byte-order mark
+    const Header* header = nullptr;
+    std::vector<Line> lines;
+    for (std::size_t at = 1; !csv.empty(); ++at) {
+        const auto end = std::min(csv.find('\n'), csv.size());
+        const std::string_view line = trimmed(csv.substr(0, end));
+        csv.remove_prefix(std::min(end + 1, csv.size()));
+        if (header == nullptr)
+            header = &header_of(line);
+        else if (!line.empty())
+            lines.push_back(line_of(line, at, lines));
+    }
+    if (header == nullptr || lines.empty()) refuse(": there is no diameter");
+    const double total = total_of(*header, lines);
+    if (std::abs(total - 1) > tolerance) refuse(": the shares add up to " + shortest(total) + ", not to 1");
+
+    SizeTable table;
+    const Even even = header->by_volume ? Even::volume : Even::number;
+    for (std::size_t k = header->cumulative ? 1 : 0; k < lines.size(); ++k) {
+        const Line& before = lines[header->cumulative ? k - 1 : k];
+        const double share = header->cumulative ? lines[k].fraction - before.fraction : lines[k].fraction;
+        if (share > 0) table.pieces_.push_back({before.diameter, lines[k].diameter, share, even});
+    }
+    double sum = 0;
+    const double unit = lines.back().diameter;  // keeps cubes of micrometres well within range
+    for (Piece& piece : table.pieces_) {
+        const Piece scaled{piece.from / unit, piece.to / unit, 1, even};
+        if (header->by_volume) piece.share /= scaled.moment(3);
+        sum += piece.share;
+    }
+    for (Piece& piece : table.pieces_) piece.share /= sum;
+    return table;
+}
+
+SizeTable SizeTable::over(double unit) const {
+    SizeTable scaled = *this;
+    for (Piece& piece : scaled.pieces_) {
+        piece.from /= unit;
+        piece.to /= unit;
+    }
+    return scaled;
+}
+
+double SizeTable::diameter(double u) const {
+    double below = 0;
+    for (std::size_t k = 0; k + 1 < pieces_.size(); ++k) {
+        if (u < below + pieces_[k].share) return pieces_[k].diameter((u - below) / pieces_[k].share);
+        below += pieces_[k].share;
+    }
+    return pieces_.back().diameter(std::clamp((u - below) / pieces_.back().share, 0.0, 1.0));
+}
+
+double SizeTable::moment(int power) const {
+    double sum = 0;
+    for (const Piece& piece : pieces_) sum += piece.share * piece.moment(power);
+    return sum;
+}
+
+}  // namespace grainsweep::particles

@@ -1,0 +1,43 @@
+// An observable of a scene, written once: declared by what it holds, recorded by its handle.
+//
+//     inline constexpr Scalar mfr{"mfr", "1", "mass flow rate under the blade ..."};
+//     info.observables = observed(mfr, flux_series);      mfr.record(into, flux); flux_series.in(into).push_back(...)
+#pragma once
+
+#include "solver/scenes/values.hpp"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace grainsweep::kit {
+
+struct Scalar {
+    std::string_view name, unit, meaning;
+
+    void record(Observations& into, double value) const { into.scalars.insert_or_assign(std::string(name), value); }
+    [[nodiscard]] ObservableSpec spec() const {
+        return {std::string(name), std::string(unit), std::string(meaning), Shape::scalar, {}};
+    }
+};
+
+/// Several values along a time (series) or a bin (profile).
+template <Shape shape>
+struct Curve {
+    std::string_view name, unit, meaning, over;
+
+    /// Its samples, to be added to; there from then on, empty or not.
+    [[nodiscard]] std::vector<Sample>& in(Observations& into) const { return into.series[std::string(name)]; }
+    [[nodiscard]] ObservableSpec spec() const {
+        return {std::string(name), std::string(unit), std::string(meaning), shape, std::string(over)};
+    }
+};
+using Series = Curve<Shape::series>;
+using Profile = Curve<Shape::profile>;
+
+template <class... Observable>
+[[nodiscard]] std::vector<ObservableSpec> observed(const Observable&... observables) {
+    return {observables.spec()...};
+}
+
+}  // namespace grainsweep::kit

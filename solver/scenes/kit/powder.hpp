@@ -1,0 +1,103 @@
+// The powder of a granular scene and the numerics of its contacts: one block of parameters with the same names in every
+// scene. A scene takes the block over, sets the defaults and bounds that its study fixes, and lists what it offers:
+//
+//     inline constexpr Powder powder = [] { Powder p; p.diameter = p.diameter.with(45e-6, {1e-7, 0.1}); return p; }();
+//     info.parameters = declared(powder.diameter, powder.friction, opening);
+//     const dem::Material material = powder.material(inputs);
+#pragma once
+
+#include "solver/dem/engine.hpp"
+#include "solver/particles/size_distribution.hpp"
+#include "solver/particles/size_table.hpp"
+#include "solver/scenes/kit/observable.hpp"
+#include "solver/scenes/kit/parameter.hpp"
+
+namespace grainsweep::kit {
+
+enum class SizeLaw { monodisperse, weibull_wide, weibull_narrow, lognormal, uniform, file };
+
+struct Powder {
+    Real diameter{
+        "diameter", "m", "diameter D of the particles; of unequal ones see size_distribution", 0.002, {1e-6, 1e-2}};
+    Choice<SizeLaw, 6> size_distribution{
+        "size_distribution",
+        "by number: 'monodisperse' all D; 'weibull_wide', 'weibull_narrow' the five classes of Wu (2020), 4.44, "
+        "22.76, 40.78, 26.91, 5.11 % of (1 + k w) D, k = -2 ... 2, w = 0.15 and 0.1; 'lognormal' with mean D, without "
+        "its 0.5 % smallest and largest; 'uniform' between (1 - size_spread) D and (1 + size_spread) D; 'file' as in "
+        "size_file",
+        {{{"monodisperse", SizeLaw::monodisperse},
+          {"weibull_wide", SizeLaw::weibull_wide},
+          {"weibull_narrow", SizeLaw::weibull_narrow},
+          {"lognormal", SizeLaw::lognormal},
+          {"uniform", SizeLaw::uniform},
+          {"file", SizeLaw::file}}}};
+    Real size_spread{"size_spread",
+                     "1",
+                     "'lognormal': standard deviation of the logarithm of the diameter, before truncation; 'uniform': "
+                     "half-width over D",
+                     0.2,
+                     {0, 0.5},
+                     {if_word("size_distribution", "lognormal", "uniform")}};
+    FileOr size_file{
+        "size_file",
+        "measured sizes: a CSV file with the header diameter,number_fraction or diameter,volume_fraction (classes), "
+        "diameter,number_below or diameter,volume_below (cumulative, from 0 to 1, evenly filled between lines); "
+        "diameters in m, ascending. They are taken as they are: D, the unit of lengths, must lie among them",
+        "none",
+        [](std::string_view csv) { (void)particles::SizeTable::read(csv); },
+        {if_word("size_distribution", "file")}};
+    Real density{"density", "kg/m3", "density of the particles", 7980, {100, 25000}};
+    Real youngs_modulus{"youngs_modulus", "Pa", "Young's modulus of particles and walls", 21e6, {1e5, 1e12}};
+    Real poisson_ratio{"poisson_ratio", "1", "Poisson's ratio of particles and walls", 0.3, {0, 0.49}};
+    Real restitution{"restitution", "1", "restitution of particles and walls", 0.5, above(0, 1)};
+    Real friction{"friction", "1", "Coulomb friction of particles and walls", 0.2, {0, 2}};
+    Real rolling_friction{"rolling_friction",
+                          "1",
+                          "rolling friction of particles and walls: tangent of the steepest slope a particle stands on",
+                          0.0,
+                          {0, 1},
+                          {if_set("friction")}};
+    Real cohesion{"cohesion", "J/m3", "cohesion energy density", 0.0, {0, 1e6}};
+    Choice<dem::CohesionArea, 3> cohesion_law{
+        "cohesion_law",
+        "area the cohesion acts on: 'sjkr' cut of the spheres, 'sjkr2' 4 pi R* d, 'paper' "
+        "pi (2 R* d - d^2)/4",
+        {{{"sjkr", dem::CohesionArea::sjkr}, {"sjkr2", dem::CohesionArea::sjkr2}, {"paper", dem::CohesionArea::paper}}},
+        {if_set("cohesion")}};
+    Real time_step{"time_step",
+                   "s",
+                   "time step; 0: time_step_fraction of the shorter of the Rayleigh time and the Hertz "
+                   "contact time at the fastest expected impact",
+                   0.0,
+                   {0, 1e-3}};
+    Real time_step_fraction{
+        "time_step_fraction",  "1", "time step over the shorter of the two limits", 0.2, above(0, 1),
+        {if_zero("time_step")}};
+    Choice<dem::Method::Precision, 2> precision{
+        "precision",
+        "arithmetic: 'mixed' vectorised, exact position differences, single precision forces; 'double' the clear "
+        "reference",
+        {{{"mixed", dem::Method::Precision::mixed}, {"double", dem::Method::Precision::double_precision}}}};
+
+    /// Of all parameters from density to cohesion_law.
+    [[nodiscard]] dem::Material material(const Inputs& inputs) const;
+    /// Of d/D. Without files, as for an estimate, sizes in a file are taken as all equal. Throws std::invalid_argument
+    /// with one sentence where the file is missing or D is outside of it.
+    [[nodiscard]] particles::SizeDistribution sizes(const Inputs& inputs, const Files* files) const;
+    /// time_step, or time_step_fraction of the limits for particles of at least `radius` meeting at most at `speed`.
+    [[nodiscard]] double step(const Inputs& inputs, double radius, double speed) const;
+    [[nodiscard]] dem::Method method(const Inputs& inputs) const;
+};
+
+/// Recorded where the powder is cohesive.
+inline constexpr Scalar bond_number{
+    "bond_number", "1",
+    "largest attraction of two particles of diameter D at rest over their weight: with cohesion energy density k, "
+    "contact area c R d (c = pi, 2 pi, pi/4 for sjkr, sjkr2, paper) and Hertz's repulsion, (c k R)^3/(6 E*^2 R m g)"};
+
+/// The largest attraction of two equal spheres at rest, N, to first order in their overlap; cohesion > 0.
+[[nodiscard]] double pull_off_force(const dem::Material& material, double diameter);
+/// Records it, where there is cohesion.
+void record_bond_number(Observations& into, const dem::Material& material, double diameter, double gravity);
+
+}  // namespace grainsweep::kit

@@ -1,0 +1,112 @@
+// The kit of scenes: what a handle declares is what it reads, and the powder block means what it says.
+#include "solver/dem/material.hpp"
+#include "solver/scenes/kit/powder.hpp"
+#include "solver/scenes/scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+using namespace grainsweep;
+
+namespace {
+
+constexpr kit::Powder powder;
+constexpr kit::Whole count{"count", "how many", 3, {0, 10}, {kit::if_set("friction"), kit::if_zero("cohesion")}};
+constexpr kit::Scalar seen{"seen", "m", "what is seen"};
+constexpr kit::Series course{"course", "m", "what is seen", "time (s)"};
+
+Inputs defaults(const std::vector<ParameterSpec>& specs) {
+    Inputs inputs;
+    for (const auto& spec : specs) inputs.emplace(spec.name, spec.default_value);
+    return inputs;
+}
+
+std::vector<ParameterSpec> block() {
+    return kit::declared(powder.diameter, powder.size_distribution, powder.size_spread, powder.size_file,
+                         powder.density, powder.youngs_modulus, powder.poisson_ratio, powder.restitution,
+                         powder.friction, powder.rolling_friction, powder.cohesion, powder.cohesion_law,
+                         powder.time_step, powder.time_step_fraction, powder.precision);
+}
+
+}  // namespace
+
+TEST(Kit, HandlesReadWhatTheyDeclare) {
+    const auto specs = kit::declared(powder.friction, powder.cohesion_law, powder.size_file, count);
+    auto inputs = defaults(specs);
+    EXPECT_EQ(powder.friction(inputs), 0.2);
+    EXPECT_EQ(powder.cohesion_law(inputs), dem::CohesionArea::sjkr);
+    EXPECT_FALSE(powder.size_file(inputs));
+    EXPECT_EQ(count(inputs), 3);
+    inputs["cohesion_law"] = std::string("paper");
+    EXPECT_EQ(powder.cohesion_law(inputs), dem::CohesionArea::paper);
+    inputs["cohesion_law"] = std::string("glue");
+    EXPECT_THROW((void)powder.cohesion_law(inputs), std::invalid_argument);
+    EXPECT_THROW((void)powder.density(inputs), std::logic_error) << "not declared";
+
+    ASSERT_EQ(specs[3].relevant_if.size(), 2U);
+    EXPECT_EQ(specs[3].relevant_if[0].other, "friction");
+    EXPECT_EQ(specs[3].relevant_if[1].condition, Relevance::Condition::zero);
+    ASSERT_EQ(specs[2].relevant_if.size(), 1U);
+    EXPECT_EQ(specs[2].relevant_if[0].words, std::vector<std::string>{"file"});
+    EXPECT_TRUE(std::get<Words>(specs[2].bounds).file_allowed);
+    EXPECT_THROW(std::get<Words>(specs[2].bounds).check_file("no table"), std::invalid_argument);
+}
+
+TEST(Kit, HandlesRecordWhatTheyDeclare) {
+    const auto specs = kit::observed(seen, course);
+    Observations into;
+    seen.record(into, 2);
+    seen.record(into, 3);
+    course.in(into).push_back({.time = 1, .value = 4});
+    EXPECT_EQ(into.scalars.at(specs[0].name), 3);
+    EXPECT_EQ(into.series.at(specs[1].name).size(), 1U);
+    EXPECT_EQ(specs[1].shape, Shape::series);
+    EXPECT_EQ(specs[1].over, "time (s)");
+}
+
+TEST(Kit, SizesInAFileAreTakenAsTheyAre) {
+    auto inputs = defaults(block());
+    inputs["size_distribution"] = std::string("file");
+    EXPECT_THROW((void)powder.sizes(inputs, nullptr), std::invalid_argument) << "no file named";
+    inputs["size_file"] = "file:" + std::string(32, '0') + ":/sizes.csv";
+    EXPECT_TRUE(powder.sizes(inputs, nullptr).equal()) << "an estimate";
+    const Files none;
+    EXPECT_THROW((void)powder.sizes(inputs, &none), std::invalid_argument);
+    const Files files = {{"size_file", "diameter,number_fraction\n1e-3,0.5\n3e-3,0.5\n"}};
+    const auto sizes = powder.sizes(inputs, &files);
+    EXPECT_DOUBLE_EQ(sizes.smallest() * powder.diameter(inputs), 1e-3);
+    EXPECT_DOUBLE_EQ(sizes.moment(1), 1);
+    inputs["diameter"] = 4e-3;
+    EXPECT_THROW((void)powder.sizes(inputs, &files), std::invalid_argument) << "D outside of the file";
+}
+
+// The largest value of k A(d) - 4/3 E* sqrt(R*) d^(3/2), searched for.
+TEST(Kit, BondNumberIsTheLargestAttractionOverTheWeight) {
+    auto inputs = defaults(block());
+    inputs["diameter"] = 50e-6;
+    inputs["cohesion"] = 2e5;
+    for (const auto& [word, factor] : {std::pair("sjkr", 1.0), std::pair("sjkr2", 2.0), std::pair("paper", 0.25)}) {
+        inputs["cohesion_law"] = std::string(word);
+        const auto material = powder.material(inputs);
+        const double radius = 25e-6, stiffness = 4.0 / 3 * dem::effective_modulus(material) * std::sqrt(radius / 2);
+        double largest = 0;
+        for (int k = 0; k < 200'000; ++k) {
+            const double d = 1e-13 * std::pow(1.0001, k);
+            if (d > 0.01 * radius) break;
+            largest = std::max(largest, 2e5 * factor * std::numbers::pi * radius * d - stiffness * std::pow(d, 1.5));
+        }
+        EXPECT_NEAR(kit::pull_off_force(material, 50e-6) / largest, 1, 1e-6) << word;
+        Observations into;
+        kit::record_bond_number(into, material, 50e-6, 9.81);
+        EXPECT_NEAR(into.scalars.at("bond_number") * dem::sphere_mass(radius, material.density) * 9.81 / largest, 1,
+                    1e-6);
+    }
+    inputs["cohesion"] = 0.0;
+    Observations none;
+    kit::record_bond_number(none, powder.material(inputs), 50e-6, 9.81);
+    EXPECT_TRUE(none.scalars.empty());
+}
