@@ -6,6 +6,7 @@
 // for the laws a case needs; make_engine chooses once per case.
 #pragma once
 
+#include "solver/dem/material.hpp"
 #include "solver/dem/walls/wall.hpp"
 
 #include <array>
@@ -19,30 +20,6 @@
 #include <vector>
 
 namespace grainsweep::dem {
-
-/// Area of the cohesive neck over which the cohesion energy density acts; overlap d, first order in d for
-/// equal spheres: sjkr pi R d (LIGGGHTS 3.8 `sjkr`), sjkr2 2 pi R d, paper pi R d/4 (Gupta, eq. 15 as printed).
-enum class CohesionArea { sjkr, sjkr2, paper };
-
-/// The force in Coulomb's limit: the contact force without the cohesive part, or the net normal force.
-enum class FrictionLimit { contact, net };
-
-/// One material for particles and walls; a wall's Surface may differ in part.
-struct Material {
-    double youngs_modulus = 21e6;  ///< Pa
-    double poisson_ratio = 0.3;
-    double density = 7980;     ///< kg/m3
-    double restitution = 0.5;  ///< (0, 1]
-    double friction = 0.2;     ///< Coulomb, particle-particle and particle-wall; 0: no tangential law at all
-    /// mu_r, tangent of the steepest slope on which a sphere stays at rest, [0, 1]; 0: no rolling resistance at all
-    double rolling_friction = 0;
-    /// eta_r, damping of the rolling spring over the critical one, [0, 1]; it matters only while the spring holds:
-    /// what stopped rolling rocks on its spring, and 0.3 ends that within about one period
-    double rolling_damping = 0.3;
-    double cohesion = 0;  ///< cohesion energy density, J/m3; 0: no cohesion law at all
-    CohesionArea cohesion_area = CohesionArea::sjkr;
-    FrictionLimit friction_limit = FrictionLimit::contact;
-};
 
 /// One sphere at the start. Its index in Setup::spheres is its id for ever.
 struct Sphere {
@@ -166,6 +143,12 @@ public:
     virtual void save(std::vector<std::byte>& into) const = 0;
     virtual void restore(std::span<const std::byte> from) = 0;
 };
+
+/// Those in contacts between particles and, wall by wall, with walls.
+[[nodiscard]] std::vector<Material> materials_of(const Setup& setup);
+
+/// Throws std::invalid_argument with one sentence on a setup that no engine computes.
+void require_possible(const Setup& setup);
 
 /// Chooses laws and instruction path once. Throws std::invalid_argument with one sentence on an impossible setup.
 [[nodiscard]] std::unique_ptr<Engine> make_engine(const Setup& setup, const Method& method);

@@ -57,7 +57,7 @@ void check_spheres(const Setup& setup) {
 
 }  // namespace
 
-std::unique_ptr<Engine> make_engine(const Setup& setup, const Method& method) {
+void require_possible(const Setup& setup) {
     check(setup.material);
     check_spheres(setup);
     require(positive(setup.time_step), "the time step must be positive");
@@ -65,6 +65,10 @@ std::unique_ptr<Engine> make_engine(const Setup& setup, const Method& method) {
     require(geometry::finite(setup.shaking.amplitude) && not_negative(setup.shaking.frequency),
             "the amplitude and frequency of shaking must be finite");
     require(setup.shaking.frequency * setup.time_step <= 0.05, "a period of shaking must last at least twenty steps");
+}
+
+std::unique_ptr<Engine> make_engine(const Setup& setup, const Method& method) {
+    require_possible(setup);
     require(not_negative(method.skin), "the skin must not be negative");
     require(not_negative(method.rest_speed), "the rest speed must not be negative");
     if (method.rest_speed > 0) {

@@ -1,4 +1,4 @@
-// What the laws need of one material shared by particles and walls.
+// The parameters of a powder, and what contact laws need of them, one material shared by particles and walls.
 //
 //     1/E* = 2 (1 - nu^2)/E          1/G* = 4 (2 - nu)(1 + nu)/E         beta = ln e / sqrt(ln^2 e + pi^2)
 //
@@ -6,24 +6,42 @@
 // beta, which is negative for e < 1.)
 #pragma once
 
-#include "solver/dem/engine.hpp"
-#include "solver/dem/laws/cohesion.hpp"
-#include "solver/dem/laws/hertz.hpp"
-#include "solver/dem/laws/mindlin.hpp"
-#include "solver/dem/laws/rolling.hpp"
-
 namespace grainsweep::dem {
+
+struct Surface;  // walls/wall.hpp
+
+/// How touching bodies attract each other. By cohesion energy density times a contact area, overlap d, first order in
+/// d for equal spheres: sjkr pi R d (LIGGGHTS 3.8 `sjkr`), sjkr2 2 pi R d, paper pi R d/4 (Gupta, eq. 15 as printed).
+enum class CohesionLaw { sjkr, sjkr2, paper };
+
+/// The force in Coulomb's limit: the contact force without the cohesive part, or the net normal force.
+enum class FrictionLimit { contact, net };
+
+/// One material for particles and walls; a wall's Surface may differ in part.
+struct Material {
+    double youngs_modulus = 21e6;  ///< Pa
+    double poisson_ratio = 0.3;
+    double density = 7980;     ///< kg/m3
+    double restitution = 0.5;  ///< (0, 1]
+    double friction = 0.2;     ///< Coulomb, particle-particle and particle-wall; 0: no tangential law at all
+    /// mu_r, tangent of the steepest slope on which a sphere stays at rest, [0, 1]; 0: no rolling resistance at all
+    double rolling_friction = 0;
+    /// eta_r, damping of the rolling spring over the critical one, [0, 1]; it matters only while the spring holds:
+    /// what stopped rolling rocks on its spring, and 0.3 ends that within about one period
+    double rolling_damping = 0.3;
+    double cohesion = 0;  ///< cohesion energy density, J/m3; 0: no cohesion law at all
+    CohesionLaw cohesion_law = CohesionLaw::sjkr;
+    FrictionLimit friction_limit = FrictionLimit::contact;
+};
 
 [[nodiscard]] double effective_modulus(const Material& material);        ///< E*, Pa
 [[nodiscard]] double effective_shear_modulus(const Material& material);  ///< G*, Pa
 [[nodiscard]] double damping_ratio(double restitution);                  ///< beta, <= 0; restitution in (0, 1]
-[[nodiscard]] double sphere_mass(double radius, double density);         ///< kg
+/// -2 sqrt(5/6) beta: a damper of this times sqrt(S m*), S = dF/dd, makes restitution independent of the impact speed.
+[[nodiscard]] double damping_factor(double restitution);
+[[nodiscard]] double sphere_mass(double radius, double density);  ///< kg
 
 /// The material as it is in contacts with a wall of this surface.
 [[nodiscard]] Material at_surface(const Material& material, const Surface& surface);
-
-[[nodiscard]] Hertz hertz(const Material& material);
-[[nodiscard]] Mindlin mindlin(const Material& material, double time_step);  ///< without friction: no force at all
-[[nodiscard]] RollingResistance rolling_resistance(const Material& material, double time_step);
 
 }  // namespace grainsweep::dem

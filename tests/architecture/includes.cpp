@@ -165,6 +165,28 @@ TEST(Architecture, LibrariesStayWhereTheyBelong) {
     }
 }
 
+// A law is a file in solver/dem/laws and a place in its list: the engines follow from the list.
+TEST(Architecture, EnginesNameNoContactLaw) {
+    const auto text_of = [](const fs::path& path) {
+        std::ifstream stream(path);
+        return std::string(std::istreambuf_iterator<char>(stream), {});
+    };
+    static const std::regex law(R"(\ntemplate <class Real(?:, bool \w+)?>\s+(?:struct|using) (\w+))");
+    std::vector<std::string> names;
+    for (const auto& path : sources({"solver/dem/laws"})) {
+        const std::string file = path.filename().string(), text = text_of(path);
+        if (file == "arithmetic.hpp" || file == "touch.hpp" || file == "contact.hpp") continue;  // their means
+        for (std::sregex_iterator match(text.begin(), text.end(), law), end; match != end; ++match)
+            names.push_back((*match)[1]);
+    }
+    EXPECT_GE(names.size(), 5U);
+    for (const auto& path : sources({"solver/dem/clear", "solver/dem/fast"})) {
+        const std::string text = text_of(path);
+        for (const auto& name : names)
+            EXPECT_FALSE(std::regex_search(text, std::regex("\\b" + name + "\\b"))) << path << " names " << name;
+    }
+}
+
 TEST(Architecture, NoFileIsNamedForNothingOrEndless) {
     for (const auto& path : sources({"stats", "solver", "sweep", "tests"})) {
         const std::string stem = path.stem().string();

@@ -121,7 +121,7 @@ void laws(const Options& o, const dem::Setup& bed, const dem::Setup& unequal) {
     run("friction_sjkr", bed, [](auto& s) { s.material.cohesion = 35e3; });
     run("friction_sjkr2", bed, [](auto& s) {
         s.material.cohesion = 35e3;
-        s.material.cohesion_area = dem::CohesionArea::sjkr2;
+        s.material.cohesion_law = dem::CohesionLaw::sjkr2;
     });
     run("friction_rolling", bed, [](auto& s) { s.material.rolling_friction = 0.1; });
     run("unequal_friction", unequal, [](auto&) {});

@@ -7,6 +7,7 @@
 // Each test prints its worst error beside its tolerance: the table of solver/dem/README.md.
 #include "solver/dem/engine.hpp"
 #include "solver/dem/material.hpp"
+#include "solver/geometry/vector.hpp"
 #include "tests/support/spheres.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,7 @@
 // Rolling resistance (solver/dem/laws/rolling.hpp) against LIGGGHTS 3.8, against closed forms, and in both engines.
 #include "solver/dem/engine.hpp"
 #include "solver/dem/material.hpp"
+#include "solver/geometry/vector.hpp"
 #include "tests/support/reference.hpp"
 #include "tests/support/spheres.hpp"
 
@@ -81,7 +82,7 @@ OnPlane on_plane(double rolling_friction, double slope) {
     p.setup.material.friction = 0.8;
     p.mass = dem::sphere_mass(radius, p.setup.material.density);
     p.setup.gravity = {gravity * std::sin(slope), 0, -gravity * std::cos(slope)};
-    const double stiffness = dem::hertz(p.setup.material).stiffness * std::sqrt(radius);
+    const double stiffness = 4.0 / 3 * dem::effective_modulus(p.setup.material) * std::sqrt(radius);
     p.overlap = std::pow(p.mass * gravity * std::cos(slope) / stiffness, 2.0 / 3);
     p.arm = radius - p.overlap / 2;
     p.setup.spheres = {{{0, 0, radius - p.overlap}, {}, {}, radius, true}};

@@ -6,8 +6,10 @@
 // radii, by default 1.) Walls forget at separation. What a pair remembers there thus depends on the skin; ours forgets
 // at separation, as LIGGGHTS does when it rebuilds at every step: then the engine as it is agrees to 4e-11
 // diameters at step 2000. To follow the default deck the comparison runs the engine with LIGGGHTS's memory and skin.
-#include "solver/dem/clear/combinations.hpp"
+#include "solver/dem/clear/checkpoint.hpp"
+#include "solver/dem/clear/stepping.hpp"
 #include "solver/dem/engine.hpp"
+#include "solver/dem/laws/compiled.hpp"
 #include "tests/support/reference.hpp"
 
 #include <gtest/gtest.h>
@@ -26,10 +28,12 @@ namespace {
 constexpr double diameter = 0.003;
 constexpr double reference_skin = 0.2 * diameter;
 
-struct LastingMindlin : dem::Mindlin {
+template <class Real>
+struct LastingMindlin : dem::Mindlin<Real> {
+    using dem::Mindlin<Real>::Mindlin;
     static constexpr bool remembers_separation = true;
 };
-using LastingEngine = dem::clear::ClearEngine<dem::Contact<dem::Hertz, LastingMindlin>, dem::clear::equal_spheres>;
+using LastingEngine = dem::clear::ClearEngine<dem::Contact<double, dem::Hertz, LastingMindlin>, particles::Needs{}>;
 
 dem::Setup mini_scene() {
     dem::Setup s;
@@ -79,10 +83,9 @@ std::vector<double> distances(const dem::State& state, const tests::Table& table
 TEST(DemSettling, FollowsLiggghtsParticleByParticle) {
     const auto setup = mini_scene();
     const auto table = tests::read_table(tests::reference("spreading/mini_settle.csv"));
-    const LastingMindlin mindlin{dem::mindlin(setup.material, setup.time_step)};
     dem::Method method;
     method.skin = reference_skin;
-    LastingEngine engine(setup, method, {{dem::hertz(setup.material), mindlin}});
+    LastingEngine engine(setup, method);
     dem::State state;
     // A disturbance of 1e-16 m grows to 8e-13, 4e-12 and 2e-10 diameters in the reference itself; the bounds leave room
     // for another rounding order.

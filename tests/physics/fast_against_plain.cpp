@@ -132,12 +132,12 @@ TEST(FastAgainstPlain, WithoutFriction) {
 }
 
 TEST(FastAgainstPlain, EveryCohesionAndLimit) {
-    for (const auto area : {dem::CohesionArea::sjkr, dem::CohesionArea::sjkr2, dem::CohesionArea::paper})
+    for (const auto area : {dem::CohesionLaw::sjkr, dem::CohesionLaw::sjkr2, dem::CohesionLaw::paper})
         for (const auto limit : {dem::FrictionLimit::contact, dem::FrictionLimit::net})
             for (const double spread : {0.0, 0.2}) {
                 dem::Setup s = test::boxed_lattice(4, 0.3, spread, 8);
                 s.material.cohesion = 2e5;
-                s.material.cohesion_area = area;
+                s.material.cohesion_law = area;
                 s.material.friction_limit = limit;
                 compare({"cohesive", s, 600});
             }

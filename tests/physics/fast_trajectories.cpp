@@ -93,7 +93,7 @@ TEST(FastTrajectories, AgreeWithLiggghts) {
 
 TEST(FastTrajectories, CohesivePairsRestAtTheirEquilibrium) {
     // Hertz against the neck at rest: 4/3 E* sqrt(R*) d^(3/2) = k A(d)
-    for (const auto area : {dem::CohesionArea::sjkr, dem::CohesionArea::sjkr2, dem::CohesionArea::paper}) {
+    for (const auto area : {dem::CohesionLaw::sjkr, dem::CohesionLaw::sjkr2, dem::CohesionLaw::paper}) {
         dem::Setup s;
         const double radius = 22.5e-6;
         s.domain = {{-40 * radius, -40 * radius, -40 * radius}, {40 * radius, 40 * radius, 40 * radius}, {}};
@@ -102,15 +102,15 @@ TEST(FastTrajectories, CohesivePairsRestAtTheirEquilibrium) {
         s.material.restitution = 0.5;
         s.material.friction = 0.5;
         s.material.cohesion = 35e3;
-        s.material.cohesion_area = area;
+        s.material.cohesion_law = area;
         s.gravity = {0, 0, 0};
         s.time_step = 2e-7;
         const double stiffness = 4.0 / 3 * s.material.youngs_modulus / (2 * (1 - 0.3 * 0.3)) * std::sqrt(radius / 2);
         const auto force = [&](double d) {
             const double pi = 3.14159265358979;
-            const double neck = area == dem::CohesionArea::sjkr    ? pi * (4 * radius * d - d * d) / 4
-                                : area == dem::CohesionArea::sjkr2 ? 2 * pi * radius * d
-                                                                   : pi * (radius * d - d * d) / 4;
+            const double neck = area == dem::CohesionLaw::sjkr    ? pi * (4 * radius * d - d * d) / 4
+                                : area == dem::CohesionLaw::sjkr2 ? 2 * pi * radius * d
+                                                                  : pi * (radius * d - d * d) / 4;
             return stiffness * d * std::sqrt(d) - s.material.cohesion * neck;
         };
         double low = 1e-9 * radius, high = radius;  // attractive at first, repulsive later

@@ -2,6 +2,7 @@
 // energy that walls give.
 #include "solver/dem/engine.hpp"
 #include "solver/dem/material.hpp"
+#include "solver/geometry/vector.hpp"
 #include "tests/support/moving_walls.hpp"
 #include "tests/support/spheres.hpp"
 
@@ -26,7 +27,7 @@ constexpr double gravity = 9.81;
 /// Overlap that carries the weight on a plane.
 double resting_overlap(const dem::Setup& s) {
     const double mass = dem::sphere_mass(radius, s.material.density);
-    return std::pow(mass * gravity / (dem::hertz(s.material).stiffness * std::sqrt(radius)), 2.0 / 3);
+    return std::pow(mass * gravity / ((4.0 / 3 * dem::effective_modulus(s.material)) * std::sqrt(radius)), 2.0 / 3);
 }
 
 /// Runs `steps` steps one by one and sums what the wall's loads give.
@@ -252,8 +253,9 @@ TEST(WallMotions, SlidesDownAConeWithItsFriction) {
     setup.material.friction = mu;
     setup.gravity = {0, 0, -gravity};
     const double mass = dem::sphere_mass(radius, setup.material.density);
-    const double overlap =
-        std::pow(mass * gravity * std::sin(a) / (dem::hertz(setup.material).stiffness * std::sqrt(radius)), 2.0 / 3);
+    const double overlap = std::pow(
+        mass * gravity * std::sin(a) / ((4.0 / 3 * dem::effective_modulus(setup.material)) * std::sqrt(radius)),
+        2.0 / 3);
     const double at_height = 0.005 + 0.05 * std::tan(a);
     setup.spheres[0].position = {at_height - (radius - overlap) / std::cos(a), 0, 0.02};
     const auto engine = dem::make_engine(setup, {});

@@ -163,11 +163,11 @@ TEST_P(DemStress, DiametersOneToTwenty) {
 
 TEST_P(DemStress, CohesionFarBeyondTheEquilibrium) {
     for (const double cohesion : {1e3, 1e5, 1e6, 1e7, 1e9})
-        for (const auto area : {dem::CohesionArea::sjkr, dem::CohesionArea::sjkr2, dem::CohesionArea::paper}) {
+        for (const auto area : {dem::CohesionLaw::sjkr, dem::CohesionLaw::sjkr2, dem::CohesionLaw::paper}) {
             auto setup = tests::boxed_gas(64, 0.3, 1, 7);
             setup.gravity = {0, 0, -9.81};
             setup.material.cohesion = cohesion;
-            setup.material.cohesion_area = area;
+            setup.material.cohesion_law = area;
             setup.time_step = 0.2 * limit_of(setup, 1e-3, 1.0);
             judge({with("cohesion", cohesion) + with(", area", static_cast<int>(area)), setup, 4000,
                    cohesion <= 1e5   ? Expected::sound

@@ -148,9 +148,9 @@ void PlainDem::pair(std::size_t i, std::size_t j, bool update) {
     c.radius = ri * rj / (ri + rj);
     c.mass = 1 / (1 / mass(i) + 1 / mass(j));
     double area = 0;
-    if (m.cohesion_area == dem::CohesionArea::sjkr)
+    if (m.cohesion_law == dem::CohesionLaw::sjkr)
         area = -pi / 4 * (r - ri - rj) * (r + ri - rj) * (r - ri + rj) * (r + ri + rj) / (r * r);
-    else if (m.cohesion_area == dem::CohesionArea::sjkr2)
+    else if (m.cohesion_law == dem::CohesionLaw::sjkr2)
         area = 2 * pi * 2 * c.radius * overlap;
     else
         area = pi * (2 * c.radius * overlap - overlap * overlap) / 4;
@@ -200,8 +200,8 @@ void PlainDem::wall(std::size_t i, std::size_t w, bool update) {
     c.surface = (ri - c.overlap / 2) * w_[i];
     c.radius = ri;
     c.mass = mass(i);
-    const double area = m.cohesion_area == dem::CohesionArea::sjkr ? pi * (2 * ri * c.overlap - c.overlap * c.overlap)
-                        : m.cohesion_area == dem::CohesionArea::sjkr2
+    const double area = m.cohesion_law == dem::CohesionLaw::sjkr ? pi * (2 * ri * c.overlap - c.overlap * c.overlap)
+                        : m.cohesion_law == dem::CohesionLaw::sjkr2
                             ? 2 * pi * ri * c.overlap
                             : pi * (2 * ri * c.overlap - c.overlap * c.overlap) / 4;
     c.neck = m.cohesion * area;

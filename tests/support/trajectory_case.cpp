@@ -22,7 +22,7 @@ dem::Setup setup_of(const nlohmann::json& c) {
     s.material.friction = c["mu"];
     if (c["coh"] != "") {
         s.material.cohesion = c["k"];
-        s.material.cohesion_area = c["coh"] == "sjkr" ? dem::CohesionArea::sjkr : dem::CohesionArea::sjkr2;
+        s.material.cohesion_law = c["coh"] == "sjkr" ? dem::CohesionLaw::sjkr : dem::CohesionLaw::sjkr2;
     }
     s.gravity = {0, 0, c["grav"].get<bool>() ? -9.81 : 0.0};
     s.time_step = c["dt"];

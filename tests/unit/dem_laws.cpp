@@ -1,4 +1,4 @@
-#include "solver/dem/laws/contact.hpp"
+#include "solver/dem/laws/compiled.hpp"
 #include "solver/dem/limits.hpp"
 #include "solver/dem/material.hpp"
 #include "solver/dem/time_step.hpp"
@@ -50,87 +50,112 @@ TEST(Material, DerivesTheEffectiveModuli) {
 
 TEST(Hertz, IsTheSpringAndTheDamperOfItsFormula) {
     const Material m;
-    const Contact<Hertz> contact{{hertz(m)}};
-    NoMemory none;
+    const auto contact = Contact<double, Hertz>::of(m);
     const auto t = pair();
     const double stiffness = 4.0 / 3.0 * effective_modulus(m) * std::sqrt(t.effective_radius * t.overlap);
-    EXPECT_NEAR(contact.respond<true>(t, none).normal, stiffness * t.overlap, 1e-15);
+    EXPECT_NEAR(contact.respond<true>(t, nullptr).normal, stiffness * t.overlap, 1e-15);
     const double s_n = 2 * effective_modulus(m) * std::sqrt(t.effective_radius * t.overlap);
     const double g_n = -2 * std::sqrt(5.0 / 6.0) * damping_ratio(0.5) * std::sqrt(s_n * t.reduced_mass);
-    EXPECT_NEAR(contact.respond<true>(pair(0.3), none).normal, stiffness * t.overlap - 0.3 * g_n, 1e-12);
+    EXPECT_NEAR(contact.respond<true>(pair(0.3), nullptr).normal, stiffness * t.overlap - 0.3 * g_n, 1e-12);
     // The stored energy is the work of the spring.
-    EXPECT_NEAR(contact.energy(t, none), 0.4 * stiffness * t.overlap * t.overlap, 1e-18);
+    EXPECT_NEAR(contact.energy(t, nullptr), 0.4 * stiffness * t.overlap * t.overlap, 1e-18);
 }
 
 TEST(Mindlin, SticksAsASpringAndSlidesAtCoulombsLimit) {
     Material m;
     m.friction = 0.3;
-    const Contact<Hertz, Mindlin> contact{{hertz(m), mindlin(m, 1e-6)}};
+    const auto contact = Contact<double, Hertz, Mindlin>::of(m);
     auto t = pair();
+    t.time_step = 1e-6;
     const double normal = 4.0 / 3.0 * effective_modulus(m) * t.root * t.overlap;
     const double k_t = 8 * effective_shear_modulus(m) * t.root;
     const double g_t = -2 * std::sqrt(5.0 / 6.0) * damping_ratio(0.5) * std::sqrt(k_t * t.reduced_mass);
     Vec3 s{1e-7, 0, 5e-8};
     t.slip = {0.01, 0, 0};
-    const auto sticking = contact.respond<true>(t, s);
+    const auto sticking = contact.respond<true>(t, s.data());
     EXPECT_NEAR(s[0], 1e-7 + 1e-8, 1e-20);
     EXPECT_EQ(s[2], 0);  // only the tangential part stays
-    EXPECT_NEAR(sticking.tangential[0], -k_t * 1.1e-7 - g_t * 0.01, 1e-12);
+    EXPECT_NEAR(sticking.resistance[0], k_t * 1.1e-7 + g_t * 0.01, 1e-12);
     Vec3 far{1e-3, 0, 0};
-    const auto sliding = contact.respond<true>(t, far);
-    EXPECT_NEAR(sliding.tangential[0], -0.3 * normal, 1e-14);
+    const auto sliding = contact.respond<true>(t, far.data());
+    EXPECT_NEAR(sliding.resistance[0], 0.3 * normal, 1e-14);
     EXPECT_NEAR(far[0], 0.3 * normal / k_t, 1e-18);  // cut back to the elastic limit
     Vec3 still{1e-3, 0, 0};
-    (void)contact.respond<false>(t, still);
+    (void)contact.respond<false>(t, still.data());
     EXPECT_EQ(still[0], 1e-3);  // looking does not touch the memory
 }
 
 TEST(Cohesion, HasThreeAreas) {
     const auto t = pair();
     const double r = t.distance;
+    const auto area = [](CohesionLaw law, const auto& touch) {  // by the attraction of 1 J/m3
+        Material m;
+        m.cohesion = 1;
+        m.cohesion_law = law;
+        Response<double> response;
+        Cohesion<double>(Contact<double, Cohesion>::values_of(m).data()).add<true>(touch, response, nullptr);
+        if (law == CohesionLaw::sjkr) {
+            Response<double> lean;
+            LensCohesion<double>(Contact<double, LensCohesion>::values_of(m).data()).add<true>(touch, lean, nullptr);
+            EXPECT_EQ(lean.normal, response.normal);
+        }
+        EXPECT_EQ(response.seen, 0);
+        return -response.normal;
+    };
     // The disc where two spheres cut, from its elementary geometry.
     const double offset = (r * r + 0.002 * 0.002 - 0.001 * 0.001) / (2 * r);
-    EXPECT_NEAR(SjkrArea::area(t), pi * (0.002 * 0.002 - offset * offset), 1e-17);
-    EXPECT_NEAR(Sjkr2Area::area(t), 4 * pi * t.effective_radius * t.overlap, 1e-20);
-    EXPECT_NEAR(PaperArea::area(t), pi / 4 * (2 * t.effective_radius - t.overlap) * t.overlap, 1e-20);
-    EXPECT_NEAR(SjkrArea::area(wall()), pi * (2 * 0.002 - 2e-5) * 2e-5, 1e-20);
-    EXPECT_NEAR(Sjkr2Area::area(wall()), 2 * pi * 0.002 * 2e-5, 1e-20);
-    EXPECT_NEAR(PaperArea::area(wall()), pi / 4 * (2 * 0.002 - 2e-5) * 2e-5, 1e-20);
-    for (const auto which : {CohesionArea::sjkr, CohesionArea::sjkr2, CohesionArea::paper}) {
-        const ChosenArea chosen{which};
-        const double expected = which == CohesionArea::sjkr    ? SjkrArea::area(t)
-                                : which == CohesionArea::sjkr2 ? Sjkr2Area::area(t)
-                                                               : PaperArea::area(t);
-        EXPECT_EQ(chosen.area(t), expected);
-    }
+    EXPECT_NEAR(area(CohesionLaw::sjkr, t), pi * (0.002 * 0.002 - offset * offset), 1e-17);
+    EXPECT_NEAR(area(CohesionLaw::sjkr2, t), 4 * pi * t.effective_radius * t.overlap, 1e-20);
+    EXPECT_NEAR(area(CohesionLaw::paper, t), pi / 4 * (2 * t.effective_radius - t.overlap) * t.overlap, 1e-20);
+    EXPECT_NEAR(area(CohesionLaw::sjkr, wall()), pi * (2 * 0.002 - 2e-5) * 2e-5, 1e-20);
+    EXPECT_NEAR(area(CohesionLaw::sjkr2, wall()), 2 * pi * 0.002 * 2e-5, 1e-20);
+    EXPECT_NEAR(area(CohesionLaw::paper, wall()), pi / 4 * (2 * 0.002 - 2e-5) * 2e-5, 1e-20);
 }
 
-TEST(Contact, TheOrderOfLawsDecidesWhatFrictionSees) {
+TEST(Contact, TheMaterialDecidesWhatFrictionSees) {
     Material m;
     m.friction = 0.3;
-    const Cohesion<SjkrArea> cohesion{1e4, {}};
-    const Contact<Hertz, Mindlin, Cohesion<SjkrArea>> blind{{hertz(m), mindlin(m, 1e-6), cohesion}};
-    const Contact<Hertz, Cohesion<SjkrArea>, Mindlin> seeing{{hertz(m), cohesion, mindlin(m, 1e-6)}};
+    m.cohesion = 1e4;
     const auto t = pair();
-    Vec3 a{1e-3, 0, 0};
-    Vec3 b = a;
-    const auto contact_force = blind.respond<true>(t, a);
-    const auto net = seeing.respond<true>(t, b);
-    const double attraction = 1e4 * SjkrArea::area(t);
-    EXPECT_NEAR(contact_force.normal, net.normal, 1e-15);
-    EXPECT_NEAR(contact_force.tangential[0], -0.3 * (contact_force.normal + attraction), 1e-14);
-    EXPECT_NEAR(net.tangential[0], -0.3 * net.normal, 1e-14);
+    const auto response = [&](FrictionLimit limit) {
+        m.friction_limit = limit;
+        Vec3 s{1e-3, 0, 0};
+        return Contact<double, Hertz, Cohesion, Mindlin>::of(m).respond<true>(t, s.data());
+    };
+    const auto contact_force = response(FrictionLimit::contact), net = response(FrictionLimit::net);
+    const double attraction = 1e4 * 2 * pi * t.effective_radius * t.overlap;
+    EXPECT_EQ(contact_force.normal, net.normal);
+    EXPECT_NEAR(contact_force.seen - contact_force.normal, attraction, 0.01 * attraction);
+    EXPECT_NEAR(contact_force.resistance[0], 0.3 * contact_force.seen, 1e-14);
+    EXPECT_NEAR(net.resistance[0], 0.3 * net.normal, 1e-14);
 }
 
 TEST(Contact, NeedsWhatItsLawsNeed) {
-    static_assert(!Contact<Hertz>::needs.spin && !Contact<Hertz>::needs.tangential_history);
-    static_assert(Contact<Hertz, Mindlin>::needs.spin && Contact<Hertz, Mindlin>::needs.tangential_history);
-    static_assert(!Contact<Hertz, Cohesion<SjkrArea>>::needs.spin);
-    static_assert(std::is_same_v<Contact<Hertz>::Memory, NoMemory>);
-    static_assert(sizeof(Cohesion<SjkrArea>) == sizeof(double));
-    static_assert(std::is_same_v<Contact<Hertz, Mindlin>::Memory, Vec3>);
-    static_assert(Contact<Hertz, Mindlin, RollingResistance>::needs.rolling_history);
-    static_assert(sizeof(Contact<Hertz, Mindlin, RollingResistance>::Memory) == 2 * sizeof(Vec3));
+    static_assert(!Contact<double, Hertz>::spin && !Contact<double, Hertz>::remembers);
+    static_assert(Contact<double, Hertz, Mindlin>::spin && Contact<double, Hertz, Mindlin>::memories == 3);
+    static_assert(!Contact<double, Hertz, LensCohesion>::spin);
+    static_assert(Contact<double, Hertz, Mindlin, RollingResistance>::rolls);
+    static_assert(Contact<double, Hertz, Mindlin, RollingResistance>::memories == 6);
+}
+
+TEST(Compiled, TheFirstCombinationThatFitsIsTaken) {
+    const auto chosen = [](auto&& change) {
+        Material m;
+        change(m);
+        return choose_combination(std::vector{m}, [](const CombinationFacts&) { return true; });
+    };
+    EXPECT_EQ(chosen([](Material& m) { m.friction = 0; }), 0);
+    EXPECT_EQ(chosen([](Material&) {}), 1);
+    EXPECT_EQ(chosen([](Material& m) { m.cohesion = 1; }), 2);
+    EXPECT_EQ(chosen([](Material& m) { m.cohesion = 1, m.friction = 0; }), 3);
+    EXPECT_EQ(chosen([](Material& m) { m.cohesion = 1, m.cohesion_law = CohesionLaw::paper; }), 3);
+    EXPECT_EQ(chosen([](Material& m) { m.cohesion = 1, m.friction_limit = FrictionLimit::net; }), 3);
+    EXPECT_EQ(chosen([](Material& m) { m.rolling_friction = 0.1; }), 4);
+    Material plain;  // of many sizes only some are compiled
+    plain.friction = 0;
+    EXPECT_EQ(
+        choose_combination(std::vector{plain}, [](const CombinationFacts& f) { return f.columns != Columns::equal; }),
+        3);
 }
 
 TEST(TimeStep, LimitsAreThoseOfThePapers) {

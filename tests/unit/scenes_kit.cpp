@@ -38,11 +38,11 @@ TEST(Kit, HandlesReadWhatTheyDeclare) {
     const auto specs = kit::declared(powder.friction, powder.cohesion_law, powder.size_file, count);
     auto inputs = defaults(specs);
     EXPECT_EQ(powder.friction(inputs), 0.2);
-    EXPECT_EQ(powder.cohesion_law(inputs), dem::CohesionArea::sjkr);
+    EXPECT_EQ(powder.cohesion_law(inputs), dem::CohesionLaw::sjkr);
     EXPECT_FALSE(powder.size_file(inputs));
     EXPECT_EQ(count(inputs), 3);
     inputs["cohesion_law"] = std::string("paper");
-    EXPECT_EQ(powder.cohesion_law(inputs), dem::CohesionArea::paper);
+    EXPECT_EQ(powder.cohesion_law(inputs), dem::CohesionLaw::paper);
     inputs["cohesion_law"] = std::string("glue");
     EXPECT_THROW((void)powder.cohesion_law(inputs), std::invalid_argument);
     EXPECT_THROW((void)powder.density(inputs), std::logic_error) << "not declared";

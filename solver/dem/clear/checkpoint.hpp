@@ -69,6 +69,7 @@ void ClearEngine<Laws, case_needs>::save(std::vector<std::byte>& into) const {
     particles::ByteWriter out(into);
     out.put(checkpoint_format);
     out.put(needs);
+    out.put(Laws::values_of(material_));
     out.put(static_cast<std::uint64_t>(spheres_at_start_));
     out.put(time_step_);
     out.put(shaking_);
@@ -90,7 +91,7 @@ void ClearEngine<Laws, case_needs>::save(std::vector<std::byte>& into) const {
         out.put(entries);
         out.put(distances);
         out.put(normals);
-        if constexpr (needs.tangential_history) out.put(contacts.memory);
+        if constexpr (Laws::remembers) out.put(contacts.memory);
         out.put(contacts.load);
         out.put(contacts.load_about);
     }
@@ -117,7 +118,7 @@ void ClearEngine<Laws, case_needs>::require_possible() const {
             require(std::abs(p_.position[i][k] - domain_.low[k]) <= 4 * domain_.length(k));
     }
     for (const auto i : near_open_face_) require(i < n);
-    const std::size_t memories = needs.tangential_history ? list_.size() : 0;
+    const std::size_t memories = Laws::remembers ? list_.size() : 0;
     require(pairs_.value.size() == memories && pairs_.live.size() == memories);
     for (const auto& contacts : walls_) {
         std::uint32_t least = 0;  // listed in ascending order
@@ -130,7 +131,7 @@ void ClearEngine<Laws, case_needs>::require_possible() const {
             require(touch.entry < contacts.near.size() && touch.entry >= least);
             least = touch.entry;
         }
-        if constexpr (needs.tangential_history) require(contacts.memory.size() == contacts.touches.size());
+        if constexpr (Laws::remembers) require(contacts.memory.size() == contacts.touches.size());
     }
     require(wall_steps_ >= 0 && wall_steps_ < most_steps && work_.steps >= 0 && work_.steps < most_steps);
 }
@@ -155,7 +156,7 @@ void ClearEngine<Laws, case_needs>::restore_walls(particles::ByteReader& in) {
         in.require(entries.size() == distances.size() && entries.size() == normals.size());
         for (std::size_t k = 0; k < entries.size(); ++k)
             contacts.touches.push_back({entries[k], {distances[k], normals[k]}});
-        if constexpr (needs.tangential_history) in.get(contacts.memory);
+        if constexpr (Laws::remembers) in.get(contacts.memory);
         in.get(contacts.load);
         in.get(contacts.load_about);
         contacts.pose_when_built = contacts.wall.pose_at(contacts.built);
@@ -175,6 +176,10 @@ void ClearEngine<Laws, case_needs>::restore(std::span<const std::byte> from) {
     };
     expect(checkpoint_format);
     expect(needs);
+    std::vector<double> constants;
+    in.get(constants);
+    if (constants != Laws::values_of(material_))
+        throw std::invalid_argument("checkpoint of other laws or another material");
     expect(static_cast<std::uint64_t>(spheres_at_start_));
     expect(time_step_);
     expect(shaking_);

@@ -34,7 +34,7 @@ struct WallContacts {
     geometry::Pose pose_when_built;
     // Of the last evaluation, in the order of `near`; several of one particle are told apart by their normals.
     std::vector<WallTouch> touches;
-    [[no_unique_address]] particles::Column<Laws::needs.tangential_history, typename Laws::Memory> memory;
+    [[no_unique_address]] particles::Column<Laws::remembers, typename Laws::Memory> memory;
     WallLoad load;  // about load_about
     Vec3 load_about{};
 };
@@ -42,12 +42,9 @@ struct WallContacts {
 template <class Laws, Needs case_needs>
 class ClearEngine final : public Engine {
 public:
-    static constexpr Needs needs = Laws::needs | case_needs;
+    static constexpr Needs needs{.spin = Laws::spin, .sizes = case_needs.sizes, .frozen = case_needs.frozen};
 
-    /// The laws of a material and a time step: of the powder, and of the surfaces of walls.
-    using MakeLaws = Laws (*)(const Material&, double);
-
-    ClearEngine(const Setup& setup, const Method& method, MakeLaws make_laws);
+    ClearEngine(const Setup& setup, const Method& method);
 
     void run(std::int64_t steps) override;
     void set_walls(std::vector<Wall> walls) override;
@@ -69,7 +66,6 @@ public:
 private:
     using Memory = typename Laws::Memory;
     using Contacts = WallContacts<Laws>;
-    using StoredMemory = std::conditional_t<needs.tangential_history, Memory, Vec3>;
 
     // One radius for all, or a column: the same words for both.
     [[nodiscard]] double radius(std::size_t i) const {
@@ -123,7 +119,14 @@ private:
     void find_touches(Contacts& contacts);
     [[nodiscard]] Touch<Partner::particle> touch(std::size_t i, std::size_t j, const Vec3& branch, double r2) const;
     [[nodiscard]] Touch<Partner::wall> touch(std::size_t i, const geometry::Closest& closest, const Vec3& v) const;
-    [[nodiscard]] Memory memory_of(std::size_t entry) const;
+    /// Entry k of a column of memories, or `none` where laws remember nothing.
+    template <class Memories>
+    static auto& memory_at([[maybe_unused]] Memories& column, [[maybe_unused]] std::size_t k, Memory& none) {
+        if constexpr (Laws::remembers)
+            return column[k];
+        else
+            return none;
+    }
     template <class Visit>
     void for_each_touching_pair(Visit&& visit) const;
     template <class Visit>
@@ -138,6 +141,7 @@ private:
     [[nodiscard]] Vec3 momentum() const;
     void rebuild(std::span<const std::int32_t> removed = {});
     void forget_separated();
+    [[nodiscard]] static Memory exchanged();
     [[nodiscard]] std::vector<Contacts> make_walls(const std::vector<Wall>& walls) const;
     void place_walls();
     void list_walls(std::span<const std::uint32_t> fresh_index);
@@ -159,7 +163,6 @@ private:
     void require_possible() const;
     void restore_walls(particles::ByteReader& in);
 
-    MakeLaws make_laws_;
     Material material_;
     Laws laws_;
     geometry::Domain domain_;
@@ -181,7 +184,7 @@ private:
     std::vector<Vec3> position_at_build_;
     std::vector<std::uint32_t> near_open_face_;
     particles::NeighbourList list_;
-    particles::PairMemory<StoredMemory> pairs_;  // empty unless needs.tangential_history
+    particles::PairMemory<static_cast<std::size_t>(Laws::memories)> pairs_;  // empty where laws remember nothing
     std::vector<Contacts> walls_;
     particles::Cells cells_;
     struct Touching {
@@ -189,9 +192,9 @@ private:
         double r2;
         std::uint32_t i, entry;
     };
-    std::vector<Touching> touching_;           // scratch of pair_contacts
-    std::vector<WallTouch> touched_before_;    // scratch of find_touches
-    std::vector<StoredMemory> memory_before_;  // likewise
+    std::vector<Touching> touching_;         // scratch of pair_contacts
+    std::vector<WallTouch> touched_before_;  // scratch of find_touches
+    std::vector<Memory> memory_before_;      // likewise
 
     std::int64_t wall_steps_ = 0;
     bool displaced_ = false;  // a particle has moved half the skin, or is not a number

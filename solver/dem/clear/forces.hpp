@@ -35,10 +35,11 @@ template <class Laws, Needs case_needs>
                           (t.radius_j - t.overlap / 2) * p_.angular_velocity[j];
         t.slip = v - t.normal_velocity * t.normal - cross(turn, t.normal);
     }
-    if constexpr (needs.rolling_history) {
+    if constexpr (Laws::rolls) {
         t.turning = p_.angular_velocity[i] - p_.angular_velocity[j];
         t.rolling_inertia = rolling_inertia(i, j);
     }
+    t.time_step = time_step_;
     return t;
 }
 
@@ -59,10 +60,11 @@ template <class Laws, Needs case_needs>
     if constexpr (needs.spin)
         t.slip =
             v - t.normal_velocity * t.normal - cross((t.radius_i - t.overlap / 2) * p_.angular_velocity[i], t.normal);
-    if constexpr (needs.rolling_history) {
+    if constexpr (Laws::rolls) {
         t.turning = p_.angular_velocity[i];
         t.rolling_inertia = inertia_about_contact * t.reduced_mass * t.radius_i * t.radius_i;
     }
+    t.time_step = time_step_;
     return t;
 }
 
@@ -107,7 +109,7 @@ std::size_t ClearEngine<Laws, case_needs>::find_touching(std::size_t first, std:
             found += inside ? 1 : 0;
             if constexpr (Laws::remembers_separation) {
                 pairs_.live[k] |= inside ? 1 : 0;
-            } else if constexpr (needs.tangential_history) {
+            } else if constexpr (Laws::remembers) {
                 if (pairs_.live[k] != static_cast<std::uint8_t>(inside)) [[unlikely]] {
                     pairs_.live[k] = inside ? 1 : 0;
                     pairs_.value[k] = {};
@@ -136,24 +138,19 @@ void ClearEngine<Laws, case_needs>::pair_contacts() {
                 largest = std::max(largest, t.overlap / (2 * std::min(t.radius_i, t.radius_j)));
                 stiffest_ = std::max(stiffest_, t.root / t.reduced_mass);
             }
-            Response r;
-            if constexpr (needs.tangential_history) {
-                r = laws_.template respond<advance>(t, pairs_.value[k]);
-            } else {
-                NoMemory none;
-                r = laws_.template respond<advance>(t, none);
-            }
-            const Vec3 f = r.normal * t.normal + r.tangential;
+            Memory none{};
+            const auto r = laws_.template respond<advance>(t, memory_at(pairs_.value, k, none).data());
+            const Vec3 f = r.normal * t.normal - r.resistance;
             p_.force[i] += f;
             p_.force[j] -= f;
             if constexpr (needs.spin) {
-                const Vec3 moment = cross(t.normal, r.tangential);
-                p_.torque[i] -= (t.radius_i - t.overlap / 2) * moment;
-                p_.torque[j] -= (t.radius_j - t.overlap / 2) * moment;
+                const Vec3 moment = cross(t.normal, r.resistance);
+                p_.torque[i] += (t.radius_i - t.overlap / 2) * moment;
+                p_.torque[j] += (t.radius_j - t.overlap / 2) * moment;
             }
-            if constexpr (needs.rolling_history) {
-                p_.torque[i] += r.rolling;
-                p_.torque[j] -= r.rolling;
+            if constexpr (Laws::rolls) {
+                p_.torque[i] -= r.rolling;
+                p_.torque[j] += r.rolling;
             }
         }
     }
@@ -169,7 +166,7 @@ template <class Laws, Needs case_needs>
 void ClearEngine<Laws, case_needs>::find_touches(Contacts& contacts) {
     touched_before_.swap(contacts.touches);
     contacts.wall.find(contacts.near, p_.position, radii(), 0, contacts.touches);
-    if constexpr (needs.tangential_history) {
+    if constexpr (Laws::remembers) {
         memory_before_.swap(contacts.memory);
         const auto& before = touched_before_;
         const auto& now = contacts.touches;
@@ -204,23 +201,18 @@ void ClearEngine<Laws, case_needs>::wall_contacts(Contacts& contacts) {
         const auto t = touch(i, place, wall_velocity);
         largest = std::max(largest, t.overlap / (2 * t.radius_i));
         stiffest_ = std::max(stiffest_, t.root * inverse_mass(i));
-        Response r;
-        if constexpr (needs.tangential_history) {
-            r = contacts.laws.template respond<advance>(t, contacts.memory[k]);
-        } else {
-            NoMemory none;
-            r = contacts.laws.template respond<advance>(t, none);
-        }
-        const Vec3 f = r.normal * t.normal + r.tangential;
+        Memory none{};
+        const auto r = contacts.laws.template respond<advance>(t, memory_at(contacts.memory, k, none).data());
+        const Vec3 f = r.normal * t.normal - r.resistance;
         const double arm = t.radius_i - t.overlap / 2;
         p_.force[i] += f;
         total += f;
         power += dot(f, wall_velocity);
         turn += cross(p_.position[i] - arm * t.normal - twist.pivot, f);
-        if constexpr (needs.spin) p_.torque[i] -= arm * cross(t.normal, r.tangential);
-        if constexpr (needs.rolling_history) {
-            p_.torque[i] += r.rolling;
-            turn += r.rolling;
+        if constexpr (needs.spin) p_.torque[i] += arm * cross(t.normal, r.resistance);
+        if constexpr (Laws::rolls) {
+            p_.torque[i] -= r.rolling;
+            turn -= r.rolling;
         }
     }
     largest_wall_overlap_ = std::max(largest_wall_overlap_, largest);
@@ -240,14 +232,6 @@ WallLoad ClearEngine<Laws, case_needs>::wall_load(std::size_t wall, const Vec3& 
     return load;
 }
 
-template <class Laws, Needs case_needs>
-auto ClearEngine<Laws, case_needs>::memory_of([[maybe_unused]] std::size_t entry) const -> Memory {
-    if constexpr (needs.tangential_history)
-        return pairs_.value[entry];
-    else
-        return {};
-}
-
 /// Calls visit(i, j, touch, memory) for the pairs that touch, in list order.
 template <class Laws, Needs case_needs>
 template <class Visit>
@@ -258,7 +242,8 @@ void ClearEngine<Laws, case_needs>::for_each_touching_pair(Visit&& visit) const 
             const Vec3 branch = p_.position[i] - (p_.position[j] + image_shifts_[list_[k].image()]);
             const double reach = radius(i) + radius(j);
             const double r2 = dot(branch, branch);
-            if (r2 < reach * reach) visit(i, j, touch(i, j, branch, r2), memory_of(k));
+            Memory none{};
+            if (r2 < reach * reach) visit(i, j, touch(i, j, branch, r2), memory_at(pairs_.value, k, none));
         }
 }
 
@@ -272,7 +257,7 @@ void ClearEngine<Laws, case_needs>::for_each_touched_wall(Visit&& visit) const {
             const auto& [entry, place] = contacts.touches[k];
             const std::size_t i = contacts.near[entry];
             Memory memory{};
-            if constexpr (needs.tangential_history) memory = contacts.memory[k];
+            if constexpr (Laws::remembers) memory = contacts.memory[k];
             const Vec3 v = contacts.wall.twist().at(p_.position[i] - place.distance * place.normal);
             visit(i, w, touch(i, place, v), memory);
         }
@@ -283,8 +268,8 @@ template <class Laws, Needs case_needs>
 void ClearEngine<Laws, case_needs>::contacts(std::vector<ContactForce>& into) const {
     into.clear();
     const auto add = [&](const Laws& laws, std::size_t i, std::int32_t second, const auto& t, Memory memory) {
-        const Response r = laws.template respond<false>(t, memory);
-        into.push_back({p_.id[i], second, t.overlap, t.normal, r.normal, r.tangential, r.rolling});
+        const auto r = laws.template respond<false>(t, memory.data());
+        into.push_back({p_.id[i], second, t.overlap, t.normal, r.normal, -r.resistance, -r.rolling});
     };
     for_each_touching_pair(
         [&](std::size_t i, std::size_t j, const auto& t, const Memory& memory) { add(laws_, i, p_.id[j], t, memory); });
@@ -305,9 +290,9 @@ double ClearEngine<Laws, case_needs>::mechanical_energy(double& active) const {
         squeezed += std::abs(energy);
     };
     for_each_touching_pair(
-        [&](std::size_t, std::size_t, const auto& t, const Memory& memory) { add(laws_.energy(t, memory)); });
+        [&](std::size_t, std::size_t, const auto& t, const Memory& memory) { add(laws_.energy(t, memory.data())); });
     for_each_touched_wall([&](std::size_t, std::size_t w, const auto& t, const Memory& memory) {
-        add(walls_[w].laws.energy(t, memory));
+        add(walls_[w].laws.energy(t, memory.data()));
     });
     for (std::size_t i = 0; i < p_.size(); ++i) {
         if (!mobile(i)) continue;

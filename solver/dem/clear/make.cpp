@@ -1,76 +1,43 @@
 #include "solver/dem/clear/make.hpp"
 
-#include "solver/dem/clear/combinations.hpp"
+#include "solver/dem/clear/checkpoint.hpp"
+#include "solver/dem/clear/stepping.hpp"
+#include "solver/dem/laws/compiled.hpp"
 
 #include <algorithm>
 
 namespace grainsweep::dem::clear {
 namespace {
 
-template <Needs case_needs, class Laws>
-std::unique_ptr<Engine> make(const Setup& setup, const Method& method, Laws (*make_laws)(const Material&, double)) {
-    return std::make_unique<ClearEngine<Laws, case_needs>>(setup, method, make_laws);
-}
-
-Frictionless frictionless(const Material& m, double) {
-    return {{hertz(m)}};
-}
-
-Frictional frictional(const Material& m, double time_step) {
-    return {{hertz(m), mindlin(m, time_step)}};
-}
-
-FrictionalSjkr frictional_sjkr(const Material& m, double time_step) {
-    return {{hertz(m), mindlin(m, time_step), {m.cohesion, {}}}};
-}
-
-/// Cohesion stands before friction where friction sees it, behind it otherwise; the other one is zero.
-struct Necks {
-    Cohesion<ChosenArea> before, after;
-};
-Necks necks(const Material& m) {
-    const bool friction_sees_it = m.friction_limit == FrictionLimit::net;
-    return {{friction_sees_it ? m.cohesion : 0.0, {m.cohesion_area}},
-            {friction_sees_it ? 0.0 : m.cohesion, {m.cohesion_area}}};
-}
-
-AnyLaws any_laws(const Material& m, double time_step) {
-    const auto [before, after] = necks(m);
-    return {{hertz(m), before, mindlin(m, time_step), after}};
-}
-
-AnyRollingLaws any_rolling_laws(const Material& m, double time_step) {
-    const auto [before, after] = necks(m);
-    return {{hertz(m), before, mindlin(m, time_step), rolling_resistance(m, time_step), after}};
+template <class C, Needs needs>
+std::unique_ptr<Engine> make(const Setup& setup, const Method& method) {
+    return std::make_unique<ClearEngine<typename C::template Contact<double>, needs>>(setup, method);
 }
 
 }  // namespace
 
 std::unique_ptr<Engine> make_clear_engine(const Setup& setup, const Method& method) {
-    const Material& m = setup.material;
+    constexpr Needs equal_spheres{}, some_frozen{.frozen = true}, many_sizes{.sizes = true, .frozen = true};
     const auto& spheres = setup.spheres;
     const bool frozen = std::ranges::any_of(spheres, [](const Sphere& s) { return !s.mobile; });
     const bool sizes = std::ranges::any_of(spheres, [&](const Sphere& s) { return s.radius != spheres[0].radius; });
-    const auto somewhere = [&](auto part) {  // in the powder or at a wall
-        return part(m) > 0 ||
-               std::ranges::any_of(setup.walls, [&](const Wall& w) { return part(at_surface(m, w.surface)) > 0; });
-    };
-    const bool friction = somewhere([](const Material& of) { return of.friction; });
-    const bool rolling = somewhere([](const Material& of) { return of.rolling_friction; });
-    const bool cohesion = m.cohesion > 0;
-    const bool plain_sjkr =
-        cohesion && m.cohesion_area == CohesionArea::sjkr && m.friction_limit == FrictionLimit::contact;
-
-    if (rolling) return make<many_sizes>(setup, method, any_rolling_laws);
-    if (!sizes && !frozen) {
-        if (!friction && !cohesion) return make<equal_spheres>(setup, method, frictionless);
-        if (friction && !cohesion) return make<equal_spheres>(setup, method, frictional);
-        if (friction && plain_sjkr) return make<equal_spheres>(setup, method, frictional_sjkr);
-    }
-    if (!sizes && friction && !cohesion) return make<some_frozen>(setup, method, frictional);
-    if (!sizes && friction && plain_sjkr) return make<some_frozen>(setup, method, frictional_sjkr);
-    if (friction && !cohesion) return make<many_sizes>(setup, method, frictional);
-    return make<many_sizes>(setup, method, any_laws);
+    // Equal spheres without torques are not compiled with frozen ones among them: they take a general combination.
+    const int chosen = choose_combination(materials_of(setup), [&](const CombinationFacts& facts) {
+        return facts.columns == Columns::any || (sizes ? facts.columns == Columns::sizes : !frozen || facts.spin);
+    });
+    std::unique_ptr<Engine> engine;
+    visit_combination(chosen, Compiled{}, [&]<class C>() {
+        if constexpr (C::columns == Columns::any) {
+            engine = make<C, many_sizes>(setup, method);
+        } else {
+            if constexpr (C::columns == Columns::sizes)
+                if (sizes) engine = make<C, many_sizes>(setup, method);
+            if constexpr (C::template Contact<double>::spin)
+                if (!engine && frozen) engine = make<C, some_frozen>(setup, method);
+            if (!engine) engine = make<C, equal_spheres>(setup, method);
+        }
+    });
+    return engine;
 }
 
 }  // namespace grainsweep::dem::clear

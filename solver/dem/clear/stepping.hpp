@@ -17,10 +17,9 @@ namespace grainsweep::dem::clear {
 inline constexpr double default_skin = 0.3;
 
 template <class Laws, Needs case_needs>
-ClearEngine<Laws, case_needs>::ClearEngine(const Setup& setup, const Method& method, MakeLaws make_laws)
-    : make_laws_(make_laws),
-      material_(setup.material),
-      laws_(make_laws(setup.material, setup.time_step)),
+ClearEngine<Laws, case_needs>::ClearEngine(const Setup& setup, const Method& method)
+    : material_(setup.material),
+      laws_(Laws::of(setup.material)),
       domain_{setup.domain.low, setup.domain.high, setup.domain.periodic},
       image_shifts_(domain_.image_shifts()),
       gravity_(setup.gravity),
@@ -71,6 +70,14 @@ ClearEngine<Laws, case_needs>::ClearEngine(const Setup& setup, const Method& met
     rebuild();
     set_speed_limit();
     evaluate<false>();
+}
+
+/// Factors of a memory's components when its particles change places.
+template <class Laws, Needs case_needs>
+auto ClearEngine<Laws, case_needs>::exchanged() -> Memory {
+    Memory factors{};
+    std::ranges::transform(Laws::memory_kinds(), factors.begin(), [](const auto& kind) { return kind.exchanged; });
+    return factors;
 }
 
 template <class Laws, Needs case_needs>
@@ -175,10 +182,10 @@ void ClearEngine<Laws, case_needs>::rebuild(std::span<const std::int32_t> remove
     p_.reorder(order);
 
     const auto matters = [this](std::size_t i, std::size_t j) { return mobile(i) || mobile(j); };
-    if constexpr (needs.tangential_history) {
+    if constexpr (Laws::remembers) {
         particles::NeighbourList fresh;
         fresh.build(cells_, p_.position, radii(), skin_, domain_, matters);
-        pairs_.carry(list_, fresh, fresh_index);
+        pairs_.carry(list_, fresh, fresh_index, exchanged());
         list_ = std::move(fresh);
         if constexpr (Laws::remembers_separation) forget_separated();
     } else {
@@ -215,10 +222,9 @@ auto ClearEngine<Laws, case_needs>::make_walls(const std::vector<Wall>& walls) c
     std::vector<Contacts> made;
     for (const Wall& wall : walls) {
         const Material m = at_surface(material_, wall.surface);
-        if ((m.friction > 0 && !needs.tangential_history) || (m.rolling_friction > 0 && !needs.rolling_history))
+        if (!Laws::covers(m))
             throw std::invalid_argument("the surface of a wall has friction that nothing at the start had");
-        made.push_back(
-            {MovingWall(wall, domain_, largest_radius_), make_laws_(m, time_step_), {}, 0, {}, {}, {}, {}, {}});
+        made.push_back({MovingWall(wall, domain_, largest_radius_), Laws::of(m), {}, 0, {}, {}, {}, {}, {}});
     }
     return made;
 }
@@ -265,7 +271,7 @@ void ClearEngine<Laws, case_needs>::carry_touches(Contacts& contacts, std::span<
     const auto memory = contacts.memory;
     contacts.touches.clear();
     for (const std::size_t k : order) contacts.touches.push_back(touches[k]);
-    if constexpr (needs.tangential_history) {
+    if constexpr (Laws::remembers) {
         contacts.memory.clear();
         for (const std::size_t k : order) contacts.memory.push_back(memory[k]);
     }

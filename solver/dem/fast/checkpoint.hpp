@@ -90,29 +90,15 @@ private:
     std::span<const std::byte> from_;
 };
 
-/// What must agree between the engine that wrote and the one that reads.
+/// What must agree between the engine that wrote and the one that reads; compared by its bytes, padding too.
 struct Seal {
-    std::uint64_t format = 0x67737765657035;  // changes with the layout of what follows
-    std::int32_t width = 0;
-    Needs needs{};
-    Constants constants{};
-    Shaking shaking{};
-    double rest_speed = 0;
+    std::uint64_t format;
+    std::int32_t width;
+    Needs needs;
+    Constants constants;
+    Shaking shaking;
+    double rest_speed;
 };
-
-[[nodiscard]] inline Seal make_seal(const Constants& c, const Kernels& k, const Needs& n, const Shaking& shaking,
-                                    double rest_speed) {
-    Seal s;
-    std::memset(static_cast<void*>(&s), 0, sizeof s);  // padding too: seals are compared by their bytes
-    s.format = Seal{}.format;
-    s.width = k.width;
-    s.needs.unequal = n.unequal, s.needs.frozen = n.frozen, s.needs.friction = n.friction,
-    s.needs.cohesion = n.cohesion, s.needs.rolling = n.rolling;
-    std::memcpy(static_cast<void*>(&s.constants), &c, sizeof c);
-    s.needs.resting = n.resting;
-    s.shaking = shaking;
-    s.rest_speed = rest_speed;
-    return s;
-}
+inline constexpr std::uint64_t checkpoint_format = 0x67737765657036;  // changes with the layout of what follows
 
 }  // namespace grainsweep::dem::fast

@@ -54,7 +54,8 @@ private:
 
 /// Everything a Field points to, and what only rebuilding needs.
 struct Columns {
-    std::int32_t histories = 3;  ///< history columns in use; the others stay empty
+    std::int32_t histories = 0;               ///< history columns in use; the others stay empty
+    float exchanged[histories_at_most] = {};  ///< their factors when the particles of a contact change places
     Column<Record> records, records_next;
     Column<Residual> residuals, residuals_next;
     Column<Force> forces;

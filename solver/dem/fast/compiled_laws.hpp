@@ -1,5 +1,4 @@
-// The combinations of laws worth compiling, and the choice among them. Anything else runs with the general one,
-// which contains every law: absent ones then have zero coefficients.
+// The kernels of every compiled combination of laws, and the choice among them.
 // Included by the files of the instruction paths; internal linkage on purpose.
 #pragma once
 
@@ -10,25 +9,26 @@
 namespace grainsweep::dem::fast {
 namespace {
 
-template <class Law>
-constexpr Kernels compiled{width, sweep<Law>, advance<Law>, walls<Law>, search<Law>, refresh<Law>};
+template <class K>
+constexpr Kernels compiled{width, sweep<K>, advance<K>, walls<K>, search<K::unequal>, refresh<K::unequal>};
 
-inline const Kernels& choose(const Needs& n) {
-    using enum Needs::Cohesion;
-    if (n.holds() && n.friction && !n.unequal) {
-        if (n.cohesion == none) return compiled<Law<false, true, true, none, false, true>>;
-        if (n.cohesion == lens) return compiled<Law<false, true, true, lens, false, true>>;
+template <class Combination>
+GRAINSWEEP_LANES const Kernels& kernels_for(const Needs& n) {
+    if constexpr (Combination::columns == Columns::any) {
+        return compiled<Kernel<Combination, true, true>>;
+    } else {
+        if constexpr (Combination::columns == Columns::sizes)
+            if (n.unequal) return compiled<Kernel<Combination, true, true>>;
+        return n.holds() ? compiled<Kernel<Combination, false, true>> : compiled<Kernel<Combination, false, false>>;
     }
-    if (n.resting) {
-        if (n.rolling) return compiled<Law<true, true, true, general, true, true>>;
-        return compiled<Law<true, true, true, general, false, true>>;
-    }
-    if (n.rolling) return compiled<Law<true, true, true, general, true>>;
-    if (n.friction && n.cohesion == none)
-        return n.unequal ? compiled<Law<true, true, true, none>> : compiled<Law<false, false, true, none>>;
-    if (n.friction && n.cohesion == lens && !n.unequal) return compiled<Law<false, true, true, lens>>;
-    if (!n.friction && n.cohesion == none && !n.unequal) return compiled<Law<false, true, false, none>>;
-    return compiled<Law<true, true, true, general>>;
+}
+
+template <class... Combinations>
+GRAINSWEEP_LANES const Kernels& choose(CombinationList<Combinations...>, const Needs& n) {
+    const Kernels* chosen = nullptr;
+    std::int32_t k = 0;
+    ((k++ == n.combination ? void(chosen = &kernels_for<Combinations>(n)) : void()), ...);
+    return *chosen;
 }
 
 }  // namespace

@@ -10,24 +10,12 @@ namespace grainsweep::dem::fast {
 
 using namespace geometry;
 
-ContactReader::Laws ContactReader::laws_of(const Material& m) {
-    // Friction sees the laws before it; no law advances a spring here, so none needs a time step.
-    const bool friction_sees_it = m.friction_limit == FrictionLimit::net;
-    const Cohesion<ChosenArea> before{friction_sees_it ? m.cohesion : 0.0, {m.cohesion_area}};
-    const Cohesion<ChosenArea> after{friction_sees_it ? 0.0 : m.cohesion, {m.cohesion_area}};
-    return {{hertz(m), before, mindlin(m, 0), rolling_resistance(m, 0), after}};
+ContactReader::ContactReader(const AnyContact& laws, const ListSpace& space, const Field& field, const std::int32_t* id,
+                             std::span<const Motion> motions, std::int32_t width, std::span<const ParkedContact> parked)
+    : laws_(laws), space_(space), field_(field), id_(id), motions_(motions), width_(width), parked_(parked) {
+    std::ranges::transform(laws.memory(), memory_unit_.begin(),
+                           [&](const MemoryKind& kind) { return unit_of(kind.dimension, space.scale); });
 }
-
-ContactReader::ContactReader(const Material& material, const ListSpace& space, const Field& field,
-                             const std::int32_t* id, std::span<const Motion> motions, std::int32_t width,
-                             std::span<const ParkedContact> parked)
-    : space_(space),
-      field_(field),
-      id_(id),
-      motions_(motions),
-      width_(width),
-      parked_(parked),
-      laws_(laws_of(material)) {}
 
 double ContactReader::radius(std::int32_t i) const {
     return static_cast<double>(field_.records[i].radius) * space_.scale.length;
@@ -39,15 +27,9 @@ double ContactReader::mass(std::int32_t i) const {
 }
 
 ContactReader::Memory ContactReader::memory(const float* const* column, std::int64_t at) const {
-    const Scale& scale = space_.scale;
-    Memory m;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        m.tangential[axis] = static_cast<double>(column[axis][at]) * scale.length;
-    if (field_.histories > 3) {
-        const double moment = scale.mass * scale.speed() * scale.speed();
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            m.rolling[axis] = static_cast<double>(column[3 + axis][at]) * moment;
-    }
+    Memory m{};
+    for (std::size_t a = 0; a < static_cast<std::size_t>(field_.histories); ++a)
+        m[a] = static_cast<double>(column[a][at]) * memory_unit_[a];
     return m;
 }
 
@@ -59,8 +41,8 @@ void ContactReader::add(Touch<partner> t, std::int32_t i, std::int32_t second, c
     t.normal_velocity = dot(velocity, t.normal);
     t.slip = velocity - t.normal_velocity * t.normal - cross(turn, t.normal);
     t.turning = turning;
-    const Response r = laws_.respond<false>(t, memory);
-    into.push_back({id_[i], second, t.overlap, t.normal, r.normal, r.tangential, r.rolling});
+    const auto r = laws_.respond(t, memory.data());
+    into.push_back({id_[i], second, t.overlap, t.normal, r.normal, -r.resistance, -r.rolling});
 }
 
 bool ContactReader::touches(std::int32_t i, std::int32_t j, Touch<Partner::particle>& t) const {
@@ -185,7 +167,7 @@ void ContactReader::wall(const MovingWall& wall, std::size_t w, std::vector<Cont
 StoredEnergy ContactReader::stored(std::span<const MovingWall> walls) const {
     StoredEnergy e;
     const auto add_energy = [&](const auto& t, const Memory& memory) {
-        const double energy = laws_.energy(t, memory);
+        const double energy = laws_.energy(t, memory.data());
         e.sum += energy;
         e.squeezed += std::abs(energy);
     };

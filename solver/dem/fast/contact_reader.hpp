@@ -1,20 +1,17 @@
-// Contacts of the mixed engine's present state, in SI and double precision, by the laws of the clear engine.
+// Contacts of the mixed engine's present state, in SI and double precision, by the same laws.
 //
 // Positions are the exact integers that forces are computed from, springs those the last step left. Not part of a
 // step: evaluated on request only.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
 #include "solver/dem/engine.hpp"
 #include "solver/dem/fast/layout.hpp"
 #include "solver/dem/fast/rebuild.hpp"
-#include "solver/dem/laws/cohesion.hpp"
-#include "solver/dem/laws/contact.hpp"
-#include "solver/dem/laws/hertz.hpp"
-#include "solver/dem/laws/mindlin.hpp"
-#include "solver/dem/laws/rolling.hpp"
+#include "solver/dem/laws/compiled.hpp"
 
 namespace grainsweep::dem::fast {
 
@@ -33,7 +30,7 @@ struct StoredEnergy {
 class ContactReader {
 public:
     /// All views must outlive the reader; `motions` in the order of the records, empty where only energy is wanted.
-    ContactReader(const Material& material, const ListSpace& space, const Field& field, const std::int32_t* id,
+    ContactReader(const AnyContact& laws, const ListSpace& space, const Field& field, const std::int32_t* id,
                   std::span<const Motion> motions, std::int32_t width, std::span<const ParkedContact> parked = {});
 
     /// Gives a contact of two particles at rest its overlap, force and torques.
@@ -46,11 +43,8 @@ public:
     [[nodiscard]] StoredEnergy stored(std::span<const MovingWall> walls) const;
 
 private:
-    // Any material: what it lacks has zero coefficients.
-    using Laws = Contact<Hertz, Cohesion<ChosenArea>, Mindlin, RollingResistance, Cohesion<ChosenArea>>;
-    using Memory = Laws::Memory;
+    using Memory = std::array<double, memories_at_most>;
 
-    [[nodiscard]] static Laws laws_of(const Material& material);
     [[nodiscard]] double radius(std::int32_t i) const;
     [[nodiscard]] double mass(std::int32_t i) const;  ///< kg; infinite where frozen
     [[nodiscard]] Memory memory(const float* const* column, std::int64_t at) const;
@@ -67,13 +61,14 @@ private:
     void add(Touch<partner> t, std::int32_t i, std::int32_t second, const Vec3& velocity, const Vec3& turn,
              const Vec3& turning, Memory memory, std::vector<ContactForce>& into) const;
 
+    const AnyContact& laws_;
     const ListSpace& space_;
     const Field& field_;
     const std::int32_t* id_;
     std::span<const Motion> motions_;
     std::int32_t width_;
     std::span<const ParkedContact> parked_;
-    Laws laws_;
+    Memory memory_unit_{};
 };
 
 }  // namespace grainsweep::dem::fast

@@ -14,6 +14,8 @@
 
 #include <cstdint>
 
+#include "solver/dem/laws/compiled.hpp"
+
 namespace grainsweep::dem::fast {
 
 /// Touching pairs worked on at a time: their records and forces stay in the first cache. Lists are read ahead by as
@@ -49,8 +51,8 @@ struct alignas(32) Force {
     float torque[4];
 };
 
-/// Numbers of a contact history: tangential displacement, and with rolling resistance the rolling moment.
-constexpr std::int32_t histories_at_most = 6;
+/// Numbers of a contact history.
+constexpr std::int32_t histories_at_most = memories_at_most;
 
 /// A contact of two particles neither of which is advanced, with its force while both stand still.
 struct ParkedContact {
@@ -61,34 +63,18 @@ struct ParkedContact {
     float overlap;       ///< over the smaller diameter
 };
 
-/// Constants of the contact law, in the engine's units.
+/// Constants of a case, in the engine's units.
 struct Constants {
     double unit[3];  ///< length of one position unit
     float unit_single[3];
-    float inverse_unit[4];    ///< fourth: 0
-    float gravity[8];         ///< change of velocity per step; spin part 0
-    float radius;             ///< of all particles where they are equal
-    double reach_squared;     ///< (2 radius)^2, exact
-    float candidate_squared;  ///< the same, enlarged by the rounding of single precision
-    float normal;             ///< 4/3 E*
-    float tangential;         ///< 8 G*
-    float damping;            ///< -2 sqrt(5/6) beta sqrt(2 E*)
-    float damping_ratio;      ///< tangential over normal damping, sqrt(8 G*/(2 E*))
-    float friction;
-    float root_radius;       ///< sqrt(R*) of an equal pair
-    float damping_pair;      ///< damping sqrt(m*) of two mobile equal particles
-    float damping_frozen;    ///< ... of a mobile and a frozen one, or a wall
-    float inverse_mass;      ///< of a mobile particle where they are equal
-    float rotation;          ///< 2.5/R^2 where radii are equal
-    float neck_lens;         ///< cohesive force per pi/4 (Rs^2-r^2)(r^2-Rd^2)/r^2
-    float neck_linear;       ///< ... per R* d
-    float neck_square;       ///< ... per d^2
-    float wall_linear;       ///< cohesive force on a wall per R d
-    float wall_square;       ///< ... per d^2
-    float net_limit;         ///< 1: Coulomb's limit has the cohesive force, 0: it does not
-    float rolling;           ///< 2.25 mu_r^2 4/3 E*
-    float rolling_friction;  ///< mu_r
-    float rolling_damping;   ///< 2 eta_r sqrt(7/5): the dashpot over sqrt(k_r/sum of 1/(m R^2))
+    float inverse_unit[4];           ///< fourth: 0
+    float gravity[8];                ///< change of velocity per step; spin part 0
+    float radius;                    ///< of all particles where they are equal
+    double reach_squared;            ///< (2 radius)^2, exact
+    float candidate_squared;         ///< the same, enlarged by the rounding of single precision
+    float root_radius;               ///< sqrt(R*) of an equal pair
+    float rotation;                  ///< 2.5/R^2 where radii are equal
+    double laws[constants_at_most];  ///< of the combination of laws, in order
 };
 
 /// Shape of a wall at the present time, relative to the middle of the domain, in the engine's units.
@@ -130,9 +116,10 @@ struct Field {
     Residual* residuals;
     Force* forces;
     /// Particles that are advanced, in order, and how many of them come before each; on the others, frozen or at
-    /// rest, forces add up. Null, and never read, where all are advanced.
+    /// rest, forces add up. Null, and never read, where none are passed over: what is frozen then takes no step.
     const std::int32_t* advanced;
     const std::int32_t* advanced_before;  ///< count+1
+    std::int32_t skips;                   ///< 1: they are read
 
     // Inner list: pairs that may touch before the next refresh, sorted by the first particle.
     Place* inner_first;
@@ -143,7 +130,7 @@ struct Field {
     // Bit k of mask b: pair b*width+k touched at the last step; histories of those, in that order, without gaps.
     std::uint16_t* touching;
     std::uint16_t* touching_next;
-    std::int32_t histories;  ///< columns in use: 3, or 6 with rolling resistance
+    std::int32_t histories;  ///< columns in use
     float* history[histories_at_most];
     float* history_next[histories_at_most];
     float history_step;  ///< 1: the step displaces the tangential springs, 0: forces only
@@ -190,16 +177,15 @@ struct Kernels {
     std::int32_t (*refresh)(const Field&, float skin);
 };
 
-/// What a case needs of the law; decides which compiled sweep runs.
+/// What a case needs; decides which compiled sweep runs.
 struct Needs {
-    bool unequal;  ///< radii differ
-    bool frozen;   ///< particles of infinite mass are present
-    bool friction;
-    enum class Cohesion : std::int32_t { none, lens, general } cohesion;  ///< lens: sjkr, friction blind to it
-    bool rolling;
-    bool resting;  ///< particles at rest may be left unadvanced
-    /// Whether some particles are not advanced.
-    [[nodiscard]] constexpr bool holds() const { return frozen || resting; }
+    std::int32_t combination;  ///< of laws, its number in the list
+    bool unequal;              ///< radii differ, or the combination is compiled for such only
+    bool frozen;               ///< particles of infinite mass are present
+    bool resting;              ///< particles at rest may be left unadvanced
+    bool skips;                ///< those that are not advanced are passed over: worth its list unless they are few
+    /// Whether some particles are not advanced, or the kernel allows for it.
+    [[nodiscard]] constexpr bool holds() const { return unequal || frozen || resting; }
 };
 
 [[nodiscard]] const Kernels& baseline_kernels(const Needs&);

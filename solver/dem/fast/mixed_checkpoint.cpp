@@ -71,9 +71,18 @@ void MixedEngine::pass_walls(MixedEngine& self, Reader& archive) {
 
 /// Of the case, the same at every step.
 Seal MixedEngine::seal() const {
-    Constants constants = field_.constants;
-    for (std::size_t a = 0; a < 3; ++a) constants.gravity[a] = gravity_in_steps(gravity_[a], space_.scale);
-    return make_seal(constants, *kernels_, needs_, shaking_, rest_speed_);
+    Seal s;
+    std::memset(static_cast<void*>(&s), 0, sizeof s);
+    s.format = checkpoint_format;
+    s.width = kernels_->width;
+    s.needs.combination = needs_.combination;
+    s.needs.unequal = needs_.unequal, s.needs.frozen = needs_.frozen, s.needs.resting = needs_.resting;
+    s.needs.skips = needs_.skips;
+    std::memcpy(static_cast<void*>(&s.constants), &field_.constants, sizeof s.constants);
+    for (std::size_t a = 0; a < 3; ++a) s.constants.gravity[a] = gravity_in_steps(gravity_[a], space_.scale);
+    s.shaking = shaking_;
+    s.rest_speed = rest_speed_;
+    return s;
 }
 
 void MixedEngine::save(std::vector<std::byte>& into) const {

@@ -19,17 +19,17 @@ constexpr std::size_t many_particles = 40000;
 
 MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, double rest_speed)
     : space_{setup.domain, make_scale(setup), 0.3F},
-      material_(setup.material),
       gravity_(setup.gravity),
       shaking_(setup.shaking),
       shaken_(!is_still(setup.shaking)),
       needs_(make_needs(setup, rest_speed > 0)),
       rest_speed_(rest_speed),
       kernels_(&kernels_of(path, needs_)),
+      laws_(make_contact(needs_.combination, setup.material)),
       walls_(make_walls(setup.walls)),
       sound_(sound_overlaps(setup)),
       watch_(setup, space_.scale),
-      resting_(setup, space_.scale, rest_speed),
+      resting_(setup, *laws_, space_.scale, rest_speed),
       adapts_skin_(!(skin > 0)) {
     for (std::size_t a = 0; a < 3; ++a)  // a pair must not meet across both ends of a period
         if (setup.domain.periodic[a]) {
@@ -38,8 +38,10 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
         }
     if (skin > 0) space_.skin = static_cast<float>(skin / space_.scale.length);
     space_.skin = std::min(space_.skin, largest_skin_);
-    field_.constants = make_constants(setup, space_.scale);
-    columns_.histories = needs_.rolling ? histories_at_most : 3;
+    field_.constants = make_constants(setup, space_.scale, needs_);
+    columns_.histories = static_cast<std::int32_t>(laws_->memory().size());
+    std::ranges::transform(laws_->memory(), columns_.exchanged,
+                           [](const MemoryKind& kind) { return static_cast<float>(kind.exchanged); });
     load(setup);
     restart_forces();
     set_limits();
@@ -52,6 +54,7 @@ void MixedEngine::load(const Setup& setup) {
     columns_.hold_wall_contacts(n);
     columns_.bind(field_);
     field_.count = spheres_at_start_ = static_cast<std::int32_t>(n);
+    field_.skips = needs_.skips ? 1 : 0;
     field_.read_ahead = n > many_particles ? 1 : 0;
     const Scale& s = space_.scale;
     const bool all_periodic = setup.domain.periodic[0] && setup.domain.periodic[1] && setup.domain.periodic[2];
@@ -100,6 +103,12 @@ std::vector<MovingWall> MixedEngine::make_walls(const std::vector<Wall>& walls) 
 }
 
 std::unique_ptr<Engine> make_mixed_engine(const Setup& setup, Method::Path path, double skin, double rest_speed) {
+    require_possible(setup);
+    double diameter = 0;
+    for (const Sphere& s : setup.spheres) diameter = std::max(diameter, 2 * s.radius);
+    for (std::size_t a = 0; a < 3; ++a)
+        if (setup.domain.periodic[a] && setup.domain.high[a] - setup.domain.low[a] < 2.02 * diameter)
+            throw std::invalid_argument("a period must be at least 2.02 of the largest diameters long");
     if (path == Method::Path::best) path = best_path();
     if (!supports(path)) throw std::invalid_argument("this processor lacks the instructions of the path asked for");
     return std::make_unique<MixedEngine>(setup, path, skin, rest_speed);

@@ -1,4 +1,4 @@
-// The fast door: Hertz-Mindlin spheres with tangential history in mixed precision, vectorised.
+// The fast door: spheres with tangential history in mixed precision, vectorised; laws as in solver/dem/laws.
 //
 // Same scheme and law as the double-precision engine (velocity Verlet, half-step velocities in the law); positions
 // are exact integers, R^2 - r^2 is formed in double precision, the rest in single precision with the rounding of

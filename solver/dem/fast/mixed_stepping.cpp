@@ -88,8 +88,7 @@ void MixedEngine::stand_walls() {
 }
 
 void MixedEngine::list_advanced() {
-    if (needs_.holds())
-        columns_.list_advanced(field_, [this](std::int32_t i) { return is_frozen(i) || is_resting(i); });
+    if (needs_.skips) columns_.list_advanced(field_, [this](std::int32_t i) { return is_frozen(i) || is_resting(i); });
 }
 
 /// Adds the displacement of the step just made.

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -94,13 +95,13 @@ private:
     static void pass_walls(MixedEngine& self, Reader& archive);
 
     ListSpace space_;
-    Material material_;
     Vec3 gravity_;
     Shaking shaking_;
     bool shaken_;
     Needs needs_;
     double rest_speed_;
     const Kernels* kernels_;
+    std::unique_ptr<const AnyContact> laws_;  ///< in SI, for what is no part of a step
     std::vector<MovingWall> walls_;
     float smallest_diameter_ = 1;
     SoundOverlaps sound_;

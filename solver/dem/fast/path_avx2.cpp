@@ -7,7 +7,7 @@
 namespace grainsweep::dem::fast {
 
 const Kernels& avx2_kernels(const Needs& needs) {
-    return choose(needs);
+    return choose(Compiled{}, needs);
 }
 
 }  // namespace grainsweep::dem::fast

@@ -221,7 +221,7 @@ void update_resting(Field& f, Columns& c, const ListSpace& space, Resting& resti
     pad_pairs(f, c);
 }
 
-/// Moves the histories of owned pairs into their new order; what saw its particles change places changes its sign.
+/// Moves the histories of owned pairs into their new order; what saw its particles change places takes their factors.
 void carry_histories(Field& f, Columns& c, const Kernels& kernels) {
     const auto outer = static_cast<std::size_t>(f.outer_count);
     c.outer_touching.clear(outer / static_cast<std::size_t>(kernels.width) + 2);
@@ -233,8 +233,8 @@ void carry_histories(Field& f, Columns& c, const Kernels& kernels) {
         c.outer_touching[batch] =
             static_cast<std::uint16_t>(c.outer_touching[batch] | (1U << (o % static_cast<std::size_t>(kernels.width))));
         const auto from = static_cast<std::size_t>(std::abs(owner) - 1);
-        const float sign = owner > 0 ? 1.0F : -1.0F;
-        for (int a = 0; a < c.histories; ++a) c.history_next[a][to] = sign * c.history[a][from];
+        for (int a = 0; a < c.histories; ++a)
+            c.history_next[a][to] = (owner > 0 ? 1.0F : c.exchanged[a]) * c.history[a][from];
         ++to;
     }
     for (int a = 0; a < c.histories; ++a) c.history[a].swap(c.history_next[a]);

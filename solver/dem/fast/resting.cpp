@@ -35,8 +35,8 @@ void stop(Record& r, Residual& residual) {
 }
 
 /// The same contact with its particles exchanged.
-void exchange(ParkedContact& p) {
-    for (float& s : p.history) s = -s;
+void exchange(ParkedContact& p, const float* factors) {
+    for (int a = 0; a < histories_at_most; ++a) p.history[a] *= factors[a];
     for (float& force : p.force) force = -force;
     for (int a = 0; a < 3; ++a) std::swap(p.torque[0][a], p.torque[1][a]);
 }
@@ -47,8 +47,8 @@ std::pair<std::size_t, std::size_t> pair_at(const Columns& c, std::size_t o) {
 
 }  // namespace
 
-Resting::Resting(const Setup& setup, const Scale& scale, double rest_speed)
-    : material_(setup.material),
+Resting::Resting(const Setup& setup, const AnyContact& laws, const Scale& scale, double rest_speed)
+    : laws_(&laws),
       speed_(rest_speed / scale.speed()),
       gravity_(geometry::norm(setup.gravity) * scale.time * scale.time / scale.length) {
     if (!wanted()) return;
@@ -173,7 +173,7 @@ ParkedContact Resting::parked_from(const Columns& c, const ContactReader& reader
         p = before_[static_cast<std::size_t>(from - live)];
     else
         for (int a = 0; a < c.histories; ++a) p.history[a] = c.history[a][static_cast<std::size_t>(from)];
-    if (owner < 0) exchange(p);
+    if (owner < 0) exchange(p, c.exchanged);
     const auto [i, j] = pair_at(c, pair);
     p.first = static_cast<std::int32_t>(i);
     p.second = static_cast<std::int32_t>(j);
@@ -185,7 +185,7 @@ void Resting::update(Field& f, Columns& c, const ListSpace& space, std::int32_t 
     measure_motion(f);
     spread_disturbance(f, c);
     decide(f);
-    const ContactReader reader(material_, space, f, c.id.data(), {}, 1);
+    const ContactReader reader(*laws_, space, f, c.id.data(), {}, 1);
     before_.swap(parked_);
     parked_.clear();
     overlap_ = 0;

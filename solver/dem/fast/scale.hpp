@@ -19,11 +19,12 @@ struct Scale {
     }
 };
 
-/// Throws std::invalid_argument where the setup is impossible for this engine.
 [[nodiscard]] Scale make_scale(const Setup& setup);
 /// An acceleration, m/s2, as change of velocity per step.
 [[nodiscard]] float gravity_in_steps(double acceleration, const Scale& scale);
-[[nodiscard]] Constants make_constants(const Setup& setup, const Scale& scale);
+/// Of a quantity, in SI: what is 1 inside. Moments of inertia about a contact are counted in 7/5 m R^2 inside.
+[[nodiscard]] double unit_of(const Dimension& dimension, const Scale& scale);
+[[nodiscard]] Constants make_constants(const Setup& setup, const Scale& scale, const Needs& needs);
 [[nodiscard]] Needs make_needs(const Setup& setup, bool resting = false);
 
 }  // namespace grainsweep::dem::fast

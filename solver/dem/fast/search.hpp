@@ -60,7 +60,7 @@ inline void following(const Field& f, std::int32_t x, std::int32_t y, std::int32
         }
 }
 
-template <class Law>
+template <bool unequal>
 std::int64_t search(const Field& f, float skin) {
     const unsigned denormals = flush_denormals();
     const Constants& c = f.constants;
@@ -98,7 +98,7 @@ std::int64_t search(const Field& f, float skin) {
                                 store(f.outer_second + n,
                                       compress(lane_places + broadcast(j * places_per_index), found));
                                 store(f.outer_first + n, own);
-                                if constexpr (Law::unequal) store(f.outer_reach + n, compress(sum, found));
+                                if constexpr (unequal) store(f.outer_reach + n, compress(sum, found));
                             }
                             n += k;
                         }
@@ -116,7 +116,7 @@ std::int64_t search(const Field& f, float skin) {
     return n;
 }
 
-template <class Law>
+template <bool unequal>
 std::int32_t refresh(const Field& f, float skin) {
     const unsigned denormals = flush_denormals();
     const Constants& c = f.constants;
@@ -132,7 +132,7 @@ std::int32_t refresh(const Field& f, float skin) {
         const F x = single(ix) * broadcast(c.unit_single[0]), y = single(iy) * broadcast(c.unit_single[1]),
                 z = single(iz) * broadcast(c.unit_single[2]);
         F limit = broadcast(cut * cut * rounding_allowance), reach;
-        if constexpr (Law::unequal) {
+        if constexpr (unequal) {
             reach = load(f.outer_reach + k);
             const F far = reach + broadcast(skin);
             limit = far * far * broadcast(rounding_allowance);
@@ -143,14 +143,14 @@ std::int32_t refresh(const Field& f, float skin) {
         store(f.inner_first + n, compress(load(f.outer_first + k), kept));
         store(f.inner_second + n, compress(with_sign_bits(load(f.outer_second + k), touches), kept));
         store(f.inner_source + n, compress(lane_numbers() + broadcast(static_cast<std::int32_t>(k)), kept));
-        if constexpr (Law::unequal) store(f.inner_reach + n, compress(reach, kept));
+        if constexpr (unequal) store(f.inner_reach + n, compress(reach, kept));
         n += __builtin_popcount(kept);
     }
     const std::int64_t padded = (n + width - 1) / width * width;
     for (std::int64_t k = n; k < padded + 2 * tile; ++k) {
         f.inner_first[k] = static_cast<Place>(f.count * places_per_index);
         f.inner_second[k] = static_cast<Place>((f.count + 1) * places_per_index);
-        if constexpr (Law::unequal) f.inner_reach[k] = 0;
+        if constexpr (unequal) f.inner_reach[k] = 0;
     }
     // the touching bits travelled as signs of the second index; take them off again
     for (std::int64_t k = 0; k < padded; k += width) {

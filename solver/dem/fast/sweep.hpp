@@ -40,7 +40,7 @@ struct Progress {
 #define GRAINSWEEP_PHASE __attribute__((noinline))
 
 /// Sifts batches until a tile is full or the list at its end.
-template <class Law>
+template <class Kernel>
 GRAINSWEEP_PHASE void sift(const Field& f, std::int32_t batches, Packed& p, Progress& progress) {
     const Constants& c = f.constants;
     const F ux = broadcast(c.unit_single[0]), uy = broadcast(c.unit_single[1]), uz = broadcast(c.unit_single[2]);
@@ -51,8 +51,8 @@ GRAINSWEEP_PHASE void sift(const Field& f, std::int32_t batches, Packed& p, Prog
         const Place* second = f.inner_second + k;
         if (f.read_ahead != 0) {
             for (int q = 0; q < width; ++q) prefetch(record_at(f.records, second[q + 64]));
-            if constexpr (Law::friction)
-                for (int a = 0; a < Law::histories; ++a) {
+            if constexpr (Kernel::histories > 0)
+                for (int a = 0; a < Kernel::histories; ++a) {
                     prefetch(f.history[a] + s.read + 256);
                     prefetch(f.history_next[a] + s.written + 256);
                 }
@@ -61,7 +61,7 @@ GRAINSWEEP_PHASE void sift(const Field& f, std::int32_t batches, Packed& p, Prog
         load_offsets(f.records, first, second, ix, iy, iz);
         const F x = single(ix) * ux, y = single(iy) * uy, z = single(iz) * uz;
         F reach = broadcast(c.candidate_squared);
-        if constexpr (Law::unequal) reach = load(f.inner_reach + k);
+        if constexpr (Kernel::unequal) reach = load(f.inner_reach + k);
         const unsigned now = bits(fma(x, x, fma(y, y, z * z)) < reach);
         store(p.first + s.packed, compress(load(first), now));
         store(p.second + s.packed, compress(load(second), now));
@@ -69,13 +69,13 @@ GRAINSWEEP_PHASE void sift(const Field& f, std::int32_t batches, Packed& p, Prog
         store(p.offset[1] + s.packed, compress(iy, now));
         store(p.offset[2] + s.packed, compress(iz, now));
         const int count = __builtin_popcount(now);
-        if constexpr (Law::friction) {
+        if constexpr (Kernel::histories > 0) {
             const unsigned before = f.touching[s.batch];
             if (before == now)  // most vectors keep their contacts
-                for (int a = 0; a < Law::histories; ++a)
+                for (int a = 0; a < Kernel::histories; ++a)
                     store(f.history_next[a] + s.written, load(f.history[a] + s.read));
             else
-                for (int a = 0; a < Law::histories; ++a)
+                for (int a = 0; a < Kernel::histories; ++a)
                     store(f.history_next[a] + s.written, compress(expand(load(f.history[a] + s.read), before), now));
             f.touching_next[s.batch] = static_cast<std::uint16_t>(now);
             s.read += __builtin_popcount(before);
@@ -105,11 +105,12 @@ GRAINSWEEP_LANES F sum_of_turning_masses(const Record* records, const Place* fir
 }
 
 /// Force and torques of the packed pairs, into the outcome rows; histories from stream index `at` on.
-template <class Law>
-GRAINSWEEP_PHASE void meet(const Field& f, Packed& p, int batches, std::int64_t at, Tally& t) {
+template <class Kernel>
+GRAINSWEEP_PHASE void meet(const Field& f, const typename Kernel::Laws& laws, Packed& p, int batches, std::int64_t at,
+                           Tally& t) {
     const Constants& c = f.constants;
     F largest_overlap = broadcast(t.overlap);
-    const F history_step = broadcast(f.history_step), half = broadcast(0.5f);
+    const F half = broadcast(0.5f);
     for (int b = 0; b < batches; ++b) {
         const Place* first = p.first + b * width;
         const Place* second = p.second + b * width;
@@ -117,12 +118,12 @@ GRAINSWEEP_PHASE void meet(const Field& f, Packed& p, int batches, std::int64_t 
             for (int q = 0; q < width; ++q) prefetch(force_at(f.forces, second[q]));
         F row[12];
         load_motion(f.records, first, second, row);
-        if constexpr (Law::unequal) load_surface(f.records, first, second, row + 8);
+        if constexpr (Kernel::unequal) load_surface(f.records, first, second, row + 8);
         const I ix = load(p.offset[0] + b * width), iy = load(p.offset[1] + b * width),
                 iz = load(p.offset[2] + b * width);
         F reach, difference;
         D reach_squared;
-        if constexpr (Law::unequal) {
+        if constexpr (Kernel::unequal) {
             reach = row[7];
             difference = row[11];
             const D r = exact(reach);
@@ -134,7 +135,8 @@ GRAINSWEEP_PHASE void meet(const Field& f, Packed& p, int batches, std::int64_t 
         }
         const F near = closeness(c, ix, iy, iz, reach_squared);
         const F square = max(single(reach_squared) - near, broadcast(1e-12f));
-        Meeting m;
+        Meeting<Kernel, Partner::particle> m;
+        m.time_step = broadcast(f.history_step);
         m.touching = broadcast(0.0f) < near;
         const F inverse_distance = inverse_root(square);
         m.overlap = near * inverse(fma(square, inverse_distance, reach));
@@ -145,75 +147,70 @@ GRAINSWEEP_PHASE void meet(const Field& f, Packed& p, int batches, std::int64_t 
         const F shortening = half * m.overlap;
         F arm_first, arm_second;
         const V3 spin{row[4], row[5], row[6]};
-        if constexpr (Law::unequal) {
+        if constexpr (Kernel::unequal) {
             m.surface = {fnma(shortening, spin.x, row[8]), fnma(shortening, spin.y, row[9]),
                          fnma(shortening, spin.z, row[10])};
             arm_first = fms(half, reach + difference, shortening);
             arm_second = fms(half, reach - difference, shortening);
             const F product = (reach - difference) * (reach + difference);  // 4 R_i R_j
             m.root_radius = half * product * inverse_root(product * reach);
-            m.damping = broadcast(c.damping) * inverse_root(row[3]);
             largest_overlap = max(keep(m.touching, m.overlap * inverse(reach - abs(difference))), largest_overlap);
         } else {
             arm_first = broadcast(c.radius) - shortening;
             arm_second = arm_first;
             m.surface = spin * arm_first;
             m.root_radius = broadcast(c.root_radius);
-            if constexpr (Law::frozen)
-                m.damping = select(broadcast(1.5f * c.inverse_mass) < row[3], broadcast(c.damping_pair),
-                                   broadcast(c.damping_frozen));
-            else
-                m.damping = broadcast(c.damping_pair);
             largest_overlap = max(keep(m.touching, m.overlap), largest_overlap);  // the diameter is 1
         }
-        if constexpr (Law::cohesive)
-            m.neck = pair_neck<Law>(c, near, inverse_distance, m.overlap, difference, m.root_radius);
-        if constexpr (Law::rolling) {
+        m.closeness = near;
+        m.inverse_distance = inverse_distance;
+        m.difference = difference;
+        m.inverse_masses = row[3];
+        if constexpr (Kernel::rolls) {
             F spin_row[4];
             load_spin_difference(f.records, first, second, spin_row);
             m.turning = {spin_row[0], spin_row[1], spin_row[2]};
-            m.turning_mass = sum_of_turning_masses(f.records, first, second);
+            m.rolling_inertia = inverse(sum_of_turning_masses(f.records, first, second));
         }
-        Memory memory{};
-        V3 force, turn, moment;
-        if constexpr (Law::friction) memory = load_memory<Law>(f.history_next, at + b * width);
-        respond<Law>(c, m, history_step, memory, force, turn, moment);
+        F memory[Kernel::histories + 1];
+        load_memory<Kernel>(f.history_next, at + b * width, memory);
+        const auto [force, turn, rolling] = respond(laws, m, memory);
+        store_memory<Kernel>(f.history_next, at + b * width, memory);
         store(p.outcome[b][0], force.x);
         store(p.outcome[b][1], force.y);
         store(p.outcome[b][2], force.z);
-        if constexpr (Law::friction) {
-            store_memory<Law>(f.history_next, at + b * width, memory);
+        if constexpr (Kernel::spin) {
             store(p.outcome[b][3], turn.x * arm_first);
             store(p.outcome[b][4], turn.y * arm_first);
             store(p.outcome[b][5], turn.z * arm_first);
-            if constexpr (Law::unequal) {
+            if constexpr (Kernel::unequal) {
                 store(p.outcome[b][6], turn.x * arm_second);
                 store(p.outcome[b][7], turn.y * arm_second);
                 store(p.outcome[b][8], turn.z * arm_second);
             }
-            if constexpr (Law::rolling) {
-                store(p.outcome[b][3], fma(turn.x, arm_first, moment.x));
-                store(p.outcome[b][4], fma(turn.y, arm_first, moment.y));
-                store(p.outcome[b][5], fma(turn.z, arm_first, moment.z));
-                store(p.outcome[b][6], fms(turn.x, arm_second, moment.x));
-                store(p.outcome[b][7], fms(turn.y, arm_second, moment.y));
-                store(p.outcome[b][8], fms(turn.z, arm_second, moment.z));
+            if constexpr (Kernel::rolls) {
+                store(p.outcome[b][3], fms(turn.x, arm_first, rolling.x));
+                store(p.outcome[b][4], fms(turn.y, arm_first, rolling.y));
+                store(p.outcome[b][5], fms(turn.z, arm_first, rolling.z));
+                store(p.outcome[b][6], fma(turn.x, arm_second, rolling.x));
+                store(p.outcome[b][7], fma(turn.y, arm_second, rolling.y));
+                store(p.outcome[b][8], fma(turn.z, arm_second, rolling.z));
             }
         }
     }
     t.overlap = largest(largest_overlap);
 }
 
-template <class Law>
+template <class Kernel>
 GRAINSWEEP_PHASE void scatter(const Field& f, const Packed& p, int batches) {
     for (int b = 0; b < batches; ++b) {
         F o[9];
-        for (int r = 0; r < (Law::friction ? (Law::unequal ? 9 : 6) : 3); ++r) o[r] = load(p.outcome[b][r]);
+        for (int r = 0; r < (Kernel::spin ? (Kernel::unequal ? 9 : 6) : 3); ++r) o[r] = load(p.outcome[b][r]);
         const Place* first = p.first + b * width;
         const Place* second = p.second + b * width;
-        if constexpr (!Law::friction) {
+        if constexpr (!Kernel::spin) {
             scatter_forces(f.forces, first, second, o);
-        } else if constexpr (Law::unequal) {
+        } else if constexpr (Kernel::unequal) {
             scatter_unequal(f.forces, first, second, o, o + 3, o + 6);
         } else {
             scatter_pairs(f.forces, first, second, o, o + 3);
@@ -234,17 +231,17 @@ GRAINSWEEP_LANES Stepper stepper(const Constants& c, const Tally& t) {
             load8(t.velocity_low), load4(c.inverse_unit)};
 }
 
-template <class Law>
+template <class Kernel>
 GRAINSWEEP_LANES void advance_one(const Field& f, std::int32_t i, Stepper& s) {
     Record& r = f.records[i];
     const F8 inverse_mass = broadcast8(r.inverse_mass);
     F8 change = load8(f.forces[i].force) * s.turning;
-    if constexpr (Law::unequal) {
+    if constexpr (Kernel::unequal) {
         const F4 inverse_radius = broadcast4(r.inverse_radius);
         change = change * join(broadcast4(1.0f), inverse_radius * inverse_radius);
     }
     F8 gravity = s.gravity;
-    if constexpr (Law::frozen) gravity = where_positive(inverse_mass, gravity);
+    if constexpr (Kernel::holds) gravity = where_positive(inverse_mass, gravity);
     const F8 residue = load8(f.residuals[i].position);
     change = fma(change, inverse_mass, gravity) + join(high(residue), broadcast4(0.0f));
     const F8 old = load8(r.velocity);
@@ -252,9 +249,9 @@ GRAINSWEEP_LANES void advance_one(const Field& f, std::int32_t i, Stepper& s) {
     const F8 lost = change - (now - old);
     // What rounding drops of the spin is kept as a torque for the next step; a rebuild drops it.
     F4 waiting = broadcast4(0.0f);
-    if constexpr (Law::friction) {
+    if constexpr (Kernel::spin) {
         float inertia = 0.1f;  // 0.4 m R^2, diameter and mass 1
-        if constexpr (Law::unequal) {
+        if constexpr (Kernel::unequal) {
             const float square = r.radius_again * r.radius_again;
             inertia = 3.2f * square * square * r.radius_again;
         }
@@ -269,7 +266,7 @@ GRAINSWEEP_LANES void advance_one(const Field& f, std::int32_t i, Stepper& s) {
     store8(f.residuals[i].position, join(travel - single(units), low(lost)));
     store4(r.position, position);
     store8(r.velocity, now);
-    if constexpr (Law::unequal) {
+    if constexpr (Kernel::unequal) {
         const float radius = r.radius_again;
         store4(r.surface, high(now) * broadcast4(radius));
         r.radius_again = radius;
@@ -277,29 +274,29 @@ GRAINSWEEP_LANES void advance_one(const Field& f, std::int32_t i, Stepper& s) {
 }
 
 /// Integrates the particles [from, to).
-template <class Law>
+template <class Kernel>
 GRAINSWEEP_PHASE void advance_range(const Field& f, std::int32_t from, std::int32_t to, Tally& t) {
     Stepper s = stepper(f.constants, t);
-    if constexpr (Law::held) {
+    if (Kernel::holds && f.skips != 0) {
         for (std::int32_t k = f.advanced_before[from]; k < f.advanced_before[to]; ++k) {
             const std::int32_t i = f.advanced[k];
             if (f.read_ahead != 0) prefetch(f.residuals + i + 64);
-            advance_one<Law>(f, i, s);
+            advance_one<Kernel>(f, i, s);
         }
     } else {
         for (std::int32_t i = from; i < to; ++i) {
             if (f.read_ahead != 0) prefetch(f.residuals + i + 64);
-            advance_one<Law>(f, i, s);
+            advance_one<Kernel>(f, i, s);
         }
     }
     store8(t.velocity_high, s.high);
     store8(t.velocity_low, s.low);
 }
 
-template <class Law>
+template <class Kernel>
 void advance(const Field& f, Tally& t) {
     const unsigned denormals = flush_denormals();
-    advance_range<Law>(f, 0, f.count, t);
+    advance_range<Kernel>(f, 0, f.count, t);
     restore_denormals(denormals);
 }
 
@@ -319,20 +316,21 @@ GRAINSWEEP_LANES void keep_rest(Packed& p, int from) {
     for (auto& offset : p.offset) store(offset, load(offset + from));
 }
 
-template <class Law>
+template <class Kernel>
 void sweep(const Field& f, bool advancing, Tally& t) {
     const unsigned denormals = flush_denormals();
     Packed p;
     Progress at{};
+    const typename Kernel::Laws laws(f.constants.laws);
     const std::int32_t batches = f.inner_count / width;
     for (bool last = false; !last;) {
-        sift<Law>(f, batches, p, at);
+        sift<Kernel>(f, batches, p, at);
         last = at.packed < tile;
         if (last) fill_up(f, p, at.packed);
         t.contacts += at.packed;
         const int full = (last ? at.packed + width - 1 : at.packed) / width;
-        meet<Law>(f, p, full, at.met, t);
-        scatter<Law>(f, p, full);
+        meet<Kernel>(f, laws, p, full, at.met, t);
+        scatter<Kernel>(f, p, full);
         at.met += full * width;
         at.packed = last ? 0 : at.packed - full * width;
         t.contacts -= at.packed;
@@ -342,7 +340,7 @@ void sweep(const Field& f, bool advancing, Tally& t) {
         const Place next = at.packed > 0 ? p.first[0] : f.inner_first[static_cast<std::int64_t>(at.batch) * width];
         const auto first = static_cast<std::int32_t>(next / places_per_index);
         const std::int32_t until = last || first > f.count ? f.count : first;
-        advance_range<Law>(f, at.done, until, t);
+        advance_range<Kernel>(f, at.done, until, t);
         at.done = until;
     }
     restore_denormals(denormals);

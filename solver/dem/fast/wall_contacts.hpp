@@ -60,11 +60,11 @@ GRAINSWEEP_LANES double work_of(V3 force, const float* velocity) {
     return work;
 }
 
-template <class Law>
+template <class Kernel>
 void walls(const Field& f, Tally& t) {
     const unsigned denormals = flush_denormals();
     const Constants& c = f.constants;
-    const F history_step = broadcast(f.history_step);
+    const typename Kernel::Laws laws(c.laws);
     F largest_overlap = broadcast(t.wall_overlap);
     Place origin[width];
     for (std::int32_t w = 0; w < f.wall_count; ++w) {
@@ -81,7 +81,9 @@ void walls(const Field& f, Tally& t) {
             F rows[12];
             load_motion(f.records, particle, origin, rows);
             const F radius = rows[7];
-            Meeting m;
+            Meeting<Kernel, Partner::wall> m;
+            m.time_step = broadcast(f.history_step);
+            m.radius = radius;
             m.overlap = single(exact(radius) - s.distance);
             m.touching = broadcast(0.0f) < m.overlap;
             m.normal = {single(s.x), single(s.y), single(s.z)};
@@ -89,25 +91,23 @@ void walls(const Field& f, Tally& t) {
             const F arm = fnma(broadcast(0.5f), m.overlap, radius);
             m.surface = V3{rows[4], rows[5], rows[6]} * arm;
             m.root_radius = radius * inverse_root(max(radius, broadcast(1e-12f)));
-            m.damping = broadcast(c.damping) * inverse_root(max(rows[3], broadcast(1e-12f)));
-            if constexpr (Law::cohesive)
-                m.neck = m.overlap * fma(broadcast(c.wall_square), m.overlap, broadcast(c.wall_linear) * radius);
-            if constexpr (Law::rolling) {
+            m.inverse_masses = rows[3];
+            if constexpr (Kernel::rolls) {
                 m.turning = {rows[4], rows[5], rows[6]};
-                m.turning_mass = rows[3] * inverse(max(radius * radius, broadcast(1e-12f)));
+                m.rolling_inertia = inverse(rows[3] * inverse(max(radius * radius, broadcast(1e-12f))));
             }
-            Memory memory = load_memory<Law>(f.wall_history, k);
-            V3 force, turn, moment;
-            respond<Law>(c, m, history_step, memory, force, turn, moment);
-            if (f.history_step != 0) store_memory<Law>(f.wall_history, k, memory);
+            F memory[Kernel::histories + 1];
+            load_memory<Kernel>(f.wall_history, k, memory);
+            const auto [force, turn, rolling] = respond(laws, m, memory);
+            if (f.history_step != 0) store_memory<Kernel>(f.wall_history, k, memory);
             largest_overlap = max(keep(m.touching, m.overlap * inverse(radius + radius)), largest_overlap);
             push = {push.x + force.x, push.y + force.y, push.z + force.z};
             const F forces[3] = {force.x, force.y, force.z};
             F torques[3] = {turn.x * arm, turn.y * arm, turn.z * arm};
-            if constexpr (Law::rolling) {
-                torques[0] = torques[0] + moment.x;
-                torques[1] = torques[1] + moment.y;
-                torques[2] = torques[2] + moment.z;
+            if constexpr (Kernel::rolls) {
+                torques[0] = torques[0] - rolling.x;
+                torques[1] = torques[1] - rolling.y;
+                torques[2] = torques[2] - rolling.z;
             }
             scatter(f.forces, particle, forces, torques);
         }

@@ -8,76 +8,68 @@
 // The area also gives the stored energy, minus k times the integral of A over the overlap.
 #pragma once
 
-#include "solver/dem/engine.hpp"
 #include "solver/dem/laws/touch.hpp"
-#include "solver/particles/needs.hpp"
-
-#include <numbers>
+#include "solver/dem/material.hpp"
 
 namespace grainsweep::dem {
 
-struct SjkrArea {
-    static double area(const Touch<Partner::particle>& t) {
-        const double sum = t.radius_i + t.radius_j;
-        const double difference = t.radius_i - t.radius_j;
-        const double r = t.distance;
-        // (r - Ri - Rj) is minus the overlap, which is known more precisely.
-        return std::numbers::pi / 4 * t.overlap * (r + sum) * (r - difference) * (r + difference) / (r * r);
+[[nodiscard]] inline AreaForm area_of(CohesionLaw law) {
+    using std::numbers::pi;
+    switch (law) {
+        case CohesionLaw::sjkr:
+            return {.disc = pi / 4, .wall_cap = pi};
+        case CohesionLaw::sjkr2:
+            return {.band = 4 * pi, .wall_band = 2 * pi};
+        case CohesionLaw::paper:
+            return {.cap = pi / 4, .wall_cap = pi / 4};
     }
-    static double area(const Touch<Partner::wall>& t) {
-        return std::numbers::pi * (2 * t.radius_i - t.overlap) * t.overlap;
+    return {};
+}
+
+/// `lens`: sjkr of which friction sees nothing, the case worth a law of its own.
+template <class Real, bool lens>
+struct CohesionOver : LawTraits {
+    using A = Arithmetic<Real>;
+    static constexpr Aspect aspect = Aspect::cohesion;
+    static constexpr int constants = 7;
+
+    static bool wanted(const Material& m) { return m.cohesion > 0; }
+    static bool suits(const Material& m) {
+        return !lens || (m.cohesion_law == CohesionLaw::sjkr && m.friction_limit == FrictionLimit::contact);
     }
-};
-
-struct Sjkr2Area {
-    template <Partner partner>
-    static double area(const Touch<partner>& t) {
-        constexpr double factor = partner == Partner::wall ? 2 : 4;
-        return factor * std::numbers::pi * t.effective_radius * t.overlap;
+    static std::array<Quantity, constants> constants_of(const Material& m) {
+        const AreaForm a = area_of(m.cohesion_law);
+        return {{{m.cohesion, pressure},
+                 {a.disc, number},
+                 {a.band, number},
+                 {a.cap, number},
+                 {a.wall_band, number},
+                 {a.wall_cap, number},
+                 {m.friction_limit == FrictionLimit::net ? 1.0 : 0.0, number}}};
     }
-};
+    explicit CohesionOver(const double* c)
+        : force(A::area_force(c[0], {c[1], c[2], c[3], c[4], c[5]})), seen(A::number(c[6])) {}
 
-struct PaperArea {
-    template <Partner partner>
-    static double area(const Touch<partner>& t) {
-        return std::numbers::pi / 4 * (2 * t.effective_radius - t.overlap) * t.overlap;
-    }
-};
+    typename A::AreaForce force;
+    Real seen;  ///< 1: Coulomb's limit has the cohesive force, 0: it does not
 
-/// The area chosen by the case, at run time.
-struct ChosenArea {
-    CohesionArea which = CohesionArea::sjkr;
-    template <Partner partner>
-    [[nodiscard]] double area(const Touch<partner>& t) const {
-        switch (which) {
-            case CohesionArea::sjkr:
-                return SjkrArea::area(t);
-            case CohesionArea::sjkr2:
-                return Sjkr2Area::area(t);
-            case CohesionArea::paper:
-                return PaperArea::area(t);
-        }
-        return 0;
-    }
-};
-
-template <class Area>
-struct Cohesion {
-    static constexpr particles::Needs needs{};
-
-    double density = 0;  ///< k, J/m3
-    [[no_unique_address]] Area area{};
-
-    template <bool advance, Partner partner, class Memory>
-    void add(const Touch<partner>& t, Response& r, Memory&) const {
-        r.normal -= density * area.area(t);
+    template <bool advance, class T>
+    [[gnu::always_inline]] void add(const T& t, Response<Real>& r, Real*) const {
+        const Real attraction = t.template over_area<lens>(force);
+        r.normal = r.normal - attraction;
+        if constexpr (!lens) r.seen = A::fnma(seen, attraction, r.seen);
     }
 
     /// Minus the work of the attraction since first touch, J: every area grows as d to first order.
-    template <Partner partner, class Memory>
-    [[nodiscard]] double energy(const Touch<partner>& t, const Memory&) const {
-        return -0.5 * density * area.area(t) * t.overlap;
+    template <class T>
+    [[nodiscard]] Real energy(const T& t, const Real*) const {
+        return -0.5 * t.template over_area<lens>(force) * t.overlap;
     }
 };
+
+template <class Real>
+using Cohesion = CohesionOver<Real, false>;
+template <class Real>
+using LensCohesion = CohesionOver<Real, true>;
 
 }  // namespace grainsweep::dem

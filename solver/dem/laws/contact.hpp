@@ -1,66 +1,88 @@
-// A contact: laws applied one after the other. It needs what any of them needs.
+// A contact: laws applied one after the other. It needs what any of them needs, and remembers their memories in order.
 #pragma once
 
 #include "solver/dem/laws/touch.hpp"
-#include "solver/particles/needs.hpp"
-#include "solver/particles/pair_memory.hpp"
+#include "solver/dem/material.hpp"
 
-#include <tuple>
 #include <type_traits>
+#include <vector>
 
 namespace grainsweep::dem {
 
-/// The history a pair has under these needs.
-template <particles::Needs needs>
-using MemoryFor = std::conditional_t<needs.rolling_history, particles::TangentialAndRolling,
-                                     std::conditional_t<needs.tangential_history, Vec3, NoMemory>>;
+/// Whether any law there is decides an aspect of this material (compiled.cpp).
+[[nodiscard]] bool wants(const Material& material, Aspect aspect);
 
-/// The part of it that belongs to a law.
-template <class Law, class Memory>
-[[nodiscard]] auto& part_of(Memory& memory) {
-    if constexpr (!std::is_same_v<std::remove_const_t<Memory>, particles::TangentialAndRolling>)
-        return memory;
-    else if constexpr (Law::needs.rolling_history)
-        return memory.rolling;
-    else
-        return memory.tangential;
-}
+template <class Real, template <class> class... Laws>
+struct Contact : Laws<Real>... {
+    static constexpr bool spin = (Laws<Real>::spin || ...);
+    static constexpr bool rolls = (Laws<Real>::rolls || ...);
+    static constexpr bool remembers_separation = (Laws<Real>::remembers_separation || ...);
+    /// Components of its memory.
+    static constexpr int memories = (0 + ... + Laws<Real>::memory_kind.components);
+    static constexpr bool remembers = memories > 0;
+    static constexpr int constants = (0 + ... + Laws<Real>::constants);
+    using Memory = std::array<Real, static_cast<std::size_t>(memories)>;
 
-/// A law may declare that the history of a pair outlives a separation: until the neighbour list is rebuilt, and beyond
-/// if the pair touches again at that moment. None here does.
-template <class Law>
-inline constexpr bool remembers_separation = requires {
-    requires Law::remembers_separation;
-};
-
-template <class... Laws>
-struct Contact {
-    static constexpr particles::Needs needs = (particles::Needs{} | ... | Laws::needs);
-    static constexpr bool remembers_separation = (dem::remembers_separation<Laws> || ...);
-    using Memory = MemoryFor<needs>;
-
-    std::tuple<Laws...> laws;
+    /// From the constants of all laws, in order.
+    explicit Contact(const double* c) : Laws<Real>(c + constants_before<Laws<Real>>())... {}
 
     /// Force of a touching pair; `advance` true: memories move on by one time step.
-    template <bool advance, Partner partner>
-    [[nodiscard]] Response respond(const Touch<partner>& t, Memory& memory) const {
-        Response r;
-        std::apply(
-            [&](const auto&... law) {
-                (law.template add<advance>(t, r, part_of<std::remove_cvref_t<decltype(law)>>(memory)), ...);
-            },
-            laws);
+    template <bool advance, class T>
+    [[nodiscard, gnu::always_inline]] Response<Real> respond(const T& t, Real* memory) const {
+        Response<Real> r;
+        (Laws<Real>::template add<advance>(t, r, memory + memory_before<Laws<Real>>()), ...);
         return r;
     }
 
     /// Energy stored in the pair, J.
-    template <Partner partner>
-    [[nodiscard]] double energy(const Touch<partner>& t, const Memory& memory) const {
-        return std::apply(
-            [&](const auto&... law) {
-                return (0.0 + ... + law.energy(t, part_of<std::remove_cvref_t<decltype(law)>>(memory)));
-            },
-            laws);
+    template <class T>
+    [[nodiscard]] Real energy(const T& t, const Real* memory) const {
+        return (0.0 + ... + Laws<Real>::energy(t, memory + memory_before<Laws<Real>>()));
+    }
+
+    /// Whether it computes a material: all of its laws suit it, and nothing that it wants is missing.
+    [[nodiscard]] static bool covers(const Material& m) {
+        bool result = (Laws<Real>::suits(m) && ...);
+        for (const Aspect a : {Aspect::normal, Aspect::cohesion, Aspect::sliding, Aspect::rolling})
+            result = result && (((Laws<Real>::aspect == a) || ...) || !wants(m, a));
+        return result;
+    }
+    [[nodiscard]] static std::vector<Quantity> constants_of(const Material& material) {
+        std::vector<Quantity> all;
+        const auto append = [&](const auto& some) { all.insert(all.end(), some.begin(), some.end()); };
+        (append(Laws<Real>::constants_of(material)), ...);
+        return all;
+    }
+    /// Their values in SI.
+    [[nodiscard]] static std::vector<double> values_of(const Material& material) {
+        std::vector<double> values;
+        for (const Quantity& q : constants_of(material)) values.push_back(q.value);
+        return values;
+    }
+    /// In SI.
+    [[nodiscard]] static Contact of(const Material& material) { return Contact(values_of(material).data()); }
+    /// Of every component of the memory.
+    [[nodiscard]] static std::vector<MemoryKind> memory_kinds() {
+        std::vector<MemoryKind> all;
+        (all.insert(all.end(), Laws<Real>::memory_kind.components, Laws<Real>::memory_kind), ...);
+        return all;
+    }
+
+private:
+    template <class Law>
+    static constexpr int constants_before() {
+        int sum = 0;
+        bool found = false;
+        ((found = found || std::is_same_v<Law, Laws<Real>>, sum += found ? 0 : Laws<Real>::constants), ...);
+        return sum;
+    }
+    template <class Law>
+    static constexpr int memory_before() {
+        int sum = 0;
+        bool found = false;
+        ((found = found || std::is_same_v<Law, Laws<Real>>, sum += found ? 0 : Laws<Real>::memory_kind.components),
+         ...);
+        return sum;
     }
 };
 

@@ -8,24 +8,38 @@
 #pragma once
 
 #include "solver/dem/laws/touch.hpp"
-#include "solver/particles/needs.hpp"
+#include "solver/dem/material.hpp"
 
 namespace grainsweep::dem {
 
-struct Hertz {
-    static constexpr particles::Needs needs{};
+template <class Real>
+struct Hertz : LawTraits {
+    using A = Arithmetic<Real>;
+    static constexpr Aspect aspect = Aspect::normal;
+    static constexpr int constants = 2;
 
-    double stiffness = 0;  ///< 4/3 E*, Pa
-    double damping = 0;    ///< -2 sqrt(5/6) beta sqrt(2 E*), sqrt(Pa)
+    static bool wanted(const Material&) { return true; }
+    static bool suits(const Material&) { return true; }
+    static std::array<Quantity, constants> constants_of(const Material& m) {
+        const double modulus = effective_modulus(m);
+        return {{{4.0 / 3.0 * modulus, pressure},
+                 {damping_factor(m.restitution) * std::sqrt(2 * modulus), root_of_pressure}}};
+    }
+    explicit Hertz(const double* c) : stiffness(A::number(c[0])), damping{A::damping(c[1])} {}
 
-    template <bool advance, Partner partner, class Memory>
-    void add(const Touch<partner>& t, Response& r, Memory&) const {
-        r.normal += stiffness * t.root * t.overlap - damping * t.damping_root * t.normal_velocity;
+    Real stiffness;               ///< 4/3 E*, Pa
+    typename A::Damping damping;  ///< -2 sqrt(5/6) beta sqrt(2 E*), sqrt(Pa)
+
+    template <bool advance, class T>
+    [[gnu::always_inline]] void add(const T& t, Response<Real>& r, Real*) const {
+        r.elastic = stiffness * t.root * t.overlap;
+        r.damping = t.damped(damping);
+        r.normal = r.seen = A::fnma(r.damping, t.normal_velocity, r.elastic);
     }
 
     /// Stored in the overlap, J.
-    template <Partner partner, class Memory>
-    [[nodiscard]] double energy(const Touch<partner>& t, const Memory&) const {
+    template <class T>
+    [[nodiscard]] Real energy(const T& t, const Real*) const {
         return 0.4 * stiffness * t.root * t.overlap * t.overlap;
     }
 };

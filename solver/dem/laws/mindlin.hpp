@@ -4,48 +4,55 @@
 //     sticking  k_t |s| <= mu |F_n|:  F_t = -k_t s - g_t v_t          (the sum is not limited)
 //     sliding   otherwise:            F_t = -mu |F_n| s/|s|,  s := -F_t/k_t   (no tangential damping)
 //
-// Mindlin (1949), J. Appl. Mech. 16, 259, no-slip stiffness in total form. F_n is the normal force of the
-// laws before this one: placed before a cohesion law friction sees the contact force alone, after it the net.
+// Mindlin (1949), J. Appl. Mech. 16, 259, no-slip stiffness in total form. F_n is what the laws before this one let
+// friction see: the contact force alone or the net one (Material::friction_limit).
 #pragma once
 
 #include "solver/dem/laws/touch.hpp"
-#include "solver/particles/needs.hpp"
-
-#include <cmath>
+#include "solver/dem/material.hpp"
 
 namespace grainsweep::dem {
 
-struct Mindlin {
-    static constexpr particles::Needs needs{
-        .spin = true, .tangential_history = true, .sizes = false, .frozen = false, .rolling_history = false};
+template <class Real>
+struct Mindlin : LawTraits {
+    using A = Arithmetic<Real>;
+    static constexpr Aspect aspect = Aspect::sliding;
+    static constexpr bool spin = true;
+    static constexpr MemoryKind memory_kind{3, -1, length};
+    static constexpr int constants = 4;
 
-    double stiffness = 0;  ///< 8 G*, Pa
-    double damping = 0;    ///< -2 sqrt(5/6) beta sqrt(8 G*), sqrt(Pa)
-    double friction = 0;   ///< mu
-    double time_step = 0;  ///< s
+    static bool wanted(const Material& m) { return m.friction > 0; }
+    static bool suits(const Material&) { return true; }
+    /// Without friction a spring that is not displaced yet would count as sticking, with a dashpot.
+    static std::array<Quantity, constants> constants_of(const Material& m) {
+        const double modulus = 8 * effective_shear_modulus(m), on = m.friction > 0 ? 1 : 0;
+        return {{{modulus, pressure},
+                 {on * damping_factor(m.restitution) * std::sqrt(modulus), root_of_pressure},
+                 {on * std::sqrt(modulus / (2 * effective_modulus(m))), number},
+                 {m.friction, number}}};
+    }
+    explicit Mindlin(const double* c)
+        : stiffness(A::number(c[0])), damping{A::damping(c[1], c[2])}, friction(A::number(c[3])) {}
+
+    Real stiffness;               ///< 8 G*, Pa
+    typename A::Damping damping;  ///< -2 sqrt(5/6) beta sqrt(8 G*), sqrt(Pa)
+    Real friction;                ///< mu
 
     /// `advance` false: forces only, the displacement s stays as it is.
-    template <bool advance, Partner partner>
-    void add(const Touch<partner>& t, Response& r, Vec3& s) const {
-        using namespace geometry;
-        if constexpr (advance) {
-            s += time_step * t.slip;
-            s -= dot(s, t.normal) * t.normal;
-        }
-        const double k = stiffness * t.root;
-        const double limit = friction * std::abs(r.normal);
-        const double spring = k * std::sqrt(dot(s, s));
-        // Both answers are computed and one is chosen: which of them holds is hard to predict.
-        const bool slides = spring > limit;
-        const double scale = slides ? limit / spring : 1.0;
-        const double viscosity = slides ? 0.0 : damping * t.damping_root;
-        r.tangential += (-k * scale) * s - viscosity * t.slip;
-        if constexpr (advance) s = scale * s;
+    template <bool advance, class T>
+    [[gnu::always_inline]] void add(const T& t, Response<Real>& r, Real* displacement) const {
+        auto s = A::vector(displacement);
+        if constexpr (advance) s = A::across(A::add(s, t.time_step, t.slip), t.normal);
+        const Real k = stiffness * t.root;
+        const auto [slides, scale] = A::cut(k, s, friction * A::abs(r.seen));
+        r.resistance = A::spring(k, scale, s, A::drop(slides, t.damped_beside(damping, r.damping)), t.slip);
+        if constexpr (advance) A::remember(displacement, t.kept(A::scaled(s, scale)));
     }
 
     /// Stored in the tangential displacement, J.
-    template <Partner partner>
-    [[nodiscard]] double energy(const Touch<partner>& t, const Vec3& s) const {
+    template <class T>
+    [[nodiscard]] Real energy(const T& t, const Real* displacement) const {
+        const auto s = A::vector(displacement);
         return 0.5 * stiffness * t.root * geometry::dot(s, s);
     }
 };

@@ -12,52 +12,62 @@
 //
 // mu_r is the tangent of the steepest slope on which a sphere stays at rest. Two differences to LIGGGHTS: at a wall it
 // takes (R - d/2)/(R - d) times w_i for the relative rotation, here w_i as everywhere else; and it moves M in its
-// evaluation before the first step. F_n is the normal force of the laws before this one, as in Coulomb's limit.
+// evaluation before the first step. F_n is the normal force that Coulomb's limit sees, too.
 #pragma once
 
 #include "solver/dem/laws/touch.hpp"
-#include "solver/particles/needs.hpp"
-
-#include <cmath>
+#include "solver/dem/material.hpp"
 
 namespace grainsweep::dem {
 
-struct RollingResistance {
-    static constexpr particles::Needs needs{
-        .spin = true, .tangential_history = false, .sizes = false, .frozen = false, .rolling_history = true};
+template <class Real>
+struct RollingResistance : LawTraits {
+    using A = Arithmetic<Real>;
+    static constexpr Aspect aspect = Aspect::rolling;
+    static constexpr bool spin = true, rolls = true;
+    static constexpr MemoryKind memory_kind{3, -1, moment};
+    static constexpr int constants = 3;
 
-    double stiffness = 0;      ///< 2.25 mu_r^2 4/3 E*, Pa
-    double friction = 0;       ///< mu_r
-    double damping_ratio = 0;  ///< eta_r, of the critical damping
-    double time_step = 0;      ///< s
+    static bool wanted(const Material& m) { return m.rolling_friction > 0; }
+    static bool suits(const Material&) { return true; }
+    static std::array<Quantity, constants> constants_of(const Material& m) {
+        const double mu_r = m.rolling_friction;
+        return {{{2.25 * mu_r * mu_r * (4.0 / 3.0 * effective_modulus(m)), pressure},
+                 {mu_r, number},
+                 {2 * m.rolling_damping, {.inertia = -0.5}}}};
+    }
+    explicit RollingResistance(const double* c)
+        : stiffness(A::number(c[0])), friction(A::number(c[1])), dashpot(A::number(c[2])) {}
+
+    Real stiffness;  ///< 2.25 mu_r^2 4/3 E*, Pa
+    Real friction;   ///< mu_r
+    Real dashpot;    ///< 2 eta_r
 
     /// k_r, N m
-    template <Partner partner>
-    [[nodiscard]] double spring(const Touch<partner>& t) const {
+    template <class T>
+    [[nodiscard, gnu::always_inline]] Real spring(const T& t) const {
         return stiffness * t.root * t.effective_radius * t.effective_radius;
     }
 
     /// `advance` false: moments only, the spring's M stays as it is.
-    template <bool advance, Partner partner>
-    void add(const Touch<partner>& t, Response& r, Vec3& moment) const {
-        using namespace geometry;
-        const double k = spring(t);
-        const Vec3 turning = t.turning - dot(t.turning, t.normal) * t.normal;
-        if constexpr (advance) moment += (time_step * k) * turning;
-        const double limit = friction * t.effective_radius * std::abs(r.normal);
-        const double size = norm(moment);
-        const bool yields = size > limit;
-        const double scale = yields ? limit / size : 1.0;
-        const double viscosity = yields ? 0.0 : 2 * damping_ratio * std::sqrt(t.rolling_inertia * k);
-        r.rolling += (-scale) * moment - viscosity * turning;
-        if constexpr (advance) moment = scale * moment;
+    template <bool advance, class T>
+    [[gnu::always_inline]] void add(const T& t, Response<Real>& r, Real* moment_of_spring) const {
+        const Real k = spring(t);
+        const auto turning = A::across(t.turning, t.normal);
+        auto m = A::vector(moment_of_spring);
+        if constexpr (advance) m = A::add(m, t.time_step * k, turning);
+        const auto [yields, scale] = A::cut(m, A::product(friction, t.effective_radius, A::abs(r.seen)));
+        m = A::scaled(m, scale);
+        r.rolling = A::add(m, A::drop(yields, dashpot * A::sqrt(t.rolling_inertia * k)), turning);
+        if constexpr (advance) A::remember(moment_of_spring, t.kept(m));
     }
 
     /// Stored in the spring, J.
-    template <Partner partner>
-    [[nodiscard]] double energy(const Touch<partner>& t, const Vec3& moment) const {
-        const double k = spring(t);
-        return k > 0 ? 0.5 * geometry::dot(moment, moment) / k : 0.0;
+    template <class T>
+    [[nodiscard]] Real energy(const T& t, const Real* moment_of_spring) const {
+        const Real k = spring(t);
+        const auto m = A::vector(moment_of_spring);
+        return k > 0 ? 0.5 * geometry::dot(m, m) / k : 0.0;
     }
 };
 

@@ -13,11 +13,11 @@ namespace grainsweep::kit {
 namespace {
 
 /// Contact area over R d of two equal spheres, to first order in the overlap.
-double area_factor(dem::CohesionArea area) {
+double area_factor(dem::CohesionLaw area) {
     switch (area) {
-        case dem::CohesionArea::sjkr2:
+        case dem::CohesionLaw::sjkr2:
             return 2 * std::numbers::pi;
-        case dem::CohesionArea::paper:
+        case dem::CohesionLaw::paper:
             return std::numbers::pi / 4;
         default:
             return std::numbers::pi;
@@ -35,7 +35,7 @@ dem::Material Powder::material(const Inputs& inputs) const {
     material.friction = friction(inputs);
     material.rolling_friction = rolling_friction(inputs);
     material.cohesion = cohesion(inputs);
-    material.cohesion_area = cohesion_law(inputs);
+    material.cohesion_law = cohesion_law(inputs);
     return material;
 }
 
@@ -86,7 +86,7 @@ dem::Method Powder::method(const Inputs& inputs) const {
 double pull_off_force(const dem::Material& material, double diameter) {
     // The largest value of a d - b d^(3/2), b = 4/3 E* sqrt(R*): 4 a^3/(27 b^2), R* = R/2.
     const double radius = diameter / 2;
-    const double a = material.cohesion * area_factor(material.cohesion_area) * radius;
+    const double a = material.cohesion * area_factor(material.cohesion_law) * radius;
     const double modulus = dem::effective_modulus(material);
     return a * a * a / (6 * modulus * modulus * radius);
 }

@@ -58,11 +58,11 @@ struct Powder {
                           {0, 1},
                           {if_set("friction")}};
     Real cohesion{"cohesion", "J/m3", "cohesion energy density", 0.0, {0, 1e6}};
-    Choice<dem::CohesionArea, 3> cohesion_law{
+    Choice<dem::CohesionLaw, 3> cohesion_law{
         "cohesion_law",
         "area the cohesion acts on: 'sjkr' cut of the spheres, 'sjkr2' 4 pi R* d, 'paper' "
         "pi (2 R* d - d^2)/4",
-        {{{"sjkr", dem::CohesionArea::sjkr}, {"sjkr2", dem::CohesionArea::sjkr2}, {"paper", dem::CohesionArea::paper}}},
+        {{{"sjkr", dem::CohesionLaw::sjkr}, {"sjkr2", dem::CohesionLaw::sjkr2}, {"paper", dem::CohesionLaw::paper}}},
         {if_set("cohesion")}};
     Real time_step{"time_step",
                    "s",

@@ -1,0 +1,83 @@
+// The arithmetic that laws are written in: numbers are doubles (here), or vectors of floats with one contact per lane
+// (fast/lane_arithmetic.hpp). A law is one text for both: `template <class Real> struct NAME`.
+//
+// Sums and products of three begin from the left here and from the right there, where they are fused; `spring` and
+// `product` keep that. What exceeds a limit is decided by comparing sizes here, by an inverse root there.
+#pragma once
+
+#include "solver/geometry/vector.hpp"
+
+#include <cmath>
+
+namespace grainsweep::dem {
+
+/// A contact area A = disc x (the disc in which two spheres cut) + band R* d + cap (2 R* - d) d, m2.
+struct AreaForm {
+    double disc = 0, band = 0, cap = 0;  ///< at a pair
+    double wall_band = 0, wall_cap = 0;  ///< at a wall
+};
+
+/// Whether the tangential or rolling spring is beyond its limit, and the factor that brings it back.
+template <class Real, class Mask>
+struct Cut {
+    Mask exceeds;
+    Real scale;
+};
+
+template <class Real>
+struct Arithmetic;
+
+template <>
+struct Arithmetic<double> {
+    using Vector = geometry::Vec3;
+    using Mask = bool;
+    /// Coefficient c of a damper c sqrt(m* a), a the radius of the contact, and c over that of the normal damper.
+    struct Damping {
+        double coefficient, over_normal;
+    };
+    /// Force per area times a contact area.
+    struct AreaForce {
+        double strength;
+        AreaForm form;
+    };
+
+    static double number(double x) { return x; }
+    static Damping damping(double coefficient, double over_normal = 1) { return {coefficient, over_normal}; }
+    static AreaForce area_force(double strength, const AreaForm& form) { return {strength, form}; }
+    static Vector vector(const double* memory) { return {memory[0], memory[1], memory[2]}; }
+    static void remember(double* memory, const Vector& v) {
+        for (std::size_t k = 0; k < 3; ++k) memory[k] = v[k];
+    }
+    static double product(double a, double b, double c) { return a * b * c; }
+    static double fnma(double a, double b, double c) { return c - a * b; }  ///< c - a b
+    static double abs(double a) { return std::abs(a); }
+    static double sqrt(double a) { return std::sqrt(a); }
+    static double drop(bool m, double a) { return m ? 0.0 : a; }  ///< a, or 0 where m holds
+    /// v + factor w
+    static Vector add(const Vector& v, double factor, const Vector& w) {
+        using namespace geometry;
+        return v + factor * w;
+    }
+    /// v without its part along n.
+    static Vector across(const Vector& v, const Vector& n) { return add(v, -geometry::dot(v, n), n); }
+    static Vector scaled(const Vector& v, double factor) { return geometry::operator*(factor, v); }
+    /// Of k |s| against a limit.
+    static Cut<double, bool> cut(double k, const Vector& s, double limit) {
+        return cut_to(k * std::sqrt(geometry::dot(s, s)), limit);
+    }
+    static Cut<double, bool> cut(const Vector& s, double limit) { return cut_to(geometry::norm(s), limit); }
+    /// k scale s + viscosity v
+    static Vector spring(double k, double scale, const Vector& s, double viscosity, const Vector& v) {
+        using namespace geometry;
+        return (k * scale) * s + viscosity * v;
+    }
+
+private:
+    // Both answers are computed and one is chosen: which of them holds is hard to predict.
+    static Cut<double, bool> cut_to(double size, double limit) {
+        const bool exceeds = size > limit;
+        return {exceeds, exceeds ? limit / size : 1.0};
+    }
+};
+
+}  // namespace grainsweep::dem

@@ -1,0 +1,103 @@
+// The combinations of laws that are compiled, from lean to general: engines, checkpoints and readers of contacts follow
+// from this list. A case takes the first combination that fits its material.
+#pragma once
+
+#include "solver/dem/laws/cohesion.hpp"
+#include "solver/dem/laws/contact.hpp"
+#include "solver/dem/laws/hertz.hpp"
+#include "solver/dem/laws/mindlin.hpp"
+#include "solver/dem/laws/rolling.hpp"
+
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace grainsweep::dem {
+
+/// What engines compile a combination for.
+enum class Columns {
+    equal,  ///< equal spheres only, and only materials that want every one of its laws
+    sizes,  ///< the same, also spheres of many sizes
+    any     ///< any spheres, by the code for many sizes; a law that a material does not want has zero constants
+};
+
+template <Columns compiled_for, template <class> class... Laws>
+struct Combination {
+    static constexpr Columns columns = compiled_for;
+    template <class Real>
+    using Contact = dem::Contact<Real, Laws...>;
+
+    /// Calls visit with every law.
+    template <class Visit>
+    static void for_each_law(Visit&& visit) {
+        (visit.template operator()<Laws<double>>(), ...);
+    }
+};
+
+template <class... Combinations>
+struct CombinationList {};
+
+using Compiled = CombinationList<Combination<Columns::equal, Hertz>,                                       //
+                                 Combination<Columns::sizes, Hertz, Mindlin>,                              //
+                                 Combination<Columns::equal, Hertz, Mindlin, LensCohesion>,                //
+                                 Combination<Columns::any, Hertz, Cohesion, Mindlin>,                      //
+                                 Combination<Columns::any, Hertz, Cohesion, Mindlin, RollingResistance>>;  //
+
+/// Calls visit.operator()<Combination>() for number `index` of the list.
+template <class Visit, class... Combinations>
+void visit_combination(int index, CombinationList<Combinations...>, Visit&& visit) {
+    int k = 0;
+    ((k++ == index ? visit.template operator()<Combinations>() : void()), ...);
+}
+
+/// What an engine may ask of a combination before it is chosen.
+struct CombinationFacts {
+    Columns columns;
+    bool spin;
+};
+
+/// Number of the first combination that fits all materials, those of the powder and of surfaces, and that the engine's
+/// `compiles` allows; general ones it must allow.
+template <class Compiles>
+[[nodiscard]] int choose_combination(std::span<const Material> materials, Compiles&& compiles);
+
+[[nodiscard]] bool fits(int combination, std::span<const Material> materials);
+[[nodiscard]] int combinations();
+[[nodiscard]] CombinationFacts facts_of(int combination);
+/// In SI, those of its laws in order.
+[[nodiscard]] std::vector<Quantity> constants_of(int combination, const Material& material);
+/// A contact whose laws are chosen at run time, in double precision and SI: for what is not part of a step.
+class AnyContact {
+public:
+    explicit AnyContact(std::vector<MemoryKind> memory) : memory_(std::move(memory)) {}
+    AnyContact(const AnyContact&) = delete;
+    AnyContact& operator=(const AnyContact&) = delete;
+    virtual ~AnyContact() = default;
+
+    /// Of every component of the memory.
+    [[nodiscard]] const std::vector<MemoryKind>& memory() const { return memory_; }
+    /// Forces at the present memory, which stays as it is.
+    [[nodiscard]] virtual Response<double> respond(const Touch<Partner::particle>& t, double* memory) const = 0;
+    [[nodiscard]] virtual Response<double> respond(const Touch<Partner::wall>& t, double* memory) const = 0;
+    [[nodiscard]] virtual double energy(const Touch<Partner::particle>& t, const double* memory) const = 0;
+    [[nodiscard]] virtual double energy(const Touch<Partner::wall>& t, const double* memory) const = 0;
+
+private:
+    std::vector<MemoryKind> memory_;
+};
+[[nodiscard]] std::unique_ptr<const AnyContact> make_contact(int combination, const Material& material);
+
+/// Components of the longest memory.
+inline constexpr int memories_at_most = 6;
+/// Constants of the longest combination.
+inline constexpr int constants_at_most = 20;
+
+template <class Compiles>
+int choose_combination(std::span<const Material> materials, Compiles&& compiles) {
+    for (int k = 0; k < combinations(); ++k)
+        if (fits(k, materials) && compiles(facts_of(k))) return k;
+    return combinations() - 1;
+}
+
+}  // namespace grainsweep::dem
