@@ -7,6 +7,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,5 +24,19 @@ struct Tray {
 /// period.
 [[nodiscard]] std::vector<std::array<double, 3>> random_addition(const Tray& tray, std::span<const double> radii,
                                                                  std::uint64_t seed);
+
+/// A vessel within a box; along periodic axes the box repeats itself.
+struct Room {
+    std::array<double, 3> low{}, high{};
+    std::array<bool, 3> periodic{};
+    /// Whether a whole sphere lies in the vessel, of those that lie in the box; empty: they all do.
+    std::function<bool(const std::array<double, 3>& centre, double radius)> holds;
+};
+
+/// The same in a vessel; nothing where a sphere fits nowhere in a hundred thousand tries. Throws std::invalid_argument
+/// where a sphere is wider than half a period.
+[[nodiscard]] std::optional<std::vector<std::array<double, 3>>> random_addition(const Room& room,
+                                                                                std::span<const double> radii,
+                                                                                std::uint64_t seed);
 
 }  // namespace grainsweep::particles

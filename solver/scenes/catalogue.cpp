@@ -29,6 +29,7 @@ std::span<const SceneInfo> scene_catalogue() {
     static const std::vector<SceneInfo> scenes = {
         powder_spreading_scene(),
         tpms_discharge_scene(),
+        rotating_drum_scene(),
         rehearsal_scene(),
         thermovibration_scene(),
     };

@@ -102,6 +102,20 @@ TEST(ScenePictures, SpreadingShowsGatesThenTheBlade) {
     EXPECT_NEAR(lowest(named(after, "blade"), 2), 0.008, 1e-12);
 }
 
+TEST(ScenePictures, ADrumShowsItsPlates) {
+    const auto scene = scene_of(
+        "rotating_drum",
+        {{"ends", std::string("plates")}, {"particles", std::int64_t{50}}, {"precision", std::string("double")}});
+    const Snapshot picture = scene->snapshot();
+    EXPECT_EQ(names_of(picture.walls), (std::set<std::string>{"drum", "front_plate", "rear_plate"}));
+    EXPECT_NEAR(highest(named(picture, "drum"), 2), 0.075, 1e-9);
+    EXPECT_EQ(highest(named(picture, "front_plate"), 1), 0);
+    EXPECT_EQ(lowest(named(picture, "rear_plate"), 1), 0.03);
+    EXPECT_EQ(picture.periods, (std::array<double, 3>{}));
+    EXPECT_EQ(scene->picture_focus(), 1.3);
+    EXPECT_EQ(scene_of("rotating_drum", {{"precision", std::string("double")}})->snapshot().periods[1], 0.03);
+}
+
 TEST(ScenePictures, ACellShowsItsSurfaceAndItsEdges) {
     const auto scene = scene_of("tpms_discharge", {{"edge", 8.0}, {"shell", 2.0}});
     const Snapshot picture = scene->snapshot();

@@ -51,6 +51,19 @@ TEST(SceneWarnings, OfSpreading) {
     EXPECT_EQ(of({{"youngs_modulus", 1e6}}), Kinds{"particles too soft for the speed"});
 }
 
+TEST(SceneWarnings, OfTheDrum) {
+    const auto of = [](const Inputs& changed) { return kinds("rotating_drum", changed); };
+    EXPECT_EQ(of({{"drum_diameter", 0.04}, {"length", 0.2}}), Kinds{"small drum"});
+    EXPECT_EQ(of({{"length", 0.02}}), Kinds{"short drum"});
+    EXPECT_EQ(of({{"length", 0.01}, {"ends", std::string("plates")}, {"particles", std::int64_t{150}}}),
+              Kinds{"few particles"});
+    EXPECT_EQ(of({{"rpm", 120.0}}), Kinds{"centrifuging drum"}) << "w^2 R/g = 1.2";
+    EXPECT_EQ(of({{"turning_time", 0.2}}), Kinds{"measured before the bed flows steadily"});
+    EXPECT_EQ(of({{"rpm", 5.0}}), Kinds{"measured before the bed flows steadily"}) << "a tenth of a turn";
+    EXPECT_EQ(of({{"measured_time", 0.1}}), Kinds{"few frames"});
+    EXPECT_EQ(of({{"youngs_modulus", 1e5}}), Kinds{"particles too soft for the fall"});
+}
+
 TEST(SceneWarnings, OfDischarge) {
     const auto of = [](const Inputs& changed) { return kinds("tpms_discharge", changed); };
     EXPECT_EQ(of({{"shell", 0.6}}), Kinds{"leaky shell"});

@@ -1,5 +1,6 @@
 // The kit of scenes: what a handle declares is what it reads, and the powder block means what it says.
 #include "solver/dem/material.hpp"
+#include "solver/scenes/kit/filling.hpp"
 #include "solver/scenes/kit/powder.hpp"
 #include "solver/scenes/scene.hpp"
 
@@ -66,6 +67,40 @@ TEST(Kit, HandlesRecordWhatTheyDeclare) {
     EXPECT_EQ(into.series.at(specs[1].name).size(), 1U);
     EXPECT_EQ(specs[1].shape, Shape::series);
     EXPECT_EQ(specs[1].over, "time (s)");
+}
+
+TEST(Kit, AWallHasThePropertiesOfThePowderOrItsOwn) {
+    auto inputs = defaults(kit::declared(powder.wall_friction, powder.wall_rolling_friction, powder.wall_restitution));
+    EXPECT_EQ(powder.wall_surface(inputs), dem::Surface{});
+    inputs["wall_friction"] = 0.0;
+    inputs["wall_restitution"] = 0.9;
+    EXPECT_EQ(powder.wall_surface(inputs), (dem::Surface{.friction = 0.0, .restitution = 0.9}));
+    inputs["wall_friction"] = -0.5;
+    EXPECT_THROW((void)powder.wall_surface(inputs), std::invalid_argument);
+    inputs["wall_friction"] = -1.0;
+    inputs["wall_restitution"] = 0.0;
+    EXPECT_THROW((void)powder.wall_surface(inputs), std::invalid_argument);
+}
+
+TEST(Kit, ALooseFillingTouchesNothing) {
+    const particles::Room tube{{-1, -1, 0}, {1, 1, 2}, {false, false, true}, [](const dem::Vec3& x, double r) {
+                                   return std::hypot(x[0], x[1]) + r <= 1;
+                               }};
+    const auto sizes = particles::SizeDistribution::uniform(0.2);
+    const auto spheres = kit::loose_filling(sizes, 0.2, 300, tube, 5, "full");
+    ASSERT_EQ(spheres.size(), 300U);
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+        const auto& a = spheres[i];
+        EXPECT_LE(std::hypot(a.position[0], a.position[1]) + a.radius, 1);
+        for (std::size_t j = 0; j < i; ++j) {
+            double dz = a.position[2] - spheres[j].position[2];
+            dz -= 2 * std::nearbyint(dz / 2);
+            EXPECT_GE(std::hypot(a.position[0] - spheres[j].position[0], a.position[1] - spheres[j].position[1], dz),
+                      a.radius + spheres[j].radius);
+        }
+    }
+    EXPECT_EQ(kit::loose_filling({}, 0.2, 7, tube, 5, "full").at(6).radius, 0.1);
+    EXPECT_THROW((void)kit::loose_filling({}, 0.2, 1000, tube, 5, "full"), std::invalid_argument) << "0.67";
 }
 
 TEST(Kit, SizesInAFileAreTakenAsTheyAre) {

@@ -39,6 +39,12 @@ dem::Material Powder::material(const Inputs& inputs) const {
     return material;
 }
 
+dem::Surface Powder::wall_surface(const Inputs& inputs) const {
+    return {.friction = own(wall_friction, inputs),
+            .rolling_friction = own(wall_rolling_friction, inputs),
+            .restitution = own(wall_restitution, inputs, true)};
+}
+
 particles::SizeDistribution Powder::sizes(const Inputs& inputs, const Files* files) const {
     using particles::SizeDistribution;
     switch (size_distribution(inputs)) {
@@ -81,6 +87,17 @@ dem::Method Powder::method(const Inputs& inputs) const {
     dem::Method method;
     method.precision = precision(inputs);
     return method;
+}
+
+std::optional<double> own(const Real& property, const Inputs& inputs, bool positive) {
+    const double value = property(inputs);
+    if (value == as_powder) return std::nullopt;
+    if (positive ? value > 0 : value >= 0) return value;
+    char sentence[160];
+    std::snprintf(sentence, sizeof sentence, "%.*s of %.4g is no property: give -1, as in the powder, or %s",
+                  static_cast<int>(property.name.size()), property.name.data(), value,
+                  positive ? "more than 0" : "at least 0");
+    throw std::invalid_argument(sentence);
 }
 
 double pull_off_force(const dem::Material& material, double diameter) {

@@ -12,7 +12,12 @@
 #include "solver/scenes/kit/observable.hpp"
 #include "solver/scenes/kit/parameter.hpp"
 
+#include <optional>
+
 namespace grainsweep::kit {
+
+/// What a property of a wall is given as where it is that of the powder.
+inline constexpr double as_powder = -1;
 
 enum class SizeLaw { monodisperse, weibull_wide, weibull_narrow, lognormal, uniform, file };
 
@@ -57,6 +62,11 @@ struct Powder {
                           0.0,
                           {0, 1},
                           {if_set("friction")}};
+    Real wall_friction{"wall_friction", "1", "Coulomb friction at the walls; -1: friction", as_powder, {as_powder, 2}};
+    Real wall_rolling_friction{
+        "wall_rolling_friction", "1", "rolling friction at the walls; -1: rolling_friction", as_powder, {as_powder, 1}};
+    Real wall_restitution{
+        "wall_restitution", "1", "restitution at the walls; -1: restitution", as_powder, {as_powder, 1}};
     Real cohesion{"cohesion", "J/m3", "cohesion energy density", 0.0, {0, 1e6}};
     Choice<dem::CohesionLaw, 3> cohesion_law{
         "cohesion_law",
@@ -81,6 +91,9 @@ struct Powder {
 
     /// Of all parameters from density to cohesion_law.
     [[nodiscard]] dem::Material material(const Inputs& inputs) const;
+    /// What the walls do differently from the powder. Throws std::invalid_argument with one sentence on what is neither
+    /// a property nor as_powder.
+    [[nodiscard]] dem::Surface wall_surface(const Inputs& inputs) const;
     /// Of d/D. Without files, as for an estimate, sizes in a file are taken as all equal. Throws std::invalid_argument
     /// with one sentence where the file is missing or D is outside of it.
     [[nodiscard]] particles::SizeDistribution sizes(const Inputs& inputs, const Files* files) const;
@@ -88,6 +101,10 @@ struct Powder {
     [[nodiscard]] double step(const Inputs& inputs, double radius, double speed) const;
     [[nodiscard]] dem::Method method(const Inputs& inputs) const;
 };
+
+/// The value of a wall's property, none for as_powder. Throws std::invalid_argument with one sentence on any other
+/// negative value, and with `positive` on 0.
+[[nodiscard]] std::optional<double> own(const Real& property, const Inputs& inputs, bool positive = false);
 
 /// Recorded where the powder is cohesive.
 inline constexpr Scalar bond_number{

@@ -1,0 +1,35 @@
+// Straight line through points, z = height + slope x, by least squares of z.
+//
+//     slope = sum (x - xm)(z - zm)/sum (x - xm)^2,   height = zm - slope xm
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+
+namespace grainsweep::observables {
+
+struct Line {
+    double slope = std::numeric_limits<double>::quiet_NaN();
+    double height = std::numeric_limits<double>::quiet_NaN();    ///< at x = 0
+    double residual = std::numeric_limits<double>::quiet_NaN();  ///< root mean square of z from the line
+};
+
+/// NaN where fewer than two points differ in x. Points (x, z).
+[[nodiscard]] inline Line fitted_line(std::span<const std::array<double, 2>> points) {
+    const auto n = static_cast<double>(points.size());
+    double xm = 0, zm = 0, xx = 0, xz = 0;
+    for (const auto& [x, z] : points) xm += x / n, zm += z / n;
+    for (const auto& [x, z] : points) xx += (x - xm) * (x - xm), xz += (x - xm) * (z - zm);
+    if (!(xx > 0)) return {};
+    Line line{xz / xx, zm - xz / xx * xm, 0};
+    for (const auto& [x, z] : points) {
+        const double off = z - line.height - line.slope * x;
+        line.residual += off * off / n;
+    }
+    line.residual = std::sqrt(line.residual);
+    return line;
+}
+
+}  // namespace grainsweep::observables

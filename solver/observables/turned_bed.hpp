@@ -1,0 +1,126 @@
+// What is measured of a bed in a rotating drum: sums over frames in the plane across the drum's axis.
+//
+// The axis is y through the origin, x horizontal, z up. The drum turns about +y, so that the bed is raised towards
+// negative x; its angles are positive. Lengths in m. Volumes belong to the centres of their spheres.
+//
+//     lean              atan2(-x_c, -z_c) of the mass centre: the slope of the surface of a bed that is a segment of a
+//                       circle
+//     surface           per column of cells the height where the mean solid fraction falls through a level, seen from
+//                       above, linear between the cells' centres; a line is fitted through |x| <= 0.4 R
+//     flow              mean velocity down that line, in layers below it, within 2.5 D of the foot of the perpendicular
+//                       from the axis
+//     cover             share of the frames in which any sphere hides the cell's centre from a view along the axis:
+//     what
+//                       a photograph averaged over time shows of a drum with light behind it
+#pragma once
+
+#include "solver/dem/engine.hpp"
+#include "solver/observables/line_fit.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace grainsweep::observables {
+
+/// Degrees; NaN without particles.
+[[nodiscard]] double lean(const dem::State& state);
+
+/// Square cells in the plane, their edges at whole multiples of `cell` from the axis, covering the drum. Numbered from
+/// the least x and z, x fastest.
+struct SectionGrid {
+    double cell = 0;
+    std::int64_t count = 0;  ///< along each axis; even
+
+    SectionGrid() = default;
+    SectionGrid(double radius, double its_cell);
+
+    [[nodiscard]] std::size_t cells() const { return static_cast<std::size_t>(count * count); }
+    /// Of the centres of the k-th column or row.
+    [[nodiscard]] double centre(std::int64_t k) const {
+        return (static_cast<double>(k) + 0.5 - 0.5 * static_cast<double>(count)) * cell;
+    }
+    [[nodiscard]] std::size_t number(std::int64_t column, std::int64_t row) const {
+        return static_cast<std::size_t>(row * count + column);
+    }
+    /// The column of a coordinate; it may lie beyond the grid.
+    [[nodiscard]] std::int64_t column(double x) const;
+};
+
+/// Where `values` fall through `level` from above, in each column whose centre lies within `reach` of the axis.
+[[nodiscard]] std::vector<std::array<double, 2>> falling_through(const SectionGrid& grid,
+                                                                 std::span<const double> values, double level,
+                                                                 double reach);
+
+/// Mean solid fraction of a drum of some length on cells as large as a particle.
+class SolidFraction {
+public:
+    SolidFraction(double radius, double length, double diameter);
+    void add(const dem::State& state);
+
+    [[nodiscard]] const SectionGrid& grid() const { return grid_; }
+    [[nodiscard]] std::vector<double> mean() const;
+    /// The line through the surface; NaN: too few columns hold powder.
+    [[nodiscard]] Line surface_line(double radius) const;
+
+    static void fields(auto& s, auto&& visit) { visit(s.volume_), visit(s.frames_); }
+
+private:
+    SectionGrid grid_;
+    double length_;
+    std::vector<double> volume_;
+    std::int64_t frames_ = 0;
+};
+
+/// Mean velocity of centres on cells of a fifth of a particle.
+class SectionFlow {
+public:
+    SectionFlow(double radius, double diameter);
+    void add(const dem::State& state);
+
+    struct DownhillProfile {
+        double surface_speed = 0;  ///< m/s: centres 0 to 1 D below the line; NaN: none
+        double depth = 0;          ///< D: where the mean velocity changes sign; NaN: nowhere
+    };
+    /// Below a line of the surface.
+    [[nodiscard]] DownhillProfile below(const Line& surface) const;
+
+    static void fields(auto& s, auto&& visit) { visit(s.vx_), visit(s.vz_), visit(s.centres_); }
+
+private:
+    SectionGrid grid_;
+    double diameter_;
+    std::vector<double> vx_, vz_;
+    std::vector<std::int64_t> centres_;
+};
+
+/// Share of frames in which each cell's centre is hidden.
+class Cover {
+public:
+    Cover(double radius, double cell);
+    void add(const dem::State& state);
+
+    [[nodiscard]] const SectionGrid& grid() const { return grid_; }
+    [[nodiscard]] std::vector<double> share() const;
+
+    static void fields(auto& s, auto&& visit) { visit(s.hidden_), visit(s.frames_); }
+
+private:
+    SectionGrid grid_;
+    std::vector<std::int64_t> hidden_;
+    std::int64_t frames_ = 0;
+    std::vector<char> now_;  // scratch
+};
+
+/// Mean tangential speed, in the drum's sense, of the spheres nearer than a tenth of D to the lower half of the wall;
+/// nothing: there is none. m/s.
+[[nodiscard]] std::optional<double> wall_layer_speed(const dem::State& state, double radius, double diameter);
+
+/// Mean number of other particles that a particle touches, 2 contacts/N.
+[[nodiscard]] double coordination(const dem::State& state, std::span<const dem::ContactForce> contacts);
+
+/// Of translation, J; density in kg/m3.
+[[nodiscard]] double translational_energy(const dem::State& state, double density);
+
+}  // namespace grainsweep::observables
