@@ -165,12 +165,13 @@ TEST(Architecture, LibrariesStayWhereTheyBelong) {
     }
 }
 
+std::string text_of(const fs::path& path) {
+    std::ifstream stream(path);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 // A law is a file in solver/dem/laws and a place in its list: the engines follow from the list.
 TEST(Architecture, EnginesNameNoContactLaw) {
-    const auto text_of = [](const fs::path& path) {
-        std::ifstream stream(path);
-        return std::string(std::istreambuf_iterator<char>(stream), {});
-    };
     static const std::regex law(R"(\ntemplate <class Real(?:, bool \w+)?>\s+(?:struct|using) (\w+))");
     std::vector<std::string> names;
     for (const auto& path : sources({"solver/dem/laws"})) {
@@ -180,6 +181,26 @@ TEST(Architecture, EnginesNameNoContactLaw) {
             names.push_back((*match)[1]);
     }
     EXPECT_GE(names.size(), 5U);
+    for (const auto& path : sources({"solver/dem/clear", "solver/dem/fast"})) {
+        const std::string text = text_of(path);
+        for (const auto& name : names)
+            EXPECT_FALSE(std::regex_search(text, std::regex("\\b" + name + "\\b"))) << path << " names " << name;
+    }
+}
+
+// Walls are visited by their list: an engine that names a shape or a motion would have to learn each new one.
+TEST(Architecture, NoEngineNamesAShapeOrAMotion) {
+    static const std::regex list(R"(using (?:Shape|Motion) = std::variant<([^>]+)>;)"), word(R"(\w+)");
+    std::vector<std::string> names;
+    for (const char* file : {"solver/geometry/shapes.hpp", "solver/geometry/motion.hpp"}) {
+        const std::string text = text_of(tests::source(file));
+        std::smatch match;
+        ASSERT_TRUE(std::regex_search(text, match, list)) << file;
+        const std::string alternatives = match[1];
+        for (std::sregex_iterator name(alternatives.begin(), alternatives.end(), word), end; name != end; ++name)
+            names.push_back(name->str());
+    }
+    EXPECT_GE(names.size(), 7U);
     for (const auto& path : sources({"solver/dem/clear", "solver/dem/fast"})) {
         const std::string text = text_of(path);
         for (const auto& name : names)

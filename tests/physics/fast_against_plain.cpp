@@ -1,109 +1,31 @@
 // The mixed-precision engine against the law written down plainly in double precision, on every instruction path.
-//
-// Collisions multiply differences, so the tolerance is measured: the plain calculation is repeated with every start
-// position moved by up to 1e-7 diameters (two units of single precision), and the engine may differ from the plain one
-// by ten times what that grows to. A wrong convention (torque arm, order of damping and limit) differs by 1e-2.
+// The tolerance is measured (tests/support/against_plain.hpp).
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <vector>
 
 #include "solver/dem/fast/mixed_engine.hpp"
-#include "stats/random.hpp"
+#include "tests/support/against_plain.hpp"
 #include "tests/support/granular_scenes.hpp"
 #include "tests/support/plain_dem.hpp"
 
 using namespace grainsweep;
 using dem::Method;
 
-namespace {
-
-struct Question {
-    std::string name;
-    dem::Setup setup;
-    std::int64_t steps;
-};
-
-std::string path_name(Method::Path path) {
-    return path == Method::Path::avx512 ? "avx512" : path == Method::Path::avx2 ? "avx2" : "baseline";
-}
-
-std::vector<Method::Path> paths() {
-    std::vector<Method::Path> all;
-    for (const auto p : {Method::Path::baseline, Method::Path::avx2, Method::Path::avx512})
-        if (dem::fast::supports(p)) all.push_back(p);
-    return all;
-}
-
-dem::State plain_state(const test::PlainDem& plain, const dem::State& like) {
-    dem::State s = like;
-    for (std::size_t k = 0; k < like.id.size(); ++k) {
-        const auto i = static_cast<std::size_t>(like.id[k]);
-        s.position[k] = plain.position()[i];
-        s.velocity[k] = plain.velocity()[i];
-        s.angular_velocity[k] = plain.angular_velocity()[i];
-    }
-    return s;
-}
-
-/// What a change of the start by `size` diameters grows to.
-struct Growth {
-    double position, velocity, spin;
-};
-
-Growth growth(const Question& q, const test::PlainDem& plain, double diameter, double size) {
-    dem::Setup moved = q.setup;
-    const stats::Stream stream(11, 0);
-    std::uint64_t draw = 0;
-    for (auto& s : moved.spheres)
-        for (double& x : s.position) x += size * diameter * (2 * stream.uniform(draw++) - 1);
-    test::PlainDem other(moved);
-    other.run(q.steps);
-    Growth g{};
-    for (std::size_t i = 0; i < moved.spheres.size(); ++i)
-        for (std::size_t a = 0; a < 3; ++a) {
-            g.position = std::max(g.position, std::abs(other.position()[i][a] - plain.position()[i][a]) / diameter);
-            g.velocity = std::max(g.velocity, std::abs(other.velocity()[i][a] - plain.velocity()[i][a]));
-            g.spin = std::max(g.spin, std::abs(other.angular_velocity()[i][a] - plain.angular_velocity()[i][a]));
-        }
-    return g;
-}
-
-void compare(const Question& q) {
-    test::PlainDem plain(q.setup);
-    plain.run(q.steps);
-    double diameter = 0;
-    for (const auto& s : q.setup.spheres) diameter = std::max(diameter, 2 * s.radius);
-    const Growth g = growth(q, plain, diameter, 1e-7);
-    ASSERT_LT(g.position, 1e-3) << q.name << " is too long to compare step by step";
-    for (const auto path : paths()) {
-        SCOPED_TRACE(q.name + " " + path_name(path));
-        const auto engine = dem::fast::make_mixed_engine(q.setup, path);
-        dem::State state;
-        engine->run(q.steps);
-        engine->state(state);
-        ASSERT_EQ(engine->fault(), "");
-        ASSERT_EQ(state.id.size(), q.setup.spheres.size());
-        const dem::State expected = plain_state(plain, state);
-        EXPECT_LT(test::position_difference(state, expected, q.setup.domain, diameter), 10 * g.position);
-        EXPECT_LT(test::velocity_difference(state, expected), 10 * g.velocity);
-        EXPECT_LT(test::spin_difference(state, expected), 10 * g.spin + 1e-4);
-        EXPECT_NEAR(engine->largest_overlap(), plain.largest_overlap(), 20 * g.position);
-    }
-}
-
-}  // namespace
+using test::path_name;
+using test::paths;
+using test::plain_state;
 
 TEST(FastAgainstPlain, EqualSpheresThrownTogether) {
-    compare({"periodic", test::thrown_lattice(5, 1.0, 0, 1), 600});
-    compare({"boxed", test::boxed_lattice(5, 0.5, 0, 2), 800});
+    test::compare_with_plain({"periodic", test::thrown_lattice(5, 1.0, 0, 1), 600});
+    test::compare_with_plain({"boxed", test::boxed_lattice(5, 0.5, 0, 2), 800});
 }
 
 TEST(FastAgainstPlain, UnequalSpheres) {
-    compare({"unequal_periodic", test::thrown_lattice(5, 1.0, 0.3, 3), 600});
-    compare({"unequal_boxed", test::boxed_lattice(5, 0.5, 0.25, 4), 800});
+    test::compare_with_plain({"unequal_periodic", test::thrown_lattice(5, 1.0, 0.3, 3), 600});
+    test::compare_with_plain({"unequal_boxed", test::boxed_lattice(5, 0.5, 0.25, 4), 800});
 }
 
 TEST(FastAgainstPlain, FrozenSpheresAreWallsOfSpheres) {
@@ -114,21 +36,21 @@ TEST(FastAgainstPlain, FrozenSpheresAreWallsOfSpheres) {
             s.spheres[i].velocity = s.spheres[i].angular_velocity = {};
         }
         s.gravity = {1, 0, -9.81};
-        compare({spread == 0 ? "frozen" : "frozen_unequal", s, 600});
+        test::compare_with_plain({spread == 0 ? "frozen" : "frozen_unequal", s, 600});
     }
 }
 
 TEST(FastAgainstPlain, WithoutFriction) {
     dem::Setup s = test::boxed_lattice(5, 0.5, 0, 6);
     s.material.friction = 0;
-    compare({"frictionless", s, 800});
+    test::compare_with_plain({"frictionless", s, 800});
     s = test::boxed_lattice(4, 0.5, 0.2, 6);
     s.material.friction = 0;
-    compare({"frictionless_unequal", s, 800});
+    test::compare_with_plain({"frictionless_unequal", s, 800});
     s = test::boxed_lattice(5, 0.4, 0, 12);  // some touch at the start: no dashpot may act on them
     s.material.friction = 0;
     s.material.cohesion = 2e5;
-    compare({"frictionless_cohesive", s, 600});
+    test::compare_with_plain({"frictionless_cohesive", s, 600});
 }
 
 TEST(FastAgainstPlain, EveryCohesionAndLimit) {
@@ -139,7 +61,7 @@ TEST(FastAgainstPlain, EveryCohesionAndLimit) {
                 s.material.cohesion = 2e5;
                 s.material.cohesion_law = area;
                 s.material.friction_limit = limit;
-                compare({"cohesive", s, 600});
+                test::compare_with_plain({"cohesive", s, 600});
             }
 }
 
@@ -158,7 +80,7 @@ TEST(FastAgainstPlain, BladeMovingAndVibrating) {
             b.edge_radius = round;
             s.walls.erase(s.walls.begin() + 1);  // the plane where the blade comes from
             s.walls.push_back(b);
-            compare({round == 0 ? "blade_sharp" : "blade_round", s, 500});
+            test::compare_with_plain({round == 0 ? "blade_sharp" : "blade_round", s, 500});
         }
 }
 
@@ -183,7 +105,7 @@ TEST(FastAgainstPlain, RollingResistance) {
                 b.speed = 0.8;
                 s.walls.erase(s.walls.begin() + 1);
                 s.walls.push_back(b);
-                compare({"rolling", s, 300});
+                test::compare_with_plain({"rolling", s, 300});
             }
 }
 

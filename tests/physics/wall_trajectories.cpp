@@ -1,6 +1,7 @@
 // One sphere at planes, cylinders and cones, at rest and in motion, against LIGGGHTS 3.8 and the exact evaluation
 // beside it (tests/reference/walls): the same law and time step give the same numbers up to rounding.
 #include "solver/dem/engine.hpp"
+#include "tests/support/against_plain.hpp"
 #include "tests/support/reference.hpp"
 #include "tests/support/wall_case.hpp"
 
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -84,4 +86,20 @@ TEST(WallTrajectories, EqualTheReferenceToRounding) {
         seen.insert(name);
     }
     EXPECT_EQ(seen.size(), 17U);
+}
+
+// Mixed precision: 3e-6 of the largest speed, as of two spheres. Where impacts follow one another each multiplies what
+// the one before left: 3e-5. The bounces down a slope begin with an overlap that is nearly zero, damped as its fourth
+// root: a start moved by 1e-8 diameters, which is how positions are resolved, makes 1e-4 of it.
+TEST(WallTrajectories, MixedPrecisionEqualsTheReference) {
+    const std::map<std::string, double> beyond = {{"p_cyl_release60_slip", 3e-5},
+                                                  {"p_zcyl_helix", 3e-5},
+                                                  {"x_zcyl_spin_helix_surface", 3e-5},
+                                                  {"p_plane_tilt30_bounce", 5e-4}};
+    for (const auto& [name, c] : cases())
+        for (const auto path : test::paths()) {
+            const auto d = deviation(name, tests::setup_of_wall_case(c), {Method::Precision::mixed, path});
+            const double tolerance = has_another_rolling(c) ? 2e-3 : beyond.contains(name) ? beyond.at(name) : 3e-6;
+            EXPECT_LT(d.largest(), tolerance) << name << " " << test::path_name(path);
+        }
 }

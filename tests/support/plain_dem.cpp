@@ -37,6 +37,7 @@ struct PlainDem::Contact {
     double overlap, radius, mass, neck;
     Vec3 turning;            // w_i - w_j
     double inverse_inertia;  // sum of 1/(7/5 m R^2)
+    dem::Material material;  // of both, or of the wall's surface
 };
 
 PlainDem::PlainDem(const dem::Setup& setup) : setup_(setup), gone_(setup.spheres.size(), 0) {
@@ -76,7 +77,7 @@ double PlainDem::kinetic_energy() const {
 }
 
 void PlainDem::respond(const Contact& c, bool update, Vec3& history, Vec3& force, Vec3& turn) const {
-    const dem::Material& m = setup_.material;
+    const dem::Material& m = c.material;
     const double young = m.youngs_modulus / (2 * (1 - m.poisson_ratio * m.poisson_ratio));
     const double shear = m.youngs_modulus / (4 * (2 - m.poisson_ratio) * (1 + m.poisson_ratio));
     const double log_e = std::log(m.restitution), beta = log_e / std::sqrt(log_e * log_e + pi * pi);
@@ -103,7 +104,7 @@ void PlainDem::respond(const Contact& c, bool update, Vec3& history, Vec3& force
 }
 
 Vec3 PlainDem::rolling(const Contact& c, bool update, Vec3& history, const Vec3& force) const {
-    const dem::Material& m = setup_.material;
+    const dem::Material& m = c.material;
     if (m.rolling_friction == 0) return {};
     const double young = m.youngs_modulus / (2 * (1 - m.poisson_ratio * m.poisson_ratio));
     const double kn = 4.0 / 3 * young * std::sqrt(c.radius * c.overlap);
@@ -141,6 +142,7 @@ void PlainDem::pair(std::size_t i, std::size_t j, bool update) {
     }
     largest_overlap_ = std::max(largest_overlap_, overlap / (2 * std::min(ri, rj)));
     Contact c{};
+    c.material = m;
     c.n = (1 / r) * d;
     c.overlap = overlap;
     c.velocity = v_[i] - v_[j];
@@ -167,9 +169,10 @@ void PlainDem::pair(std::size_t i, std::size_t j, bool update) {
 }
 
 void PlainDem::wall(std::size_t i, std::size_t w, bool update) {
-    const dem::Material& m = setup_.material;
+    const dem::Material m = dem::at_surface(setup_.material, setup_.walls[w].surface);
     const double ri = setup_.spheres[i].radius, t = static_cast<double>(wall_steps_) * setup_.time_step;
     Contact c{};
+    c.material = m;
     double distance = 0;
     const dem::Wall& wall = setup_.walls[w];
     const auto pose = geometry::pose_at(wall.motions, t);

@@ -52,13 +52,13 @@ void Columns::bind(Field& f) const {
     f.column_radius = column_radius.data();
     f.column_mobile = column_mobile.data();
     f.cell_start = cell_start.data();
-    f.walls = walls.data();
+    f.wall_sums = wall_sums.data();
     f.segments = segments.data();
     f.wall_particle = wall_particle.data();
 }
 
 void Columns::hold_particles(std::size_t particles, std::size_t wall_count) {
-    const std::size_t n = particles + 3 + wall_count + spare;
+    const std::size_t n = particles + 4 + spare;
     records.hold(n), records_next.hold(n);
     residuals.hold(n), residuals_next.hold(n);
     forces.hold(n);
@@ -67,7 +67,7 @@ void Columns::hold_particles(std::size_t particles, std::size_t wall_count) {
     for (auto& c : column) c.hold(n);
     column_radius.hold(n), column_mobile.hold(n);
     cell_of.hold(n), place.hold(n);
-    walls.hold(wall_count), segments.hold(wall_count);
+    wall_sums.hold(wall_count), segments.hold(wall_count);
 }
 
 void Columns::hold_pairs(std::size_t pairs) {

@@ -78,7 +78,7 @@ struct Columns {
     Column<std::int32_t> advanced, advanced_before;   ///< where some are held, see Field
     Column<std::int32_t> owner;  ///< old contact of an outer pair, plus one; negative: first and second changed places
 
-    Column<WallShape> walls;
+    Column<WallSums> wall_sums;
     Column<WallSegment> segments;
     Column<Place> wall_particle;
     Column<float> wall_history[histories_at_most], wall_history_next[histories_at_most];

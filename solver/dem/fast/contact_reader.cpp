@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/dem/fast/wall_lists.hpp"
 #include "solver/dem/material.hpp"
 
 namespace grainsweep::dem::fast {
@@ -35,13 +36,14 @@ ContactReader::Memory ContactReader::memory(const float* const* column, std::int
 
 /// Completes a touch whose geometry is known and appends the response of the laws.
 template <Partner partner>
-void ContactReader::add(Touch<partner> t, std::int32_t i, std::int32_t second, const Vec3& velocity, const Vec3& turn,
-                        const Vec3& turning, Memory memory, std::vector<ContactForce>& into) const {
+void ContactReader::add(const AnyContact& laws, Touch<partner> t, std::int32_t i, std::int32_t second,
+                        const Vec3& velocity, const Vec3& turn, const Vec3& turning, Memory memory,
+                        std::vector<ContactForce>& into) const {
     t.damping_root = std::sqrt(t.root * t.reduced_mass);
     t.normal_velocity = dot(velocity, t.normal);
     t.slip = velocity - t.normal_velocity * t.normal - cross(turn, t.normal);
     t.turning = turning;
-    const auto r = laws_.respond(t, memory.data());
+    const auto r = laws.respond(t, memory.data());
     into.push_back({id_[i], second, t.overlap, t.normal, r.normal, -r.resistance, -r.rolling});
 }
 
@@ -105,7 +107,7 @@ void ContactReader::stand_still(ParkedContact& contact) const {
     if (!touches(contact.first, contact.second, t)) return;
     complete(contact.first, contact.second, t);
     std::vector<ContactForce> one;
-    add(t, contact.first, contact.second, {}, {}, {}, memory(contact), one);
+    add(laws_, t, contact.first, contact.second, {}, {}, {}, memory(contact), one);
     const ContactForce& c = one.front();
     const Scale& s = space_.scale;
     const double unit = s.mass * s.length / (s.time * s.time);
@@ -126,19 +128,18 @@ void ContactReader::pairs(std::vector<ContactForce>& into) const {
         complete(i, j, t);
         const Motion &of_i = motions_[static_cast<std::size_t>(i)], &of_j = motions_[static_cast<std::size_t>(j)];
         const Vec3 turn = (t.radius_i - t.overlap / 2) * of_i.spin + (t.radius_j - t.overlap / 2) * of_j.spin;
-        add(t, i, id_[j], of_i.velocity - of_j.velocity, turn, of_i.spin - of_j.spin, memory, into);
+        add(laws_, t, i, id_[j], of_i.velocity - of_j.velocity, turn, of_i.spin - of_j.spin, memory, into);
     });
 }
 
 template <class Visit>
-void ContactReader::for_each_at_wall(const MovingWall& wall, std::size_t w, Visit&& visit) const {
+void ContactReader::for_each_at_wall(const Walls& walls, std::size_t w, Visit&& visit) const {
+    const MovingWall& wall = walls[w];
     std::vector<WallTouch> touched;
     for (std::int32_t k = field_.segments[w].begin; k < field_.segments[w].end; ++k) {
         const auto i = static_cast<std::int32_t>(field_.wall_particle[k] / places_per_index);
         if (i >= field_.count) continue;  // fills the segment up
-        Vec3 x{};
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            x[axis] = space_.scale.centre[axis] + field_.records[i].position[axis] * space_.scale.unit[axis];
+        const Vec3 x = wall.image().of(position_of(field_.records[i], space_.scale));
         touched.clear();
         wall.find(0, x, radius(i), touched);
         for (const auto& [entry, closest] : touched) {
@@ -154,27 +155,30 @@ void ContactReader::for_each_at_wall(const MovingWall& wall, std::size_t w, Visi
     }
 }
 
-void ContactReader::wall(const MovingWall& wall, std::size_t w, std::vector<ContactForce>& into) const {
-    for_each_at_wall(wall, w, [&](std::int32_t i, const Vec3& velocity, Touch<Partner::wall>& t, const Memory& memory) {
-        t.reduced_mass = mass(i);
-        t.rolling_inertia = inertia_about_contact * t.reduced_mass * t.radius_i * t.radius_i;
-        const Motion& motion = motions_[static_cast<std::size_t>(i)];
-        const Vec3 turn = (t.radius_i - t.overlap / 2) * motion.spin;
-        add(t, i, -1 - static_cast<std::int32_t>(w), motion.velocity - velocity, turn, motion.spin, memory, into);
-    });
+void ContactReader::wall(const Walls& walls, std::size_t w, std::vector<ContactForce>& into) const {
+    for_each_at_wall(walls, w,
+                     [&](std::int32_t i, const Vec3& velocity, Touch<Partner::wall>& t, const Memory& memory) {
+                         t.reduced_mass = mass(i);
+                         t.rolling_inertia = inertia_about_contact * t.reduced_mass * t.radius_i * t.radius_i;
+                         const Motion& motion = motions_[static_cast<std::size_t>(i)];
+                         const Vec3 turn = (t.radius_i - t.overlap / 2) * motion.spin;
+                         add(walls.laws(w), t, i, -1 - static_cast<std::int32_t>(w), motion.velocity - velocity, turn,
+                             motion.spin, memory, into);
+                     });
 }
 
-StoredEnergy ContactReader::stored(std::span<const MovingWall> walls) const {
+StoredEnergy ContactReader::stored(const Walls& walls) const {
     StoredEnergy e;
-    const auto add_energy = [&](const auto& t, const Memory& memory) {
-        const double energy = laws_.energy(t, memory.data());
+    const auto add_energy = [&](const AnyContact& laws, const auto& t, const Memory& memory) {
+        const double energy = laws.energy(t, memory.data());
         e.sum += energy;
         e.squeezed += std::abs(energy);
     };
-    for_each_pair([&](std::int32_t, std::int32_t, const auto& t, const Memory& memory) { add_energy(t, memory); });
-    for (std::size_t w = 0; w < walls.size(); ++w)
-        for_each_at_wall(walls[w], w, [&](std::int32_t, const Vec3&, const auto& t, const Memory& memory) {
-            add_energy(t, memory);
+    for_each_pair(
+        [&](std::int32_t, std::int32_t, const auto& t, const Memory& memory) { add_energy(laws_, t, memory); });
+    for (std::size_t w = 0; w < walls.count(); ++w)
+        for_each_at_wall(walls, w, [&](std::int32_t, const Vec3&, const auto& t, const Memory& memory) {
+            add_energy(walls.laws(w), t, memory);
         });
     return e;
 }

@@ -11,6 +11,7 @@
 #include "solver/dem/engine.hpp"
 #include "solver/dem/fast/layout.hpp"
 #include "solver/dem/fast/rebuild.hpp"
+#include "solver/dem/fast/walls.hpp"
 #include "solver/dem/laws/compiled.hpp"
 
 namespace grainsweep::dem::fast {
@@ -38,9 +39,9 @@ public:
     /// Appends the touching pairs, in list order, then the parked ones.
     void pairs(std::vector<ContactForce>& into) const;
     /// Appends the particles that touch wall number w.
-    void wall(const MovingWall& wall, std::size_t w, std::vector<ContactForce>& into) const;
+    void wall(const Walls& walls, std::size_t w, std::vector<ContactForce>& into) const;
     /// The energy of all contacts.
-    [[nodiscard]] StoredEnergy stored(std::span<const MovingWall> walls) const;
+    [[nodiscard]] StoredEnergy stored(const Walls& walls) const;
 
 private:
     using Memory = std::array<double, memories_at_most>;
@@ -54,12 +55,12 @@ private:
     void for_each_pair(Visit&& visit) const;
     /// Calls visit(i, touch, memory) for the particles that touch the wall.
     template <class Visit>
-    void for_each_at_wall(const MovingWall& wall, std::size_t w, Visit&& visit) const;
+    void for_each_at_wall(const Walls& walls, std::size_t w, Visit&& visit) const;
     void complete(std::int32_t i, std::int32_t j, Touch<Partner::particle>& t) const;
     [[nodiscard]] Memory memory(const ParkedContact& contact) const;
     template <Partner partner>
-    void add(Touch<partner> t, std::int32_t i, std::int32_t second, const Vec3& velocity, const Vec3& turn,
-             const Vec3& turning, Memory memory, std::vector<ContactForce>& into) const;
+    void add(const AnyContact& laws, Touch<partner> t, std::int32_t i, std::int32_t second, const Vec3& velocity,
+             const Vec3& turn, const Vec3& turning, Memory memory, std::vector<ContactForce>& into) const;
 
     const AnyContact& laws_;
     const ListSpace& space_;

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "solver/dem/fast/mixed_engine.hpp"
-#include "solver/dem/fast/rebuild.hpp"
+#include "solver/dem/fast/wall_lists.hpp"
 #include "solver/dem/limits.hpp"
 
 namespace grainsweep::dem::fast {
@@ -29,6 +29,29 @@ std::string where_and_when(const FaultView& s, std::int32_t i) {
 /// Words for a limit that the time step sets.
 const char* reason_of(float limit) {
     return limit < static_cast<float>(overlap_limit) ? ": beyond, the time step is too long for the contact" : "";
+}
+
+struct Depth {
+    std::int32_t particle = 0, wall = 0;
+};
+
+/// The listed particle that is deepest in a wall, over its own diameter.
+Depth deepest_at_walls(const FaultView& s) {
+    Depth depth;
+    double gap = std::numeric_limits<double>::infinity();
+    std::vector<WallTouch> touched;
+    for (std::int32_t w = 0; w < s.field.wall_count; ++w)
+        for (std::int32_t k = s.field.segments[w].begin; k < s.field.segments[w].end; ++k) {
+            const auto i = static_cast<std::int32_t>(s.field.wall_particle[k] / places_per_index);
+            if (i >= s.field.count) continue;
+            const Record& r = s.field.records[i];
+            const double radius = static_cast<double>(r.radius) * s.scale.length;
+            touched.clear();
+            s.walls[static_cast<std::size_t>(w)].find(0, position_of(r, s.scale), radius, touched);
+            for (const WallTouch& touch : touched)
+                if (const double g = (touch.place.distance - radius) / radius; g < gap) gap = g, depth = {i, w};
+        }
+    return depth;
 }
 
 }  // namespace
@@ -109,20 +132,11 @@ std::string describe_overlap(const FaultView& s, const Tally& tally) {
                       s.id[second]);
         return text + where_and_when(s, first);
     }
-    std::int32_t deepest = 0, wall = 0;
-    double gap = std::numeric_limits<double>::infinity();
-    for (std::int32_t w = 0; w < s.field.wall_count; ++w)
-        for (std::int32_t k = s.field.segments[w].begin; k < s.field.segments[w].end; ++k) {
-            const auto i = static_cast<std::int32_t>(s.field.wall_particle[k] / places_per_index);
-            if (i >= s.field.count) continue;
-            const double g =
-                wall_gap(s.field, s.field.walls[w], i) / (2 * static_cast<double>(s.field.records[i].radius));
-            if (g < gap) gap = g, deepest = i, wall = w;
-        }
+    const Depth depth = deepest_at_walls(s);
     std::snprintf(text, sizeof text, "overlap of %.3g diameters (limit %.3g%s) with wall %d",
                   static_cast<double>(tally.wall_overlap), static_cast<double>(s.sound.wall), reason_of(s.sound.wall),
-                  wall);
-    return text + where_and_when(s, deepest);
+                  depth.wall);
+    return text + where_and_when(s, depth.particle);
 }
 
 }  // namespace grainsweep::dem::fast

@@ -6,6 +6,7 @@
 #include "solver/dem/engine.hpp"
 #include "solver/dem/fast/layout.hpp"
 #include "solver/dem/fast/scale.hpp"
+#include "solver/dem/fast/walls.hpp"
 
 namespace grainsweep::dem::fast {
 
@@ -24,6 +25,7 @@ struct FaultView {
     const Field& field;
     const std::int32_t* id;
     const Scale& scale;
+    const Walls& walls;
     float smallest_diameter;
     SoundOverlaps sound;
     std::int64_t steps;

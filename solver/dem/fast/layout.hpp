@@ -12,6 +12,7 @@
 // function compiled for one of them must never be what the linker keeps for all.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "solver/dem/laws/compiled.hpp"
@@ -32,9 +33,9 @@ struct alignas(64) Record {
     std::int32_t position[3];
     float inverse_radius;
     float velocity[3];   ///< at the half step
-    float inverse_mass;  ///< 0: frozen, or a wall
+    float inverse_mass;  ///< 0: frozen, or any wall
     float spin[3];       ///< angular velocity at the half step
-    float radius;        ///< 0: a wall
+    float radius;        ///< 0: any wall
     float surface[3];    ///< radius times spin; kept only where radii differ
     float radius_again;
 };
@@ -77,15 +78,27 @@ struct Constants {
     double laws[constants_at_most];  ///< of the combination of laws, in order
 };
 
-/// Shape of a wall at the present time, relative to the middle of the domain, in the engine's units.
-struct WallShape {
-    std::int32_t is_blade;
-    std::int32_t record;  ///< index of the record that carries its velocity
-    double normal[3];
-    double offset;              ///< plane: normal . point
-    double centre, half_width;  ///< blade: along x
-    double bottom, top, edge_radius;
-    double period, inverse_period;  ///< of the x axis, 0 where open
+/// Bytes of what a shape is written in for lanes, at most.
+constexpr std::size_t numbers_at_most = 128;
+
+/// A wall at the present time, in the engine's units, relative to the middle of the domain.
+struct alignas(16) PlacedWall {
+    std::int32_t shape;                              ///< its number in the list of shapes
+    std::int32_t imaged;                             ///< 1: it has periodic images
+    std::int32_t turned;                             ///< 1: its numbers are those of its body frame
+    std::int32_t turns;                              ///< 1: its material turns
+    double origin[3];                                ///< what the following, and the numbers, are relative to
+    double middle[3], period[3], inverse_period[3];  ///< of images; 0 along axes that have none
+    double rows[3][3];                               ///< of the turn from its body frame
+    double velocity[3], spin[3], pivot[3];           ///< of its material
+    double laws[constants_at_most];                  ///< of its surface
+    unsigned char numbers[numbers_at_most];
+};
+
+/// What the particles did to a wall in one step: sums of their forces (to be reversed), of the torques of these about
+/// its pivot, and of forces times the velocity of the wall's material.
+struct WallSums {
+    double force[3], torque[3], power;
 };
 
 /// Contacts of one wall: a segment of the wall arrays, padded to the vector width.
@@ -99,7 +112,6 @@ struct alignas(32) Tally {
     float velocity_low[8];
     float overlap;       ///< of pairs, over the smaller diameter
     float wall_overlap;  ///< over the diameter
-    double wall_work;    ///< of the walls on the particles over the step
     std::int64_t contacts;
 };
 
@@ -107,7 +119,7 @@ struct alignas(32) Tally {
 struct Field {
     Constants constants;
     /// Particles present. Behind them in `records`: two far apart ones that fill vectors of pairs up, one that fills
-    /// vectors of wall contacts up, then the walls.
+    /// vectors of wall contacts up, and one at rest without mass, spin and size, the partner in these.
     std::int32_t count;
 
     std::int32_t read_ahead;  ///< 1: the particles do not fit the caches near the core, fetch them early
@@ -153,7 +165,8 @@ struct Field {
     std::int32_t outer_capacity;
 
     // Walls.
-    WallShape* walls;
+    const PlacedWall* walls;
+    WallSums* wall_sums;
     WallSegment* segments;
     std::int32_t wall_count;
     Place* wall_particle;
@@ -168,7 +181,7 @@ struct Kernels {
     void (*sweep)(const Field&, bool advance, Tally&);
     /// Integrates all particles with the forces that are there, and clears these.
     void (*advance)(const Field&, Tally&);
-    /// Forces of the walls on listed particles.
+    /// Forces of the walls on listed particles, and what they sum up to.
     void (*walls)(const Field&, Tally&);
     /// Outer list of pairs closer than `skin` beyond contact. Returns the count needed; more than
     /// outer_capacity: nothing beyond was written.

@@ -2,11 +2,9 @@
 #include <bit>
 #include <cstring>
 #include <stdexcept>
-#include <variant>
 #include <vector>
 
 #include "solver/dem/fast/mixed_stepping.hpp"
-#include "solver/dem/walls/wall_bytes.hpp"
 
 namespace grainsweep::dem::fast {
 
@@ -33,7 +31,7 @@ void MixedEngine::pass(Self& self, Archive& archive) {
     pass_walls(self, archive);
     if (self.resting_.wanted()) Resting::pass(self.resting_, archive);
     auto& c = self.columns_;
-    const auto particles = static_cast<std::size_t>(self.field_.count) + 3 + self.walls_.size();
+    const auto particles = static_cast<std::size_t>(self.field_.count) + 4;
     archive.column(c.records, particles);
     archive.column(c.residuals, particles);
     archive.column(c.forces, particles);
@@ -49,24 +47,20 @@ void MixedEngine::pass(Self& self, Archive& archive) {
     archive.column(c.inner_reach, inner);
     archive.column(c.touching, inner / 4);
     for (int a = 0; a < c.histories; ++a) archive.column(c.history[a], inner);
-    archive.column(c.segments, self.walls_.size());
-    const auto near_walls = self.walls_.empty() ? 0 : static_cast<std::size_t>(c.segments[self.walls_.size() - 1].end);
+    archive.column(c.segments, self.walls_.count());
+    const auto near_walls =
+        self.walls_.count() == 0 ? 0 : static_cast<std::size_t>(c.segments[self.walls_.count() - 1].end);
     archive.column(c.wall_particle, near_walls);
     for (int a = 0; a < c.histories; ++a) archive.column(c.wall_history[a], near_walls);
 }
 
 void MixedEngine::pass_walls(const MixedEngine& self, Writer& archive) {
-    archive.value(self.walls_.size());
-    for (const MovingWall& wall : self.walls_)
-        write_wall(wall.wall(), [&](const auto& value) { archive.value(value); });
+    self.walls_.save(archive);
 }
 
 void MixedEngine::pass_walls(MixedEngine& self, Reader& archive) {
-    std::size_t count = 0;
-    archive.value(count);
-    std::vector<Wall> walls;
-    for (std::size_t w = 0; w < count; ++w) walls.push_back(read_wall([&](auto& value) { archive.value(value); }));
-    self.walls_ = self.make_walls(walls);
+    self.walls_ =
+        Walls::restored(archive, self.space_.domain, self.space_.scale, self.needs_.combination, self.materials_);
 }
 
 /// Of the case, the same at every step.
@@ -141,7 +135,7 @@ void MixedEngine::require_possible() const {
         }
     }
     std::int32_t end = 0;
-    for (std::size_t w = 0; w < walls_.size(); ++w) {
+    for (std::size_t w = 0; w < walls_.count(); ++w) {
         const WallSegment& s = c.segments[w];
         require(s.begin >= 0 && s.begin <= s.end && s.end >= end && (s.end - s.begin) % width == 0);
         end = s.end;
@@ -174,7 +168,7 @@ void MixedEngine::restore(std::span<const std::byte> from) {
     pass(*this, reader);
     if (!reader.finished()) throw std::invalid_argument("the checkpoint is longer than its state");
     require_possible();
-    columns_.hold_particles(size(), walls_.size());
+    columns_.hold_particles(size(), walls_.count());
     columns_.hold_pairs(static_cast<std::size_t>(std::max(field_.outer_count, field_.inner_count)) + spare);
     columns_.hold_wall_contacts(size());
     columns_.bind(field_);

@@ -26,7 +26,8 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
       rest_speed_(rest_speed),
       kernels_(&kernels_of(path, needs_)),
       laws_(make_contact(needs_.combination, setup.material)),
-      walls_(make_walls(setup.walls)),
+      materials_(materials_of(setup)),
+      walls_(setup.walls, setup.domain, space_.scale, needs_.combination, materials_),
       sound_(sound_overlaps(setup)),
       watch_(setup, space_.scale),
       resting_(setup, *laws_, space_.scale, rest_speed),
@@ -49,7 +50,7 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
 
 void MixedEngine::load(const Setup& setup) {
     const auto n = setup.spheres.size();
-    columns_.hold_particles(n, walls_.size());
+    columns_.hold_particles(n, walls_.count());
     columns_.hold_pairs(8 * n);
     columns_.hold_wall_contacts(n);
     columns_.bind(field_);
@@ -88,18 +89,6 @@ void MixedEngine::load(const Setup& setup) {
         }
     }
     place_fillers(field_);
-}
-
-std::vector<MovingWall> MixedEngine::make_walls(const std::vector<Wall>& walls) const {
-    const geometry::Domain domain{space_.domain.low, space_.domain.high, space_.domain.periodic};
-    std::vector<MovingWall> made;
-    for (const Wall& wall : walls) {
-        made.emplace_back(wall, domain, 0.5 * space_.scale.length);
-        const bool known = std::holds_alternative<Plane>(wall.shape) || std::holds_alternative<Bar>(wall.shape);
-        if (!known || made.back().pose_at(1e300).turned || wall.surface != Surface{})
-            throw std::invalid_argument("this wall is computed in double precision only");
-    }
-    return made;
 }
 
 std::unique_ptr<Engine> make_mixed_engine(const Setup& setup, Method::Path path, double skin, double rest_speed) {

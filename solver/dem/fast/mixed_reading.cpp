@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
-#include <stdexcept>
 #include <vector>
 
 #include "solver/dem/fast/mixed_stepping.hpp"
@@ -76,11 +75,11 @@ void MixedEngine::contacts(std::vector<ContactForce>& into) const {
     const ContactReader reader(*laws_, space_, field_, columns_.id.data(), now, kernels_->width, resting_.parked());
     into.clear();
     reader.pairs(into);
-    for (std::size_t w = 0; w < walls_.size(); ++w) reader.wall(walls_[w], w, into);
+    for (std::size_t w = 0; w < walls_.count(); ++w) reader.wall(walls_, w, into);
 }
 
-WallLoad MixedEngine::wall_load(std::size_t, const Vec3&) const {
-    throw std::invalid_argument("loads of walls are read in double precision only");
+WallLoad MixedEngine::wall_load(std::size_t wall, const Vec3& about) const {
+    return walls_.load(wall, about);
 }
 
 Moment MixedEngine::moment(std::span<const Motion> motions) const {
@@ -90,7 +89,9 @@ Moment MixedEngine::moment(std::span<const Motion> motions) const {
 
 void MixedEngine::set_limits() {
     const std::vector<Motion> now = motions();
-    watch_.set_limit(moment(now), walls_);
+    watch_.set_limit(moment(now), walls_.all());
+    if (fault_.empty() && field_.count > 0)
+        fault_ = walls_.too_fast(0.5 * static_cast<double>(smallest_diameter_) * space_.scale.length, work_.steps);
 }
 
 void MixedEngine::check_energy() {

@@ -42,7 +42,7 @@ void MixedEngine::run(std::int64_t steps) {
         advanced = s + 1 < steps && !checked;
         begin_tally();
         kernels_->walls(field_, tally_);
-        watch_.add_wall_work(tally_.wall_work);
+        watch_.add_wall_work(walls_.book(field_.wall_sums, true));
         kernels_->sweep(field_, advanced, tally_);
         columns_.swap_histories(field_);
         peak_overlap_ = std::max(peak_overlap_, overlap());
@@ -65,7 +65,8 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
                 static_cast<float>(std::clamp(std::sqrt(outer_balance * per_step), outer_skin_least, outer_skin_most)),
                 largest_skin_);
         const std::int32_t before = field_.count;
-        rebuild(field_, columns_, *kernels_, space_, removed, needs_.resting ? &resting_ : nullptr, drift_.steps);
+        rebuild(field_, columns_, *kernels_, space_, walls_, removed, needs_.resting ? &resting_ : nullptr,
+                drift_.steps);
         columns_.forces.clear(size());  // what was carried over belongs to the old order
         if (field_.count < before) watch_.restart_balance();
         list_advanced();
@@ -83,8 +84,9 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
 
 /// Lets the walls stand where they are now.
 void MixedEngine::stand_walls() {
-    for (MovingWall& wall : walls_) wall.place(wall_time());
-    place_walls(field_, walls_, space_);
+    walls_.place(wall_time());
+    field_.walls = walls_.placed();
+    field_.wall_count = static_cast<std::int32_t>(walls_.count());
 }
 
 void MixedEngine::list_advanced() {
@@ -116,19 +118,13 @@ void MixedEngine::account_travel() {
 
 /// The velocities whose spread bounds relative displacements: particles', walls', and rest where something rests.
 void MixedEngine::begin_tally() {
-    const bool rest = box_includes_rest_ || !walls_.empty();
+    const bool rest = box_includes_rest_ || walls_.count() > 0;
     for (int a = 0; a < 8; ++a) {
         tally_.velocity_high[a] = rest ? 0 : -std::numeric_limits<float>::infinity();
         tally_.velocity_low[a] = rest ? 0 : std::numeric_limits<float>::infinity();
     }
-    for (std::int32_t w = 0; w < field_.wall_count; ++w)
-        for (int a = 0; a < 3; ++a) {
-            const float v = field_.records[field_.walls[w].record].velocity[a];
-            tally_.velocity_high[a] = std::max(tally_.velocity_high[a], v);
-            tally_.velocity_low[a] = std::min(tally_.velocity_low[a], v);
-        }
+    walls_.bound_velocities(wall_time(), tally_);
     tally_.overlap = tally_.wall_overlap = 0;
-    tally_.wall_work = 0;
     tally_.contacts = 0;
 }
 
@@ -180,6 +176,7 @@ void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
     begin_tally();
     field_.history_step = 0;
     kernels_->walls(field_, tally_);
+    (void)walls_.book(field_.wall_sums, false);
     kernels_->sweep(field_, false, tally_);
     field_.history_step = 1;
     peak_overlap_ = std::max(peak_overlap_, overlap());
@@ -199,14 +196,14 @@ void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
 }
 
 void MixedEngine::set_walls(std::vector<Wall> walls) {
-    std::vector<MovingWall> fresh = make_walls(walls);
+    Walls fresh(walls, space_.domain, space_.scale, needs_.combination, materials_);
     full_step_velocities();
     if (needs_.resting) resting_.advance_all(field_);
     walls_ = std::move(fresh);
     wall_steps_ = 0;
-    columns_.hold_particles(size(), walls_.size());
+    columns_.hold_particles(size(), walls_.count());
     columns_.bind(field_);
-    for (std::size_t w = 0; w < walls_.size(); ++w) columns_.segments[w] = {0, 0};
+    for (std::size_t w = 0; w < walls_.count(); ++w) columns_.segments[w] = {0, 0};
     restart_forces();
     set_limits();
 }

@@ -26,6 +26,7 @@
 #include "solver/dem/fast/rebuild.hpp"
 #include "solver/dem/fast/resting.hpp"
 #include "solver/dem/fast/scale.hpp"
+#include "solver/dem/fast/walls.hpp"
 #include "solver/dem/fast/watch.hpp"
 
 namespace grainsweep::dem::fast {
@@ -61,7 +62,6 @@ public:
 
 private:
     void load(const Setup& setup);
-    [[nodiscard]] std::vector<MovingWall> make_walls(const std::vector<Wall>& walls) const;
     void stand_walls();
     void begin_tally();
     [[nodiscard]] std::vector<Motion> motions() const;
@@ -78,7 +78,7 @@ private:
     [[nodiscard]] double half_change(std::int32_t particle, int axis) const;
     [[nodiscard]] double half_spin_change(std::int32_t particle, int axis) const;
     [[nodiscard]] FaultView view() const {
-        return {field_, columns_.id.data(), space_.scale, smallest_diameter_, sound_, work_.steps};
+        return {field_, columns_.id.data(), space_.scale, walls_, smallest_diameter_, sound_, work_.steps};
     }
     /// Of all pairs, over the smaller diameter; parked contacts keep theirs.
     [[nodiscard]] float overlap() const { return std::max(tally_.overlap, resting_.overlap()); }
@@ -102,7 +102,8 @@ private:
     double rest_speed_;
     const Kernels* kernels_;
     std::unique_ptr<const AnyContact> laws_;  ///< in SI, for what is no part of a step
-    std::vector<MovingWall> walls_;
+    std::vector<Material> materials_;         ///< of particles and walls at the start
+    Walls walls_;
     float smallest_diameter_ = 1;
     SoundOverlaps sound_;
     bool box_includes_rest_ = true;  ///< something at rest, or a face, bounds displacements besides the particles

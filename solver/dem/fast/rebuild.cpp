@@ -4,9 +4,9 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <numbers>
 
 #include "solver/dem/fast/resting.hpp"
+#include "solver/dem/fast/wall_lists.hpp"
 
 namespace grainsweep::dem::fast {
 
@@ -241,15 +241,6 @@ void carry_histories(Field& f, Columns& c, const Kernels& kernels) {
     c.bind(f);
 }
 
-double distance_to(const WallShape& w, double x, double y, double z) {
-    if (w.is_blade == 0) return w.normal[0] * x + w.normal[1] * y + w.normal[2] * z - w.offset;
-    double dx = x - w.centre;
-    dx -= w.period * std::nearbyint(dx * w.inverse_period);
-    const double ox = std::max(0.0, std::abs(dx) - w.half_width);
-    const double oz = std::max({0.0, w.bottom - z, z - w.top});
-    return std::hypot(ox, oz);  // of the sharp bar: never more than that of the rounded one, which lies inside it
-}
-
 }  // namespace
 
 void place_fillers(Field& f) {
@@ -263,83 +254,7 @@ void place_fillers(Field& f) {
         if (k == 2) r.radius = r.radius_again = -1e6F;  // out of reach of every wall
         f.records[f.count + k] = r;
     }
-}
-
-void place_walls(Field& f, const std::vector<MovingWall>& walls, const ListSpace& space) {
-    const Scale& s = space.scale;
-    for (std::size_t w = 0; w < walls.size(); ++w) {
-        WallShape shape{};
-        shape.record = f.count + 3 + static_cast<std::int32_t>(w);
-        Record r{};
-        const Vec3& shift = walls[w].pose().shift;
-        if (const auto* plane = std::get_if<Plane>(&walls[w].wall().shape)) {
-            const double norm = std::hypot(plane->normal[0], plane->normal[1], plane->normal[2]);
-            for (std::size_t a = 0; a < 3; ++a) {
-                shape.normal[a] = plane->normal[a] / norm;
-                shape.offset += shape.normal[a] * (plane->point[a] + shift[a] - s.centre[a]) / s.length;
-            }
-        } else {
-            const auto& bar = std::get<Bar>(walls[w].wall().shape);
-            shape.is_blade = 1;
-            shape.half_width = 0.5 * bar.thickness / s.length;
-            shape.centre = (bar.front + shift[0] - s.centre[0]) / s.length - shape.half_width;
-            shape.bottom = (bar.bottom + shift[2] - s.centre[2]) / s.length;
-            shape.top = (bar.top + shift[2] - s.centre[2]) / s.length;
-            shape.edge_radius = std::min(bar.edge_radius, 0.5 * bar.thickness) / s.length;
-            if (space.domain.periodic[0]) {
-                shape.period = (space.domain.high[0] - space.domain.low[0]) / s.length;
-                shape.inverse_period = 1 / shape.period;
-            }
-        }
-        for (std::size_t a = 0; a < 3; ++a)
-            r.velocity[a] = static_cast<float>(walls[w].twist().velocity[a] / s.speed());
-        f.walls[w] = shape;
-        f.records[shape.record] = r;
-    }
-    f.wall_count = static_cast<std::int32_t>(walls.size());
-}
-
-double wall_gap(const Field& f, const WallShape& wall, std::int32_t particle) {
-    const Record& r = f.records[particle];
-    const double* unit = f.constants.unit;
-    return distance_to(wall, r.position[0] * unit[0], r.position[1] * unit[1], r.position[2] * unit[2]) -
-           static_cast<double>(r.radius);
-}
-
-void list_wall_contacts(Field& f, Columns& c, const Kernels& kernels, const ListSpace& space, bool keep) {
-    constexpr std::int32_t none = -1;
-    std::int32_t n = 0;
-    std::vector<std::int32_t> old_slot;
-    const std::int32_t old_count = keep && f.wall_count > 0 ? f.segments[f.wall_count - 1].end : 0;
-    const std::vector<Place> old_particle(f.wall_particle, f.wall_particle + old_count);
-    for (std::int32_t w = 0; w < f.wall_count; ++w) {
-        const WallSegment old = f.segments[w];
-        old_slot.assign(static_cast<std::size_t>(f.count), none);
-        if (keep)
-            for (std::int32_t k = old.begin; k < old.end; ++k) {
-                const std::int32_t from = index_of(old_particle[static_cast<std::size_t>(k)]);
-                const std::int32_t to = c.place[static_cast<std::size_t>(from)];
-                if (to >= 0) old_slot[static_cast<std::size_t>(to)] = k;
-            }
-        const std::int32_t begin = n;
-        c.hold_wall_contacts(static_cast<std::size_t>(n) + static_cast<std::size_t>(f.count));
-        const auto add = [&](std::int32_t particle, std::int32_t from) {
-            const auto k = static_cast<std::size_t>(n++);
-            c.wall_particle[k] = place_of(particle);
-            for (int a = 0; a < c.histories; ++a)
-                c.wall_history_next[a][k] = from == none ? 0 : c.wall_history[a][static_cast<std::size_t>(from)];
-        };
-        const double near = static_cast<double>(space.skin) * (1 + 1e-5);
-        for (std::int32_t i = 0; i < f.count; ++i) {
-            const Record& r = f.records[i];
-            if (!(r.inverse_mass > 0)) continue;
-            if (wall_gap(f, f.walls[w], i) < near) add(i, old_slot[static_cast<std::size_t>(i)]);
-        }
-        while ((n - begin) % kernels.width != 0) add(f.count + 2, none);
-        f.segments[w] = {begin, n};
-    }
-    for (int a = 0; a < c.histories; ++a) c.wall_history[a].swap(c.wall_history_next[a]);
-    c.bind(f);
+    f.records[f.count + 3] = Record{};
 }
 
 void refresh(Field& f, Columns& c, const Kernels& kernels, float skin, bool marked) {
@@ -354,22 +269,17 @@ void refresh(Field& f, Columns& c, const Kernels& kernels, float skin, bool mark
     f.inner_count = kernels.refresh(f, skin);
 }
 
-void rebuild(Field& f, Columns& c, const Kernels& kernels, const ListSpace& space, std::span<const std::int32_t> ids,
-             Resting* resting, std::int64_t steps) {
+void rebuild(Field& f, Columns& c, const Kernels& kernels, const ListSpace& space, const Walls& walls,
+             std::span<const std::int32_t> ids, Resting* resting, std::int64_t steps) {
     if (resting != nullptr) resting->compare_forces(f, steps);
     const std::int32_t kept = take_out(f, c, space, ids);
-    std::vector<Record> wall_records(f.records + f.count + 3, f.records + f.count + 3 + f.wall_count);
     sort_particles(f, c, space, kept);
     place_fillers(f);
-    for (std::int32_t w = 0; w < f.wall_count; ++w) {
-        f.walls[w].record = f.count + 3 + w;
-        f.records[f.walls[w].record] = wall_records[static_cast<std::size_t>(w)];
-    }
     find_pairs(f, c, kernels, space);
     const std::int32_t contacts = find_owners(f, c, kernels);
     if (resting != nullptr) update_resting(f, c, space, *resting, contacts);
     carry_histories(f, c, kernels);
-    list_wall_contacts(f, c, kernels, space, true);
+    list_wall_contacts(f, c, kernels, space, walls, true);
 }
 
 }  // namespace grainsweep::dem::fast

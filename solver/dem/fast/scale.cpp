@@ -48,6 +48,11 @@ double unit_of(const Dimension& d, const Scale& scale) {
            std::pow(inertia_about_contact, d.inertia);
 }
 
+void write_law_constants(std::int32_t combination, const Material& material, const Scale& scale, double* into) {
+    std::ranges::transform(constants_of(combination, material), into,
+                           [&](const Quantity& q) { return q.value / unit_of(q.dimension, scale); });
+}
+
 Constants make_constants(const Setup& setup, const Scale& scale, const Needs& needs) {
     Constants c{};
     for (int a = 0; a < 3; ++a) {
@@ -62,8 +67,7 @@ Constants make_constants(const Setup& setup, const Scale& scale, const Needs& ne
     c.candidate_squared = 1 + 4e-6F;
     c.root_radius = 0.5F;
     c.rotation = needs.unequal ? 2.5F : 10.0F;
-    std::ranges::transform(constants_of(needs.combination, setup.material), c.laws,
-                           [&](const Quantity& q) { return q.value / unit_of(q.dimension, scale); });
+    write_law_constants(needs.combination, setup.material, scale, c.laws);
     return c;
 }
 

@@ -24,6 +24,8 @@ struct Scale {
 [[nodiscard]] float gravity_in_steps(double acceleration, const Scale& scale);
 /// Of a quantity, in SI: what is 1 inside. Moments of inertia about a contact are counted in 7/5 m R^2 inside.
 [[nodiscard]] double unit_of(const Dimension& dimension, const Scale& scale);
+/// The constants of a combination of laws for a material, in order.
+void write_law_constants(std::int32_t combination, const Material& material, const Scale& scale, double* into);
 [[nodiscard]] Constants make_constants(const Setup& setup, const Scale& scale, const Needs& needs);
 [[nodiscard]] Needs make_needs(const Setup& setup, bool resting = false);
 

@@ -36,9 +36,6 @@ struct Progress {
     std::int64_t met;      ///< of these, those already evaluated
 };
 
-// Each phase is a function of its own: the compiler sees loops it can schedule, a sampling profiler sees the phases.
-#define GRAINSWEEP_PHASE __attribute__((noinline))
-
 /// Sifts batches until a tile is full or the list at its end.
 template <class Kernel>
 GRAINSWEEP_PHASE void sift(const Field& f, std::int32_t batches, Packed& p, Progress& progress) {

@@ -1,119 +1,143 @@
-// Contacts with walls: the pair law with R* = R, m* = m. A wall is a record of radius, inverse mass and spin zero
-// that carries its velocity, so the motion of a contact is loaded like that of a pair; only the geometry is its own,
-// and is formed in double precision. Torque arm R - d/2.
+// Contacts with walls: the pair law with R* = R, m* = m. What is touched where is found in double precision
+// (wall_places.hpp); the partner of a particle is then a record without mass, spin and size, and the laws are those of
+// the wall's surface. Torque arm R - d/2.
 // Included by the files of the instruction paths; internal linkage on purpose.
 #pragma once
 
-#include "solver/dem/fast/contact.hpp"
+#include "solver/dem/fast/wall_places.hpp"
 
 namespace grainsweep::dem::fast {
 namespace {
 
-struct Surface {
-    D distance;  ///< from the wall's surface to the centre
-    D x, y, z;   ///< unit normal, towards the particle
+/// Sums over the lanes of one tile.
+struct LaneSums {
+    V3 force, torque;
+    F power;
 };
 
-GRAINSWEEP_LANES Surface plane_surface(const WallShape& w, D x, D y, D z) {
-    const D nx = broadcast(w.normal[0]), ny = broadcast(w.normal[1]), nz = broadcast(w.normal[2]);
-    return {fma(nx, x, fma(ny, y, nz * z)) - broadcast(w.offset), nx, ny, nz};
+GRAINSWEEP_LANES V3 zero_vector() {
+    return {broadcast(0.0f), broadcast(0.0f), broadcast(0.0f)};
+}
+GRAINSWEEP_LANES V3 operator+(V3 a, V3 b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+GRAINSWEEP_LANES V3 operator-(V3 a, V3 b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+GRAINSWEEP_LANES V3 load_vector(const float (&rows)[3][tile + 2 * width], int at) {
+    return {load(rows[0] + at), load(rows[1] + at), load(rows[2] + at)};
 }
 
-/// Closest point of the bar; below bottom + edge_radius the closest point of a bar thinner by edge_radius on each
-/// side, from which the rounded edge keeps its radius. A centre inside is pushed out through the nearest face.
-GRAINSWEEP_LANES Surface blade_surface(const WallShape& w, D x, D, D z) {
-    const D zero = broadcast(0.0), one = broadcast(1.0), round = broadcast(w.edge_radius);
-    D dx = x - broadcast(w.centre);
-    dx = dx - broadcast(w.period) * nearest_integer(dx * broadcast(w.inverse_period));
-    const D knee = broadcast(w.bottom + w.edge_radius);
-    const D shrink = where_less(z, knee, round, zero);
-    const D half = broadcast(w.half_width) - shrink;
-    const D px = max(min(dx, half), zero - half);
-    const D pz = max(min(z, broadcast(w.top)), broadcast(w.bottom) + shrink);
-    const D ox = dx - px, oz = z - pz;
-    const D length = sqrt(fma(ox, ox, oz * oz));
-    const D outside = one * where_less(zero, length, one, zero);
-    const D inverse_length = where_less(zero, length, one / max(length, broadcast(1e-30)), zero);
-    // inside: depth below the nearest face, whose normal points out
-    const D side = where_less(dx, zero, zero - one, one);
-    const D depth_side = fma(side, dx, zero - broadcast(w.half_width));
-    const D depth_bottom = broadcast(w.bottom) - z;
-    const D depth_top = z - broadcast(w.top);
-    const D vertical = max(depth_bottom, depth_top);
-    const D up = where_less(depth_bottom, depth_top, one, zero - one);
-    const D sideways = where_less(vertical, depth_side, one, zero);
-    const D inside = one - outside;
-    return {fma(outside, length - shrink, inside * max(vertical, depth_side)),
-            fma(ox, inverse_length, inside * sideways * side), zero,
-            fma(oz, inverse_length, inside * (one - sideways) * up)};
+GRAINSWEEP_LANES double sum_of(F a) {
+    float lane[width];
+    store(lane, a);
+    double sum = 0;
+    for (int q = 0; q < width; ++q) sum += static_cast<double>(lane[q]);
+    return sum;
+}
+GRAINSWEEP_LANES void add_to(double* total, V3 a) {
+    total[0] += sum_of(a.x);
+    total[1] += sum_of(a.y);
+    total[2] += sum_of(a.z);
 }
 
-/// Sum over lanes of force times velocity.
-GRAINSWEEP_LANES double work_of(V3 force, const float* velocity) {
-    float lane[3][width];
-    store(lane[0], force.x);
-    store(lane[1], force.y);
-    store(lane[2], force.z);
-    double work = 0;
-    for (int a = 0; a < 3; ++a)
-        for (int q = 0; q < width; ++q) work += static_cast<double>(lane[a][q]) * static_cast<double>(velocity[a]);
-    return work;
+/// Fills the last vector up with a particle that never touches.
+GRAINSWEEP_LANES void fill_up(const Field& f, WallTile& t, int packed) {
+    for (int q = packed; q < packed + width; ++q) {
+        t.particle[q] = static_cast<Place>((f.count + 2) * places_per_index);
+        t.overlap[q] = -1;
+        for (int a = 0; a < 3; ++a) t.normal[a][q] = t.velocity[a][q] = t.lever[a][q] = 0;
+        for (auto& column : t.memory) column[q] = 0;
+    }
+}
+
+/// The laws at the packed contacts: forces on the particles, new memories, sums for the wall.
+template <class Kernel>
+GRAINSWEEP_PHASE void press(const Field& f, const typename Kernel::Laws& laws, WallTile& t, int batches,
+                            float& wall_overlap, WallSums& sums) {
+    Place partner[width];
+    for (int q = 0; q < width; ++q) partner[q] = static_cast<Place>((f.count + 3) * places_per_index);
+    F largest_overlap = broadcast(wall_overlap);
+    LaneSums lanes{zero_vector(), zero_vector(), broadcast(0.0f)};
+    for (int b = 0; b < batches; ++b) {
+        const int at = b * width;
+        const Place* particle = t.particle + at;
+        F rows[12];
+        load_motion(f.records, particle, partner, rows);
+        const F radius = rows[7];
+        const V3 surface_velocity = load_vector(t.velocity, at);
+        Meeting<Kernel, Partner::wall> m;
+        m.time_step = broadcast(f.history_step);
+        m.radius = radius;
+        m.overlap = load(t.overlap + at);
+        m.touching = broadcast(0.0f) < m.overlap;
+        m.normal = load_vector(t.normal, at);
+        m.velocity = V3{rows[0], rows[1], rows[2]} - surface_velocity;
+        const F half_overlap = broadcast(0.5f) * m.overlap;
+        const F arm = fnma(broadcast(0.5f), m.overlap, radius);
+        m.surface = V3{rows[4], rows[5], rows[6]} * arm;
+        m.root_radius = radius * inverse_root(max(radius, broadcast(1e-12f)));
+        m.inverse_masses = rows[3];
+        if constexpr (Kernel::rolls) {
+            m.turning = {rows[4], rows[5], rows[6]};
+            m.rolling_inertia = inverse(rows[3] * inverse(max(radius * radius, broadcast(1e-12f))));
+        }
+        F memory[Kernel::histories + 1];
+        for (int a = 0; a < Kernel::histories; ++a) memory[a] = load(t.memory[a] + at);
+        const auto [force, turn, rolling] = respond(laws, m, memory);
+        for (int a = 0; a < Kernel::histories; ++a) store(t.memory[a] + at, memory[a]);
+        largest_overlap = max(keep(m.touching, m.overlap * inverse(radius + radius)), largest_overlap);
+        lanes.force = lanes.force + force;
+        lanes.power = fma(force.x, surface_velocity.x,
+                          fma(force.y, surface_velocity.y, fma(force.z, surface_velocity.z, lanes.power)));
+        // the force acts in the middle of the overlap
+        const V3 lever = fnma(half_overlap, m.normal, load_vector(t.lever, at));
+        lanes.torque = add_cross(lanes.torque, lever, force);
+        const F forces[3] = {force.x, force.y, force.z};
+        F torques[3] = {turn.x * arm, turn.y * arm, turn.z * arm};
+        if constexpr (Kernel::rolls) {
+            torques[0] = torques[0] - rolling.x;
+            torques[1] = torques[1] - rolling.y;
+            torques[2] = torques[2] - rolling.z;
+            lanes.torque = lanes.torque - rolling;
+        }
+        scatter(f.forces, particle, forces, torques);
+    }
+    wall_overlap = largest(largest_overlap);
+    add_to(sums.force, lanes.force);
+    add_to(sums.torque, lanes.torque);
+    sums.power += sum_of(lanes.power);
+}
+
+/// Memories back to the list; those of particles that do not touch end.
+GRAINSWEEP_LANES void return_memories(const Field& f, const WallTile& t, const WallProgress& p) {
+    for (int a = 0; a < f.histories; ++a) {
+        int at = 0, b = 0;
+        for (std::int32_t k = p.begin; k < p.slot; k += width, ++b) {
+            store(f.wall_history[a] + k, expand(load(t.memory[a] + at), p.touch[b]));
+            at += __builtin_popcount(p.touch[b]);
+        }
+    }
 }
 
 template <class Kernel>
-void walls(const Field& f, Tally& t) {
+void walls(const Field& f, Tally& tally) {
     const unsigned denormals = flush_denormals();
-    const Constants& c = f.constants;
-    const typename Kernel::Laws laws(c.laws);
-    F largest_overlap = broadcast(t.wall_overlap);
-    Place origin[width];
+    WallTile t;
+    WallProgress p;
     for (std::int32_t w = 0; w < f.wall_count; ++w) {
-        const WallShape& shape = f.walls[w];
-        for (int q = 0; q < width; ++q) origin[q] = static_cast<Place>(shape.record * places_per_index);
-        V3 push{broadcast(0.0f), broadcast(0.0f), broadcast(0.0f)};
-        for (std::int32_t k = f.segments[w].begin; k < f.segments[w].end; k += width) {
-            const Place* particle = f.wall_particle + k;
-            I ix, iy, iz;
-            load_offsets(f.records, particle, origin, ix, iy, iz);
-            const D x = exact(ix) * broadcast(c.unit[0]), y = exact(iy) * broadcast(c.unit[1]),
-                    z = exact(iz) * broadcast(c.unit[2]);
-            const Surface s = shape.is_blade != 0 ? blade_surface(shape, x, y, z) : plane_surface(shape, x, y, z);
-            F rows[12];
-            load_motion(f.records, particle, origin, rows);
-            const F radius = rows[7];
-            Meeting<Kernel, Partner::wall> m;
-            m.time_step = broadcast(f.history_step);
-            m.radius = radius;
-            m.overlap = single(exact(radius) - s.distance);
-            m.touching = broadcast(0.0f) < m.overlap;
-            m.normal = {single(s.x), single(s.y), single(s.z)};
-            m.velocity = {rows[0], rows[1], rows[2]};
-            const F arm = fnma(broadcast(0.5f), m.overlap, radius);
-            m.surface = V3{rows[4], rows[5], rows[6]} * arm;
-            m.root_radius = radius * inverse_root(max(radius, broadcast(1e-12f)));
-            m.inverse_masses = rows[3];
-            if constexpr (Kernel::rolls) {
-                m.turning = {rows[4], rows[5], rows[6]};
-                m.rolling_inertia = inverse(rows[3] * inverse(max(radius * radius, broadcast(1e-12f))));
-            }
-            F memory[Kernel::histories + 1];
-            load_memory<Kernel>(f.wall_history, k, memory);
-            const auto [force, turn, rolling] = respond(laws, m, memory);
-            if (f.history_step != 0) store_memory<Kernel>(f.wall_history, k, memory);
-            largest_overlap = max(keep(m.touching, m.overlap * inverse(radius + radius)), largest_overlap);
-            push = {push.x + force.x, push.y + force.y, push.z + force.z};
-            const F forces[3] = {force.x, force.y, force.z};
-            F torques[3] = {turn.x * arm, turn.y * arm, turn.z * arm};
-            if constexpr (Kernel::rolls) {
-                torques[0] = torques[0] - rolling.x;
-                torques[1] = torques[1] - rolling.y;
-                torques[2] = torques[2] - rolling.z;
-            }
-            scatter(f.forces, particle, forces, torques);
+        const PlacedWall& wall = f.walls[w];
+        const typename Kernel::Laws laws(wall.laws);
+        WallSums sums{};
+        const std::int32_t end = f.segments[w].end;
+        for (p.slot = f.segments[w].begin; p.slot < end;) {
+            PlaceFinders<geometry::Shape>::of[wall.shape](f, wall, end, t, p);
+            fill_up(f, t, p.packed);
+            press<Kernel>(f, laws, t, (p.packed + width - 1) / width, tally.wall_overlap, sums);
+            if (f.history_step != 0) return_memories(f, t, p);
         }
-        if (shape.is_blade != 0) t.wall_work += work_of(push, f.records[shape.record].velocity);
+        f.wall_sums[w] = sums;
     }
-    t.wall_overlap = largest(largest_overlap);
     restore_denormals(denormals);
 }
 

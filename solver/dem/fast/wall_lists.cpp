@@ -1,0 +1,84 @@
+#include "solver/dem/fast/wall_lists.hpp"
+
+#include <vector>
+
+namespace grainsweep::dem::fast {
+
+namespace {
+
+constexpr std::int32_t none = -1;
+
+/// Mobile particles, their positions and reach, as walls look for them.
+struct Mobile {
+    std::vector<std::uint32_t> index;
+    std::vector<Vec3> position;
+    std::vector<double> radius;
+
+    Mobile(const Field& f, const Scale& scale) {
+        const auto n = static_cast<std::size_t>(f.count);
+        index.reserve(n);
+        position.resize(n);
+        radius.resize(n);
+        for (std::size_t i = 0; i < n; ++i) {
+            if (!(f.records[i].inverse_mass > 0)) continue;
+            index.push_back(static_cast<std::uint32_t>(i));
+            position[i] = position_of(f.records[i], scale);
+            radius[i] = static_cast<double>(f.records[i].radius) * scale.length;
+        }
+    }
+};
+
+/// Slots of the old segment by new particle.
+std::vector<std::int32_t> slots_by_particle(const Field& f, const Columns& c, const WallSegment& old,
+                                            std::span<const Place> old_particle) {
+    std::vector<std::int32_t> slot(static_cast<std::size_t>(f.count), none);
+    for (std::int32_t k = old.begin; k < old.end; ++k) {
+        const std::size_t from = old_particle[static_cast<std::size_t>(k)] / places_per_index;
+        const std::int32_t to = c.place[from];
+        if (to >= 0) slot[static_cast<std::size_t>(to)] = k;
+    }
+    return slot;
+}
+
+}  // namespace
+
+Vec3 position_of(const Record& record, const Scale& scale) {
+    Vec3 x{};
+    for (std::size_t a = 0; a < 3; ++a) x[a] = scale.centre[a] + record.position[a] * scale.unit[a];
+    return x;
+}
+
+void list_wall_contacts(Field& f, Columns& c, const Kernels& kernels, const ListSpace& space, const Walls& walls,
+                        bool keep) {
+    std::int32_t n = 0;
+    const std::int32_t old_count = keep && f.wall_count > 0 ? f.segments[f.wall_count - 1].end : 0;
+    const std::vector<Place> old_particle(f.wall_particle, f.wall_particle + old_count);
+    const Mobile mobile(walls.count() > 0 ? f : Field{}, space.scale);
+    const double near = static_cast<double>(space.skin) * (1 + 1e-5) * space.scale.length;
+    std::vector<WallTouch> within;
+    for (std::size_t w = 0; w < walls.count(); ++w) {
+        const WallSegment old = f.segments[w];
+        const auto old_slot = slots_by_particle(f, c, keep ? old : WallSegment{}, old_particle);
+        const std::int32_t begin = n;
+        c.hold_wall_contacts(static_cast<std::size_t>(n) + static_cast<std::size_t>(f.count));
+        const auto add = [&](std::size_t particle, std::int32_t from) {
+            const auto k = static_cast<std::size_t>(n++);
+            c.wall_particle[k] = static_cast<Place>(particle * places_per_index);
+            for (int a = 0; a < c.histories; ++a)
+                c.wall_history_next[a][k] = from == none ? 0 : c.wall_history[a][static_cast<std::size_t>(from)];
+        };
+        walls[w].find(mobile.index, mobile.position, {0, mobile.radius}, near, within);
+        std::uint32_t before = UINT32_MAX;
+        for (const WallTouch& touch : within) {
+            if (touch.entry == before) continue;  // in several places
+            before = touch.entry;
+            add(mobile.index[touch.entry], old_slot[mobile.index[touch.entry]]);
+        }
+        while ((n - begin) % kernels.width != 0) add(static_cast<std::size_t>(f.count) + 2, none);
+        f.segments[w] = {begin, n};
+    }
+    for (int a = 0; a < c.histories; ++a) c.wall_history[a].swap(c.wall_history_next[a]);
+    c.bind(f);
+}
+
+}  // namespace grainsweep::dem::fast

@@ -1,0 +1,164 @@
+// Where particles touch walls: for each shape of the list a function over lanes that takes the particles near a wall
+// into its frame and packs those that touch. Positions, distances and velocities of the wall's material are formed in
+// double precision and rounded once.
+// Included by the files of the instruction paths; internal linkage on purpose.
+#pragma once
+
+#include "solver/dem/fast/contact.hpp"
+#include "solver/geometry/shapes.hpp"
+
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+namespace grainsweep::dem::fast {
+namespace {
+
+GRAINSWEEP_LANES D like(D, double value) {
+    return broadcast(value);
+}
+
+struct D3 {
+    D x, y, z;
+};
+GRAINSWEEP_LANES D3 broadcast(const double* v) {
+    return {broadcast(v[0]), broadcast(v[1]), broadcast(v[2])};
+}
+GRAINSWEEP_LANES D3 operator-(D3 a, D3 b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+GRAINSWEEP_LANES V3 single(D3 a) {
+    return {single(a.x), single(a.y), single(a.z)};
+}
+/// b - f a
+GRAINSWEEP_LANES D3 fnma(D f, D3 a, D3 b) {
+    return {fnma(f, a.x, b.x), fnma(f, a.y, b.y), fnma(f, a.z, b.z)};
+}
+/// c + a x b
+GRAINSWEEP_LANES D3 add_cross(D3 c, D3 a, D3 b) {
+    return {fnma(a.z, b.y, fma(a.y, b.z, c.x)), fnma(a.x, b.z, fma(a.z, b.x, c.y)), fnma(a.y, b.x, fma(a.x, b.y, c.z))};
+}
+
+/// Contacts with one wall, packed.
+struct alignas(64) WallTile {
+    Place particle[tile + 2 * width];
+    float overlap[tile + 2 * width];
+    float normal[3][tile + 2 * width];
+    float velocity[3][tile + 2 * width];  ///< of the wall's material
+    float lever[3][tile + 2 * width];     ///< from the wall's pivot to the place on its surface
+    float memory[histories_at_most][tile + 2 * width];
+};
+
+/// Vectors of listed particles that fill a tile, at most.
+constexpr int listed_vectors = 64;
+
+/// How far a wall's list has come.
+struct WallProgress {
+    std::int32_t slot;                    ///< next to be looked at
+    std::int32_t begin;                   ///< first of this tile
+    std::int32_t packed;                  ///< contacts in it
+    std::uint16_t touch[listed_vectors];  ///< which lanes touch, vector by vector of the list
+};
+
+GRAINSWEEP_LANES F radii_of(const Record* records, const Place* particle) {
+    float radius[width];
+    for (int q = 0; q < width; ++q) radius[q] = record_at(records, particle[q])->radius;
+    return load(radius);
+}
+
+/// Position of the particles relative to a wall's origin: of the nearest of its images.
+GRAINSWEEP_LANES D3 positions_at(const Field& f, const PlacedWall& w, const Place* particle, const Place* partner) {
+    const Constants& c = f.constants;
+    I ix, iy, iz;
+    load_offsets(f.records, particle, partner, ix, iy, iz);
+    const D3 x{exact(ix) * broadcast(c.unit[0]), exact(iy) * broadcast(c.unit[1]), exact(iz) * broadcast(c.unit[2])};
+    D3 r = x - broadcast(w.origin);
+    if (w.imaged != 0) {
+        const auto image = [&](D a, int k) {
+            return a - broadcast(w.period[k]) *
+                           nearest_integer((a - broadcast(w.middle[k])) * broadcast(w.inverse_period[k]));
+        };
+        r = {image(r.x, 0), image(r.y, 1), image(r.z, 2)};
+    }
+    return r;
+}
+
+GRAINSWEEP_LANES D3 to_body(const double (&rows)[3][3], D3 a) {
+    const auto along = [&](int k) {
+        return fma(broadcast(rows[0][k]), a.x, fma(broadcast(rows[1][k]), a.y, broadcast(rows[2][k]) * a.z));
+    };
+    return {along(0), along(1), along(2)};
+}
+GRAINSWEEP_LANES D3 from_body(const double (&rows)[3][3], D3 a) {
+    const auto along = [&](int k) {
+        return fma(broadcast(rows[k][0]), a.x, fma(broadcast(rows[k][1]), a.y, broadcast(rows[k][2]) * a.z));
+    };
+    return {along(0), along(1), along(2)};
+}
+
+/// Distance and normal of the wall's closest points.
+template <class S>
+GRAINSWEEP_LANES geometry::Near<D> nearest(const PlacedWall& w, D3 r) {
+    typename S::Numbers numbers;
+    static_assert(sizeof numbers <= numbers_at_most && std::is_trivially_copyable_v<typename S::Numbers>);
+    __builtin_memcpy(&numbers, w.numbers, sizeof numbers);
+    if (w.turned == 0) return near(numbers, r.x, r.y, r.z);
+    const D3 body = to_body(w.rows, r);
+    geometry::Near<D> found = near(numbers, body.x, body.y, body.z);
+    const D3 normal = from_body(w.rows, {found.x, found.y, found.z});
+    return {found.distance, normal.x, normal.y, normal.z};
+}
+
+GRAINSWEEP_LANES void store(float (&rows)[3][tile + 2 * width], int at, V3 a, unsigned lanes) {
+    store(rows[0] + at, compress(a.x, lanes));
+    store(rows[1] + at, compress(a.y, lanes));
+    store(rows[2] + at, compress(a.z, lanes));
+}
+
+/// Packs what touches from p.slot on, up to `end` or until a tile is full.
+template <class S>
+GRAINSWEEP_PHASE void find_places(const Field& f, const PlacedWall& w, std::int32_t end, WallTile& t, WallProgress& p) {
+    Place partner[width];
+    for (int q = 0; q < width; ++q) partner[q] = static_cast<Place>((f.count + 3) * places_per_index);
+    const D3 origin = broadcast(w.pivot), velocity = broadcast(w.velocity), spin = broadcast(w.spin);
+    p.begin = p.slot;
+    p.packed = 0;
+    for (int b = 0; b < listed_vectors && p.slot < end && p.packed < tile; ++b, p.slot += width) {
+        const Place* particle = f.wall_particle + p.slot;
+        const D3 r = positions_at(f, w, particle, partner);
+        const geometry::Near<D> surface = nearest<S>(w, r);
+        const F overlap = single(exact(radii_of(f.records, particle)) - surface.distance);
+        const unsigned lanes = bits(broadcast(0.0f) < overlap);
+        p.touch[b] = static_cast<std::uint16_t>(lanes);
+        if (lanes == 0) continue;
+        const D3 normal{surface.x, surface.y, surface.z};
+        const D3 lever = fnma(surface.distance, normal, r) - origin;
+        store(t.particle + p.packed, compress(load(particle), lanes));
+        store(t.overlap + p.packed, compress(overlap, lanes));
+        store(t.normal, p.packed, single(normal), lanes);
+        store(t.lever, p.packed, single(lever), lanes);
+        store(t.velocity, p.packed, single(w.turns != 0 ? add_cross(velocity, spin, lever) : velocity), lanes);
+        for (int a = 0; a < f.histories; ++a)
+            store(t.memory[a] + p.packed, compress(load(f.wall_history[a] + p.slot), lanes));
+        p.packed += __builtin_popcount(lanes);
+    }
+}
+
+using FindPlaces = void (*)(const Field&, const PlacedWall&, std::int32_t end, WallTile&, WallProgress&);
+
+template <class S>
+constexpr FindPlaces find_places_of() {
+    if constexpr (geometry::Vectorised<S>) return find_places<S>;
+    return nullptr;
+}
+
+/// One for each shape, in the order of the list.
+template <class List>
+struct PlaceFinders;
+template <class... Shapes>
+struct PlaceFinders<std::variant<Shapes...>> {
+    static constexpr FindPlaces of[] = {find_places_of<Shapes>()...};
+};
+
+}  // namespace
+}  // namespace grainsweep::dem::fast

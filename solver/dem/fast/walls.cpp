@@ -1,0 +1,170 @@
+#include "solver/dem/fast/walls.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+
+#include "solver/dem/limits.hpp"
+#include "solver/dem/walls/wall_bytes.hpp"
+
+namespace grainsweep::dem::fast {
+
+using namespace geometry;
+
+namespace {
+
+/// Gives a wall the numbers of its shape and what they are relative to.
+template <class S>
+void write_shape(const S& shape, const Pose& pose, const Scale& scale, PlacedWall& w) {
+    if constexpr (Vectorised<S>) {
+        using Numbers = typename S::Numbers;
+        static_assert(sizeof(Numbers) <= numbers_at_most);
+        Numbers numbers{};
+        Vec3 origin{};
+        bool stands = false;
+        if constexpr (Movable<S>) {
+            stands = !pose.turned;
+            if (stands) numbers = shape.moved(pose.shift).numbers(scale.centre, scale.length, origin);
+        }
+        if (!stands) {
+            numbers = shape.numbers({}, scale.length, origin);
+            origin = (1 / scale.length) * (pose.shift - scale.centre) + pose.turn(origin);
+        }
+        std::ranges::copy(origin, w.origin);
+        std::memcpy(w.numbers, &numbers, sizeof numbers);
+    }
+}
+
+void write_pose(const MovingWall& wall, const Scale& scale, PlacedWall& w) {
+    const Pose& pose = wall.pose();
+    w.turned = pose.turned ? 1 : 0;
+    for (std::size_t a = 0; a < 3; ++a) std::ranges::copy(pose.rows[a], w.rows[a]);
+    std::visit([&](const auto& shape) { write_shape(shape, pose, scale, w); }, wall.wall().shape);
+    const NearestImage& image = wall.image();
+    w.imaged = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+        if (!(image.period[a] > 0)) continue;
+        w.imaged = 1;
+        w.middle[a] = (image.middle[a] - scale.centre[a]) / scale.length - w.origin[a];
+        w.period[a] = image.period[a] / scale.length;
+        w.inverse_period[a] = 1 / w.period[a];
+    }
+}
+
+void write_twist(const Twist& twist, const Scale& scale, PlacedWall& w) {
+    w.turns = twist.turns ? 1 : 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+        w.velocity[a] = twist.velocity[a] / scale.speed();
+        w.spin[a] = twist.spin[a] * scale.time;
+        w.pivot[a] = (twist.pivot[a] - scale.centre[a]) / scale.length - w.origin[a];
+    }
+}
+
+std::vector<Wall> read_walls(Reader& archive) {
+    std::size_t count = 0;
+    archive.value(count);
+    std::vector<Wall> walls;
+    for (std::size_t w = 0; w < count; ++w) walls.push_back(read_wall([&](auto& value) { archive.value(value); }));
+    return walls;
+}
+
+}  // namespace
+
+Walls::Walls(const std::vector<Wall>& walls, const Domain& domain, const Scale& scale, std::int32_t combination,
+             std::span<const Material> materials)
+    : scale_(scale), placed_(walls.size()), sums_(walls.size()), pivot_(walls.size()), work_(walls.size()) {
+    std::vector<Material> together(materials.begin(), materials.end());
+    together.emplace_back();
+    for (std::size_t w = 0; w < walls.size(); ++w) {
+        const Material& surface = together.back() = at_surface(materials.front(), walls[w].surface);
+        if (!fits(combination, together))
+            throw std::invalid_argument("the surface of a wall has friction that nothing at the start had");
+        moving_.emplace_back(walls[w], geometry::Domain{domain.low, domain.high, domain.periodic}, 0.5 * scale.length);
+        laws_.push_back(make_contact(combination, surface));
+        write_law_constants(combination, surface, scale, placed_[w].laws);
+        placed_[w].shape = static_cast<std::int32_t>(walls[w].shape.index());
+        write_pose(moving_[w], scale, placed_[w]);
+        write_twist(moving_[w].twist(), scale, placed_[w]);
+        pivot_[w] = moving_[w].twist().pivot;
+    }
+}
+
+void Walls::place(double time) {
+    for (std::size_t w = 0; w < count(); ++w) {
+        if (moving_[w].at_rest()) continue;
+        moving_[w].place(time);
+        write_pose(moving_[w], scale_, placed_[w]);
+        write_twist(moving_[w].twist(), scale_, placed_[w]);
+        pivot_[w] = moving_[w].twist().pivot;
+    }
+}
+
+void Walls::bound_velocities(double time, Tally& tally) const {
+    for (const MovingWall& wall : moving_) {
+        if (wall.at_rest()) continue;
+        Vec3 low, high;
+        wall.surface_velocities(time, scale_.time, low, high);
+        for (std::size_t a = 0; a < 3; ++a) {
+            tally.velocity_high[a] = std::max(tally.velocity_high[a], static_cast<float>(high[a] / scale_.speed()));
+            tally.velocity_low[a] = std::min(tally.velocity_low[a], static_cast<float>(low[a] / scale_.speed()));
+        }
+    }
+}
+
+std::string Walls::too_fast(double smallest_radius, std::int64_t steps) const {
+    for (std::size_t w = 0; w < count(); ++w) {
+        const double share = moving_[w].fastest_surface() * scale_.time / smallest_radius;
+        if (share <= largest_sound_displacement) continue;
+        char text[200];
+        std::snprintf(text, sizeof text,
+                      "wall %zu moves %.3g of the smallest radius in one time step (limit %.3g), after %lld steps", w,
+                      share, largest_sound_displacement, static_cast<long long>(steps));
+        return text;
+    }
+    return {};
+}
+
+double Walls::book(const WallSums* sums, bool moves) {
+    double work = 0;
+    for (std::size_t w = 0; w < count(); ++w) {
+        sums_[w] = sums[w];
+        if (!moves || moving_[w].at_rest()) continue;
+        work_[w] += sums[w].power;
+        work += sums[w].power;
+    }
+    return work;
+}
+
+WallLoad Walls::load(std::size_t w, const Vec3& about) const {
+    const double force = scale_.mass * scale_.length / (scale_.time * scale_.time);
+    const WallSums& s = sums_.at(w);
+    WallLoad load;
+    for (std::size_t a = 0; a < 3; ++a) {
+        load.force[a] = -s.force[a] * force;
+        load.torque[a] = -s.torque[a] * force * scale_.length;
+    }
+    load.torque += cross(pivot_[w] - about, load.force);
+    load.work = work_[w] * force * scale_.length;
+    return load;
+}
+
+void Walls::save(Writer& archive) const {
+    archive.value(count());
+    for (const MovingWall& wall : moving_) write_wall(wall.wall(), [&](const auto& value) { archive.value(value); });
+    archive.list(sums_);
+    archive.list(work_);
+}
+
+Walls Walls::restored(Reader& archive, const Domain& domain, const Scale& scale, std::int32_t combination,
+                      std::span<const Material> materials) {
+    Walls walls(read_walls(archive), domain, scale, combination, materials);
+    const std::size_t count = walls.count();
+    archive.list(walls.sums_);
+    archive.list(walls.work_);
+    if (walls.sums_.size() != count || walls.work_.size() != count)
+        throw std::invalid_argument("the checkpoint holds values that no state has");
+    return walls;
+}
+
+}  // namespace grainsweep::dem::fast

@@ -1,0 +1,58 @@
+// The walls of the mixed engine: where they stand in its units, the laws of their surfaces, and what is done to them.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "solver/dem/engine.hpp"
+#include "solver/dem/fast/checkpoint.hpp"
+#include "solver/dem/fast/layout.hpp"
+#include "solver/dem/fast/scale.hpp"
+#include "solver/dem/laws/compiled.hpp"
+#include "solver/dem/walls/moving_wall.hpp"
+
+namespace grainsweep::dem::fast {
+
+class Walls {
+public:
+    /// `materials`: all there were at the start. Throws std::invalid_argument with one sentence on what cannot be.
+    Walls(const std::vector<Wall>& walls, const Domain& domain, const Scale& scale, std::int32_t combination,
+          std::span<const Material> materials);
+
+    [[nodiscard]] std::size_t count() const { return moving_.size(); }
+    [[nodiscard]] const MovingWall& operator[](std::size_t w) const { return moving_[w]; }
+    [[nodiscard]] std::span<const MovingWall> all() const { return moving_; }
+    /// Of a wall's surface, in SI.
+    [[nodiscard]] const AnyContact& laws(std::size_t w) const { return *laws_[w]; }
+
+    /// Lets them stand where, and move as, they do at `time` after they were set, s.
+    void place(double time);
+    [[nodiscard]] const PlacedWall* placed() const { return placed_.data(); }
+    /// Extends the extremes of velocity by those of the surfaces during the step after `time`.
+    void bound_velocities(double time, Tally& tally) const;
+    /// The first that moves farther than a particle's radius (m) in a step, in one sentence; empty: none.
+    [[nodiscard]] std::string too_fast(double smallest_radius, std::int64_t steps) const;
+
+    /// After a sweep over the walls: keeps its sums. `moves`: it was part of a step, and its work counts.
+    /// Returns the work of all walls on the particles in it, engine's units.
+    double book(const WallSums* sums, bool moves);
+    [[nodiscard]] WallLoad load(std::size_t w, const Vec3& about) const;
+
+    void save(Writer& archive) const;
+    /// Walls as they were saved; place() completes them.
+    [[nodiscard]] static Walls restored(Reader& archive, const Domain& domain, const Scale& scale,
+                                        std::int32_t combination, std::span<const Material> materials);
+
+private:
+    Scale scale_;
+    std::vector<MovingWall> moving_;
+    std::vector<std::unique_ptr<const AnyContact>> laws_;
+    std::vector<PlacedWall> placed_;
+    std::vector<WallSums> sums_;  // of the last step
+    std::vector<Vec3> pivot_;     // that their torques are about, m
+    std::vector<double> work_;    // since they were set, engine's units
+};
+
+}  // namespace grainsweep::dem::fast

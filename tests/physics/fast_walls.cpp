@@ -1,0 +1,165 @@
+// Walls of every shape and motion in the mixed-precision engine: the reference of single spheres
+// (tests/reference/walls) and the law written plainly, on every instruction path; loads, energy and what is booked.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "solver/dem/fast/mixed_engine.hpp"
+#include "solver/dem/material.hpp"
+#include "solver/geometry/vector.hpp"
+#include "tests/support/against_plain.hpp"
+#include "tests/support/granular_scenes.hpp"
+#include "tests/support/moving_walls.hpp"
+#include "tests/support/spheres.hpp"
+
+using namespace grainsweep;
+using namespace geometry;
+using tests::moving_walls;
+using tests::one_sphere;
+
+namespace {
+
+constexpr double radius = tests::sphere_at_walls;
+
+struct Booked {
+    Vec3 momentum{}, angular_momentum{};
+    double work = 0;
+    Vec3 momentum_of_sphere{}, angular_momentum_of_sphere{};
+    double energy = 0;
+};
+
+/// Runs an impact step by step and sums what the wall's loads give.
+Booked booked(const dem::Setup& setup, dem::Method::Path path, std::int64_t steps) {
+    const auto engine = dem::fast::make_mixed_engine(setup, path);
+    const double mass = dem::sphere_mass(radius, setup.material.density), inertia = 0.4 * mass * radius * radius;
+    Booked b;
+    const auto motion = [&](double sign) {
+        const auto state = tests::state_of(*engine);
+        const Vec3 &x = state.position[0], &v = state.velocity[0], &w = state.angular_velocity[0];
+        b.momentum_of_sphere += (sign * mass) * v;
+        b.angular_momentum_of_sphere += (sign * mass) * cross(x, v) + (sign * inertia) * w;
+        b.energy += sign * (0.5 * mass * dot(v, v) + 0.5 * inertia * dot(w, w));
+    };
+    motion(-1);
+    double most = 0;
+    for (std::int64_t k = 0; k < steps; ++k) {
+        engine->run(1);
+        const auto load = engine->wall_load(0, {});
+        b.momentum += (-setup.time_step) * load.force;
+        b.angular_momentum += (-setup.time_step) * load.torque;
+        b.work = load.work;
+        most = std::max(most, norm(load.force));
+    }
+    EXPECT_EQ(norm(engine->wall_load(0, {}).force), 0) << "still in contact";
+    EXPECT_GT(most, 0) << "never in contact";
+    EXPECT_EQ(engine->fault(), "");
+    motion(1);
+    return b;
+}
+
+constexpr std::int64_t one_impact = 1200;  // steps of 1 us
+
+/// A box of spheres thrown about, its centre and half its height.
+struct Crowd {
+    dem::Setup setup;
+    Vec3 centre{};
+    double half = 0;
+
+    explicit Crowd(double spread) : setup(test::boxed_lattice(5, 0.5, spread, 24)) {
+        for (const auto& s : setup.spheres) centre += (1.0 / static_cast<double>(setup.spheres.size())) * s.position;
+        for (const auto& s : setup.spheres) half = std::max(half, std::abs(s.position[2] - centre[2]) + s.radius);
+    }
+    [[nodiscard]] dem::Setup among(const dem::Wall& wall) const {
+        dem::Setup with = setup;
+        with.walls.push_back(wall);
+        return with;
+    }
+};
+
+}  // namespace
+
+// Single precision rounds each force to 1e-7: a collision sums some hundred of them.
+TEST(FastWalls, LoadsAreTheReaction) {
+    for (const auto path : test::paths())
+        for (const auto& m : moving_walls())
+            for (const double rolling : {0.0, 0.1}) {
+                SCOPED_TRACE(m.name);
+                auto setup = one_sphere(m.position, m.velocity, {m.wall});
+                setup.material.rolling_friction = rolling;
+                setup.spheres[0].angular_velocity = {40, -60, 30};
+                const auto b = booked(setup, path, one_impact);
+                const double scale = dem::sphere_mass(radius, 2500) * norm(m.velocity);
+                EXPECT_LT(norm(b.momentum - b.momentum_of_sphere), 3e-6 * scale);
+                EXPECT_LT(norm(b.angular_momentum - b.angular_momentum_of_sphere), 3e-6 * scale * 0.01);
+            }
+}
+
+// Without friction and damping an impact gives back what it took, up to the work of the wall: the error is that of the
+// integrator, as in double precision.
+TEST(FastWalls, EnergyIsConservedUpToTheWorkOfTheWall) {
+    for (const auto path : test::paths())
+        for (const auto& m : moving_walls()) {
+            SCOPED_TRACE(m.name);
+            auto setup = one_sphere(m.position, m.velocity, {m.wall});
+            setup.material.friction = 0;
+            setup.material.restitution = 1;
+            setup.time_step = 2.5e-7;
+            const auto b = booked(setup, path, 4 * one_impact);
+            const double scale = 0.5 * dem::sphere_mass(radius, 2500) * dot(m.velocity, m.velocity);
+            EXPECT_NEAR(b.energy, b.work, 4e-4 * scale);
+        }
+}
+
+// An impact on each shape in each motion, as the double engine computes it.
+TEST(FastWalls, EqualTheDoubleEngine) {
+    for (const auto path : test::paths())
+        for (const auto& m : moving_walls()) {
+            SCOPED_TRACE(m.name);
+            auto setup = one_sphere(m.position, m.velocity, {m.wall});
+            setup.walls[0].surface = {.friction = 0.5, .rolling_friction = 0.2, .restitution = 0.8};
+            const auto mixed = dem::fast::make_mixed_engine(setup, path);
+            const auto reference = dem::make_engine(setup, {});
+            mixed->run(one_impact), reference->run(one_impact);
+            const auto a = tests::state_of(*mixed), b = tests::state_of(*reference);
+            const double fastest = std::max(norm(m.velocity), norm(b.velocity[0]));
+            EXPECT_LT(norm(a.position[0] - b.position[0]), 1e-6 * 2 * radius);
+            EXPECT_LT(norm(a.velocity[0] - b.velocity[0]), 3e-6 * fastest);
+            EXPECT_LT(radius * norm(a.angular_velocity[0] - b.angular_velocity[0]), 3e-6 * fastest);
+            const double work = std::abs(reference->wall_load(0, {}).work);
+            EXPECT_NEAR(mixed->wall_load(0, {}).work, reference->wall_load(0, {}).work, 1e-5 * work + 1e-15);
+        }
+}
+
+// Many spheres among turning, sliding and shaking walls: ten times what a disturbance of 1e-7 d grows to.
+TEST(FastWalls, CrowdsAmongMovingWallsEqualThePlainLaw) {
+    for (const double spread : {0.0, 0.2}) {
+        const Crowd crowd(spread);
+        const Vec3 &c = crowd.centre, top = c + Vec3{0, 0, crowd.half};
+        const auto compare = [&](const std::string& name, const dem::Wall& wall) {
+            test::compare_with_plain({name, crowd.among(wall), 500});
+        };
+        const dem::Cylinder drum{.point = c, .axis = {0, 1, 0}, .radius = 1.42 * crowd.half};
+        const dem::Cylinder roller{.point = top + Vec3{0, 0, 1.05e-3},
+                                   .axis = {0, 1, 0},
+                                   .radius = 1e-3,
+                                   .side = dem::Side::outside,
+                                   .length = 3e-3};
+        const dem::Cone spike{.base = top + Vec3{0, 0, 2.1e-3},
+                              .axis = {0, 0, -1},
+                              .base_radius = 1e-3,
+                              .length = 2e-3,
+                              .side = dem::Side::outside};
+        const dem::Bar paddle{top[0] + 0.5e-3, 1e-3, top[2] + 0.05e-3, top[2] + 3e-3, 0.2e-3};
+        const dem::Translation down{.velocity = {0.1, 0, -0.6}};
+        const dem::Rotation stirs{.point = c, .axis = {0, 0, 1}, .speed = 400};
+        compare("drum", {drum, {dem::Rotation{.point = c, .axis = {0, 1, 0}, .speed = 150}}, {.friction = 0.6}});
+        compare("roller", {roller, {dem::Rotation{.point = roller.point, .axis = {0, 1, 0}, .speed = 900}, down}, {}});
+        compare("shaken roller",
+                {roller, {dem::Vibration{.amplitude = {2e-4, 0, -4e-4}, .frequency = 300}, stirs}, {}});
+        compare("spike", {spike, {stirs, down}, {.friction = 0, .restitution = 0.9}});
+        compare("paddle", {paddle, {stirs, down}, {}});
+    }
+}
