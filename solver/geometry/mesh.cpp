@@ -20,6 +20,8 @@ MeshContact contact_with(const Triangle& t, std::uint32_t number, const Vec3& x)
             nearest.feature, number};
 }
 
+constexpr double largest_coordinate = 1e9;  // m; squares and products of it stay numbers
+
 bool within(const Vec3& a, const Vec3& b, double distance) {
     const Vec3 apart = a - b;
     return dot(apart, apart) <= distance * distance;
@@ -27,29 +29,43 @@ bool within(const Vec3& a, const Vec3& b, double distance) {
 
 }  // namespace
 
-Mesh::Mesh(const TriangleSurface& surface, double one_contact_angle) : one_contact_angle_(one_contact_angle) {
+Mesh::Mesh() : body_(std::make_shared<const Body>()) {}
+
+Mesh::Mesh(TriangleSurface surface, double one_contact_angle) {
     if (!(one_contact_angle >= 0 && one_contact_angle < std::numbers::pi / 4))
         throw std::invalid_argument("the angle below which contacts with a mesh are one must lie in [0, pi/4)");
     if (surface.triangles.empty()) throw std::invalid_argument("a mesh needs a triangle");
-    triangles_.reserve(surface.triangles.size());
+    for (const Vec3& corner : surface.corners)
+        for (const double c : corner)
+            if (!(std::abs(c) <= largest_coordinate))
+                throw std::invalid_argument("every corner of a mesh must lie within 1e9 m of the origin");
+    auto body = std::make_shared<Body>();
+    body->triangles.reserve(surface.triangles.size());
     for (const auto& ids : surface.triangles) {
         std::array<Vec3, 3> corners{};
-        for (std::size_t k = 0; k < 3; ++k) corners[k] = surface.corners.at(static_cast<std::size_t>(ids[k]));
-        triangles_.push_back(Triangle::of(corners));
-        if (!finite(triangles_.back().normal))
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (ids[k] < 0 || static_cast<std::size_t>(ids[k]) >= surface.corners.size())
+                throw std::invalid_argument("every triangle of a mesh must be of corners that it has");
+            corners[k] = surface.corners[static_cast<std::size_t>(ids[k])];
+        }
+        body->triangles.push_back(Triangle::of(corners));
+        if (!finite(body->triangles.back().normal))
             throw std::invalid_argument("every triangle of a mesh must have an area");
     }
-    grid_ = TriangleGrid(triangles_);
-    tolerance_ = weld_tolerance * norm(high() - low());
+    body->grid = TriangleGrid(body->triangles);
+    body->tolerance = weld_tolerance * norm(body->grid.high() - body->grid.low());
+    body->surface = std::move(surface);
+    body->one_contact_angle = one_contact_angle;
+    body_ = std::move(body);
 }
 
 Mesh Mesh::repeated(const Domain& domain, double margin) const {
-    Mesh all = *this;
+    auto body = std::make_shared<Body>(*body_);
     for (std::size_t k = 0; k < 3; ++k) {
         if (!domain.periodic[k]) continue;
         const double period = domain.length(k);
         std::vector<Triangle> images;
-        for (const Triangle& t : all.triangles_) {
+        for (const Triangle& t : body->triangles) {
             const auto [least, most] = std::minmax({t.corner[0][k], t.corner[1][k], t.corner[2][k]});
             const auto first = std::ceil((domain.low[k] - margin - most) / period);
             const auto last = std::floor((domain.high[k] + margin - least) / period);
@@ -59,16 +75,18 @@ Mesh Mesh::repeated(const Domain& domain, double margin) const {
                 images.push_back(image);
             }
         }
-        all.triangles_ = std::move(images);
+        body->triangles = std::move(images);
     }
-    all.grid_ = TriangleGrid(all.triangles_);
+    body->grid = TriangleGrid(body->triangles);
+    Mesh all;
+    all.body_ = std::move(body);
     return all;
 }
 
 void Mesh::near(const Vec3& position, double reach, std::vector<std::uint32_t>& into) const {
     const Vec3 margin = {reach, reach, reach};
-    grid_.in_box(position - margin, position + margin, into);
-    std::erase_if(into, [&](std::uint32_t t) { return !(triangles_[t].nearest(position).distance < reach); });
+    body_->grid.in_box(position - margin, position + margin, into);
+    std::erase_if(into, [&](std::uint32_t t) { return !(body_->triangles[t].nearest(position).distance < reach); });
 }
 
 void Mesh::contacts(const Vec3& position, double reach, std::vector<MeshContact>& into) const {
@@ -81,7 +99,7 @@ void Mesh::contacts(const Vec3& position, double reach, std::span<const std::uin
                     std::vector<MeshContact>& into) const {
     into.clear();
     for (const std::uint32_t t : triangles) {
-        const MeshContact touched = contact_with(triangles_[t], t, position);
+        const MeshContact touched = contact_with(body_->triangles[t], t, position);
         if (touched.distance < reach) into.push_back(touched);
     }
     if (into.size() < 2) return;
@@ -91,7 +109,13 @@ void Mesh::contacts(const Vec3& position, double reach, std::span<const std::uin
     if (into.size() < 2) return;
     std::ranges::sort(into, {},
                       [](const MeshContact& c) { return std::tuple(c.distance, c.feature, c.point, c.normal); });
-    if (one_contact_angle_ > 0) unite_normals(into);
+    if (one_contact_angle() > 0) unite_normals(into);
+}
+
+void Mesh::touching(const Vec3& x, double reach, std::vector<Closest>& into) const {
+    std::vector<MeshContact> found;
+    contacts(x, reach, found);
+    for (const MeshContact& c : found) into.push_back({c.distance, c.normal});
 }
 
 /// Steps 2 and 3, to the sorted nearest points: faces before edges before vertices.
@@ -102,7 +126,7 @@ void Mesh::keep_places(std::vector<MeshContact>& touched) const {
         place[k] = k;
         for (std::size_t n = 0; n < k; ++n) {
             const std::size_t from = std::max(place[n], place[k]), to = std::min(place[n], place[k]);
-            if (from == to || !within(touched[n].point, touched[k].point, 2 * tolerance_)) continue;
+            if (from == to || !within(touched[n].point, touched[k].point, 2 * tolerance())) continue;
             for (std::size_t m = 0; m <= k; ++m)
                 if (place[m] == from) place[m] = to;
         }
@@ -113,8 +137,8 @@ void Mesh::keep_places(std::vector<MeshContact>& touched) const {
         const std::size_t mine = place[k];
         if (touched[mine].feature == Feature::face || passed_over[mine]) continue;
         for (std::size_t n = 0; n < touched.size() && !passed_over[mine]; ++n)
-            passed_over[mine] =
-                place[n] != mine && triangles_[touched[n].triangle].nearest(touched[k].point).distance <= tolerance_;
+            passed_over[mine] = place[n] != mine &&
+                                body_->triangles[touched[n].triangle].nearest(touched[k].point).distance <= tolerance();
     }
     const MeshContact nearest = *std::ranges::min_element(touched, {}, &MeshContact::distance);
     std::size_t kept = 0;
@@ -127,7 +151,7 @@ void Mesh::keep_places(std::vector<MeshContact>& touched) const {
 
 /// Step 4, to places sorted by distance.
 void Mesh::unite_normals(std::vector<MeshContact>& places) const {
-    const double chord = 2 * std::sin(one_contact_angle_ / 2);
+    const double chord = 2 * std::sin(one_contact_angle() / 2);
     std::size_t kept = 0;
     for (const MeshContact& place : std::vector<MeshContact>(places)) {
         const auto is_one = [&](const MeshContact& other) { return within(other.normal, place.normal, chord); };
@@ -142,14 +166,14 @@ std::optional<std::uint32_t> Mesh::crossed(const Vec3& from, const Vec3& to) con
     for (std::size_t k = 0; k < 3; ++k)
         if (low[k] > high[k]) std::swap(low[k], high[k]);
     std::vector<std::uint32_t> beside;
-    grid_.in_box(low, high, beside);
+    body_->grid.in_box(low, high, beside);
     for (const std::uint32_t n : beside) {
-        const Triangle& t = triangles_[n];
+        const Triangle& t = body_->triangles[n];
         const double before = t.height(from);
         const double after = t.height(to);
         if ((before > 0) == (after > 0)) continue;
         const Vec3 through = from + (before / (before - after)) * (to - from);
-        if (t.nearest(through).distance <= tolerance_) return n;
+        if (t.nearest(through).distance <= tolerance()) return n;
     }
     return std::nullopt;
 }

@@ -22,19 +22,25 @@
 // A wall has two sides: the normal points to the one where the centre is. A sphere whose centre passes a triangle is
 // pushed on by it: crossed() finds that out.
 //
+// A mesh does not change; copies share their triangles.
+//
 // Triangles that meet in an edge or a vertex need not know of each other: a point lies on a triangle if it is nearer
 // than `tolerance` to it. So an edge that ends on the side of another triangle (a T-junction), more than two triangles
 // at an edge, and the seam between a mesh and its periodic image need no rule of their own.
 #pragma once
 
+#include "solver/geometry/closest.hpp"
 #include "solver/geometry/domain.hpp"
 #include "solver/geometry/triangle.hpp"
 #include "solver/geometry/triangle_grid.hpp"
 #include "solver/geometry/triangle_surface.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <type_traits>
 #include <vector>
 
 namespace grainsweep::geometry {
@@ -49,19 +55,24 @@ struct MeshContact {
 
 class Mesh {
 public:
+    /// Without triangles: no wall yet (flaw()).
+    Mesh();
     /// one_contact_angle: rad, at least 0, below pi/4. Throws std::invalid_argument where the surface has no triangle,
-    /// a corner that is no number, or a triangle without area.
-    explicit Mesh(const TriangleSurface& surface, double one_contact_angle = 0);
+    /// a triangle without area or of corners that it has not, or a corner that is no number or farther than 1e9 m away.
+    explicit Mesh(TriangleSurface surface, double one_contact_angle = 0);
 
     /// The same with all of its images in a periodic domain that a sphere with its centre in the domain finds within
     /// `margin`: it goes on across the faces, and a plate from one to the other has no edge there.
     [[nodiscard]] Mesh repeated(const Domain& domain, double margin) const;
 
-    [[nodiscard]] std::span<const Triangle> triangles() const { return triangles_; }
+    [[nodiscard]] std::span<const Triangle> triangles() const { return body_->triangles; }
+    /// As it was given, without images.
+    [[nodiscard]] const TriangleSurface& surface() const { return body_->surface; }
+    [[nodiscard]] double one_contact_angle() const { return body_->one_contact_angle; }
     /// Distance below which a point lies on a triangle, m: 1e-7 of the extent.
-    [[nodiscard]] double tolerance() const { return tolerance_; }
-    [[nodiscard]] const Vec3& low() const { return grid_.low(); }
-    [[nodiscard]] const Vec3& high() const { return grid_.high(); }
+    [[nodiscard]] double tolerance() const { return body_->tolerance; }
+    [[nodiscard]] const Vec3& low() const { return body_->grid.low(); }
+    [[nodiscard]] const Vec3& high() const { return body_->grid.high(); }
 
     /// Triangles nearer than `reach` to the position, ascending.
     void near(const Vec3& position, double reach, std::vector<std::uint32_t>& into) const;
@@ -75,14 +86,46 @@ public:
     /// does not point to: of two moves that meet there exactly one crosses or none does.
     [[nodiscard]] std::optional<std::uint32_t> crossed(const Vec3& from, const Vec3& to) const;
 
+    // What every shape has (shapes.hpp).
+    void touching(const Vec3& x, double reach, std::vector<Closest>& into) const;
+    [[nodiscard]] bool unchanged_by_shift(const Vec3&) const { return false; }
+    [[nodiscard]] bool unchanged_by_turn(const Vec3&, const Vec3&) const { return false; }
+    [[nodiscard]] Extent extent(std::size_t along) const { return {low()[along], high()[along]}; }
+    [[nodiscard]] std::string flaw() const { return triangles().empty() ? "a mesh needs a triangle" : ""; }
+    static void fields(auto& s, auto&& visit) {
+        if constexpr (std::is_const_v<std::remove_reference_t<decltype(s)>>) {
+            const auto all = [&visit](const auto& column) {
+                visit(static_cast<std::uint64_t>(column.size()));
+                for (const auto& one : column) visit(one);
+            };
+            all(s.surface().corners), all(s.surface().triangles), visit(s.one_contact_angle());
+        } else {
+            // One by one: a number of them that was never written ends with the bytes, not with the memory.
+            const auto all = [&visit]<class T>(std::vector<T>& column) {
+                std::uint64_t size = 0;
+                visit(size);
+                for (T one{}; column.size() < size; column.push_back(one)) visit(one);
+            };
+            TriangleSurface surface;
+            double angle = 0;
+            all(surface.corners), all(surface.triangles), visit(angle);
+            s = Mesh(std::move(surface), angle);
+        }
+    }
+
 private:
+    struct Body {
+        TriangleSurface surface;
+        double one_contact_angle = 0;
+        std::vector<Triangle> triangles;
+        double tolerance = 0;
+        TriangleGrid grid;
+    };
+
     void keep_places(std::vector<MeshContact>& touched) const;
     void unite_normals(std::vector<MeshContact>& places) const;
 
-    std::vector<Triangle> triangles_;
-    double tolerance_ = 0;
-    double one_contact_angle_ = 0;
-    TriangleGrid grid_;
+    std::shared_ptr<const Body> body_;
 };
 
 }  // namespace grainsweep::geometry

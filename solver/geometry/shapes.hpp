@@ -5,7 +5,11 @@
 //
 //     void touching(const Vec3& x, double reach, std::vector<Closest>& into) const    appends the places, nearest first
 //
-// whose contacts go on from step to step by their normals (contact_memory.hpp),
+// whose contacts go on from step to step by their normals (contact_memory.hpp). One without an inside, that a centre
+// could pass, has crossed(from, to), the part of it that a point moving straight passes through, if any. One that is
+// more than an image of itself across a periodic face has repeated(domain, margin): itself and its images as far as a
+// centre in the domain finds them within the margin.
+//
 // One with closest(x) may have the same for vectors of positions (number.hpp): Numbers, plain doubles in units of its
 // user's choice, numbers(centre, unit, origin), which gives them and what positions are then relative to, and
 // near(numbers, x, y, z).
@@ -17,6 +21,8 @@
 #include "solver/geometry/bar.hpp"
 #include "solver/geometry/cone.hpp"
 #include "solver/geometry/cylinder.hpp"
+#include "solver/geometry/domain.hpp"
+#include "solver/geometry/mesh.hpp"
 #include "solver/geometry/plane.hpp"
 
 #include <concepts>
@@ -25,12 +31,24 @@
 
 namespace grainsweep::geometry {
 
-using Shape = std::variant<Plane, Bar, Cylinder, Cone>;
+using Shape = std::variant<Plane, Bar, Cylinder, Cone, Mesh>;
 
 /// A shape that is touched in one place at most.
 template <class S>
 concept SingleContact = requires(const std::remove_cvref_t<S>& shape, const Vec3& x) {
     { shape.closest(x) } -> std::same_as<Closest>;
+};
+
+/// A shape without an inside.
+template <class S>
+concept Thin = requires(const std::remove_cvref_t<S>& shape, const Vec3& x) {
+    static_cast<bool>(shape.crossed(x, x));
+};
+
+/// A shape that goes on in its images across periodic faces.
+template <class S>
+concept Repeated = requires(const std::remove_cvref_t<S>& shape, const Domain& domain) {
+    { shape.repeated(domain, 1.0) } -> std::same_as<std::remove_cvref_t<S>>;
 };
 
 /// A shape whose closest points can be found for vectors of positions.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <utility>
 #include <variant>
@@ -153,6 +154,29 @@ void show(const geometry::Cone& given, const geometry::Pose& pose, const Vec3&, 
     const Vec3 base = pose.from_body(given.base);
     show_round(base, base + given.length * pose.turn(given.axis), given.base_radius, given.end_radius,
                given.side == geometry::Side::outside, surface);
+}
+
+/// Lines where a surface ends, forks or turns by more than about 15 degrees.
+std::vector<std::array<std::int32_t, 2>> outline(const geometry::Mesh& mesh) {
+    constexpr double flat = 0.966;  // cosine
+    std::map<std::array<std::int32_t, 2>, std::vector<Vec3>> sides;
+    for (std::size_t t = 0; t < mesh.triangles().size(); ++t) {
+        const auto& corner = mesh.surface().triangles[t];
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto [a, b] = std::minmax(corner[k], corner[(k + 1) % 3]);
+            sides[{a, b}].push_back(mesh.triangles()[t].normal);
+        }
+    }
+    std::vector<std::array<std::int32_t, 2>> lines;
+    for (const auto& [side, normals] : sides)
+        if (normals.size() != 2 || std::abs(geometry::dot(normals[0], normals[1])) < flat) lines.push_back(side);
+    return lines;
+}
+
+void show(const geometry::Mesh& mesh, const geometry::Pose& pose, const Vec3&, const Vec3&, WallSurface& surface) {
+    for (const Vec3& corner : mesh.surface().corners) surface.corners.push_back(pose.from_body(corner));
+    surface.triangles = mesh.surface().triangles;
+    surface.edges = outline(mesh);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ using namespace grainsweep;
 using dem::Vec3;
 using namespace geometry;
 using std::numbers::pi;
-using tests::moving_walls;
+using tests::all_moving_walls;
 using tests::one_sphere;
 
 namespace {
@@ -74,7 +74,7 @@ constexpr std::int64_t long_enough = 1200;  // steps of 1 us: one impact
 
 // Momentum and angular momentum of the sphere are what the wall took, step by step: rounding alone.
 TEST(WallMotions, LoadsAreTheReaction) {
-    for (const auto& m : moving_walls()) {
+    for (const auto& m : all_moving_walls()) {
         SCOPED_TRACE(m.name);
         for (const double rolling : {0.0, 0.1}) {
             auto setup = one_sphere(m.position, m.velocity, {m.wall});
@@ -92,7 +92,7 @@ TEST(WallMotions, LoadsAreTheReaction) {
 // the lever is the normal; with friction on a turning wall the torque's lever is the middle of the overlap, the
 // velocity that of the surface.
 TEST(WallMotions, WorkIsThatOfTheLoads) {
-    for (const auto& m : moving_walls())
+    for (const auto& m : all_moving_walls())
         for (const double friction : {0.0, 0.3}) {
             SCOPED_TRACE(m.name);
             auto setup = one_sphere(m.position, m.velocity, {m.wall});
@@ -107,7 +107,7 @@ TEST(WallMotions, WorkIsThatOfTheLoads) {
 // Without friction and damping an impact gives back what it took, up to the work of the wall: the error is that of the
 // integrator, of second order in the step.
 TEST(WallMotions, EnergyIsConservedUpToTheWorkOfTheWall) {
-    for (const auto& m : moving_walls()) {
+    for (const auto& m : all_moving_walls()) {
         SCOPED_TRACE(m.name);
         double error[2] = {};
         for (const int k : {0, 1}) {

@@ -2,14 +2,10 @@
 // beside it (tests/reference/walls): the same law and time step give the same numbers up to rounding.
 #include "solver/dem/engine.hpp"
 #include "tests/support/against_plain.hpp"
-#include "tests/support/reference.hpp"
 #include "tests/support/wall_case.hpp"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -20,44 +16,11 @@ using nlohmann::json;
 
 namespace {
 
-struct Deviation {
-    double position = 0, velocity = 0, spin = 0;  ///< over the diameter, the largest speed, that over the radius
-    [[nodiscard]] double largest() const { return std::max({position, velocity, spin}); }
-};
-
-Deviation deviation(const std::string& name, const dem::Setup& setup, const Method& method) {
-    const auto table = tests::read_table(tests::reference("walls/" + name + ".csv"));
-    const auto engine = dem::make_engine(setup, method);
-    const double radius = setup.spheres[0].radius;
-    double fastest = 0;
-    for (std::size_t r = 0; r < table.rows; ++r)
-        fastest = std::max(fastest, std::hypot(table.at("vx", r), table.at("vy", r), table.at("vz", r)));
-    Deviation d;
-    dem::State state;
-    for (std::size_t r = 0; r < table.rows; ++r) {
-        engine->run(static_cast<std::int64_t>(table.at("step", r)) - engine->work().steps);
-        engine->state(state);
-        const auto differs = [&](const dem::Vec3& mine, const std::array<const char*, 3>& columns, double scale) {
-            double worst = 0;
-            for (std::size_t k = 0; k < 3; ++k)
-                worst = std::max(worst, std::abs(mine[k] - table.at(columns[k], r)) * scale);
-            return worst;
-        };
-        d.position = std::max(d.position, differs(state.position[0], {"x", "y", "z"}, 1 / (2 * radius)));
-        d.velocity = std::max(d.velocity, differs(state.velocity[0], {"vx", "vy", "vz"}, 1 / fastest));
-        d.spin = std::max(d.spin, differs(state.angular_velocity[0], {"omegax", "omegay", "omegaz"}, radius / fastest));
-    }
-    EXPECT_EQ(engine->fault(), "") << name;
-    EXPECT_GT(table.rows, 150U) << name;
-    return d;
-}
-
 /// The cases without meshes that name the velocity of the surface itself.
 std::vector<std::pair<std::string, json>> cases() {
     std::vector<std::pair<std::string, json>> chosen;
-    for (const char* file : {"walls/cases.json", "walls/cases_exact.json"}) {
-        std::ifstream in(tests::reference(file));
-        const json all = json::parse(in);
+    for (const char* file : {"cases.json", "cases_exact.json"}) {
+        const json all = tests::wall_cases(file);
         for (const auto& [name, c] : all.items()) {
             if (!c["meshes"].empty()) continue;
             const json& wall = c["primitives"][0];
@@ -81,7 +44,8 @@ bool has_another_rolling(const json& c) {
 TEST(WallTrajectories, EqualTheReferenceToRounding) {
     std::set<std::string> seen;
     for (const auto& [name, c] : cases()) {
-        const auto d = deviation(name, tests::setup_of_wall_case(c), {});
+        const auto d = tests::deviation(name, tests::setup_of_wall_case(c), {});
+        EXPECT_EQ(d.fault, "") << name;
         EXPECT_LT(d.largest(), has_another_rolling(c) ? 2e-3 : 1e-11) << name;
         seen.insert(name);
     }
@@ -98,7 +62,8 @@ TEST(WallTrajectories, MixedPrecisionEqualsTheReference) {
                                                   {"p_plane_tilt30_bounce", 5e-4}};
     for (const auto& [name, c] : cases())
         for (const auto path : test::paths()) {
-            const auto d = deviation(name, tests::setup_of_wall_case(c), {Method::Precision::mixed, path});
+            const auto d = tests::deviation(name, tests::setup_of_wall_case(c), {Method::Precision::mixed, path});
+            EXPECT_EQ(d.fault, "") << name << " " << test::path_name(path);
             const double tolerance = has_another_rolling(c) ? 2e-3 : beyond.contains(name) ? beyond.at(name) : 3e-6;
             EXPECT_LT(d.largest(), tolerance) << name << " " << test::path_name(path);
         }

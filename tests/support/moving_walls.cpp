@@ -1,5 +1,7 @@
 #include "tests/support/moving_walls.hpp"
 
+#include "tests/support/surfaces.hpp"
+
 namespace grainsweep::tests {
 
 using dem::Vec3;
@@ -47,6 +49,34 @@ std::vector<Moving> moving_walls() {
          {0.0058, 0, 0},
          {0.4, 0.1, 0}},
     };
+}
+
+std::vector<Moving> moving_meshes() {
+    const dem::Mesh floor(surface_of(plate(0.02, 4))), block(surface_of(box(0.004, 0.004)));
+    const Vec3 above{0.002, 0.001, 1.01e-3}, down{0.05, 0.02, -0.3};
+    const dem::Rotation about_z{.axis = {0, 0, 1}, .speed = 40};
+    return {
+        {"plate that rises", {floor, {dem::Translation{.velocity = {0.1, -0.05, 0.2}}}}, above, down},
+        {"plate that vibrates",
+         {floor, {dem::Vibration{.amplitude = {1e-4, 0, 2e-4}, .frequency = 400, .phase = 0.7}}},
+         above,
+         down},
+        {"turntable of triangles", {floor, {about_z}}, above, down},
+        {"edge of a block on a carriage",
+         {block, {about_z, dem::Translation{.velocity = {0.3, 0, 0.1}}}},
+         {0.0043, 0.001, 1.01e-3},
+         down},
+        {"vertex of a block that tips",
+         {block, {dem::Rotation{.point = {-0.02, 0, 0}, .axis = {0, -1, 0}, .speed = 8}}},
+         {0.0043, 0.0042, 1.01e-3},
+         down},
+    };
+}
+
+std::vector<Moving> all_moving_walls() {
+    std::vector<Moving> all = moving_walls();
+    for (Moving& mesh : moving_meshes()) all.push_back(std::move(mesh));
+    return all;
 }
 
 }  // namespace grainsweep::tests

@@ -20,5 +20,9 @@ struct Moving {
 };
 
 [[nodiscard]] std::vector<Moving> moving_walls();
+/// Triangle meshes; the sphere hits a face, an edge or a vertex.
+[[nodiscard]] std::vector<Moving> moving_meshes();
+/// All of them.
+[[nodiscard]] std::vector<Moving> all_moving_walls();
 
 }  // namespace grainsweep::tests

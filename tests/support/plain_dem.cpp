@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 namespace grainsweep::test {
 
@@ -188,7 +189,12 @@ void PlainDem::wall(std::size_t i, std::size_t w, bool update) {
         distance = norm(d) - shrink;
         c.n = (1 / norm(d)) * d;
     } else {  // which have tests of their own
-        const auto closest = std::visit([&](const auto& shape) { return shape.closest(in_body); }, wall.shape);
+        const auto closest = std::visit(
+            [&]<class S>(const S& shape) -> geometry::Closest {
+                if constexpr (geometry::SingleContact<S>) return shape.closest(in_body);
+                throw std::logic_error("PlainDem has walls with one contact only");
+            },
+            wall.shape);
         distance = closest.distance;
         c.n = closest.normal;
     }

@@ -1,8 +1,13 @@
 #include "tests/support/wall_case.hpp"
 
+#include "solver/geometry/stl.hpp"
+#include "tests/support/reference.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -99,7 +104,46 @@ dem::Setup setup_of_wall_case(const json& c) {
     s.time_step = c["dt"];
     s.spheres = {{vec(c["x"]), vec(c["v"]), vec(c["w"]), c["diameter"].get<double>() / 2, true}};
     for (const json& primitive : c["primitives"]) s.walls.push_back(wall_of(primitive, s.spheres[0].position));
+    for (const json& mesh : c["meshes"]) s.walls.push_back({mesh_of(mesh), motions_of(mesh)});
     return s;
+}
+
+geometry::Mesh mesh_of(const json& mesh) {
+    std::ifstream in(reference("walls/stl/" + mesh["stl"].get<std::string>() + ".stl"), std::ios::binary);
+    if (!in) throw std::runtime_error("no mesh " + mesh["stl"].get<std::string>());
+    const std::string contents{std::istreambuf_iterator<char>(in), {}};
+    return geometry::Mesh(geometry::read_stl(contents).surface);
+}
+
+json wall_cases(const std::string& file) {
+    std::ifstream in(reference("walls/" + file));
+    return json::parse(in);
+}
+
+Deviation deviation(const std::string& name, const dem::Setup& setup, const dem::Method& method) {
+    const auto table = read_table(reference("walls/" + name + ".csv"));
+    const auto engine = dem::make_engine(setup, method);
+    const double radius = setup.spheres[0].radius;
+    double fastest = 0;
+    for (std::size_t r = 0; r < table.rows; ++r)
+        fastest = std::max(fastest, std::hypot(table.at("vx", r), table.at("vy", r), table.at("vz", r)));
+    Deviation d;
+    dem::State state;
+    for (std::size_t r = 0; r < table.rows; ++r) {
+        engine->run(static_cast<std::int64_t>(table.at("step", r)) - engine->work().steps);
+        engine->state(state);
+        const auto differs = [&](const dem::Vec3& mine, const std::array<const char*, 3>& columns, double scale) {
+            double worst = 0;
+            for (std::size_t k = 0; k < 3; ++k)
+                worst = std::max(worst, std::abs(mine[k] - table.at(columns[k], r)) * scale);
+            return worst;
+        };
+        d.position = std::max(d.position, differs(state.position[0], {"x", "y", "z"}, 1 / (2 * radius)));
+        d.velocity = std::max(d.velocity, differs(state.velocity[0], {"vx", "vy", "vz"}, 1 / fastest));
+        d.spin = std::max(d.spin, differs(state.angular_velocity[0], {"omegax", "omegay", "omegaz"}, radius / fastest));
+    }
+    d.fault = engine->fault();
+    return d;
 }
 
 }  // namespace grainsweep::tests

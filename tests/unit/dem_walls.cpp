@@ -13,7 +13,7 @@
 
 using namespace grainsweep;
 using geometry::norm;
-using tests::moving_walls;
+using tests::all_moving_walls;
 using tests::one_sphere;
 
 // A surface of its own: the wall's friction where it slides, its restitution, and none of it between spheres.
@@ -53,7 +53,7 @@ TEST(DemWalls, AWallHasItsOwnSurface) {
 // A checkpoint is the walls' parameters and their time: an engine with other walls goes on with those it was saved
 // with.
 TEST(DemWalls, CheckpointsContinueBitForBit) {
-    for (const auto& m : moving_walls()) {
+    for (const auto& m : all_moving_walls()) {
         SCOPED_TRACE(m.name);
         auto setup = one_sphere(m.position, m.velocity, {m.wall});
         setup.material.rolling_friction = 0.1;
@@ -121,4 +121,10 @@ TEST(DemWalls, PeriodicImagesAreMet) {
     const auto engine = dem::make_engine(setup, {});
     engine->run(600);
     EXPECT_NEAR(tests::state_of(*engine).velocity[0][0], 0.15, 1e-3);
+}
+
+TEST(DemWalls, AMeshIsRefusedInMixedPrecision) {
+    const auto mesh = tests::moving_meshes().front();
+    const auto setup = one_sphere(mesh.position, mesh.velocity, {mesh.wall});
+    EXPECT_THROW((void)dem::make_engine(setup, {.precision = dem::Method::Precision::mixed}), std::invalid_argument);
 }

@@ -117,6 +117,7 @@ private:
     template <bool advance>
     void wall_contacts(Contacts& contacts);
     void find_touches(Contacts& contacts);
+    void judge_passages(const Contacts& contacts);
     [[nodiscard]] Touch<Partner::particle> touch(std::size_t i, std::size_t j, const Vec3& branch, double r2) const;
     [[nodiscard]] Touch<Partner::wall> touch(std::size_t i, const geometry::Closest& closest, const Vec3& v) const;
     /// Entry k of a column of memories, or `none` where laws remember nothing.

@@ -191,6 +191,8 @@ template <class Laws, Needs case_needs>
 template <bool advance>
 void ClearEngine<Laws, case_needs>::wall_contacts(Contacts& contacts) {
     find_touches(contacts);
+    if constexpr (advance)
+        if (contacts.wall.thin()) judge_passages(contacts);
     const Twist& twist = contacts.wall.twist();
     Vec3 total{}, turn{};
     double largest = 0, power = 0;

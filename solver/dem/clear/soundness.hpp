@@ -86,6 +86,25 @@ void ClearEngine<Laws, case_needs>::judge_wall_speeds() {
     }
 }
 
+/// A wall without an inside pushes on what has passed it. A centre that did so in this step is no farther from it than
+/// they moved.
+template <class Laws, Needs case_needs>
+void ClearEngine<Laws, case_needs>::judge_passages(const Contacts& contacts) {
+    const auto& wall = contacts.wall;
+    const double way_of_wall = time_step_ * wall.fastest_surface();
+    std::size_t t = 0;
+    for (std::uint32_t entry = 0; entry < contacts.near.size(); ++entry) {
+        const std::size_t i = contacts.near[entry];
+        double distance = radius(i);
+        for (; t < contacts.touches.size() && contacts.touches[t].entry == entry; ++t)
+            distance = std::min(distance, contacts.touches[t].place.distance);
+        const Vec3 moved = time_step_ * p_.velocity[i];
+        if (distance > norm(moved) + way_of_wall) continue;
+        if (wall.passed(wall.pose_at(wall_time() - time_step_), p_.position[i] - moved, p_.position[i]))
+            report("the centre of a particle passed through wall " + std::to_string(&contacts - walls_.data()), i);
+    }
+}
+
 /// Energy minus the work of moving walls and of shaking must not grow: contacts store or dissipate.
 template <class Laws, Needs case_needs>
 void ClearEngine<Laws, case_needs>::check_energy() {

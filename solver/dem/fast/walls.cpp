@@ -77,6 +77,8 @@ Walls::Walls(const std::vector<Wall>& walls, const Domain& domain, const Scale& 
     std::vector<Material> together(materials.begin(), materials.end());
     together.emplace_back();
     for (std::size_t w = 0; w < walls.size(); ++w) {
+        if (!std::visit([]<class S>(const S&) { return Vectorised<S>; }, walls[w].shape))
+            throw std::invalid_argument("a wall of triangles is computed in double precision only");
         const Material& surface = together.back() = at_surface(materials.front(), walls[w].surface);
         if (!fits(combination, together))
             throw std::invalid_argument("the surface of a wall has friction that nothing at the start had");

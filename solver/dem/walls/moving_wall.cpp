@@ -39,6 +39,9 @@ std::vector<Motion> displacing(const Shape& shape, std::span<const Motion> motio
     return kept;
 }
 
+/// By how much of it a wall may be longer than the period: files of single precision round to 6e-8 of a coordinate.
+constexpr double rounding_of_length = 1e-6;
+
 std::string flaw(const Surface& s) {
     if (s.friction && !(std::isfinite(*s.friction) && *s.friction >= 0))
         return "the friction of a wall must not be negative";
@@ -107,6 +110,8 @@ MovingWall::MovingWall(Wall wall, const Domain& domain, double largest) : wall_(
         body_image_.period[k] = domain.length(k);
     }
     require_possible(domain);
+    found_ = with_images(domain);
+    thin_ = std::visit([](const auto& s) { return Thin<decltype(s)>; }, found_);
     if (!bounded_)
         for (std::size_t k = 0; k < 3; ++k) {
             low_[k] = domain.low[k] - 4 * largest;
@@ -127,14 +132,47 @@ void MovingWall::require_possible(const Domain& domain) const {
         if (!std::isfinite(body_image_.middle[k]))
             throw std::invalid_argument("a wall without end must not cut a periodic axis");
         const Extent e = std::visit([k](const auto& s) { return s.extent(k); }, wall_.shape);
-        if (e.high - e.low > domain.length(k))
+        if (e.high - e.low > (1 + rounding_of_length) * domain.length(k))
             throw std::invalid_argument("a wall must not be longer than the period of its axis");
     }
 }
 
+/// A particle is taken to the nearest image of the middle: what is touched there is all of the shape, and as much of
+/// its images as half a period reaches. No list reaches farther, else a particle would find an image of a partner
+/// twice.
+Shape MovingWall::with_images(const Domain& domain) const {
+    Domain around = domain;
+    double margin = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < 3; ++k) {
+        around.periodic[k] = body_image_.period[k] > 0;
+        if (!around.periodic[k]) continue;
+        margin = std::min(margin, body_image_.period[k] / 2);
+        around.low[k] = body_image_.middle[k] - body_image_.period[k] / 2;
+        around.high[k] = body_image_.middle[k] + body_image_.period[k] / 2;
+    }
+    return std::visit(
+        [&](const auto& shape) -> Shape {
+            if constexpr (Repeated<decltype(shape)>)
+                if (std::isfinite(margin)) return shape.repeated(around, margin);
+            return shape;
+        },
+        wall_.shape);
+}
+
+bool MovingWall::passed(const Pose& before, const Vec3& from, const Vec3& to) const {
+    const Vec3 by = image_.of(to) - to;
+    return std::visit(
+        [&](const auto& shape) {
+            if constexpr (Thin<decltype(shape)>)
+                return static_cast<bool>(shape.crossed(before.to_body(from + by), pose_.to_body(to + by)));
+            return false;
+        },
+        found_);
+}
+
 void MovingWall::place(double time) {
     pose_ = geometry::pose_at(displacing_, time);
-    twist_ = twist_at(wall_.motions, time);
+    twist_ = single_contact_ || time > 0 ? twist_at(wall_.motions, time) : Twist{};
     image_ = body_image_;
     for (std::size_t k = 0; k < 3; ++k)  // turns are about this axis and leave its coordinate
         if (image_.period[k] > 0) image_.middle[k] += pose_.shift[k];
@@ -206,7 +244,7 @@ void MovingWall::find(std::span<const std::uint32_t> list, std::span<const Vec3>
         for (std::uint32_t k = 0; k < list.size(); ++k)
             append(shape, to_shape(position[list[k]]), radii[list[k]] + beyond, k, from_shape, places, into);
     };
-    std::visit([&](const auto& shape) { in_frame(shape, pose_, image_, each); }, wall_.shape);
+    std::visit([&](const auto& shape) { in_frame(shape, pose_, image_, each); }, found_);
 }
 
 void MovingWall::find(std::uint32_t entry, const Vec3& position, double reach, std::vector<WallTouch>& into) const {
@@ -214,7 +252,7 @@ void MovingWall::find(std::uint32_t entry, const Vec3& position, double reach, s
     const auto one = [&](const auto& shape, auto&& to_shape, auto&& from_shape) {
         append(shape, to_shape(position), reach, entry, from_shape, places, into);
     };
-    std::visit([&](const auto& shape) { in_frame(shape, pose_, image_, one); }, wall_.shape);
+    std::visit([&](const auto& shape) { in_frame(shape, pose_, image_, one); }, found_);
 }
 
 void MovingWall::inherit(std::span<const WallTouch> before, std::span<const WallTouch> now,

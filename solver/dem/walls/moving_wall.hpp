@@ -38,7 +38,10 @@ public:
     /// `largest`: radius of the largest particle. Throws std::invalid_argument with one sentence on what cannot be.
     MovingWall(Wall wall, const geometry::Domain& domain, double largest);
 
-    /// Lets it stand where, and move as, it does at `time` after the walls were set, s.
+    /// Lets it stand where, and move as, it does at `time` after the walls were set, s. What has several contacts
+    /// starts from rest: it has no velocity yet at time 0, before the first step, so that powder that rests on it is
+    /// not pushed by a dashpot before anything has slipped (LIGGGHTS has moving meshes so). What has one contact moves
+    /// by then.
     void place(double time);
 
     [[nodiscard]] const Wall& wall() const { return wall_; }
@@ -66,16 +69,24 @@ public:
     void inherit(std::span<const WallTouch> before, std::span<const WallTouch> now,
                  std::vector<std::int32_t>& from) const;
 
+    /// Whether it has no inside, so that a centre could pass it unseen.
+    [[nodiscard]] bool thin() const { return thin_; }
+    /// Whether a centre that moved straight from one place to another passed it; `before`: its pose at the start.
+    [[nodiscard]] bool passed(const geometry::Pose& before, const Vec3& from, const Vec3& to) const;
+
 private:
     void require_possible(const geometry::Domain& domain) const;
+    [[nodiscard]] Shape with_images(const geometry::Domain& domain) const;
     [[nodiscard]] std::array<Vec3, 8> corners(const geometry::Pose& pose) const;
     [[nodiscard]] double bound_of_speed(std::span<const geometry::Motion> motions) const;
 
     Wall wall_;
+    Shape found_;  // as particles find it: the same, with its images where they can touch more than one
     std::vector<geometry::Motion> displacing_;  // those that move the surface
     bool switches_ = false;                     // one of them starts late or ends
     bool bounded_ = false;
     bool single_contact_ = true;
+    bool thin_ = false;
     Vec3 low_{}, high_{};  // of the body where it has ends everywhere, else of the space particles can reach
     NearestImage body_image_, image_;
     geometry::Pose pose_;

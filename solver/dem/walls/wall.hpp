@@ -13,6 +13,7 @@ namespace grainsweep::dem {
 using geometry::Bar;
 using geometry::Cone;
 using geometry::Cylinder;
+using geometry::Mesh;
 using geometry::Plane;
 using geometry::Rotation;
 using geometry::Shape;
