@@ -1,4 +1,6 @@
 // Bytes from outside, altered at random: every reader understands them or refuses them with a sentence.
+#include "solver/geometry/mesh.hpp"
+#include "solver/geometry/stl.hpp"
 #include "solver/particles/packing.hpp"
 #include "stats/random.hpp"
 #include "sweep/campaign/reader.hpp"
@@ -11,6 +13,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -116,6 +119,129 @@ TEST(HostileReaders, PackingsInBytes) {
         for (const auto& x : kept.positions)
             for (const double c : x) EXPECT_TRUE(c >= 0 && c <= kept.edge);
     });
+}
+
+/// Triangles at random, among them slivers, needles, repeated ones and those of no area.
+std::vector<std::array<geometry::Vec3, 3>> random_triangles(stats::Generator& chance) {
+    constexpr std::array<double, 8> coordinates = {0, 1, -1, 0.5, 1e-9, 1e-40, 3, 0.3333333333333333};
+    std::vector<std::array<geometry::Vec3, 3>> triangles(1 + chance.below(12));
+    for (auto& triangle : triangles)
+        for (auto& corner : triangle)
+            for (double& x : corner)
+                x = chance.below(3) == 0 ? 1e-3 * static_cast<double>(chance.below(1000))
+                                         : coordinates.at(chance.below(coordinates.size()));
+    return triangles;
+}
+
+template <class T>
+void append(std::string& bytes, const T& value) {
+    const std::size_t at = bytes.size();
+    bytes.resize(at + sizeof value);
+    std::memcpy(bytes.data() + at, &value, sizeof value);
+}
+
+/// Numbers that are none, that are at the ends of what a float holds, and where a coordinate is too far.
+float strange(stats::Generator& chance) {
+    using Limits = std::numeric_limits<float>;
+    constexpr std::array<float, 8> values = {Limits::quiet_NaN(),
+                                             Limits::infinity(),
+                                             -Limits::infinity(),
+                                             Limits::max(),
+                                             Limits::min(),
+                                             Limits::denorm_min(),
+                                             1e9F,
+                                             -0.0F};
+    return values.at(chance.below(values.size()));
+}
+
+/// A binary file whose header, count, numbers and length may be wrong.
+std::string binary_stl(stats::Generator& chance) {
+    const auto triangles = random_triangles(chance);
+    std::string bytes = chance.below(3) == 0 ? "solid of a kind" : "";
+    bytes.resize(80, chance.below(2) == 0 ? ' ' : '\0');
+    auto count = static_cast<std::uint32_t>(triangles.size());
+    constexpr std::array<std::uint32_t, 4> counts = {0, 0xFFFFFFFF, 0x80000000, 85899346};  // 50 n beyond 32 bits
+    if (chance.below(8) == 0) count = counts.at(chance.below(counts.size()));
+    append(bytes, count);
+    for (const auto& triangle : triangles) {
+        for (int k = 0; k < 3; ++k) append(bytes, strange(chance));
+        for (const auto& corner : triangle)
+            for (const double x : corner)
+                append(bytes, chance.below(60) == 0 ? strange(chance) : static_cast<float>(x));
+        append(bytes, static_cast<std::uint16_t>(chance.below(65536)));
+    }
+    if (chance.below(8) == 0) bytes.resize(chance.below(bytes.size() + 50));
+    return bytes;
+}
+
+/// A text whose words and numbers may be wrong.
+std::string text_stl(stats::Generator& chance) {
+    constexpr std::array<std::string_view, 14> numbers = {"nan", "-inf", "1e999", "1e-999",    "0x1p3", "1,5", "",
+                                                          "--1", "1e",   "+",     "123456789", ".5",    "5.",  "1e8"};
+    constexpr std::array<std::string_view, 6> blanks = {" ", "\t", "\r\n", "\n", "  ", "\v"};
+    std::string text = chance.below(10) == 0 ? "\xEF\xBB\xBF" : "";
+    const auto word = [&](std::string_view known) {
+        if (chance.below(300) != 0) text += known;
+        text += blanks.at(chance.below(blanks.size()));
+    };
+    for (std::size_t solids = 1 + chance.below(3); solids > 0; --solids) {
+        text += "solid name\n";
+        for (const auto& triangle : random_triangles(chance)) {
+            for (const auto* known : {"facet", "normal", "0", "nan", "1", "outer", "loop"}) word(known);
+            for (const auto& corner : triangle) {
+                word("vertex");
+                for (const double x : corner)
+                    word(chance.below(100) == 0 ? std::string(numbers.at(chance.below(numbers.size())))
+                                                : std::to_string(x));
+            }
+            for (const auto* known : {"endloop", "endfacet"}) word(known);
+        }
+        text += "endsolid name\n";
+    }
+    return text;
+}
+
+/// What was read is a surface, and a wall that a sphere touches in places that are numbers.
+void require_surface(const geometry::StlSurface& read) {
+    ASSERT_FALSE(read.surface.triangles.empty());
+    for (const auto& triangle : read.surface.triangles)
+        for (const std::int32_t corner : triangle)
+            ASSERT_TRUE(corner >= 0 && static_cast<std::size_t>(corner) < read.surface.corners.size());
+    using namespace geometry;
+    const Mesh mesh(read.surface);
+    const geometry::Vec3 middle = 0.5 * (mesh.low() + mesh.high());
+    const double extent = geometry::norm(mesh.high() - mesh.low());
+    for (const geometry::Vec3& x : {middle, mesh.low(), mesh.high() + geometry::Vec3{0, 0, 0.1 * extent}}) {
+        std::vector<geometry::MeshContact> found;
+        mesh.contacts(x, extent, found);
+        for (const auto& contact : found) {
+            ASSERT_TRUE(contact.distance >= 0 && contact.distance < extent);
+            ASSERT_NEAR(geometry::norm(contact.normal), 1, 1e-6);
+        }
+    }
+}
+
+TEST(HostileReaders, StlFiles) {
+    int read = 0, refused = 0;
+    for (std::uint64_t trial = 0; trial < 20000; ++trial) {
+        stats::Generator chance(trial);
+        std::string contents = trial % 2 == 0 ? binary_stl(chance) : text_stl(chance);
+        if (chance.below(5) == 0) contents = altered(contents, chance);
+        const double scale = std::array{1.0, 1e-3, 1e3, 1e-9}.at(chance.below(4));
+        try {
+            require_surface(geometry::read_stl(contents, scale));
+            if (testing::Test::HasFatalFailure()) {
+                ADD_FAILURE() << "trial " << trial;
+                return;
+            }
+            ++read;
+        } catch (const std::invalid_argument& refusal) {
+            EXPECT_TRUE(std::string_view(refusal.what()).starts_with("STL: ")) << trial << ": " << refusal.what();
+            ++refused;
+        }
+    }
+    EXPECT_GT(read, 5000);
+    EXPECT_GT(refused, 3000);
 }
 
 }  // namespace

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <set>
 #include <string>
 
 #include "solver/scenes/dem_picture.hpp"
 #include "solver/scenes/scene.hpp"
+#include "tests/support/surfaces.hpp"
 
 using namespace grainsweep;
 
@@ -76,6 +78,22 @@ TEST(ScenePictures, ABladeStandsWhereItMoves) {
     EXPECT_NEAR(highest(seen, 2), 0.05, 1e-12);
     EXPECT_EQ(lowest(seen, 1), 0);
     EXPECT_EQ(highest(seen, 1), 0.5);
+}
+
+TEST(ScenePictures, AMeshStandsWhereItMovesAndShowsItsTrueEdges) {
+    const dem::Mesh block(tests::surface_of(tests::box(0.01, 0.02)));
+    const dem::Wall wall{
+        block,
+        {dem::Rotation{.axis = {0, 0, 1}, .speed = std::numbers::pi}, dem::Translation{.velocity = {0.1, 0, 0}}}};
+    const auto seen = surface_of(wall, "block", {0, 0, 0}, {1, 1, 1}, 0.25);  // by an eighth of a turn
+    ASSERT_EQ(seen.triangles.size(), 12U);
+    ASSERT_EQ(seen.corners.size(), 8U);
+    EXPECT_EQ(seen.edges.size(), 12U) << "no diagonals";
+    EXPECT_NEAR(highest(seen, 0), 0.01 * std::sqrt(2.0) + 0.025, 1e-12);
+    EXPECT_NEAR(highest(seen, 1), 0.01 * std::sqrt(2.0), 1e-12);
+    EXPECT_NEAR(lowest(seen, 2), -0.02, 1e-15);
+    const dem::Mesh plate(tests::surface_of(tests::plate(0.01, 3)));
+    EXPECT_EQ(surface_of(plate, "plate", {}, {}, 0).edges.size(), 12U) << "its rim";
 }
 
 TEST(ScenePictures, SpreadingShowsGatesThenTheBlade) {

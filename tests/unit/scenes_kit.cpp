@@ -2,6 +2,7 @@
 #include "solver/dem/material.hpp"
 #include "solver/scenes/kit/filling.hpp"
 #include "solver/scenes/kit/powder.hpp"
+#include "solver/scenes/kit/stl_wall.hpp"
 #include "solver/scenes/scene.hpp"
 
 #include <gtest/gtest.h>
@@ -144,4 +145,35 @@ TEST(Kit, BondNumberIsTheLargestAttractionOverTheWeight) {
     Observations none;
     kit::record_bond_number(none, powder.material(inputs), 50e-6, 9.81);
     EXPECT_TRUE(none.scalars.empty());
+}
+
+TEST(Kit, AWallFromAnStlFileIsItsContents) {
+    constexpr kit::StlWall tool = kit::stl_wall("tool_file", "the tool", "tool_scale", "tool_facet_angle");
+    const auto specs = kit::declared(tool.file, tool.scale, tool.facet_angle);
+    auto inputs = defaults(specs);
+    EXPECT_FALSE(tool.given(inputs));
+    const std::string text =
+        "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 1\nvertex 2 0 1\nvertex 0 3 1\nendloop\nendfacet\n"
+        "endsolid t\n";
+    const auto& check = std::get<Words>(specs[0].bounds).check_file;
+    EXPECT_NO_THROW(check(text));
+    EXPECT_THROW(check("x,y,z\n1,2,3\n"), std::invalid_argument);
+
+    inputs["tool_file"] = "file:" + std::string(32, 'a') + ":/somewhere/tool.stl";
+    inputs["tool_facet_angle"] = 6.0;
+    ASSERT_TRUE(tool.given(inputs));
+    const auto mesh = tool.mesh(inputs, {{"tool_file", text}});
+    ASSERT_EQ(mesh.triangles().size(), 1U);
+    EXPECT_DOUBLE_EQ(mesh.high()[1], 3e-3) << "mm";
+    EXPECT_NEAR(mesh.one_contact_angle(), 0.10472, 1e-5);
+    const auto refusal = [&](const Files& files) {
+        try {
+            (void)tool.mesh(inputs, files);
+        } catch (const std::invalid_argument& reason) {
+            return std::string(reason.what());
+        }
+        return std::string();
+    };
+    EXPECT_EQ(refusal({}), "tool_file: the contents of /somewhere/tool.stl are not given");
+    EXPECT_EQ(refusal({{"tool_file", "solid t\nendsolid t\n"}}), "tool_file: STL: there is no triangle in it");
 }
