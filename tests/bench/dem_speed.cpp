@@ -209,6 +209,13 @@ int main(int argc, char** argv) {
              run_everywhere(o, s, test::replicated(test::flowing(bed(0), 26, 0.02), 3, 3), o.steps / 4);
          }},
         {"loose_gas_20k", [&](const auto& s) { run_everywhere(o, s, test::loose_gas(27), o.steps); }},
+        {"drum", [&](const auto& s) { run_everywhere(o, s, test::turning_drum(), o.steps); }},
+        {"drum_rolling",
+         [&](const auto& s) {
+             dem::Setup setup = test::turning_drum();
+             setup.material.rolling_friction = 0.1;
+             run_everywhere(o, s, setup, o.steps);
+         }},
         {"laws", [&](const auto&) { laws(o, bed(0), bed(0.25)); }},
         {"rebuild", [&](const auto&) { rebuild(o, bed(0)); }},
         {"pairs", [&](const auto&) { pairs(o, bed(0)); }},

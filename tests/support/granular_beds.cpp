@@ -140,6 +140,37 @@ dem::Setup loose_gas(int per_side) {
     return s;
 }
 
+dem::Setup turning_drum() {
+    constexpr double radius = 42e-3, length = 20e-3, diameter = 1.2e-3, pitch = 1.22e-3, margin = 2e-3;
+    constexpr std::size_t spheres = 29185;
+    dem::Setup s;
+    s.material = {.youngs_modulus = 5e6, .density = 1580, .restitution = 0.3, .friction = 0.5};
+    s.gravity = {0, 0, -gravity};
+    s.time_step = 1e-5;
+    s.domain = {{-radius - margin, -margin, -radius - margin}, {radius + margin, length + margin, radius + margin}, {}};
+    const dem::Rotation turns{.axis = {0, 1, 0}, .speed = 2 * std::numbers::pi * 15 / 60};
+    s.walls = {{dem::Cylinder{.axis = {0, 1, 0}, .radius = radius}, {turns}},
+               {dem::Plane{{0, 0, 0}, {0, 1, 0}}, {turns}},
+               {dem::Plane{{0, length, 0}, {0, -1, 0}}, {turns}}};
+    const stats::Stream stream(3, 2);
+    std::uint64_t draw = 0;
+    const auto u = [&] { return 2 * stream.uniform(draw++) - 1; };
+    const auto layers = static_cast<int>(length / pitch), rows = static_cast<int>(2 * radius / pitch);
+    for (int k = 0; k < rows && s.spheres.size() < spheres; ++k)
+        for (int i = 0; i < rows; ++i)
+            for (int j = 0; j < layers && s.spheres.size() < spheres; ++j) {
+                const double x = (i + 0.5) * pitch - radius, z = (k + 0.5) * pitch - radius;
+                if (std::hypot(x, z) > radius - 0.6 * pitch) continue;
+                s.spheres.push_back({{x + 5e-6 * u(), (j + 0.5) * length / layers + 5e-6 * u(), z + 5e-6 * u()},
+                                     {},
+                                     {},
+                                     diameter / 2,
+                                     true});
+            }
+    move_on(s, 0.25);
+    return s;
+}
+
 dem::Setup read_bed(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);
     const auto number = [&](auto& x) { in.read(reinterpret_cast<char*>(&x), sizeof x); };

@@ -47,8 +47,17 @@ void Columns::bind(Field& f) const {
         f.history[a] = history[a].data();
         f.history_next[a] = history_next[a].data();
         f.wall_history[a] = wall_history[a].data();
+        f.touch_memory[a] = touch_memory[a].data();
     }
-    for (int a = 0; a < 3; ++a) f.column[a] = column[a].data();
+    for (int a = 0; a < 3; ++a) {
+        f.column[a] = column[a].data();
+        f.touch_normal[a] = touch_normal[a].data();
+        f.touch_velocity[a] = touch_velocity[a].data();
+        f.touch_lever[a] = touch_lever[a].data();
+    }
+    f.touched = touched.data();
+    f.touch_particle = touch_particle.data();
+    f.touch_overlap = touch_overlap.data();
     f.column_radius = column_radius.data();
     f.column_mobile = column_mobile.data();
     f.cell_start = cell_start.data();
@@ -83,6 +92,13 @@ void Columns::hold_wall_contacts(std::size_t contacts) {
     wall_particle.hold(contacts + spare);
     for (int a = 0; a < histories; ++a)
         wall_history[a].hold(contacts + spare), wall_history_next[a].hold(contacts + spare);
+}
+
+void Columns::hold_touches(std::size_t touches) {
+    const std::size_t n = touches + spare;
+    touch_particle.hold(n), touch_overlap.hold(n);
+    for (int a = 0; a < 3; ++a) touch_normal[a].hold(n), touch_velocity[a].hold(n), touch_lever[a].hold(n);
+    for (int a = 0; a < histories; ++a) touch_memory[a].hold(n), touch_memory_next[a].hold(n);
 }
 
 void Columns::swap_histories(Field& f) {

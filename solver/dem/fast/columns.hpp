@@ -82,6 +82,10 @@ struct Columns {
     Column<WallSegment> segments;
     Column<Place> wall_particle;
     Column<float> wall_history[histories_at_most], wall_history_next[histories_at_most];
+    Column<WallSegment> touched;
+    Column<Place> touch_particle;
+    Column<float> touch_overlap, touch_normal[3], touch_velocity[3], touch_lever[3];
+    Column<float> touch_memory[histories_at_most], touch_memory_next[histories_at_most];
 
     /// Points the field at the columns.
     void bind(Field& f) const;
@@ -90,6 +94,7 @@ struct Columns {
     /// Makes room for `pairs` in both lists.
     void hold_pairs(std::size_t pairs);
     void hold_wall_contacts(std::size_t contacts);
+    void hold_touches(std::size_t touches);
     /// Lists the particles that are advanced: all but those with is_held(index).
     template <class IsHeld>
     void list_advanced(Field& f, IsHeld is_held) {

@@ -136,6 +136,7 @@ template <class Visit>
 void ContactReader::for_each_at_wall(const Walls& walls, std::size_t w, Visit&& visit) const {
     const MovingWall& wall = walls[w];
     std::vector<WallTouch> touched;
+    std::int32_t found = field_.touched[w].begin;  // of those found before the kernel, in the same order
     for (std::int32_t k = field_.segments[w].begin; k < field_.segments[w].end; ++k) {
         const auto i = static_cast<std::int32_t>(field_.wall_particle[k] / places_per_index);
         if (i >= field_.count) continue;  // fills the segment up
@@ -147,10 +148,12 @@ void ContactReader::for_each_at_wall(const Walls& walls, std::size_t w, Visit&& 
             t.radius_i = t.effective_radius = radius(i);
             t.distance = closest.distance;
             t.overlap = t.radius_i - closest.distance;
-            if (!(t.overlap > 0)) continue;
+            const bool single = walls.is_single(w);
+            if (!(t.overlap > 0) || (!single && found == field_.touched[w].end)) continue;
             t.normal = closest.normal;
             t.root = std::sqrt(t.effective_radius * t.overlap);
-            visit(i, wall.twist().at(x - closest.distance * closest.normal), t, memory(field_.wall_history, k));
+            visit(i, wall.twist().at(x - closest.distance * closest.normal), t,
+                  single ? memory(field_.wall_history, k) : memory(field_.touch_memory, found++));
         }
     }
 }

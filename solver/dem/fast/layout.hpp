@@ -171,6 +171,14 @@ struct Field {
     std::int32_t wall_count;
     Place* wall_particle;
     float* wall_history[histories_at_most];
+    // Contacts with walls of shapes that may be touched in several places, found before the kernel: a segment each.
+    WallSegment* touched;
+    Place* touch_particle;
+    float* touch_overlap;
+    float* touch_normal[3];
+    float* touch_velocity[3];  ///< of the wall's material
+    float* touch_lever[3];     ///< from the wall's pivot
+    float* touch_memory[histories_at_most];
 };
 
 /// The operations compiled once per instruction path.

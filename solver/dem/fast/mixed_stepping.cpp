@@ -41,8 +41,7 @@ void MixedEngine::run(std::int64_t steps) {
         const bool checked = watch_.due(work_.steps);  // at the full step: no particle is advanced before
         advanced = s + 1 < steps && !checked;
         begin_tally();
-        kernels_->walls(field_, tally_);
-        watch_.add_wall_work(walls_.book(field_.wall_sums, true));
+        press_walls(true);
         kernels_->sweep(field_, advanced, tally_);
         columns_.swap_histories(field_);
         peak_overlap_ = std::max(peak_overlap_, overlap());
@@ -67,6 +66,7 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
         const std::int32_t before = field_.count;
         rebuild(field_, columns_, *kernels_, space_, walls_, removed, needs_.resting ? &resting_ : nullptr,
                 drift_.steps);
+        touches_.reorder(field_, columns_);
         columns_.forces.clear(size());  // what was carried over belongs to the old order
         if (field_.count < before) watch_.restart_balance();
         list_advanced();
@@ -87,6 +87,13 @@ void MixedEngine::stand_walls() {
     walls_.place(wall_time());
     field_.walls = walls_.placed();
     field_.wall_count = static_cast<std::int32_t>(walls_.count());
+}
+
+/// Forces of the walls. `moves`: as part of a step.
+void MixedEngine::press_walls(bool moves) {
+    touches_.find(field_, columns_, walls_, space_.scale);
+    kernels_->walls(field_, tally_);
+    watch_.add_wall_work(walls_.book(field_.wall_sums, moves));
 }
 
 void MixedEngine::list_advanced() {
@@ -175,8 +182,7 @@ void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
     make_lists(removed);
     begin_tally();
     field_.history_step = 0;
-    kernels_->walls(field_, tally_);
-    (void)walls_.book(field_.wall_sums, false);
+    press_walls(false);
     kernels_->sweep(field_, false, tally_);
     field_.history_step = 1;
     peak_overlap_ = std::max(peak_overlap_, overlap());
@@ -204,6 +210,7 @@ void MixedEngine::set_walls(std::vector<Wall> walls) {
     columns_.hold_particles(size(), walls_.count());
     columns_.bind(field_);
     for (std::size_t w = 0; w < walls_.count(); ++w) columns_.segments[w] = {0, 0};
+    touches_.begin(field_, columns_, walls_);
     restart_forces();
     set_limits();
 }

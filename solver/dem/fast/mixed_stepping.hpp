@@ -26,6 +26,7 @@
 #include "solver/dem/fast/rebuild.hpp"
 #include "solver/dem/fast/resting.hpp"
 #include "solver/dem/fast/scale.hpp"
+#include "solver/dem/fast/wall_touches.hpp"
 #include "solver/dem/fast/walls.hpp"
 #include "solver/dem/fast/watch.hpp"
 
@@ -64,6 +65,7 @@ private:
     void load(const Setup& setup);
     void stand_walls();
     void begin_tally();
+    void press_walls(bool moves);
     [[nodiscard]] std::vector<Motion> motions() const;
     [[nodiscard]] Moment moment(std::span<const Motion> motions) const;
     void set_limits();
@@ -104,6 +106,7 @@ private:
     std::unique_ptr<const AnyContact> laws_;  ///< in SI, for what is no part of a step
     std::vector<Material> materials_;         ///< of particles and walls at the start
     Walls walls_;
+    WallTouches touches_;
     float smallest_diameter_ = 1;
     SoundOverlaps sound_;
     bool box_includes_rest_ = true;  ///< something at rest, or a face, bounds displacements besides the particles

@@ -120,6 +120,29 @@ GRAINSWEEP_LANES void return_memories(const Field& f, const WallTile& t, const W
     }
 }
 
+/// Contacts that were found before, from number `from` on: `count` numbers of each column, in whole vectors.
+template <class T>
+GRAINSWEEP_LANES void copy(T* to, const T* column, std::int32_t from, int count) {
+    for (int q = 0; q < count; q += width) store(to + q, load(column + from + q));
+}
+template <class Kernel>
+GRAINSWEEP_LANES void take_touches(const Field& f, std::int32_t from, int count, WallTile& t) {
+    copy(t.particle, f.touch_particle, from, count);
+    copy(t.overlap, f.touch_overlap, from, count);
+    for (int a = 0; a < 3; ++a) {
+        copy(t.normal[a], f.touch_normal[a], from, count);
+        copy(t.velocity[a], f.touch_velocity[a], from, count);
+        copy(t.lever[a], f.touch_lever[a], from, count);
+    }
+    for (int a = 0; a < Kernel::histories; ++a) copy(t.memory[a], f.touch_memory[a], from, count);
+}
+/// Their memories back; no more than those, for the next may be another wall's.
+template <class Kernel>
+GRAINSWEEP_LANES void return_touches(const Field& f, std::int32_t from, int count, const WallTile& t) {
+    for (int a = 0; a < Kernel::histories; ++a)
+        for (int q = 0; q < count; ++q) f.touch_memory[a][from + q] = t.memory[a][q];
+}
+
 template <class Kernel>
 void walls(const Field& f, Tally& tally) {
     const unsigned denormals = flush_denormals();
@@ -129,12 +152,25 @@ void walls(const Field& f, Tally& tally) {
         const PlacedWall& wall = f.walls[w];
         const typename Kernel::Laws laws(wall.laws);
         WallSums sums{};
-        const std::int32_t end = f.segments[w].end;
-        for (p.slot = f.segments[w].begin; p.slot < end;) {
-            PlaceFinders<geometry::Shape>::of[wall.shape](f, wall, end, t, p);
-            fill_up(f, t, p.packed);
-            press<Kernel>(f, laws, t, (p.packed + width - 1) / width, tally.wall_overlap, sums);
-            if (f.history_step != 0) return_memories(f, t, p);
+        const auto press_packed = [&](int packed) {
+            fill_up(f, t, packed);
+            press<Kernel>(f, laws, t, (packed + width - 1) / width, tally.wall_overlap, sums);
+        };
+        if (const FindPlaces find = PlaceFinders<geometry::Shape>::of[wall.shape]; find != nullptr) {
+            const std::int32_t end = f.segments[w].end;
+            for (p.slot = f.segments[w].begin; p.slot < end;) {
+                find(f, wall, end, t, p);
+                press_packed(p.packed);
+                if (f.history_step != 0) return_memories(f, t, p);
+            }
+        } else {
+            const std::int32_t end = f.touched[w].end;
+            for (std::int32_t from = f.touched[w].begin; from < end; from += tile) {
+                const int count = from + tile < end ? tile : end - from;
+                take_touches<Kernel>(f, from, count, t);
+                press_packed(count);
+                if (f.history_step != 0) return_touches<Kernel>(f, from, count, t);
+            }
         }
         f.wall_sums[w] = sums;
     }

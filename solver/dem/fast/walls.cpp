@@ -83,6 +83,8 @@ Walls::Walls(const std::vector<Wall>& walls, const Domain& domain, const Scale& 
         if (!fits(combination, together))
             throw std::invalid_argument("the surface of a wall has friction that nothing at the start had");
         moving_.emplace_back(walls[w], geometry::Domain{domain.low, domain.high, domain.periodic}, 0.5 * scale.length);
+        single_.push_back(std::visit([](const auto& shape) { return Vectorised<decltype(shape)>; }, walls[w].shape));
+        all_single_ = all_single_ && single_.back();
         laws_.push_back(make_contact(combination, surface));
         write_law_constants(combination, surface, scale, placed_[w].laws);
         placed_[w].shape = static_cast<std::int32_t>(walls[w].shape.index());

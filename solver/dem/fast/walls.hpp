@@ -24,6 +24,9 @@ public:
     [[nodiscard]] std::size_t count() const { return moving_.size(); }
     [[nodiscard]] const MovingWall& operator[](std::size_t w) const { return moving_[w]; }
     [[nodiscard]] std::span<const MovingWall> all() const { return moving_; }
+    /// Whether a wall is touched in one place at most, and found over lanes.
+    [[nodiscard]] bool is_single(std::size_t w) const { return single_[w]; }
+    [[nodiscard]] bool all_single() const { return all_single_; }
     /// Of a wall's surface, in SI.
     [[nodiscard]] const AnyContact& laws(std::size_t w) const { return *laws_[w]; }
 
@@ -49,6 +52,8 @@ private:
     Scale scale_;
     std::vector<MovingWall> moving_;
     std::vector<std::unique_ptr<const AnyContact>> laws_;
+    std::vector<bool> single_;
+    bool all_single_ = true;
     std::vector<PlacedWall> placed_;
     std::vector<WallSums> sums_;  // of the last step
     std::vector<Vec3> pivot_;     // that their torques are about, m
