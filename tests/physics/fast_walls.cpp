@@ -14,10 +14,11 @@
 #include "tests/support/granular_scenes.hpp"
 #include "tests/support/moving_walls.hpp"
 #include "tests/support/spheres.hpp"
+#include "tests/support/surfaces.hpp"
 
 using namespace grainsweep;
 using namespace geometry;
-using tests::moving_walls;
+using tests::all_moving_walls;
 using tests::one_sphere;
 
 namespace {
@@ -84,7 +85,7 @@ struct Crowd {
 // Single precision rounds each force to 1e-7: a collision sums some hundred of them.
 TEST(FastWalls, LoadsAreTheReaction) {
     for (const auto path : test::paths())
-        for (const auto& m : moving_walls())
+        for (const auto& m : all_moving_walls())
             for (const double rolling : {0.0, 0.1}) {
                 SCOPED_TRACE(m.name);
                 auto setup = one_sphere(m.position, m.velocity, {m.wall});
@@ -101,7 +102,7 @@ TEST(FastWalls, LoadsAreTheReaction) {
 // integrator, as in double precision.
 TEST(FastWalls, EnergyIsConservedUpToTheWorkOfTheWall) {
     for (const auto path : test::paths())
-        for (const auto& m : moving_walls()) {
+        for (const auto& m : all_moving_walls()) {
             SCOPED_TRACE(m.name);
             auto setup = one_sphere(m.position, m.velocity, {m.wall});
             setup.material.friction = 0;
@@ -116,7 +117,7 @@ TEST(FastWalls, EnergyIsConservedUpToTheWorkOfTheWall) {
 // An impact on each shape in each motion, as the double engine computes it.
 TEST(FastWalls, EqualTheDoubleEngine) {
     for (const auto path : test::paths())
-        for (const auto& m : moving_walls()) {
+        for (const auto& m : all_moving_walls()) {
             SCOPED_TRACE(m.name);
             auto setup = one_sphere(m.position, m.velocity, {m.wall});
             setup.walls[0].surface = {.friction = 0.5, .rolling_friction = 0.2, .restitution = 0.8};
@@ -161,5 +162,50 @@ TEST(FastWalls, CrowdsAmongMovingWallsEqualThePlainLaw) {
                 {roller, {dem::Vibration{.amplitude = {2e-4, 0, -4e-4}, .frequency = 300}, stirs}, {}});
         compare("spike", {spike, {stirs, down}, {.friction = 0, .restitution = 0.9}});
         compare("paddle", {paddle, {stirs, down}, {}});
+    }
+}
+
+// The same among triangles: a stirred block, and a drum of facets that turns, against the double engine, whose start is
+// moved by 1e-7 diameters to see what that grows to.
+TEST(FastWalls, CrowdsAmongTrianglesEqualTheDoubleEngine) {
+    for (const double spread : {0.0, 0.2}) {
+        const Crowd crowd(spread);
+        const Vec3 &c = crowd.centre, top = c + Vec3{0, 0, crowd.half};
+        tests::Soup block = tests::box(1e-3, 2e-3), drum = tests::drum(24, 1.37 * crowd.half, 2 * crowd.half);
+        for (auto& triangle : block)
+            for (Vec3& x : triangle) x += top + Vec3{0.3e-3, 0.2e-3, 2.1e-3};
+        for (auto& triangle : drum)
+            for (Vec3& x : triangle) x += c;
+        const dem::Rotation stirs{.point = c, .axis = {0, 0, 1}, .speed = 400};
+        const dem::Translation down{.velocity = {0.1, 0, -0.6}};
+        const dem::Mesh stirrer(tests::surface_of(block)), facets(tests::surface_of(drum));
+        const std::vector<dem::Wall> walls = {
+            {stirrer, {stirs, down}, {.friction = 0.4}},
+            {facets, {dem::Rotation{.point = c, .axis = {1, 0, 0}, .speed = 150}}, {.restitution = 0.8}}};
+        for (const dem::Wall& wall : walls) {
+            SCOPED_TRACE(spread);
+            auto setup = crowd.among(wall);
+            setup.material.rolling_friction = spread > 0 ? 0.1 : 0;
+            auto moved = setup;
+            for (std::size_t i = 0; i < moved.spheres.size(); ++i)
+                for (std::size_t a = 0; a < 3; ++a) moved.spheres[i].position[a] += (i + a) % 2 == 0 ? 1e-10 : -1e-10;
+            const auto reference = dem::make_engine(setup, {}), other = dem::make_engine(moved, {});
+            reference->run(500), other->run(500);
+            const auto expected = tests::state_of(*reference), disturbed = tests::state_of(*other);
+            const double grown = test::velocity_difference(expected, disturbed);
+            EXPECT_LT(grown, 1e-3);
+            const double work = reference->wall_load(5, {}).work;
+            EXPECT_NE(work, 0);
+            for (const auto path : test::paths()) {
+                const auto engine = dem::fast::make_mixed_engine(setup, path);
+                engine->run(500);
+                EXPECT_EQ(engine->fault(), "");
+                EXPECT_LT(test::velocity_difference(tests::state_of(*engine), expected), 10 * grown);
+                std::vector<dem::ContactForce> a, b;
+                engine->contacts(a), reference->contacts(b);
+                EXPECT_EQ(a.size(), b.size());
+                EXPECT_NEAR(engine->wall_load(5, {}).work, work, 1e-4 * std::abs(work));
+            }
+        }
     }
 }

@@ -122,9 +122,3 @@ TEST(DemWalls, PeriodicImagesAreMet) {
     engine->run(600);
     EXPECT_NEAR(tests::state_of(*engine).velocity[0][0], 0.15, 1e-3);
 }
-
-TEST(DemWalls, AMeshIsRefusedInMixedPrecision) {
-    const auto mesh = tests::moving_meshes().front();
-    const auto setup = one_sphere(mesh.position, mesh.velocity, {mesh.wall});
-    EXPECT_THROW((void)dem::make_engine(setup, {.precision = dem::Method::Precision::mixed}), std::invalid_argument);
-}

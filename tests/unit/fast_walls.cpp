@@ -4,6 +4,7 @@
 #include "tests/support/granular_scenes.hpp"
 #include "tests/support/moving_walls.hpp"
 #include "tests/support/spheres.hpp"
+#include "tests/support/surfaces.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,22 +17,26 @@
 using namespace grainsweep;
 using dem::fast::make_mixed_engine;
 using namespace grainsweep::geometry;
-using tests::moving_walls;
+using tests::all_moving_walls;
 using tests::one_sphere;
 
 namespace {
 
-/// A turning drum with end plates, half full, a stirring bar in it.
+/// A turning drum with end plates, half full, a bar and a block of triangles in it.
 dem::Setup drum_of_spheres() {
     dem::Setup s = test::boxed_lattice(6, 0.3, 0.2, 3);
     dem::Vec3 c{};
     for (const auto& p : s.spheres) c += (1.0 / static_cast<double>(s.spheres.size())) * p.position;
     const dem::Rotation turns{.point = c, .axis = {0, 1, 0}, .speed = 60};
     const dem::Vec3 half{0, 5.5e-3, 0};
+    auto lug = tests::box(1e-3, 2e-3);
+    for (auto& triangle : lug)
+        for (dem::Vec3& x : triangle) x += c + dem::Vec3{0, 0, 6.9e-3};
     s.walls = {{dem::Cylinder{.point = c, .axis = {0, 1, 0}, .radius = 7e-3}, {turns}, {.friction = 0.6}},
                {dem::Plane{c - half, {0, 1, 0}}, {turns}},
                {dem::Plane{c + half, {0, -1, 0}}, {turns}},
-               {dem::Bar{c[0] + 0.5e-3, 1e-3, c[2] - 7e-3, c[2] - 4.8e-3}, {turns}}};
+               {dem::Bar{c[0] + 0.5e-3, 1e-3, c[2] - 7e-3, c[2] - 4.8e-3}, {turns}},
+               {dem::Mesh(tests::surface_of(lug)), {turns}, {.friction = 0.4}}};
     for (std::size_t k = 0; k < 3; ++k) s.domain.low[k] = c[k] - 9e-3, s.domain.high[k] = c[k] + 9e-3;
     return s;
 }
@@ -66,7 +71,7 @@ TEST(FastWalls, AWallHasItsOwnSurface) {
 // Bit for bit, in the middle of contacts, with walls that turn; the walls of a checkpoint take the place of others.
 TEST(FastWalls, CheckpointsContinueBitForBit) {
     for (const auto path : test::paths()) {
-        for (const auto& m : moving_walls()) {
+        for (const auto& m : all_moving_walls()) {
             SCOPED_TRACE(m.name);
             auto setup = one_sphere(m.position, m.velocity, {m.wall});
             setup.material.rolling_friction = 0.1;
@@ -137,6 +142,24 @@ TEST(FastWalls, AWallTooFastForTheStepIsReported) {
               std::string::npos);
     EXPECT_EQ(fault({dem::Plane{}, {dem::Translation{.velocity = {1100, 0, 0}}}}), "") << "a belt";
     EXPECT_NE(fault({dem::Bar{0.02, 0.01, 0.02, 0.03, 0}, {dem::Rotation{.speed = 1e5}}}), "");
+}
+
+// A sphere and a sheet that move towards one another by 0.9 R together in a step.
+TEST(FastWalls, PassingASheetIsReported) {
+    const dem::Mesh sheet(tests::surface_of(tests::plate(0.02, 2)));
+    auto setup = one_sphere({}, {0, 0, -45}, {{sheet, {dem::Translation{.velocity = {0, 0, 45}}}}});
+    setup.material.youngs_modulus = 5e6;
+    setup.time_step = 1e-5;
+    const auto fault = [&](const dem::Vec3& start) {
+        setup.spheres[0].position = start;
+        const auto engine = make_mixed_engine(setup, dem::Method::Path::best);
+        engine->run(3);
+        return engine->fault();
+    };
+    for (const double start : {1.05e-3, 1.2e-3, 1.4e-3, 1.7e-3}) EXPECT_NE(fault({0.001, 0.0005, start}), "") << start;
+    EXPECT_NE(fault({0.001, 0.0005, 1.4e-3}).find("passed through wall 0"), std::string::npos)
+        << fault({0.001, 0.0005, 1.4e-3});
+    EXPECT_EQ(fault({0.0215, 0, 1.2e-3}), "") << "beside the sheet";
 }
 
 // Across a periodic face a roller is met through its image, with the velocity of its surface there.

@@ -46,7 +46,7 @@ void MixedEngine::run(std::int64_t steps) {
         columns_.swap_histories(field_);
         peak_overlap_ = std::max(peak_overlap_, overlap());
         work_.pair_visits += field_.inner_count;
-        if (too_deep()) fault_ = describe_overlap(view(), tally_);
+        if (too_deep() && fault_.empty()) fault_ = describe_overlap(view(), tally_);
         if (checked && fault_.empty()) check_energy();
     }
 }
@@ -94,6 +94,10 @@ void MixedEngine::press_walls(bool moves) {
     touches_.find(field_, columns_, walls_, space_.scale);
     kernels_->walls(field_, tally_);
     watch_.add_wall_work(walls_.book(field_.wall_sums, moves));
+    if (!moves) return;
+    if (const auto passage = touches_.passage(field_, walls_, space_.scale, wall_time()))
+        fault_ = describe(view(), "the centre of a particle passed through wall " + std::to_string(passage->wall),
+                          passage->particle);
 }
 
 void MixedEngine::list_advanced() {

@@ -7,6 +7,8 @@
 
 namespace grainsweep::dem::fast {
 
+using namespace geometry;
+
 void WallTouches::begin(Field& f, Columns& c, const Walls& walls) {
     segment_.assign(walls.count(), WallSegment{0, 0});
     particle_.clear();
@@ -81,7 +83,7 @@ void WallTouches::inherit(const MovingWall& wall, const WallSegment& old, Column
 
 /// Appends what is touched now, in the engine's units.
 void WallTouches::write(Columns& c, const MovingWall& wall, const Scale& scale) {
-    const geometry::Twist& twist = wall.twist();
+    const Twist& twist = wall.twist();
     for (const auto& [entry, place] : now_) {
         const std::size_t at = particle_.size(), i = near_[entry];
         const Vec3 on_wall = wall.image().of(position_[i]) - place.distance * place.normal;
@@ -123,6 +125,30 @@ void WallTouches::reorder(Field& f, Columns& c) {
     }
     for (int a = 0; a < c.histories; ++a) c.touch_memory[a].swap(c.touch_memory_next[a]);
     publish(f, c);
+}
+
+std::optional<WallTouches::Passage> WallTouches::passage(const Field& f, const Walls& walls, const Scale& scale,
+                                                         double time) {
+    if (walls.all_single()) return std::nullopt;
+    for (std::size_t w = 0; w < walls.count(); ++w) {
+        const MovingWall& wall = walls[w];
+        if (!wall.thin()) continue;
+        gather_near(f, w, scale);
+        const double way_of_wall = scale.time * wall.fastest_surface();
+        const Pose before = wall.pose_at(time - scale.time);
+        auto k = static_cast<std::size_t>(segment_[w].begin);
+        for (const std::uint32_t i : near_) {
+            double distance = radius_[i];
+            for (; k < static_cast<std::size_t>(segment_[w].end) && particle_[k] == static_cast<std::int32_t>(i); ++k)
+                distance = std::min(distance, radius_[i] - static_cast<double>(f.touch_overlap[k]) * scale.length);
+            Vec3 moved{};
+            for (std::size_t a = 0; a < 3; ++a) moved[a] = static_cast<double>(f.records[i].velocity[a]) * scale.length;
+            if (distance > 1.0001 * norm(moved) + way_of_wall) continue;
+            if (wall.passed(before, position_[i] - moved, position_[i]))
+                return Passage{static_cast<std::int32_t>(i), static_cast<std::int32_t>(w)};
+        }
+    }
+    return std::nullopt;
 }
 
 bool WallTouches::fits(std::size_t walls, std::int32_t particles) const {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "solver/dem/fast/checkpoint.hpp"
@@ -18,6 +19,13 @@ public:
     void begin(Field& field, Columns& columns, const Walls& walls);
     /// Where the walls are touched now, by the lists there are; contacts keep their memories.
     void find(Field& field, Columns& columns, const Walls& walls, const Scale& scale);
+    /// A wall without an inside pushes on what has passed it. A centre that did so in the step that ended at `time`, by
+    /// what find() found; one that did is no farther from the wall than they moved.
+    struct Passage {
+        std::int32_t particle, wall;
+    };
+    [[nodiscard]] std::optional<Passage> passage(const Field& field, const Walls& walls, const Scale& scale,
+                                                 double time);
     /// After the particles were sorted: those of columns.place; contacts of removed ones end.
     void reorder(Field& field, Columns& columns);
 

@@ -77,13 +77,11 @@ Walls::Walls(const std::vector<Wall>& walls, const Domain& domain, const Scale& 
     std::vector<Material> together(materials.begin(), materials.end());
     together.emplace_back();
     for (std::size_t w = 0; w < walls.size(); ++w) {
-        if (!std::visit([]<class S>(const S&) { return Vectorised<S>; }, walls[w].shape))
-            throw std::invalid_argument("a wall of triangles is computed in double precision only");
         const Material& surface = together.back() = at_surface(materials.front(), walls[w].surface);
         if (!fits(combination, together))
             throw std::invalid_argument("the surface of a wall has friction that nothing at the start had");
         moving_.emplace_back(walls[w], geometry::Domain{domain.low, domain.high, domain.periodic}, 0.5 * scale.length);
-        single_.push_back(std::visit([](const auto& shape) { return Vectorised<decltype(shape)>; }, walls[w].shape));
+        single_.push_back(std::visit([]<class S>(const S&) { return Vectorised<S>; }, walls[w].shape));
         all_single_ = all_single_ && single_.back();
         laws_.push_back(make_contact(combination, surface));
         write_law_constants(combination, surface, scale, placed_[w].laws);
