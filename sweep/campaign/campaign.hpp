@@ -3,6 +3,7 @@
 
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/case.hpp"
+#include "sweep/campaign/cases.hpp"
 #include "sweep/designs/design.hpp"
 
 #include <cstdint>
@@ -37,6 +38,9 @@ struct Factor {
     std::variant<Between, Levels> range;
     bool operator==(const Factor&) const = default;
 };
+
+/// Its value at the coordinate u in [0, 1], not yet in the type of its parameter.
+[[nodiscard]] Value value_at(const Factor& factor, double u);
 
 /// What a campaign varies and what it holds.
 struct ParameterSpace {
@@ -118,10 +122,10 @@ using Filter = std::function<bool(const Inputs&)>;
 /// More than this is a slip of the keyboard, and would not fit into memory.
 inline constexpr std::int64_t most_cases = 1'000'000;
 
-/// A placed case for every point and replicate that passes the filter, ordered by point, then replicate.
-/// Point numbers keep the gaps of what was filtered out. Throws WrongQuestion when the design's options are
+/// A case for every point and replicate that passes the filter, ordered by point, then replicate. Point numbers keep
+/// the gaps of what was filtered out. Later changes of `campaign` do not reach the cases. Throws WrongQuestion when the design's options are
 /// impossible together, when no point is left and when there are more than most_cases.
-[[nodiscard]] std::vector<PlacedCase> unfold(const Campaign& campaign, const Filter& filter);
+[[nodiscard]] Cases unfold(const Campaign& campaign, const Filter& filter);
 /// Throws WrongQuestion where unfold would for the design.
 void check_design(const Campaign& campaign);
 

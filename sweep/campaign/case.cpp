@@ -7,13 +7,15 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 
 namespace grainsweep::campaign {
 
 namespace {
 constexpr std::array<std::string_view, outcomes.size()> outcome_words = {
     "completed", "skipped", "unstable", "rejected", "crashed", "timed_out", "abandoned"};
-}
+constexpr std::size_t id_digits = 32;
+}  // namespace
 
 std::string_view to_string(Outcome outcome) {
     return outcome_words[static_cast<std::size_t>(outcome)];
@@ -44,21 +46,66 @@ std::string identity_text(const Value& value) {
     return file ? fmt::format("file:{}", file->hash) : to_text(value);
 }
 
+std::string begin_canonical(std::string_view scene, int revision) {
+    return fmt::format("scene={}\nrevision={}\n", scene, revision);
+}
+
+void add_canonical(std::string& text, std::string_view name, const Value& value) {
+    text.append(name) += '=';
+    const auto* word = std::get_if<std::string>(&value);
+    if (word != nullptr && !file_word(*word))
+        text += *word;
+    else
+        text += identity_text(value);
+    text += '\n';
+}
+
+void add_canonical_seed(std::string& text, std::uint64_t seed) {
+    fmt::format_to(std::back_inserter(text), "seed={}\n", seed);
+}
+
 std::string canonical_text(std::string_view scene, int revision, const Inputs& inputs, const Inputs& defaults,
                            std::optional<std::uint64_t> seed) {
-    std::string text = fmt::format("scene={}\nrevision={}\n", scene, revision);
+    std::string text = begin_canonical(scene, revision);
     for (const auto& [name, value] : inputs) {
         const auto standard = defaults.find(name);
         if (standard != defaults.end() && standard->second == value) continue;
-        text += fmt::format("{}={}\n", name, identity_text(value));
+        add_canonical(text, name, value);
     }
-    if (seed) text += fmt::format("seed={}\n", *seed);
+    if (seed) add_canonical_seed(text, *seed);
     return text;
 }
 
-std::string content_hash(std::string_view text) {
+CaseHash content_bits(std::string_view text) {
     const XXH128_hash_t hash = XXH3_128bits(text.data(), text.size());
-    return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+    return {hash.high64, hash.low64};
+}
+
+std::string content_hash(std::string_view text) {
+    return id_of(content_bits(text));
+}
+
+CaseId id_of(const CaseHash& hash) {
+    constexpr std::string_view digits = "0123456789abcdef";
+    CaseId id(id_digits, '0');
+    for (std::size_t k = 0; k < id_digits; ++k) {
+        const std::uint64_t half = k < id_digits / 2 ? hash.high : hash.low;
+        id[k] = digits[half >> (60 - 4 * (k % (id_digits / 2))) & 0xFU];
+    }
+    return id;
+}
+
+CaseHash hash_of(std::string_view id) {
+    if (id.size() != id_digits) return content_bits(id);
+    std::array<std::uint64_t, 2> halves{};
+    for (std::size_t k = 0; k < id_digits; ++k) {
+        const char c = id[k];
+        const bool letter = c >= 'a' && c <= 'f';
+        if (!letter && !(c >= '0' && c <= '9')) return content_bits(id);
+        auto& half = halves[k / (id_digits / 2)];
+        half = half << 4U | static_cast<std::uint64_t>(letter ? c - 'a' + 10 : c - '0');
+    }
+    return {halves[0], halves[1]};
 }
 
 std::uint64_t case_seed(std::uint64_t campaign_seed, std::string_view canonical_inputs, std::int64_t replicate) {

@@ -35,7 +35,16 @@ struct PlacedCase {
     std::int64_t replicate = 0;
 };
 
-enum class Outcome { completed, skipped, unstable, rejected, crashed, timed_out, abandoned };
+/// A case id in 16 bytes.
+struct CaseHash {
+    std::uint64_t high = 0, low = 0;
+    auto operator<=>(const CaseHash&) const = default;
+};
+/// Of a text that is no case id its hash, so that different texts differ.
+[[nodiscard]] CaseHash hash_of(std::string_view id);
+[[nodiscard]] CaseId id_of(const CaseHash& hash);
+
+enum class Outcome : std::uint8_t { completed, skipped, unstable, rejected, crashed, timed_out, abandoned };
 
 inline constexpr std::array outcomes = {Outcome::completed, Outcome::skipped,   Outcome::unstable, Outcome::rejected,
                                         Outcome::crashed,   Outcome::timed_out, Outcome::abandoned};
@@ -77,7 +86,13 @@ struct CaseResult {
 /// shortest round-trip form, -0 as 0, a file by the hash of its contents.  `defaults` are the scene's.
 [[nodiscard]] std::string canonical_text(std::string_view scene, int revision, const Inputs& inputs,
                                          const Inputs& defaults, std::optional<std::uint64_t> seed);
-/// XXH3 128-bit of the text, 32 hexadecimal digits.
+/// Its parts, for a text that is put together: the beginning, one input, the end.
+[[nodiscard]] std::string begin_canonical(std::string_view scene, int revision);
+void add_canonical(std::string& text, std::string_view name, const Value& value);
+void add_canonical_seed(std::string& text, std::uint64_t seed);
+/// XXH3 128-bit of the text.
+[[nodiscard]] CaseHash content_bits(std::string_view text);
+/// The same as 32 hexadecimal digits.
 [[nodiscard]] std::string content_hash(std::string_view text);
 /// Hash of (campaign seed, canonical inputs without seed, replicate), below 2^63.
 [[nodiscard]] std::uint64_t case_seed(std::uint64_t campaign_seed, std::string_view canonical_inputs,

@@ -6,19 +6,17 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <string_view>
-#include <unordered_set>
 #include <utility>
 
 namespace grainsweep::campaign {
 
 namespace {
 
-void add_cautions(Forecast& total, const SceneInfo& scene, const PlacedCase& placed) {
-    for (auto& warning : scene.warnings(placed.question.inputs)) {
+void add_cautions(Forecast& total, const SceneInfo& scene, const Inputs& inputs, std::int64_t point) {
+    for (auto& warning : scene.warnings(inputs)) {
         auto found = std::ranges::find(total.cautions, warning.kind, &Caution::kind);
         if (found == total.cautions.end()) {
-            total.cautions.push_back({std::move(warning.kind), std::move(warning.sentence), placed.point, 0});
+            total.cautions.push_back({std::move(warning.kind), std::move(warning.sentence), point, 0});
             found = total.cautions.end() - 1;
         }
         ++found->questions;
@@ -38,22 +36,29 @@ Prediction predict(const SceneInfo& scene, const Inputs& inputs) {
     return prediction;
 }
 
-Forecast forecast(const SceneInfo& scene, std::span<const PlacedCase> cases) {
+Forecast forecast(const SceneInfo& scene, const Cases& cases) {
     Forecast total;
-    std::unordered_set<std::string_view> seen;
-    for (const auto& placed : cases) {
-        ++total.places;
-        if (!seen.insert(placed.question.id).second) continue;
+    total.places = static_cast<std::int64_t>(cases.size());
+    total.seconds.resize(cases.size());
+    Inputs inputs;
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        if (!cases.is_first(i)) {
+            total.seconds[i] = total.seconds[cases.first(i)];
+            continue;
+        }
         ++total.questions;
-        Prediction one = predict(scene, placed.question.inputs);
-        if (one.impossible.empty() && scene.warnings) add_cautions(total, scene, placed);
+        cases.inputs(i, inputs);
+        const std::int64_t point = cases.place(i).point;
+        Prediction one = predict(scene, inputs);
+        if (one.impossible.empty() && scene.warnings) add_cautions(total, scene, inputs, point);
         if (!one.impossible.empty() && total.impossible++ == 0) {
             total.first_reason = std::move(one.impossible);
-            total.first_point = placed.point;
+            total.first_point = point;
         }
         if (one.proven) ++total.proven;
         total.total_seconds += one.seconds;
         total.longest_seconds = std::max(total.longest_seconds, one.seconds);
+        total.seconds[i] = one.seconds;
     }
     if (total.questions > 0 && total.impossible == total.questions)
         throw wrong_question("$", "", "no case of this campaign can be computed: " + total.first_reason);

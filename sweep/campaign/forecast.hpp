@@ -4,7 +4,6 @@
 #include "sweep/campaign/campaign.hpp"
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -28,6 +27,7 @@ struct Forecast {
     double total_seconds = 0;    ///< of one plain core
     double longest_seconds = 0;  ///< the most expensive question
     std::vector<Caution> cautions;
+    std::vector<double> seconds;  ///< of each place's question; 0 where it is proven or impossible
 };
 
 /// What to warn of before a campaign runs, one sentence each: cautions with their counts, and a rule of convergence
@@ -44,6 +44,6 @@ struct Prediction {
 
 /// Adds the scene's own estimates over different questions without a proven answer. Throws WrongQuestion where all
 /// questions are impossible.
-[[nodiscard]] Forecast forecast(const SceneInfo& scene, std::span<const PlacedCase> cases);
+[[nodiscard]] Forecast forecast(const SceneInfo& scene, const Cases& cases);
 
 }  // namespace grainsweep::campaign

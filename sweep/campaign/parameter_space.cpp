@@ -24,11 +24,11 @@ const Value& value_at(const Levels& range, double u) {
     return range.values[static_cast<std::size_t>(index)];
 }
 
+}  // namespace
+
 Value value_at(const Factor& factor, double u) {
     return std::visit([u](const auto& range) -> Value { return value_at(range, u); }, factor.range);
 }
-
-}  // namespace
 
 Value coerced(const Value& value, const Value& like) {
     if (const auto* whole = std::get_if<std::int64_t>(&value); whole != nullptr && like.index() == 0) {

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <stdexcept>
+#include <utility>
 
 namespace grainsweep::campaign {
 
@@ -55,6 +57,89 @@ private:
     Inputs defaults_;
 };
 
+/// The questions of a campaign's points. What the points have in common is written once: of each point's canonical text
+/// only the lines of its factors are new.
+class PointQuestions final : public Questions {
+public:
+    PointQuestions(const Campaign& campaign, designs::PointSet points)
+        : space_(campaign.space), seed_(campaign.seed), points_(std::move(points)), common_(common_inputs()) {
+        const Inputs defaults = space_.scene->defaults();
+        std::string text = begin_canonical(space_.scene->name, space_.scene->revision);
+        for (const auto& [name, value] : common_) {
+            const auto factor = std::ranges::find(space_.factors, name, &Factor::name);
+            const Value& standard = defaults.at(name);
+            if (factor != space_.factors.end()) {
+                const auto number = static_cast<std::size_t>(factor - space_.factors.begin());
+                varying_.push_back({std::exchange(text, {}), name, number, standard});
+            } else if (value != standard) {
+                add_canonical(text, name, value);
+            }
+        }
+        rest_ = std::move(text);
+    }
+
+    [[nodiscard]] const designs::PointSet& points() const { return points_; }
+
+    /// Complete inputs; those that `inputs` has from another point are changed where they vary.
+    void inputs(std::size_t point, Inputs& inputs) const {
+        if (inputs.empty()) inputs = common_;
+        for (const auto& one : varying_) inputs.find(one.name)->second = value(point, one);
+    }
+    [[nodiscard]] std::string text(std::size_t point) const {
+        std::string text;
+        for (const auto& one : varying_) {
+            text += one.before;
+            if (const Value held = value(point, one); held != one.standard) add_canonical(text, one.name, held);
+        }
+        return text += rest_;
+    }
+    [[nodiscard]] std::uint64_t seed(const std::string& text, std::int64_t replicate) const {
+        return campaign::case_seed(seed_, text, replicate);
+    }
+    [[nodiscard]] static CaseHash hash(std::string text, std::uint64_t seed) {
+        add_canonical_seed(text, seed);
+        return content_bits(text);
+    }
+    void make(std::size_t, const Place& place, Case& into) const override {
+        std::string asked = text(place.point);
+        into.scene = space_.scene->name;
+        into.revision = space_.scene->revision;
+        into.seed = seed(asked, place.replicate);
+        into.id = id_of(hash(std::move(asked), into.seed));
+        inputs(place.point, into.inputs);
+    }
+    void make_inputs(std::size_t, const Place& place, Inputs& into) const override { inputs(place.point, into); }
+
+private:
+    struct Varying {
+        std::string before;  ///< the lines of the canonical text between the factor before it and this one
+        std::string name;
+        std::size_t factor = 0;
+        Value standard;
+    };
+
+    [[nodiscard]] Inputs common_inputs() const {
+        Inputs inputs = space_.scene->defaults();
+        for (const auto& [name, value] : space_.fixed) {
+            Value& slot = inputs.at(name);
+            slot = coerced(value, slot);
+        }
+        return inputs;
+    }
+    [[nodiscard]] Value value(std::size_t point, const Varying& one) const {
+        return points_.rows.empty()
+                   ? coerced(value_at(space_.factors[one.factor], points_.point(point)[one.factor]), one.standard)
+                   : coerced(points_.rows[point][one.factor], one.standard);
+    }
+
+    ParameterSpace space_;
+    std::uint64_t seed_;
+    designs::PointSet points_;
+    Inputs common_;
+    std::vector<Varying> varying_;  ///< sorted by name
+    std::string rest_;              ///< of the canonical text
+};
+
 }  // namespace
 
 std::int64_t candidates_of(const Campaign& campaign) {
@@ -90,26 +175,37 @@ void check_design(const Campaign& campaign) {
     (void)sample(campaign);
 }
 
-std::vector<PlacedCase> unfold(const Campaign& campaign, const Filter& filter) {
-    const designs::PointSet points = sample(campaign);
-    const CaseMaker maker(campaign.scene());
+Cases unfold(const Campaign& campaign, const Filter& filter) {
+    const auto questions = std::make_shared<const PointQuestions>(campaign, sample(campaign));
+    const auto& points = questions->points();
     const std::size_t sequences = std::max<std::size_t>(points.sequences, 1);
-    std::vector<PlacedCase> cases;
+    std::vector<Place> places;
+    std::vector<CaseHash> hashes;
+    const std::size_t most = points.size() * static_cast<std::size_t>(campaign.replicates);
+    if (!filter) {
+        places.reserve(most);
+        hashes.reserve(most);
+    }
+    Inputs inputs;
     for (std::size_t p = 0; p < points.size(); ++p) {
-        const Inputs inputs =
-            points.rows.empty() ? campaign.space.at(points.point(p)) : campaign.space.at(points.rows[p]);
-        if (filter && !filter(inputs)) continue;
-        const std::string asked = maker.text(inputs, std::nullopt);
+        if (filter) {
+            questions->inputs(p, inputs);
+            if (!filter(inputs)) continue;
+        }
+        const std::string text = questions->text(p);
         for (std::int64_t replicate = 0; replicate < campaign.replicates; ++replicate) {
-            cases.push_back({maker.make(inputs, case_seed(campaign.seed, asked, replicate)),
-                             static_cast<std::int64_t>(p), static_cast<std::int64_t>(p % sequences), replicate});
+            places.push_back({static_cast<std::uint32_t>(p), static_cast<std::uint32_t>(p % sequences),
+                              static_cast<std::uint32_t>(replicate)});
+            hashes.push_back(PointQuestions::hash(text, questions->seed(text, replicate)));
         }
     }
-    if (cases.empty()) {
+    if (places.empty()) {
         throw wrong_question("$.where", fmt::format("\"{}\"", campaign.where),
                              fmt::format("it leaves none of the {} points of the design", points.size()));
     }
-    return cases;
+    places.shrink_to_fit();
+    hashes.shrink_to_fit();
+    return {std::move(places), std::move(hashes), questions};
 }
 
 Case make_case(const SceneInfo& scene, const Inputs& inputs, std::uint64_t seed) {

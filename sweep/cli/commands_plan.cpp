@@ -17,14 +17,13 @@
 #include <iostream>
 #include <memory>
 #include <optional>
-#include <set>
 
 namespace grainsweep::cli {
 
 namespace {
 
 using campaign::Campaign;
-using campaign::PlacedCase;
+using campaign::Cases;
 using report::Format;
 using Cell = store::Table::Cell;
 using Json = nlohmann::ordered_json;
@@ -71,29 +70,39 @@ store::Table factors_of(const Campaign& campaign) {
 }
 
 /// One row per placed case: where it stands, what it is, its factors.
-store::Table cases_of(const Campaign& campaign, std::span<const PlacedCase> cases) {
-    store::Table table{{"point", "sequence", "replicate", "case_id", "seed"}, {}};
-    for (const auto& factor : campaign.space.factors) table.columns.push_back(factor.name);
-    for (const auto& placed : cases) {
-        auto& row = table.rows.emplace_back();
-        row = {placed.point, placed.sequence, placed.replicate, placed.question.id,
-               static_cast<std::int64_t>(placed.question.seed)};
-        for (const auto& factor : campaign.space.factors) {
-            row.push_back(report::to_cell(placed.question.inputs.at(factor.name)));
-        }
-    }
-    return table;
+std::vector<std::string> case_columns(const Campaign& campaign) {
+    std::vector<std::string> columns = {"point", "sequence", "replicate", "case_id", "seed"};
+    for (const auto& factor : campaign.space.factors) columns.push_back(factor.name);
+    return columns;
 }
 
-std::int64_t points_kept(std::span<const PlacedCase> cases) {
-    std::set<std::int64_t> points;
-    for (const auto& placed : cases) points.insert(placed.point);
-    return static_cast<std::int64_t>(points.size());
+/// The first rows, one after the other, none kept.
+template <class Add>
+void for_each_row(const Campaign& campaign, const Cases& cases, std::size_t rows, Add&& add) {
+    campaign::Case question;
+    std::vector<Cell> row;
+    for (std::size_t i = 0; i < std::min(rows, cases.size()); ++i) {
+        cases.question(i, question);
+        const auto& [point, sequence, replicate] = cases.place(i);
+        row = {std::int64_t{point}, std::int64_t{sequence}, std::int64_t{replicate}, question.id,
+               static_cast<std::int64_t>(question.seed)};
+        for (const auto& factor : campaign.space.factors)
+            row.push_back(report::to_cell(question.inputs.at(factor.name)));
+        add(row);
+    }
+}
+
+std::int64_t points_kept(const Cases& cases) {
+    std::int64_t points = 0;
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        if (i == 0 || cases.place(i).point != cases.place(i - 1).point) ++points;
+    }
+    return points;
 }
 
 /// What a plan shows beside the campaign itself.
 struct Outlook {
-    std::vector<PlacedCase> cases;
+    Cases cases;
     campaign::Forecast cost;
     std::int64_t candidates = 0;
     std::vector<std::string> warnings;
@@ -148,8 +157,27 @@ Json json_of(const Campaign& campaign, const Outlook& outlook) {
     object["fixed"] = Json::object();
     for (const auto& [name, value] : campaign.space.fixed)
         object["fixed"][name] = report::to_json(report::to_cell(value));
-    object["rows"] = report::to_json(cases_of(campaign, cases));
     return object;
+}
+
+/// The object, with all rows of the design at its end.
+void write_json(const Campaign& campaign, const Outlook& outlook) {
+    std::string text = report::json_text(json_of(campaign, outlook));
+    text.pop_back();  // the closing brace
+    std::cout << text << ",\"rows\":";
+    report::RowWriter rows(std::cout, Format::json);
+    rows.begin(case_columns(campaign));
+    for_each_row(campaign, outlook.cases, outlook.cases.size(), [&](const auto& row) { rows.add(row); });
+    rows.end(true);
+    std::cout << "}\n";
+}
+
+void write_csv(const Campaign& campaign, const Outlook& outlook) {
+    for (const auto& warning : outlook.warnings) std::cerr << "warning: " << warning << '\n';
+    report::RowWriter rows(std::cout, Format::csv);
+    rows.begin(case_columns(campaign));
+    for_each_row(campaign, outlook.cases, outlook.cases.size(), [&](const auto& row) { rows.add(row); });
+    rows.end();
 }
 
 std::string seconds_text(double seconds) {
@@ -158,7 +186,7 @@ std::string seconds_text(double seconds) {
 
 void show_text(const Campaign& campaign, const Outlook& outlook) {
     const auto& cost = outlook.cost;
-    const std::span<const PlacedCase> cases = outlook.cases;
+    const Cases& cases = outlook.cases;
     const auto& scene = campaign.scene();
     std::cout << fmt::format("campaign   {}: {} (revision {})\n", campaign.name, scene.name, scene.revision);
     std::cout << fmt::format("design     {}", campaign.design);
@@ -199,10 +227,11 @@ void show_text(const Campaign& campaign, const Outlook& outlook) {
     std::cout << '\n';
     report::write(std::cout, factors_of(campaign), Format::text);
     std::cout << '\n';
-    const auto shown = cases.first(std::min(cases.size(), points_shown));
-    report::write(std::cout, cases_of(campaign, shown), Format::text);
-    if (shown.size() < cases.size()) {
-        std::cout << fmt::format("... and {} more; --format csv or json shows all\n", cases.size() - shown.size());
+    store::Table shown{case_columns(campaign), {}};
+    for_each_row(campaign, cases, points_shown, [&](const auto& row) { shown.rows.push_back(row); });
+    report::write(std::cout, shown, Format::text);
+    if (shown.rows.size() < cases.size()) {
+        std::cout << fmt::format("... and {} more; --format csv or json shows all\n", cases.size() - shown.rows.size());
     }
 }
 
@@ -214,11 +243,8 @@ int plan(const std::string& config, std::string database, Format format) {
     auto outlook = campaign::asked_in(config, [&] { return outlook_of(campaign, archive ? &*archive : nullptr); });
     outlook.database = database;
     if (format == Format::text) show_text(campaign, outlook);
-    if (format == Format::json) report::write(std::cout, json_of(campaign, outlook));
-    if (format == Format::csv) {
-        for (const auto& warning : outlook.warnings) std::cerr << "warning: " << warning << '\n';
-        report::write(std::cout, cases_of(campaign, outlook.cases), format);
-    }
+    if (format == Format::json) write_json(campaign, outlook);
+    if (format == Format::csv) write_csv(campaign, outlook);
     return 0;
 }
 

@@ -22,18 +22,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <memory>
 #include <thread>
-#include <unordered_map>
 #include <utility>
 
 namespace grainsweep::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using campaign::PlacedCase;
 using schedule::Ending;
+
+// Places of a campaign that are in the archive before its first case is handed out: a fraction of a second.
+constexpr std::size_t entered_first = 16'384;
 
 std::size_t worker_count(const campaign::Campaign& campaign, const RunRequest& request) {
     const std::int64_t asked = request.workers.value_or(campaign.execution.workers);
@@ -43,82 +43,120 @@ std::size_t worker_count(const campaign::Campaign& campaign, const RunRequest& r
 /// What the statistics of a campaign are over: every place that is stored. Where the run asks for a part of them, the
 /// others are there too, by the id of their question alone, and not to be computed.
 struct Placement {
-    std::vector<PlacedCase> placed;
+    campaign::Cases placed;
     std::vector<store::CaseState> states;
-    std::vector<bool> asked;
+    std::vector<bool> asked;      ///< empty: all are
+    std::vector<double> seconds;  ///< predicted
     std::int64_t candidates = 0;
+
+    [[nodiscard]] bool asks(std::size_t i) const { return asked.empty() || asked[i]; }
 };
 
-Placement placement_of(const store::Store& store, const store::CampaignRecord& record, std::vector<PlacedCase> asked,
-                       const std::vector<store::CaseState>& states) {
-    if (!record.shrunk()) {
-        const std::size_t places = asked.size();
-        return {std::move(asked), states, std::vector<bool>(places, true), record.stored.candidates};
+/// Of the places of a larger design those that are asked.
+class PartOfADesign final : public campaign::Questions {
+public:
+    PartOfADesign(campaign::Cases asked, std::vector<std::uint32_t> numbers)
+        : asked_(std::move(asked)), numbers_(std::move(numbers)) {}
+    void make(std::size_t i, const campaign::Place&, campaign::Case& into) const override {
+        asked_.question(numbers_[i], into);
     }
+    void make_inputs(std::size_t i, const campaign::Place&, Inputs& into) const override {
+        asked_.inputs(numbers_[i], into);
+    }
+
+private:
+    campaign::Cases asked_;
+    std::vector<std::uint32_t> numbers_;  ///< of each place, in asked_
+};
+
+/// Both are ordered by point, then replicate. Places that are asked and not stored yet are on their way.
+Placement placement_of(const store::Store& store, const store::CampaignRecord& record, const campaign::Cases& asked,
+                       std::vector<store::CaseState> states, std::vector<double> seconds) {
+    if (!record.shrunk()) return {asked, std::move(states), {}, std::move(seconds), record.stored.candidates};
+    const auto stored = store.placement(record.name);
+    const auto position = [](const campaign::Place& place) { return std::pair(place.point, place.replicate); };
     Placement all;
     all.candidates = record.stored.candidates;
-    std::size_t next = 0;  // both are ordered by point, then replicate
-    for (auto& place : store.placement(record.name)) {
-        const bool now = next < asked.size() && asked[next].point == place.placed.point &&
-                         asked[next].replicate == place.placed.replicate;
-        all.placed.push_back(now ? std::move(asked[next++]) : std::move(place.placed));
-        all.states.push_back(place.state);
+    std::vector<campaign::Place> places;
+    std::vector<campaign::CaseHash> hashes;
+    std::vector<std::uint32_t> numbers;
+    const auto add = [&](bool now, std::size_t k, const campaign::Place& place, const campaign::CaseHash& hash,
+                         const store::CaseState& state) {
+        places.push_back(place);
+        hashes.push_back(hash);
+        numbers.push_back(now ? static_cast<std::uint32_t>(k) : 0);
+        all.states.push_back(state);
         all.asked.push_back(now);
+        all.seconds.push_back(now ? seconds[k] : 0);
+    };
+    std::size_t next = 0, old = 0;
+    while (next < asked.size() || old < stored.places.size()) {
+        const bool now = next < asked.size() &&
+                         (old == stored.places.size() || position(asked.place(next)) <= position(stored.places[old]));
+        if (now && old < stored.places.size() && position(asked.place(next)) == position(stored.places[old])) ++old;
+        if (now) {
+            add(true, next, asked.place(next), asked.hash(next), states[next]);
+            ++next;
+        } else {
+            add(false, 0, stored.places[old], stored.hashes[old], stored.states[old]);
+            ++old;
+        }
     }
+    all.placed = {std::move(places), std::move(hashes), std::make_shared<PartOfADesign>(asked, std::move(numbers))};
     return all;
 }
 
-/// Questions without repetition, and which of them each place asks.
-struct Questions {
-    std::vector<campaign::Case> cases;
-    std::vector<schedule::History> histories;
-    std::vector<double> predicted;
-    std::vector<std::size_t> places;
-    std::vector<std::int64_t> blocks;  ///< after which the campaign may stop; empty: it does not
-};
-
-Questions collect(const campaign::Campaign& campaign, const Placement& placement) {
+schedule::Questions questions_of(const campaign::Campaign& campaign, const Placement& placement) {
     const auto& placed = placement.placed;
     const bool stops = campaign.convergence && campaign.convergence->stop;
-    Questions questions;
-    std::unordered_map<campaign::CaseId, std::size_t> index;
-    questions.places.reserve(placed.size());
+    schedule::Questions questions;
+    std::vector<std::uint32_t> at;  // where each question is asked
+    auto& places = questions.places;
+    places.reserve(placed.size());
+    at.reserve(placed.size());
+    questions.histories.reserve(placed.size());
+    questions.predicted.reserve(placed.size());
     for (std::size_t i = 0; i < placed.size(); ++i) {
-        const auto [at, fresh] = index.try_emplace(placed[i].question.id, questions.cases.size());
-        questions.places.push_back(at->second);
-        const bool now = placement.asked[i];
-        if (fresh) {
+        if (placed.is_first(i)) {
             const auto& state = placement.states[i];
-            questions.cases.push_back(placed[i].question);
+            places.push_back(static_cast<std::uint32_t>(at.size()));
+            at.push_back(static_cast<std::uint32_t>(i));
             questions.histories.push_back({state.attempts, state.failures, state.outcome, false});
             questions.predicted.push_back(0);
-            if (stops) questions.blocks.push_back(placed[i].point / campaign.convergence->block);
+            if (stops)
+                questions.blocks.push_back(
+                    static_cast<std::uint32_t>(placed.place(i).point / campaign.convergence->block));
+        } else {
+            places.push_back(places[placed.first(i)]);
         }
-        auto& history = questions.histories[at->second];
-        if (!now || history.asked) continue;
+        const std::uint32_t question = places.back();
+        auto& history = questions.histories[question];
+        if (!placement.asks(i) || history.asked) continue;
         history.asked = true;
-        questions.cases[at->second] = placed[i].question;
-        questions.predicted[at->second] = campaign::predict(campaign.scene(), placed[i].question.inputs).seconds;
+        at[question] = static_cast<std::uint32_t>(i);
+        questions.predicted[question] = placement.seconds[i];
     }
+    if (at.size() == placed.size()) places = {};
+    questions.ask = [placed, at = std::move(at)](std::uint32_t question) { return placed.question(at[question]); };
     return questions;
 }
 
 std::unique_ptr<schedule::Judge> make_judge(const campaign::Campaign& campaign, const store::Store& store,
                                             const Placement& placement) {
     if (!campaign.convergence) return nullptr;
-    std::map<std::pair<std::int64_t, std::int64_t>, double> stored;
-    for (const auto& value : store.values(campaign.name, campaign.convergence->observable)) {
-        if (value.outcome) stored.emplace(std::pair(value.point, value.replicate), value.value);
-    }
-    std::vector<double> known;
-    known.reserve(placement.placed.size());
-    for (const auto& one : placement.placed) {
-        const auto found = stored.find({one.point, one.replicate});
-        known.push_back(found == stored.end() ? std::numeric_limits<double>::quiet_NaN() : found->second);
+    const auto& placed = placement.placed;
+    const auto stored = store.values(campaign.name, campaign.convergence->observable);
+    std::vector<double> known(placed.size(), std::numeric_limits<double>::quiet_NaN());
+    auto next = stored.begin();  // both are ordered by point, then replicate
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+        const auto here = std::pair(std::int64_t{placed.place(i).point}, std::int64_t{placed.place(i).replicate});
+        while (next != stored.end() && std::pair(next->point, next->replicate) < here) ++next;
+        if (next == stored.end() || std::pair(next->point, next->replicate) != here) continue;
+        if (next->outcome) known[i] = next->value;
     }
     const auto sequences = designs::independent_sequences(campaign.design, campaign.request);
-    return std::make_unique<schedule::Judge>(*campaign.convergence, placement.placed,
-                                             static_cast<std::size_t>(sequences), known, placement.candidates);
+    return std::make_unique<schedule::Judge>(*campaign.convergence, placed, static_cast<std::size_t>(sequences),
+                                             std::move(known), placement.candidates);
 }
 
 std::vector<std::string> worker_command(const fs::path& artefacts, const std::string& path) {
@@ -194,10 +232,8 @@ schedule::Rules rules_of(const campaign::Campaign& campaign, const RunRequest& r
 /// is settled; those of other builds and instruction paths are found by their contents alone.
 void sweep(const store::ArtefactFolder& folder, const store::Store& store) {
     folder.sweep([&](std::string_view key) {
-        PlacedCase place;
         const auto id = workers::checkpointed_case(key);
-        if (id) place.question.id = *id;
-        return id && store.settled({&place, 1}) == 1;
+        return id && store.is_settled(*id);
     });
 }
 
@@ -243,15 +279,19 @@ RunReport run_campaign(const RunRequest& request) {
                               campaign::factor_list(campaign.space)));
         placed = unfolded();
     }
-    const auto states = campaign::asked_in(request.config, [&] { return store.enrol(campaign, placed, provenance()); });
+    auto states =
+        campaign::asked_in(request.config, [&] { return store.enrol(campaign, placed, provenance(), entered_first); });
     for (const auto& note : store.notes()) line.note(note);
     const auto record = store.stored(campaign).value();
     say_first(line, campaign, forecast, record);
-    const auto placement = placement_of(store, record, std::move(placed), states);
-    const auto judge = make_judge(campaign, store, placement);
-    Questions questions = collect(campaign, placement);
-    schedule::Plan plan(std::move(questions.cases), questions.histories, std::move(questions.predicted),
-                        std::move(questions.places), rules_of(campaign, request, workers), questions.blocks);
+    std::unique_ptr<schedule::Judge> judge;
+    schedule::Questions questions;
+    {
+        const auto placement = placement_of(store, record, placed, std::move(states), std::move(forecast.seconds));
+        judge = make_judge(campaign, store, placement);
+        questions = questions_of(campaign, placement);
+    }
+    schedule::Plan plan(std::move(questions), rules_of(campaign, request, workers));
 
     workers::Pool pool(pool_options(campaign, artefacts, request));
     store::ArtefactFolder folder(artefacts);

@@ -90,11 +90,11 @@ Json object_of(const std::vector<std::string>& names, const std::vector<Cell>& r
     return object;
 }
 
-std::string text_of(const Json& value) {
+}  // namespace
+
+std::string json_text(const Json& value) {
     return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
-
-}  // namespace
 
 std::optional<Format> format_named(std::string_view word) {
     if (word == "text") return Format::text;
@@ -127,11 +127,11 @@ void RowWriter::begin(const std::vector<std::string>& columns) {
 
 void RowWriter::add(const std::vector<Cell>& row) {
     if (format_ != Format::json) return write_csv_line(*out_, row);
-    *out_ << (std::exchange(first_, false) ? "" : ",") << text_of(object_of(names_, row));
+    *out_ << (std::exchange(first_, false) ? "" : ",") << json_text(object_of(names_, row));
 }
 
-void RowWriter::end() {
-    if (format_ == Format::json) *out_ << "]\n";
+void RowWriter::end(bool part) {
+    if (format_ == Format::json) *out_ << (part ? "]" : "]\n");
 }
 
 Json to_json(const Cell& cell) {
@@ -150,7 +150,7 @@ Json to_json(const store::Table& table) {
 }
 
 void write(std::ostream& out, const Json& value) {
-    out << text_of(value) << '\n';
+    out << json_text(value) << '\n';
 }
 
 Cell to_cell(const Value& value) {

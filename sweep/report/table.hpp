@@ -36,7 +36,8 @@ public:
     RowWriter(std::ostream& out, Format format) : out_(&out), format_(format) {}
     void begin(const std::vector<std::string>& columns);
     void add(const std::vector<store::Table::Cell>& row);
-    void end();
+    /// Closes the table; with the line end that one value has on standard output, unless it is a part of a larger one.
+    void end(bool part = false);
 
 private:
     std::ostream* out_;
@@ -55,6 +56,8 @@ void write(std::ostream& out, const store::Table& table, Format format);
 [[nodiscard]] nlohmann::ordered_json to_json(const std::optional<bool>& flag);
 /// One JSON value and a line end; bytes that are no UTF-8 are replaced.
 void write(std::ostream& out, const nlohmann::ordered_json& value);
+/// The value alone.
+[[nodiscard]] std::string json_text(const nlohmann::ordered_json& value);
 
 [[nodiscard]] store::Table::Cell to_cell(const Value& value);
 /// NaN is an absent value.

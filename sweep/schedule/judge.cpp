@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace grainsweep::schedule {
 namespace {
@@ -102,31 +103,26 @@ std::string verdict_of(const stats::Checkpoint& check, const stats::ConvergenceS
                        check.points, check.count);
 }
 
-Judge::Judge(const campaign::Convergence& wanted, std::span<const campaign::PlacedCase> placed, std::size_t sequences,
-             std::span<const double> known, std::optional<std::int64_t> candidates)
+Judge::Judge(const campaign::Convergence& wanted, campaign::Cases placed, std::size_t sequences,
+             std::vector<double> known, std::optional<std::int64_t> candidates)
     : wanted_(wanted),
       settings_(settings_of(wanted, sequences)),
       convergence_(settings_),
-      candidates_(placed.empty() ? 0 : placed.back().point + 1),
-      values_(known.begin(), known.end()),
+      candidates_(placed.empty() ? 0 : std::int64_t{placed.place(placed.size() - 1).point} + 1),
+      placed_(std::move(placed)),
+      values_(std::move(known)),
       verdict_(fmt::format("first check of {} at {} points", wanted.observable, wanted.block)) {
-    assert(known.size() == placed.size());
+    assert(values_.size() == placed_.size());
     if (candidates) candidates_ = std::max(candidates_, *candidates);
-    points_.reserve(placed.size());
-    for (std::size_t i = 0; i < placed.size(); ++i) {
-        assert(i == 0 || placed[i - 1].point <= placed[i].point);
-        points_.push_back(placed[i].point);
-        places_[placed[i].question.id].push_back(i);
-    }
 }
 
 void Judge::learn(const campaign::CaseId& id, const Observations& observations) {
-    const auto found = places_.find(id);
-    if (found == places_.end()) return;
+    auto place = placed_.find(campaign::hash_of(id));
+    if (!place) return;
     const auto scalar = observations.scalars.find(wanted_.observable);
     const double value =
         scalar == observations.scalars.end() ? std::numeric_limits<double>::quiet_NaN() : scalar->second;
-    for (const std::size_t place : found->second) values_[place] = value;
+    for (; place; place = placed_.next(*place)) values_[*place] = value;
 }
 
 std::optional<std::int64_t> Judge::converged_at() const {
@@ -135,10 +131,11 @@ std::optional<std::int64_t> Judge::converged_at() const {
 }
 
 std::vector<store::ConvergenceRow> Judge::judge(std::size_t settled) {
-    assert(settled <= points_.size());
+    assert(settled <= placed_.size());
     const bool over = stops() && converged_at();
-    for (; !over && fed_ < settled; ++fed_) convergence_.add(points_[fed_], values_[fed_]);
-    if (!over && fed_ == settled) convergence_.settle(settled == points_.size() ? candidates_ : points_[settled]);
+    for (; !over && fed_ < settled; ++fed_) convergence_.add(placed_.place(fed_).point, values_[fed_]);
+    if (!over && fed_ == settled)
+        convergence_.settle(settled == placed_.size() ? candidates_ : placed_.place(settled).point);
 
     std::vector<store::ConvergenceRow> rows;
     const auto checks = convergence_.checkpoints();

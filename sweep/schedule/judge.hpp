@@ -13,10 +13,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
 namespace grainsweep::schedule {
@@ -28,8 +26,8 @@ public:
     /// `candidates`: how many points the design numbers, before `where` filters them; where it is not given,
     /// a last block whose last points were filtered out is not judged.
     /// Throws std::invalid_argument for settings that cannot be judged (`replicates` with fewer than 4 sequences).
-    Judge(const campaign::Convergence& wanted, std::span<const campaign::PlacedCase> placed, std::size_t sequences,
-          std::span<const double> known, std::optional<std::int64_t> candidates = {});
+    Judge(const campaign::Convergence& wanted, campaign::Cases placed, std::size_t sequences, std::vector<double> known,
+          std::optional<std::int64_t> candidates = {});
 
     /// The answer to a question, at every place where it is asked. No such scalar: no answer.
     void learn(const campaign::CaseId& id, const Observations& observations);
@@ -47,11 +45,10 @@ private:
     stats::ConvergenceSettings settings_;
     stats::Convergence convergence_;
     std::int64_t candidates_;
-    std::vector<std::int64_t> points_;
-    std::vector<double> values_;
-    std::unordered_map<campaign::CaseId, std::vector<std::size_t>> places_;
-    std::size_t fed_ = 0;     ///< placed cases the statistics have seen
-    std::size_t judged_ = 0;  ///< blocks judged
+    campaign::Cases placed_;
+    std::vector<double> values_;  ///< of each place
+    std::size_t fed_ = 0;         ///< placed cases the statistics have seen
+    std::size_t judged_ = 0;      ///< blocks judged
     std::string verdict_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 namespace grainsweep::schedule {
 namespace {
@@ -21,45 +22,46 @@ bool good(Outcome outcome) {
 
 }  // namespace
 
-Plan::Plan(std::vector<campaign::Case> questions, std::span<const History> histories, std::vector<double> predicted,
-           std::vector<std::size_t> places, const Rules& rules, std::span<const std::int64_t> blocks)
-    : places_(std::move(places)), rules_(rules) {
-    assert(questions.size() == histories.size() && questions.size() == predicted.size());
-    assert(blocks.empty() || blocks.size() == questions.size());
-    entries_.reserve(questions.size());
-    for (std::size_t i = 0; i < questions.size(); ++i) {
-        Entry entry{std::move(questions[i]), histories[i].attempts, histories[i].failures, predicted[i]};
-        index_.emplace(entry.question.id, i);
+Plan::Plan(Questions questions, const Rules& rules)
+    : ask_(std::move(questions.ask)), places_(std::move(questions.places)), rules_(rules) {
+    const auto& histories = questions.histories;
+    assert(histories.size() == questions.predicted.size());
+    assert(questions.blocks.empty() || questions.blocks.size() == histories.size());
+    entries_.reserve(histories.size());
+    decided_.resize(histories.size());
+    queue_.reserve(histories.size());
+    for (std::size_t i = 0; i < histories.size(); ++i) {
+        Entry entry{questions.predicted[i], histories[i].attempts, histories[i].failures};
         const auto& known = histories[i].outcome;
         const bool asked_again = known && rules_.again == known;
         if (asked_again) entry.failures = 0;
         const bool exhausted = entry.failures >= rules_.attempts;
         const bool decided = known && !asked_again && (settles(*known) || exhausted);
         if (!histories[i].asked) {
-            entry.decided = decided;
+            decided_[i] = decided;
         } else if (++tally_.questions; decided) {
-            decide(entry, *known);
+            decide(i, *known);
         } else {
-            queue_.push_back(i);
+            queue_.push_back(static_cast<std::uint32_t>(i));
             tally_.predicted_left += entry.predicted;
         }
-        entries_.push_back(std::move(entry));
+        entries_.push_back(entry);
     }
-    order_the_end(blocks);
+    order_the_end(questions.blocks);
 }
 
-void Plan::order_the_end(std::span<const std::int64_t> blocks) {
+void Plan::order_the_end(std::span<const std::uint32_t> blocks) {
     const auto limit = static_cast<std::size_t>(rules_.max_cases);
     const std::size_t end = limit > 0 ? std::min(limit, queue_.size()) : queue_.size();
-    const auto length = [this](std::size_t question) { return entries_[question].predicted; };
-    const auto block = [&](std::size_t question) { return blocks.empty() ? 0 : blocks[question]; };
-    const std::vector<std::size_t> in_order(queue_.begin(), queue_.begin() + static_cast<std::ptrdiff_t>(end));
+    const auto length = [this](std::uint32_t question) { return entries_[question].predicted; };
+    const auto block = [&](std::uint32_t question) { return blocks.empty() ? 0 : blocks[question]; };
+    const std::vector<std::uint32_t> in_order(queue_.begin(), queue_.begin() + static_cast<std::ptrdiff_t>(end));
     double left = 0;
     for (const auto question : in_order) left += length(question);
 
     // Longest first, of equally long ones the first, block by block.
-    std::vector<std::size_t> by_length = in_order;
-    std::ranges::stable_sort(by_length, [&](std::size_t a, std::size_t b) {
+    std::vector<std::uint32_t> by_length = in_order;
+    std::ranges::stable_sort(by_length, [&](std::uint32_t a, std::uint32_t b) {
         return block(a) != block(b) ? block(a) < block(b) : length(a) > length(b);
     });
     std::vector<bool> taken(entries_.size(), false);
@@ -71,7 +73,7 @@ void Plan::order_the_end(std::span<const std::int64_t> blocks) {
         const bool near_the_end =
             left <=
             longest_cases_left * static_cast<double>(std::max<std::size_t>(rules_.workers, 1)) * length(*longest);
-        const std::size_t next = near_the_end ? *longest : *first;
+        const auto next = near_the_end ? *longest : *first;
         queue_[at] = next;
         taken[next] = true;
         left -= length(next);
@@ -79,72 +81,76 @@ void Plan::order_the_end(std::span<const std::int64_t> blocks) {
 }
 
 std::optional<double> Plan::next_predicted() const {
-    if (closed_ || queue_.empty()) return std::nullopt;
+    if (closed_ || queue_is_empty()) return std::nullopt;
     const auto limit = static_cast<std::size_t>(rules_.max_cases);
-    if (limit > 0 && tally_.settled_now + tally_.failed_now + running_ >= limit) return std::nullopt;
+    if (limit > 0 && tally_.settled_now + tally_.failed_now + under_way_.size() >= limit) return std::nullopt;
     if (too_many_failures()) return std::nullopt;
-    return entries_[queue_.front()].predicted;
+    return entries_[front()].predicted;
 }
 
 std::size_t Plan::waiting() const {
     if (!next_predicted()) return 0;
     const auto limit = static_cast<std::size_t>(rules_.max_cases);
-    return limit == 0 ? queue_.size()
-                      : std::min(queue_.size(), limit - (tally_.settled_now + tally_.failed_now + running_));
+    return limit == 0 ? queued()
+                      : std::min(queued(), limit - (tally_.settled_now + tally_.failed_now + under_way_.size()));
 }
 
 std::optional<Plan::Start> Plan::next() {
     if (!next_predicted()) return std::nullopt;
-    Entry& entry = entries_[queue_.front()];
-    queue_.pop_front();
-    entry.running = true;
-    ++running_;
+    const std::uint32_t question = front();
+    if (returned_.empty())
+        ++head_;
+    else
+        returned_.pop_back();
+    Entry& entry = entries_[question];
     ++entry.attempts;
-    return Start{{entry.question.id, entry.attempts}, &entry.question, entry.predicted};
+    Start start{{}, ask_(question), entry.predicted};
+    start.attempt = {start.question.id, entry.attempts};
+    under_way_.insert_or_assign(start.question.id, Running{question, entry.attempts, {}});
+    return start;
 }
 
-void Plan::move_on(Entry& entry, double share) {
-    const double step = (share - entry.share.value_or(0)) * entry.predicted;
+void Plan::move_on(Running& one, double share) {
+    const double step = (share - one.share.value_or(0)) * entries_[one.question].predicted;
     tally_.predicted_left -= step;
     tally_.predicted_done += step;
-    entry.share = share;
+    one.share = share;
 }
 
 void Plan::advanced(const campaign::Attempt& attempt, double share) {
-    Entry* entry = running(attempt);
-    if (entry == nullptr || !(share >= 0 && share <= 1)) return;
-    const bool first = !entry->share;
-    move_on(*entry, share);
-    if (first) tally_.predicted_done -= share * entry->predicted;
+    const auto found = find(attempt);
+    if (found == under_way_.end() || !(share >= 0 && share <= 1)) return;
+    Running& one = found->second;
+    const bool first = !one.share;
+    move_on(one, share);
+    if (first) tally_.predicted_done -= share * entries_[one.question].predicted;
 }
 
-Plan::Entry* Plan::running(const campaign::Attempt& attempt) {
-    const auto found = index_.find(attempt.case_id);
-    if (found == index_.end()) return nullptr;
-    Entry& entry = entries_[found->second];
-    return entry.running && entry.attempts == attempt.number ? &entry : nullptr;
+Plan::UnderWay::iterator Plan::find(const campaign::Attempt& attempt) {
+    const auto found = under_way_.find(attempt.case_id);
+    return found != under_way_.end() && found->second.number == attempt.number ? found : under_way_.end();
 }
 
 Plan::Verdict Plan::ended(const campaign::Attempt& attempt, Outcome outcome) {
-    Entry* found = running(attempt);
-    if (found == nullptr) return Verdict::stale;
-    Entry& entry = *found;
-    entry.running = false;
-    --running_;
+    const auto found = find(attempt);
+    if (found == under_way_.end()) return Verdict::stale;
+    Running one = found->second;
+    under_way_.erase(found);
+    Entry& entry = entries_[one.question];
     if (settles(outcome)) {
         ++(good(outcome) ? tally_.settled_now : tally_.failed_now);
-        move_on(entry, 1);
-        decide(entry, outcome);
+        move_on(one, 1);
+        decide(one.question, outcome);
         return Verdict::settled;
     }
-    const bool given_up = outcome == Outcome::abandoned ? comes_no_further(entry) : ++entry.failures >= rules_.attempts;
+    const bool given_up = outcome == Outcome::abandoned ? comes_no_further(one) : ++entry.failures >= rules_.attempts;
     if (given_up) {
         ++tally_.failed_now;
-        move_on(entry, 1);
-        decide(entry, outcome);
+        move_on(one, 1);
+        decide(one.question, outcome);
         return Verdict::gave_up;
     }
-    put_back(entry);
+    put_back(one);
     return Verdict::again;
 }
 
@@ -152,35 +158,35 @@ Plan::Verdict Plan::given_back(const campaign::Attempt& attempt) {
     return ended(attempt, Outcome::abandoned);
 }
 
-bool Plan::comes_no_further(const Entry& entry) {
-    auto& known = give_backs_[static_cast<std::size_t>(&entry - entries_.data())];
-    const double share = entry.share.value_or(0);
+bool Plan::comes_no_further(const Running& one) {
+    auto& known = give_backs_[one.question];
+    const double share = one.share.value_or(0);
     if (share > known.furthest + headway) known = {0, share};
     return ++known.in_a_row >= rules_.give_backs;
 }
 
-void Plan::put_back(Entry& entry) {
-    tally_.predicted_left += entry.share.value_or(0) * entry.predicted;  // until the next attempt says what it found
-    entry.share.reset();
-    queue_.push_front(static_cast<std::size_t>(&entry - entries_.data()));
+void Plan::put_back(const Running& one) {
+    // until the next attempt says what it found
+    tally_.predicted_left += one.share.value_or(0) * entries_[one.question].predicted;
+    returned_.push_back(one.question);
 }
 
 void Plan::never_begun(const campaign::Attempt& attempt) {
-    Entry* entry = running(attempt);
-    if (entry == nullptr) return;
-    entry->running = false;
-    --running_;
-    put_back(*entry);
-    --entry->attempts;
+    const auto found = find(attempt);
+    if (found == under_way_.end()) return;
+    const Running one = found->second;
+    under_way_.erase(found);
+    put_back(one);
+    --entries_[one.question].attempts;
 }
 
 std::size_t Plan::settled_prefix() {
-    while (prefix_ < places_.size() && entries_[places_[prefix_]].decided) ++prefix_;
+    while (prefix_ < placed() && decided_[question_at(prefix_)]) ++prefix_;
     return prefix_;
 }
 
-void Plan::decide(Entry& entry, Outcome outcome) {
-    entry.decided = true;
+void Plan::decide(std::size_t question, Outcome outcome) {
+    decided_[question] = true;
     ++tally_.decided;
     if (!good(outcome)) ++tally_.failed;
 }

@@ -9,7 +9,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <optional>
 #include <span>
@@ -21,8 +20,8 @@ namespace grainsweep::schedule {
 
 /// What the archive knew of a question when the run began.
 struct History {
-    std::int64_t attempts = 0;  ///< highest attempt number
-    std::int64_t failures = 0;  ///< of those, crashed or timed out
+    std::int32_t attempts = 0;  ///< highest attempt number
+    std::int32_t failures = 0;  ///< of those, crashed or timed out
     std::optional<campaign::Outcome> outcome = {};
     bool asked =
         true;  ///< by this run; false: of a larger design that is stored, counted in the prefix, never computed
@@ -37,17 +36,25 @@ struct Rules {
     std::size_t workers = 1;                      ///< how many cases are computed at once
 };
 
+/// The questions of a plan, without repetition.
+struct Questions {
+    std::function<campaign::Case(std::uint32_t question)> ask;
+    std::vector<History> histories;
+    std::vector<double> predicted;  ///< seconds
+    /// Index of the question that each placed case asks. Empty: place i asks question i.
+    std::vector<std::uint32_t> places;
+    /// Number of the block after which the campaign may stop, growing; no case is brought forward out of a later block
+    /// than the design is in. Empty: nothing stops it.
+    std::vector<std::uint32_t> blocks;
+};
+
 class Plan {
 public:
-    /// `places[i]` is the index of the question that placed case i asks; `predicted` seconds per question. `blocks`: of
-    /// each question the number of the block after which the campaign may stop, growing; no case is brought forward out
-    /// of a later block than the design is in. Empty: nothing stops it.
-    Plan(std::vector<campaign::Case> questions, std::span<const History> histories, std::vector<double> predicted,
-         std::vector<std::size_t> places, const Rules& rules, std::span<const std::int64_t> blocks = {});
+    Plan(Questions questions, const Rules& rules);
 
     struct Start {
         campaign::Attempt attempt;
-        const campaign::Case* question = nullptr;
+        campaign::Case question;
         double predicted_seconds = 0;
     };
     /// The next attempt to start, if there is one now.
@@ -77,11 +84,11 @@ public:
                tally_.failed_now >= static_cast<std::size_t>(rules_.stop_after_failures);
     }
     /// Nothing running and nothing that could still be started.
-    [[nodiscard]] bool over() const { return running_ == 0 && !next_predicted(); }
+    [[nodiscard]] bool over() const { return under_way_.empty() && !next_predicted(); }
     /// Length of the longest prefix of the placed cases all of whose questions are decided.
     [[nodiscard]] std::size_t settled_prefix();
     /// Whether the question of placed case i is settled or given up.
-    [[nodiscard]] bool decided(std::size_t placed) const { return entries_[places_[placed]].decided; }
+    [[nodiscard]] bool decided(std::size_t placed) const { return decided_[question_at(placed)]; }
 
     struct Tally {
         std::size_t questions = 0;
@@ -96,32 +103,46 @@ public:
 
 private:
     struct Entry {
-        campaign::Case question;
-        std::int64_t attempts = 0, failures = 0;
         double predicted = 0;
-        bool decided = false, running = false;
-        std::optional<double> share = {};  ///< done by the running attempt, as last reported
+        std::int32_t attempts = 0, failures = 0;
     };
-    /// Long cases first near the end: of the queue or of what this run may settle.
-    void order_the_end(std::span<const std::int64_t> blocks);
+    struct Running {
+        std::uint32_t question = 0;
+        std::int64_t number = 0;      ///< of the attempt
+        std::optional<double> share;  ///< done, as last reported
+    };
+    using UnderWay = std::unordered_map<campaign::CaseId, Running>;
     struct GiveBacks {
         std::int64_t in_a_row = 0;
         double furthest = 0;  ///< share done when it was given back
     };
-    [[nodiscard]] Entry* running(const campaign::Attempt& attempt);
-    [[nodiscard]] bool comes_no_further(const Entry& entry);
-    void move_on(Entry& entry, double share);
-    void put_back(Entry& entry);
-    void decide(Entry& entry, campaign::Outcome outcome);
 
+    /// Long cases first near the end: of the queue or of what this run may settle.
+    void order_the_end(std::span<const std::uint32_t> blocks);
+    [[nodiscard]] std::size_t question_at(std::size_t placed) const {
+        return places_.empty() ? placed : places_[placed];
+    }
+    [[nodiscard]] std::size_t placed() const { return places_.empty() ? entries_.size() : places_.size(); }
+    [[nodiscard]] bool queue_is_empty() const { return returned_.empty() && head_ == queue_.size(); }
+    [[nodiscard]] std::size_t queued() const { return returned_.size() + queue_.size() - head_; }
+    [[nodiscard]] std::uint32_t front() const { return returned_.empty() ? queue_[head_] : returned_.back(); }
+    [[nodiscard]] UnderWay::iterator find(const campaign::Attempt& attempt);
+    [[nodiscard]] bool comes_no_further(const Running& one);
+    void move_on(Running& one, double share);
+    void put_back(const Running& one);
+    void decide(std::size_t question, campaign::Outcome outcome);
+
+    std::function<campaign::Case(std::uint32_t question)> ask_;
     std::vector<Entry> entries_;
-    std::vector<std::size_t> places_;
-    std::unordered_map<campaign::CaseId, std::size_t> index_;
-    std::deque<std::size_t> queue_;
-    std::unordered_map<std::size_t, GiveBacks> give_backs_;  ///< by question, of those that were given back
+    std::vector<bool> decided_;  ///< settled or given up
+    std::vector<std::uint32_t> places_;
+    std::vector<std::uint32_t> queue_;  ///< from head_ on
+    std::size_t head_ = 0;
+    std::vector<std::uint32_t> returned_;  ///< before the queue, the last one first
+    UnderWay under_way_;
+    std::unordered_map<std::uint32_t, GiveBacks> give_backs_;  ///< by question, of those that were given back
     Rules rules_;
     Tally tally_;
-    std::size_t running_ = 0;
     std::size_t prefix_ = 0;
     bool closed_ = false;
 };

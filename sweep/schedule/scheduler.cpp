@@ -69,7 +69,7 @@ void Scheduler::hand_out() {
         if (!place) return;
         const auto start = plan_.next();
         recorder_.write(store::Recorder::Begun{start->attempt, place->computer});
-        crew_.give(*place, start->attempt, *start->question);
+        crew_.give(*place, start->attempt, start->question);
         ++in_flight_;
     }
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sweep/store/database.hpp"
+#include "sweep/store/placing.hpp"
 #include "sweep/store/soundness.hpp"
 #include "sweep/store/store.hpp"
 #include "sweep/store/writer_lock.hpp"
@@ -29,6 +30,7 @@ struct Store::Impl {
 
     std::optional<std::int64_t> provenance;  ///< of this run, once a campaign is enrolled
     std::int64_t provenance_campaign = 0;
+    std::optional<Placing> placing;  ///< of the campaign enrolled last, while some of its places are not entered
     bool dead_attempts_closed = false;
     bool in_group = false;
     bool sound = false;              ///< checked: what is read is what was written
@@ -71,19 +73,10 @@ struct CampaignTexts {
 [[nodiscard]] std::optional<std::int64_t> match_campaign(const Store::Impl& archive,
                                                          const campaign::Campaign& campaign);
 
-struct DeclaredParameter {
-    std::string name;
-    std::int64_t key = 0;
-    Value default_value;
-};
-/// Stores the inputs of a case that differ from the defaults. `parameters` are sorted by name.
-void enter_inputs(Connection& db, std::int64_t key, const campaign::Case& question,
-                  const std::vector<DeclaredParameter>& parameters);
 [[nodiscard]] CaseState stored_state(const Connection& db, std::int64_t key);
-/// Forgets damaged answers of these cases (`keys`, in the same order) and brings their states up to date.
-void ask_damaged_again(Store::Impl& archive, std::span<const campaign::PlacedCase> cases,
-                       std::span<const std::int64_t> keys, const std::vector<DeclaredParameter>& parameters,
-                       std::vector<CaseState>& states);
+/// Forgets damaged answers of these cases and brings their states up to date.
+void ask_damaged_again(Store::Impl& archive, const campaign::Cases& cases,
+                       const std::vector<DeclaredParameter>& parameters, KnownCases& known);
 
 /// Creates or renews the view that bears the campaign's name.
 void make_campaign_view(Store::Impl& archive, const campaign::Campaign& campaign, std::int64_t campaign_key);

@@ -16,7 +16,6 @@
 namespace grainsweep::store {
 
 using campaign::Campaign;
-using campaign::PlacedCase;
 
 namespace {
 
@@ -96,33 +95,6 @@ void close_dead_attempts(Store::Impl& archive) {
     }
 }
 
-/// Looks cases up by id, or enters them with the inputs that differ from the defaults.
-class CaseBook {
-public:
-    CaseBook(Connection& db, const std::vector<DeclaredParameter>& parameters) : db_(&db), parameters_(&parameters) {}
-
-    std::pair<std::int64_t, CaseState> enter(const campaign::Case& question) {
-        {
-            auto rows =
-                db_->ask("SELECT case_key, attempts, failures, outcome FROM sim_case WHERE case_id = ?", question.id);
-            if (rows.next()) {
-                CaseState state{rows.get<std::int64_t>(1), rows.get<std::int64_t>(2), {}};
-                if (!rows.is_null(3)) state.outcome = campaign::outcome_named(rows.get<std::string_view>(3));
-                return {rows.get<std::int64_t>(0), state};
-            }
-        }
-        db_->run("INSERT INTO sim_case (case_id, scene, revision, seed) VALUES (?, ?, ?, ?)", question.id,
-                 question.scene, question.revision, static_cast<std::int64_t>(question.seed));
-        const std::int64_t key = db_->last_row();
-        enter_inputs(*db_, key, question, *parameters_);
-        return {key, {}};
-    }
-
-private:
-    Connection* db_;
-    const std::vector<DeclaredParameter>* parameters_;
-};
-
 struct Place {
     std::int64_t point = 0, replicate = 0, sequence = 0, case_key = 0;
 };
@@ -157,8 +129,9 @@ void forget_convergence(Connection& db, std::int64_t campaign_key) {
     db.run("UPDATE campaign SET stopped_at = NULL WHERE campaign_id = ?", campaign_key);
 }
 
-/// Adds what is new; where points were renumbered the new design replaces the old one.
-void place(Store::Impl& archive, const Campaign& campaign, std::int64_t campaign_key, std::vector<Place> asked) {
+/// Brings order into places that cannot simply be added to: where points were renumbered the new design replaces the
+/// old one, and a damaged one is put right.
+void place_anew(Store::Impl& archive, const Campaign& campaign, std::int64_t campaign_key, std::vector<Place> asked) {
     auto& db = archive.db;
     std::ranges::sort(asked, before);
     const auto stored = stored_places(db, campaign_key);
@@ -249,9 +222,10 @@ void store_rule(Connection& db, std::int64_t campaign_key, const std::optional<c
 }
 
 /// Points the design numbers; where its options are not known, as many as are placed.
-std::int64_t candidates_in(const Campaign& campaign, std::span<const PlacedCase> cases) {
+std::int64_t candidates_in(const Campaign& campaign, const campaign::Cases& cases) {
     std::int64_t candidates = 0;
-    for (const auto& placed : cases) candidates = std::max(candidates, placed.point + 1);
+    for (std::size_t i = 0; i < cases.size(); ++i)
+        candidates = std::max(candidates, std::int64_t{cases.place(i).point} + 1);
     try {
         candidates = std::max(candidates, campaign::candidates_of(campaign));
     } catch (const std::invalid_argument&) {  // a campaign that no file was read for
@@ -276,7 +250,7 @@ void store_extent(Store::Impl& archive, const Campaign& campaign, std::int64_t k
         designs::design_named(campaign.design).extends, candidates, key);
 }
 
-std::int64_t store_campaign(Store::Impl& archive, const Campaign& campaign, std::span<const PlacedCase> cases) {
+std::int64_t store_campaign(Store::Impl& archive, const Campaign& campaign, const campaign::Cases& cases) {
     auto& db = archive.db;
     auto key = match_campaign(archive, campaign);
     const auto texts = texts_of(campaign);
@@ -341,63 +315,71 @@ void drop_damaged_verdicts(Store::Impl& archive, std::int64_t campaign_key) {
 
 }  // namespace
 
-CaseState stored_state(const Connection& db, std::int64_t key) {
-    auto rows = db.ask("SELECT attempts, failures, outcome FROM sim_case WHERE case_key = ?", key);
-    if (!rows.next()) return {};
-    CaseState state{rows.get<std::int64_t>(0), rows.get<std::int64_t>(1), {}};
-    if (!rows.is_null(2)) state.outcome = campaign::outcome_named(rows.get<std::string_view>(2));
-    return state;
-}
+namespace {
 
-void enter_inputs(Connection& db, std::int64_t key, const campaign::Case& question,
-                  const std::vector<DeclaredParameter>& parameters) {
-    auto parameter = parameters.begin();  // both are sorted by name
-    for (const auto& [name, value] : question.inputs) {
-        while (parameter != parameters.end() && parameter->name < name) ++parameter;
-        if (parameter == parameters.end() || parameter->name != name) {
-            throw std::logic_error(
-                fmt::format("case {} has the input {}, which its scene does not", question.id, name));
-        }
-        if (value == parameter->default_value) continue;
-        db.run("INSERT INTO case_input (case_key, parameter_id, value) VALUES (?, ?, ?)", key, parameter->key, value);
+/// Places of the campaign, every one of its cases entered.
+std::vector<Place> all_places(const campaign::Cases& cases, const Placing& placing) {
+    std::vector<Place> places;
+    places.reserve(cases.size());
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        const auto& [point, sequence, replicate] = cases.place(i);
+        places.push_back({point, replicate, sequence, placing.key(i)});
     }
+    return places;
 }
 
-std::vector<CaseState> Store::enrol(const Campaign& campaign, std::span<const PlacedCase> cases,
-                                    const Provenance& provenance) {
+}  // namespace
+
+std::vector<CaseState> Store::enrol(const Campaign& campaign, const campaign::Cases& cases,
+                                    const Provenance& provenance, std::size_t at_once) {
     impl_->require_writer();
+    impl_->placing.reset();
     Remembered remembered(*impl_);
-    Transaction transaction(impl_->db);
+    auto& db = impl_->db;
+    Transaction transaction(db);
     impl_->notes.clear();
-    impl_->refuse_damage(damaged_descriptions(impl_->db), {});
+    impl_->refuse_damage(damaged_descriptions(db), {});
     close_dead_attempts(*impl_);
     const std::int64_t key = store_campaign(*impl_, campaign, cases);
     const auto parameters = declare_scene(*impl_, campaign.scene());
     impl_->observables.clear();
     store_provenance(*impl_, campaign, key, provenance);
 
-    std::vector<CaseState> states;
-    std::vector<Place> places;
-    states.reserve(cases.size());
-    places.reserve(cases.size());
-    CaseBook book(impl_->db, parameters);
-    for (const auto& placed : cases) {
-        const auto [case_key, state] = book.enter(placed.question);
-        states.push_back(state);
-        places.push_back({placed.point, placed.replicate, placed.sequence, case_key});
-    }
-    std::vector<std::int64_t> keys;
-    keys.reserve(places.size());
-    for (const auto& it : places) keys.push_back(it.case_key);
-    ask_damaged_again(*impl_, cases, keys, parameters, states);
+    KnownCases known = known_cases(db, cases);
+    ask_damaged_again(*impl_, cases, parameters, known);
     drop_damaged_verdicts(*impl_, key);
-    place(*impl_, campaign, key, std::move(places));
+    Placing placing(cases, std::move(known.keys), parameters, key);
+    if (placing.adds_to(db)) {
+        if (placing.inside()) forget_convergence(db, key);
+        placing.enter(db, at_once);
+    } else {
+        placing.enter_cases(db);
+        place_anew(*impl_, campaign, key, all_places(cases, placing));
+        placing = {{}, {}, {}, key};
+    }
     make_campaign_view(*impl_, campaign, key);
-    renew_descriptions(impl_->db);
+    renew_descriptions(db);
     transaction.commit();
     impl_->sound = true;
+    if (!placing.done()) impl_->placing.emplace(std::move(placing));
     remembered.keep();
-    return states;
+    return std::move(known.states);
+}
+
+bool Store::enrols() const {
+    return impl_->placing.has_value();
+}
+
+void Store::enrol_more(std::size_t places) {
+    if (!impl_->placing) return;
+    impl_->require_writer();
+    impl_->require_in_place();
+    // Where this fails, it no longer says what is in the file.
+    Placing placing = std::move(*std::exchange(impl_->placing, std::nullopt));
+    Transaction transaction(impl_->db);
+    placing.enter(impl_->db, places);
+    transaction.commit();
+    if (!placing.done()) impl_->placing.emplace(std::move(placing));
 }
 
 }  // namespace grainsweep::store

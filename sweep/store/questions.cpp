@@ -148,30 +148,33 @@ std::optional<CampaignRecord> Store::stored(const campaign::Campaign& campaign) 
     return found == records.end() ? std::nullopt : std::optional(std::move(*found));
 }
 
-std::int64_t Store::settled(std::span<const campaign::PlacedCase> cases) const {
-    return std::ranges::count_if(cases, [&](const campaign::PlacedCase& placed) {
-        auto rows = impl_->db.ask("SELECT outcome FROM sim_case WHERE case_id = ?", placed.question.id);
-        if (!rows.next()) return false;
-        const auto outcome = outcome_at(rows, 0);
-        return outcome && settles(*outcome);
-    });
+std::int64_t Store::settled(const campaign::Cases& cases) const {
+    const auto known = known_cases(impl_->db, cases);
+    return std::ranges::count_if(known.states,
+                                 [](const CaseState& state) { return state.outcome && settles(*state.outcome); });
 }
 
-std::vector<StoredPlace> Store::placement(std::string_view campaign) const {
-    std::vector<StoredPlace> places;
+bool Store::is_settled(std::string_view case_id) const {
+    auto rows = impl_->db.ask("SELECT outcome FROM sim_case WHERE case_id = ?", case_id);
+    if (!rows.next()) return false;
+    const auto outcome = outcome_at(rows, 0);
+    return outcome && settles(*outcome);
+}
+
+StoredPlaces Store::placement(std::string_view campaign) const {
+    StoredPlaces stored;
     auto rows = impl_->db.ask(
         "SELECT p.point, p.sequence, p.replicate, c.case_id, c.attempts, c.failures, c.outcome FROM campaign_case AS p "
         "JOIN sim_case AS c ON c.case_key = p.case_key WHERE p.campaign_id = ? ORDER BY p.point, p.replicate",
         impl_->campaign_key(campaign));
+    const auto small = [&](int column) { return static_cast<std::uint32_t>(rows.get<std::int64_t>(column)); };
     while (rows.next()) {
-        auto& place = places.emplace_back();
-        place.placed.point = rows.get<std::int64_t>(0);
-        place.placed.sequence = rows.get<std::int64_t>(1);
-        place.placed.replicate = rows.get<std::int64_t>(2);
-        place.placed.question.id = rows.get<std::string>(3);
-        place.state = {rows.get<std::int64_t>(4), rows.get<std::int64_t>(5), outcome_at(rows, 6)};
+        stored.places.push_back({small(0), small(1), small(2)});
+        stored.hashes.push_back(campaign::hash_of(rows.get<std::string_view>(3)));
+        stored.states.push_back({static_cast<std::int32_t>(rows.get<std::int64_t>(4)),
+                                 static_cast<std::int32_t>(rows.get<std::int64_t>(5)), outcome_at(rows, 6)});
     }
-    return places;
+    return stored;
 }
 
 std::optional<campaign::Case> Store::find_case(std::string_view id_or_prefix) const {

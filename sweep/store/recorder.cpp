@@ -12,8 +12,12 @@ constexpr std::size_t group_rows = 256;
 constexpr auto idle_look = std::chrono::seconds(1);
 constexpr auto group_wait = std::chrono::milliseconds(10);
 
-// Entries and samples that may wait, some 100 MB: more than a disk that works leaves behind.
-constexpr std::size_t most_waiting = 1'000'000;
+// Places of a campaign that are entered between two groups, in about a second: a few large pieces, because ids are
+// spread over their index, and each piece writes most of its pages.
+constexpr std::size_t enrolled_between_groups = 131'072;
+
+// Entries and samples that may wait, some 25 MB: more than a disk that works leaves behind.
+constexpr std::size_t most_waiting = 250'000;
 
 template <class... Cases>
 struct Overloaded : Cases... {
@@ -31,7 +35,7 @@ std::size_t weight_of(const Recorder::Entry& entry) {
 
 }  // namespace
 
-Recorder::Recorder(Store& store) : store_(store), thread_([this] { run(); }) {}
+Recorder::Recorder(Store& store) : store_(store), enrols_(store.enrols()), thread_([this] { run(); }) {}
 
 Recorder::~Recorder() {
     {
@@ -63,14 +67,14 @@ std::vector<campaign::CaseResult> Recorder::take_durable() {
 
 void Recorder::drain() {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return failure_ || (waiting_.empty() && !busy_); });
+    changed_.wait(lock, [this] { return failure_ || (waiting_.empty() && !busy_ && !enrols_); });
     rethrow();
 }
 
 void Recorder::run() {
     std::unique_lock lock(mutex_);
     while (true) {
-        if (!changed_.wait_for(lock, idle_look, [this] { return closing_ || !waiting_.empty(); })) {
+        if (!changed_.wait_for(lock, idle_look, [this] { return closing_ || !waiting_.empty() || enrols_; })) {
             // Nothing to write; a file that is gone must not be found out an hour later.
             try {
                 store_.require_in_place();
@@ -81,40 +85,49 @@ void Recorder::run() {
             changed_.notify_all();
             return;
         }
-        if (waiting_.empty()) return;
-        if (!closing_)
+        if (waiting_.empty() && closing_) return;
+        if (!closing_ && !enrols_)
             changed_.wait_for(lock, group_wait, [this] { return closing_ || waiting_.size() >= group_rows; });
-        std::vector<Entry> group = std::exchange(waiting_, {});
-        if (std::exchange(weight_, 0) >= most_waiting) changed_.notify_all();
-        busy_ = true;
-        lock.unlock();
-        std::vector<campaign::CaseResult> kept;
-        std::exception_ptr failure;
-        try {
-            store_.group([&] {
-                for (auto& entry : group) {
-                    std::visit(Overloaded{[&](const Begun& begun) { store_.begin(begun.attempt, *begun.computer); },
-                                          [&](campaign::CaseResult& result) {
-                                              if (store_.finish(result)) kept.push_back(std::move(result));
-                                          },
-                                          [&](const Checked& c) { store_.record(c.campaign, c.row); },
-                                          [&](const Stopped& s) { store_.stop(s.campaign, s.points); }},
-                               entry);
-                }
-            });
-        } catch (...) {
-            failure = std::current_exception();
-        }
-        lock.lock();
-        busy_ = false;
-        if (failure) {
-            failure_ = failure;
-            changed_.notify_all();
-            return;
-        }
-        std::ranges::move(kept, std::back_inserter(durable_));
-        changed_.notify_all();
+        if (!write_waiting(lock)) return;
     }
+}
+
+bool Recorder::write_waiting(std::unique_lock<std::mutex>& lock) {
+    std::vector<Entry> group = std::exchange(waiting_, {});
+    if (std::exchange(weight_, 0) >= most_waiting) changed_.notify_all();
+    busy_ = true;
+    lock.unlock();
+    std::vector<campaign::CaseResult> kept;
+    std::exception_ptr failure;
+    bool enrols = false;
+    try {
+        if (!group.empty()) write_group(group, kept);
+        if (enrols_) store_.enrol_more(enrolled_between_groups);
+        enrols = store_.enrols();
+    } catch (...) {
+        failure = std::current_exception();
+    }
+    lock.lock();
+    busy_ = false;
+    enrols_ = enrols;
+    failure_ = failure;
+    if (!failure) std::ranges::move(kept, std::back_inserter(durable_));
+    changed_.notify_all();
+    return !failure;
+}
+
+void Recorder::write_group(std::vector<Entry>& group, std::vector<campaign::CaseResult>& kept) {
+    store_.group([&] {
+        for (auto& entry : group) {
+            std::visit(Overloaded{[&](const Begun& begun) { store_.begin(begun.attempt, *begun.computer); },
+                                  [&](campaign::CaseResult& result) {
+                                      if (store_.finish(result)) kept.push_back(std::move(result));
+                                  },
+                                  [&](const Checked& c) { store_.record(c.campaign, c.row); },
+                                  [&](const Stopped& s) { store_.stop(s.campaign, s.points); }},
+                       entry);
+        }
+    });
 }
 
 }  // namespace grainsweep::store

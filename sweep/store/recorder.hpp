@@ -40,12 +40,16 @@ public:
     void write(Entry entry);
     /// Results that reached the disk since the last call, in the order written.
     [[nodiscard]] std::vector<campaign::CaseResult> take_durable();
-    /// Waits until everything handed over is on disk; throws what a write failed with.
+    /// Waits until everything handed over is on disk, and every place of the enrolled campaign; throws what a write
+    /// failed with.
     void drain();
 
 private:
     void run();
     void rethrow();
+    /// Writes what waits, and some of what is left to enrol. False where that failed.
+    bool write_waiting(std::unique_lock<std::mutex>& lock);
+    void write_group(std::vector<Entry>& group, std::vector<campaign::CaseResult>& kept);
 
     Store& store_;
     std::mutex mutex_;
@@ -55,6 +59,7 @@ private:
     std::vector<campaign::CaseResult> durable_;
     std::exception_ptr failure_;
     bool busy_ = false, closing_ = false;
+    bool enrols_;  ///< places of the campaign are left to be entered
     std::thread thread_;
 };
 

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+#include <optional>
 #include <unordered_map>
 
 namespace grainsweep::store {
@@ -60,32 +62,33 @@ void forget_answer(Connection& db, const DamagedCase& damage) {
 
 }  // namespace
 
-void ask_damaged_again(Store::Impl& archive, std::span<const campaign::PlacedCase> cases,
-                       std::span<const std::int64_t> keys, const std::vector<DeclaredParameter>& parameters,
-                       std::vector<CaseState>& states) {
+void ask_damaged_again(Store::Impl& archive, const campaign::Cases& cases,
+                       const std::vector<DeclaredParameter>& parameters, KnownCases& known) {
     auto& db = archive.db;
+    auto& [keys, states] = known;
     std::int64_t first = std::numeric_limits<std::int64_t>::max(), last = -1;
     for (std::size_t k = 0; k < keys.size(); ++k) {
-        if (states[k].attempts == 0 && !states[k].outcome) continue;
+        if (keys[k] == 0 || (states[k].attempts == 0 && !states[k].outcome)) continue;
         first = std::min(first, keys[k]);
         last = std::max(last, keys[k]);
     }
     if (last < first) return;
     const auto damaged = damaged_cases(db, first, last);
     if (damaged.empty()) return;
-    std::unordered_multimap<std::int64_t, std::size_t> places;
-    for (std::size_t k = 0; k < keys.size(); ++k) places.emplace(keys[k], k);
+    std::unordered_map<std::int64_t, std::size_t> places;
+    for (std::size_t k = 0; k < keys.size(); ++k)
+        if (keys[k] != 0) places.emplace(keys[k], k);
     for (const auto& damage : damaged) {
-        const auto [from, to] = places.equal_range(damage.key);
-        if (from == to) continue;  // of another campaign
-        const auto& question = cases[from->second].question;
+        const auto found = places.find(damage.key);
+        if (found == places.end()) continue;  // of another campaign
+        const auto question = cases.question(found->second);
         if (damage.identity) restore_question(db, damage.key, question, parameters);
         if (damage.identity || damage.answer) forget_answer(db, damage);
         for (const auto number : damage.log) note_in_log(db, damage.key, number, "this row was found damaged");
         recount(db, damage.key);
         renew_case(db, damage.key);
         const CaseState now = stored_state(db, damage.key);
-        for (auto place = from; place != to; ++place) states[place->second] = now;
+        for (std::optional place = found->second; place; place = cases.next(*place)) states[*place] = now;
         archive.notes.push_back(fmt::format("{} is damaged in the database: {}{}", question.id.substr(0, 12),
                                             damage.what,
                                             damage.identity || damage.answer ? "; it is asked again" : ""));

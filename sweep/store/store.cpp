@@ -314,7 +314,9 @@ void Store::group(const std::function<void()>& writes) {
         Membership(const Membership&) = delete;
         ~Membership() {
             impl.in_group = false;
-            if (!committed) impl.computers.clear();  // keys of rows that were rolled back
+            if (committed) return;  // else forget rows that were rolled back
+            impl.computers.clear();
+            impl.placing.reset();
         }
     } membership(*impl_);
     impl_->require_in_place();
@@ -333,8 +335,16 @@ void Store::begin(const campaign::Attempt& attempt, const campaign::Computer& co
     impl_->require_group();
     auto& db = impl_->db;
     if (!impl_->provenance) throw std::logic_error("an attempt begins before its campaign is enrolled");
-    const auto changed = db.run("UPDATE sim_case SET attempts = ?1 WHERE case_id = ?2 AND attempts <= ?1",
-                                attempt.number, attempt.case_id);
+    const auto count = [&] {
+        return db.run("UPDATE sim_case SET attempts = ?1 WHERE case_id = ?2 AND attempts <= ?1", attempt.number,
+                      attempt.case_id);
+    };
+    auto changed = count();
+    if (changed != 1 && impl_->placing) {
+        impl_->placing->enter(db, std::numeric_limits<std::size_t>::max());
+        impl_->placing.reset();
+        changed = count();
+    }
     if (changed != 1) {
         throw std::logic_error(fmt::format("attempt {} of case {} begins, which is unknown or has begun a later one",
                                            attempt.number, attempt.case_id));

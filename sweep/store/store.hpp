@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -31,8 +32,8 @@ struct Provenance {
 
 /// What the archive knows of a case of the campaign.
 struct CaseState {
-    std::int64_t attempts = 0;                 ///< highest attempt number begun
-    std::int64_t failures = 0;                 ///< attempts that crashed or timed out
+    std::int32_t attempts = 0;                 ///< highest attempt number begun
+    std::int32_t failures = 0;                 ///< attempts that crashed or timed out
     std::optional<campaign::Outcome> outcome;  ///< of the last finished attempt
 };
 
@@ -101,10 +102,11 @@ struct CampaignRecord {
     }
 };
 
-/// A place of a campaign's design, and what the archive knows of its case.
-struct StoredPlace {
-    campaign::PlacedCase placed;  ///< of the question id and nothing else
-    CaseState state;
+/// The places of a campaign's design, ordered by (point, replicate), and what the archive knows of their cases.
+struct StoredPlaces {
+    std::vector<campaign::Place> places;
+    std::vector<campaign::CaseHash> hashes;
+    std::vector<CaseState> states;
 };
 
 /// What is not as it was written.
@@ -139,8 +141,16 @@ public:
     /// gains levels the points are renumbered: the new places replace the old ones, every answer is kept and stays in
     /// the view, and convergence is judged anew, as it is after another rule or more replicates. A list only grows at
     /// its end.
-    std::vector<CaseState> enrol(const campaign::Campaign& campaign, std::span<const campaign::PlacedCase> cases,
-                                 const Provenance& provenance);
+    ///
+    /// Places beyond `at_once` new ones are left to enrol_more(), where they need only be added: a long campaign can
+    /// begin before all of it is in the file, and what is missing when the program ends is added by its next run.
+    std::vector<CaseState> enrol(const campaign::Campaign& campaign, const campaign::Cases& cases,
+                                 const Provenance& provenance,
+                                 std::size_t at_once = std::numeric_limits<std::size_t>::max());
+    /// Whether places of the campaign enrolled last are left.
+    [[nodiscard]] bool enrols() const;
+    /// Adds up to so many of them, on disk when this returns. Not inside group().
+    void enrol_more(std::size_t places);
 
     /// What the last enrol found damaged and what it did about it, a sentence each.
     [[nodiscard]] const std::vector<std::string>& notes() const;
@@ -151,7 +161,8 @@ public:
     /// Runs `writes` in one durable transaction: on disk when this returns, absent when it throws.
     void group(const std::function<void()>& writes);
     // Inside group():
-    /// Numbers only grow: throws std::logic_error for a case that is unknown or has begun a later attempt.
+    /// Numbers only grow: throws std::logic_error for a case that is unknown or has begun a later attempt. Where the
+    /// case is among those left to enrol_more(), all of them are entered.
     /// `computer`: what computes it; all empty where that is not known.
     void begin(const campaign::Attempt& attempt, const campaign::Computer& computer = {});
     /// An answer (completed, skipped, unstable, rejected) replaces what an earlier attempt left; an attempt that
@@ -172,9 +183,9 @@ public:
     /// asks something else.
     [[nodiscard]] std::optional<CampaignRecord> stored(const campaign::Campaign& campaign) const;
     /// How many of these cases are settled, whichever campaign asked them.
-    [[nodiscard]] std::int64_t settled(std::span<const campaign::PlacedCase> cases) const;
-    /// Every place of the campaign, ordered by (point, replicate).
-    [[nodiscard]] std::vector<StoredPlace> placement(std::string_view campaign) const;
+    [[nodiscard]] std::int64_t settled(const campaign::Cases& cases) const;
+    [[nodiscard]] bool is_settled(std::string_view case_id) const;
+    [[nodiscard]] StoredPlaces placement(std::string_view campaign) const;
     /// Throws WrongQuestion where several cases begin so.
     [[nodiscard]] std::optional<campaign::Case> find_case(std::string_view id_or_prefix) const;
     [[nodiscard]] std::vector<LoggedAttempt> attempts(std::string_view case_id) const;

@@ -143,6 +143,37 @@ TEST(Unfold, FilteredPointsLeaveGapsInTheNumbers) {
     EXPECT_THROW((void)unfold(campaign, [](const Inputs&) { return false; }), WrongQuestion);
 }
 
+TEST(Unfold, ACaseIsMadeWhenItIsAskedForAndFoundByItsId) {
+    const auto cases = unfold(read(three_by_two), {});
+    Case reused;
+    Inputs inputs;
+    for (std::size_t k = cases.size(); k-- > 0;) {
+        cases.question(k, reused);
+        EXPECT_EQ(reused, cases[k].question) << "what an earlier case left changes nothing";
+        cases.inputs(k, inputs);
+        EXPECT_EQ(inputs, reused.inputs);
+        EXPECT_EQ(cases.id(k), reused.id);
+        EXPECT_EQ(id_of(hash_of(reused.id)), reused.id);
+        EXPECT_EQ(cases.find(hash_of(reused.id)), k);
+        EXPECT_TRUE(cases.is_first(k));
+    }
+    EXPECT_FALSE(cases.find(hash_of("none of them")));
+}
+
+TEST(Unfold, AQuestionThatStandsSeveralTimesIsFoundAtAllItsPlaces) {
+    const auto cases = unfold(read(R"({"campaign": "trial", "scene": "rehearsal",
+        "factors": [{"name": "x1", "levels": [0, 1]}],
+        "design": {"kind": "list", "rows": [[0], [1], [0], [0], [1]]}})"),
+                              {});
+    EXPECT_EQ(cases.find(cases.hash(3)), 0U);
+    EXPECT_EQ(cases.next(0), 2U);
+    EXPECT_EQ(cases.next(2), 3U);
+    EXPECT_FALSE(cases.next(3));
+    EXPECT_EQ(cases.next(1), 4U);
+    EXPECT_EQ(cases.first(4), 1U);
+    EXPECT_FALSE(cases.is_first(4));
+}
+
 TEST(Unfold, MorePointsAndReplicatesExtend) {
     const auto text = [](const char* points, const char* replicates) {
         return std::string(

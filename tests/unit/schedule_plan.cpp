@@ -15,21 +15,17 @@ using campaign::Outcome;
 
 namespace {
 
-std::vector<campaign::Case> questions(std::size_t n) {
-    std::vector<campaign::Case> cases(n);
-    for (std::size_t i = 0; i < n; ++i) cases[i].id = "case" + std::to_string(i);
-    return cases;
+campaign::Case question(std::uint32_t i) {
+    campaign::Case made;
+    made.id = "case" + std::to_string(i);
+    return made;
 }
 
 Plan make_plan(std::size_t n, Rules rules = {}, std::vector<History> histories = {}, std::vector<double> predicted = {},
-               std::vector<std::size_t> places = {}) {
+               std::vector<std::uint32_t> places = {}) {
     histories.resize(n);
     if (predicted.empty()) predicted.assign(n, 1.0);
-    if (places.empty()) {
-        places.resize(n);
-        std::iota(places.begin(), places.end(), std::size_t{0});
-    }
-    return {questions(n), histories, predicted, places, rules};
+    return {{question, histories, predicted, places, {}}, rules};
 }
 
 TEST(Plan, HandsOutTheDesignInOrderAndIsOverWhenAllIsSettled) {
@@ -37,7 +33,7 @@ TEST(Plan, HandsOutTheDesignInOrderAndIsOverWhenAllIsSettled) {
     for (int i = 0; i < 3; ++i) {
         const auto start = plan.next();
         ASSERT_TRUE(start);
-        EXPECT_EQ(start->question->id, "case" + std::to_string(i));
+        EXPECT_EQ(start->question.id, "case" + std::to_string(i));
         EXPECT_EQ(start->attempt.number, 1);
         EXPECT_EQ(plan.ended(start->attempt, Outcome::completed), Plan::Verdict::settled);
     }
@@ -48,9 +44,9 @@ TEST(Plan, HandsOutTheDesignInOrderAndIsOverWhenAllIsSettled) {
 
 TEST(Plan, LongCasesGoFirstAtTheEnd) {
     Plan plan = make_plan(3, {}, {}, {1.0, 5.0, 2.0});
-    EXPECT_EQ(plan.next()->question->id, "case1");
-    EXPECT_EQ(plan.next()->question->id, "case2");
-    EXPECT_EQ(plan.next()->question->id, "case0");
+    EXPECT_EQ(plan.next()->question.id, "case1");
+    EXPECT_EQ(plan.next()->question.id, "case2");
+    EXPECT_EQ(plan.next()->question.id, "case0");
 }
 
 /// Workers that take as long as predicted: what the plan makes of it.
@@ -92,11 +88,9 @@ std::vector<double> uneven_costs(std::size_t n) {
 }
 
 Plan uneven_plan(std::size_t n, std::size_t workers, std::int64_t max_cases = 0,
-                 std::vector<std::int64_t> blocks = {}) {
-    std::vector<std::size_t> places(n);
-    std::iota(places.begin(), places.end(), std::size_t{0});
+                 std::vector<std::uint32_t> blocks = {}) {
     const Rules rules{.max_cases = max_cases, .workers = workers};
-    return {questions(n), std::vector<History>(n), uneven_costs(n), places, rules, blocks};
+    return {{question, std::vector<History>(n), uneven_costs(n), {}, std::move(blocks)}, rules};
 }
 
 // What is finished is a usable beginning of the design, however early one looks.
@@ -121,8 +115,8 @@ TEST(Plan, TheEndKeepsAllWorkersBusy) {
 
 // Where a campaign may stop after a block, a case of a later block would only delay the verdict.
 TEST(Plan, NoCaseIsBroughtForwardOutOfALaterBlock) {
-    std::vector<std::int64_t> blocks;
-    for (std::int64_t i = 0; i < 64; ++i) blocks.push_back(i / 8);
+    std::vector<std::uint32_t> blocks;
+    for (std::uint32_t i = 0; i < 64; ++i) blocks.push_back(i / 8);
     Plan plan = uneven_plan(64, 2, 0, blocks);
     for (std::int64_t i = 0; i < 64; ++i) {
         const auto start = plan.next();
@@ -248,10 +242,10 @@ TEST(Plan, ResumesWhereTheArchiveEnds) {
     EXPECT_EQ(plan.tally().decided, 3U);
     EXPECT_EQ(plan.settled_prefix(), 3U);
     const auto a = plan.next();
-    EXPECT_EQ(a->question->id, "case3");
+    EXPECT_EQ(a->question.id, "case3");
     EXPECT_EQ(a->attempt.number, 2);
     const auto b = plan.next();
-    EXPECT_EQ(b->question->id, "case4");
+    EXPECT_EQ(b->question.id, "case4");
     EXPECT_EQ(b->attempt.number, 8);
     EXPECT_FALSE(plan.next());
     EXPECT_EQ(plan.ended(a->attempt, Outcome::crashed), Plan::Verdict::gave_up);
@@ -261,7 +255,7 @@ TEST(Plan, AsksAgainWhatIsWantedAgain) {
     Plan plan = make_plan(3, {.attempts = 2, .again = Outcome::crashed},
                           {{1, 0, Outcome::completed}, {2, 2, Outcome::crashed}, {1, 0, Outcome::unstable}});
     const auto start = plan.next();
-    EXPECT_EQ(start->question->id, "case1");
+    EXPECT_EQ(start->question.id, "case1");
     EXPECT_EQ(start->attempt.number, 3);
     EXPECT_FALSE(plan.next());
 }

@@ -81,15 +81,10 @@ protected:
 
     Ending run(ScriptedCrew& crew, Rules rules = {}, Watchers watchers = {}, Judge* judge = nullptr) {
         const auto states = store.enrol(campaign, placed, {});
-        std::vector<campaign::Case> questions;
         std::vector<History> histories;
-        for (std::size_t i = 0; i < placed.size(); ++i) {
-            questions.push_back(placed[i].question);
-            histories.push_back({states[i].attempts, states[i].failures, states[i].outcome});
-        }
-        std::vector<std::size_t> places(placed.size());
-        std::iota(places.begin(), places.end(), std::size_t{0});
-        Plan plan(questions, histories, std::vector<double>(placed.size(), 1.0), places, rules);
+        for (const auto& state : states) histories.push_back({state.attempts, state.failures, state.outcome});
+        const auto question = [this](std::uint32_t i) { return placed[i].question; };
+        Plan plan({question, histories, std::vector<double>(placed.size(), 1.0), {}, {}}, rules);
         store::Recorder recorder(store);
         Scheduler scheduler("loop", plan, crew, recorder, judge, std::move(watchers));
         return scheduler.run();
