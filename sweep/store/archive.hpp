@@ -13,10 +13,18 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
 namespace grainsweep::store {
+
+/// An attempt that has begun and has no outcome.
+struct OpenAttempt {
+    std::int64_t number = 0, key = 0, revision = 0, provenance = 0, computer = 0;
+    std::string scene, started;
+    std::optional<campaign::Outcome> before;  ///< outcome of the case
+};
 
 struct Store::Impl {
     using Keys = std::map<std::string, std::int64_t, std::less<>>;  ///< name -> key
@@ -38,6 +46,8 @@ struct Store::Impl {
     std::int64_t settled_in_group = 0;
     std::map<std::pair<std::string, std::int64_t>, Keys> observables;  ///< (scene, revision) -> keys
     std::map<campaign::Computer, std::int64_t> computers;
+    /// Attempts begun by this store, as far as it remembers: what is not here is looked up.
+    std::unordered_map<campaign::CaseId, OpenAttempt> open;
 
     void require_writer() const;
     void require_group() const;
@@ -56,6 +66,8 @@ struct Store::Impl {
     /// Throws std::logic_error for one that the scene has not declared.
     [[nodiscard]] std::int64_t observable_key(const std::string& scene, std::int64_t revision, std::string_view name);
     [[nodiscard]] std::int64_t computer_key(const campaign::Computer& computer);
+    /// None where the attempt is not the case's latest, or has an outcome. Throws std::logic_error for an unknown case.
+    [[nodiscard]] std::optional<OpenAttempt> take_open(const campaign::Attempt& attempt);
 };
 
 /// The campaign's identity as text, one line per factor, value or option.

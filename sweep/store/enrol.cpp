@@ -334,6 +334,7 @@ std::vector<CaseState> Store::enrol(const Campaign& campaign, const campaign::Ca
                                     const Provenance& provenance, std::size_t at_once) {
     impl_->require_writer();
     impl_->placing.reset();
+    impl_->open.clear();
     Remembered remembered(*impl_);
     auto& db = impl_->db;
     Transaction transaction(db);

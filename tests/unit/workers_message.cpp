@@ -51,6 +51,50 @@ TEST(Message, AnAnswerSurvivesTheTripToTheLastBit) {
     EXPECT_TRUE(back.checkpointed);
 }
 
+// The form that is written is read without a document; with a space in it, as a document. Both say the same.
+TEST(Message, AnotherFormOfALineSaysTheSame) {
+    const auto spaced = [](std::string line) { return line.replace(0, 1, "{ "); };
+    workers::Run run;
+    run.question = {"0123", "rehearsal", 2, {{"a", -0.0}, {"b", 1e300}, {"c", std::int64_t{-5}}, {"d", 5e-324}}, 7};
+    run.question.inputs["word"] = std::string("caf\xc3\xa9 \"quoted\"");
+    const auto asked = std::get<workers::Run>(decode_to_worker(spaced(encode(run))));
+    EXPECT_EQ(asked.question, run.question);
+    Done done;
+    done.result.attempt = {"0123", 2};
+    done.result.observations.scalars = {{"mfr", 1.0}, {"rate", 1.0 / 3}};
+    done.result.observations.series = {{"none", {}}, {"one", {{0, 1, 2}}}};
+    done.result.cost = {1, 0.1, 1e9, {{"settle", 2.0}}};
+    const std::string line = encode(done);
+    for (const auto& text : {line, spaced(line)}) {
+        const auto back = std::get<Done>(decode_to_boss(text));
+        EXPECT_EQ(encode(back), line);
+        EXPECT_EQ(back.result.observations.series.at("none").size(), 0U);
+    }
+}
+
+TEST(Message, ALineThatIsNearlyInFormIsRefusedOrReadAsADocument) {
+    Done done;
+    done.result.attempt = {"0123", 2};
+    const std::string line = encode(done);
+    for (std::size_t k = 0; k < line.size(); ++k) {
+        for (const char c : {'"', '}', '0', '-', '.', ' ', '\\', ','}) {
+            std::string altered = line;
+            altered[k] = c;
+            try {
+                (void)decode_to_boss(altered);
+            } catch (const std::invalid_argument&) {  // a sentence
+            }
+        }
+        EXPECT_THROW((void)decode_to_boss(line.substr(0, k)), std::invalid_argument) << k;
+    }
+    EXPECT_THROW((void)decode_to_boss(line + "x"), std::invalid_argument);
+    for (const char* number : {"01", "+1", "nan", "inf", "1.", ".5", "0x1", "1e", "--1"}) {
+        std::string altered = line;
+        altered.replace(altered.find("\"wall\":") + 7, 3, number);
+        EXPECT_THROW((void)decode_to_boss(altered), std::invalid_argument) << altered;
+    }
+}
+
 TEST(Message, WhatAWorkerSaysOfItselfAndItsCasesSurvivesTheTrip) {
     const campaign::Computer by{"0.1.0", "abc", "feed", "avx2", "a \"processor\"", "node3"};
     const auto ready = std::get<Ready>(decode_to_boss(encode(Ready{protocol_number, by})));
