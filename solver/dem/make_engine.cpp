@@ -30,6 +30,7 @@ void check(const Material& m) {
     require(m.restitution > 0 && m.restitution <= 1, "the restitution must lie in (0, 1]");
     require(not_negative(m.friction), "the friction must not be negative");
     require(not_negative(m.cohesion), "the cohesion energy density must not be negative");
+    require(not_negative(m.surface_energy), "the surface energy must not be negative");
     // Beyond 1 the rolling spring would be stiffer than those the time step is judged by.
     require(m.rolling_friction >= 0 && m.rolling_friction <= 1, "the rolling friction must lie in [0, 1]");
     require(m.rolling_damping >= 0 && m.rolling_damping <= 1, "the rolling damping must lie in [0, 1]");

@@ -12,10 +12,19 @@ struct Surface;  // walls/wall.hpp
 
 /// How touching bodies attract each other. By cohesion energy density times a contact area, overlap d, first order in
 /// d for equal spheres: sjkr pi R d (LIGGGHTS 3.8 `sjkr`), sjkr2 2 pi R d, paper pi R d/4 (Gupta, eq. 15 as printed).
-enum class CohesionLaw { sjkr, sjkr2, paper };
+/// By surface energy: jkr (laws/jkr.hpp), dmt (laws/dmt.hpp).
+enum class CohesionLaw { sjkr, sjkr2, paper, jkr, dmt };
 
 /// The force in Coulomb's limit: the contact force without the cohesive part, or the net normal force.
 enum class FrictionLimit { contact, net };
+
+/// How rolling is resisted: epsd by an elastic-plastic spring with a dashpot (laws/rolling.hpp), cdt by a torque of
+/// constant size against the relative rotation (laws/constant_torque.hpp).
+enum class RollingLaw { epsd, cdt };
+
+[[nodiscard]] constexpr bool acts_by_surface_energy(CohesionLaw law) {
+    return law == CohesionLaw::jkr || law == CohesionLaw::dmt;
+}
 
 /// One material for particles and walls; a wall's Surface may differ in part.
 struct Material {
@@ -26,10 +35,12 @@ struct Material {
     double friction = 0.2;     ///< Coulomb, particle-particle and particle-wall; 0: no tangential law at all
     /// mu_r, tangent of the steepest slope on which a sphere stays at rest, [0, 1]; 0: no rolling resistance at all
     double rolling_friction = 0;
-    /// eta_r, damping of the rolling spring over the critical one, [0, 1]; it matters only while the spring holds:
+    RollingLaw rolling_law = RollingLaw::epsd;
+    /// eta_r, damping of the rolling spring over the critical one, [0, 1]; epsd only, and only while the spring holds:
     /// what stopped rolling rocks on its spring, and 0.3 ends that within about one period
     double rolling_damping = 0.3;
-    double cohesion = 0;  ///< cohesion energy density, J/m3; 0: no cohesion law at all
+    double cohesion = 0;        ///< cohesion energy density of sjkr, sjkr2, paper, J/m3; 0: none of them at all
+    double surface_energy = 0;  ///< w of jkr, dmt: work of adhesion per contact area, J/m2; 0: none of them at all
     CohesionLaw cohesion_law = CohesionLaw::sjkr;
     FrictionLimit friction_limit = FrictionLimit::contact;
 };

@@ -133,11 +133,14 @@ TEST(DemRolling, EqualsLiggghts) {
     EXPECT_LT(deviation("plane_impact", impact, mixed), 2e-3);
 }
 
+// Both laws: the moment of a rolling sphere is mu_r R F_n.
 // m dv/dt = -f,  I dw/dt = f a - mu_r R m g,  v = a w  with the arm a = R - d/2 of this law:
 //     dv/dt = -mu_r g (R/a)/(1 + 2/5 (R/a)^2)        that is -5/7 mu_r g for a hard sphere.
 TEST(DemRolling, DeceleratesARollingSphere) {
-    for (const double mu_r : {0.02, 0.1}) {
+    for (const auto& [mu_r, law] : {std::pair{0.02, dem::RollingLaw::epsd}, std::pair{0.1, dem::RollingLaw::epsd},
+                                    std::pair{0.02, dem::RollingLaw::cdt}, std::pair{0.1, dem::RollingLaw::cdt}}) {
         auto p = on_plane(mu_r, 0);
+        p.setup.material.rolling_law = law;
         p.setup.spheres[0].velocity = {0.05, 0, 0};
         p.setup.spheres[0].angular_velocity = {0, 0.05 / p.arm, 0};
         const double ratio = radius / p.arm;
@@ -210,4 +213,50 @@ TEST(DemRolling, AGasWithRollingResistanceLosesSpinSooner) {
         for (const auto& w : tests::state_of(*engine).angular_velocity) spin[k] += geometry::dot(w, w);
     }
     EXPECT_LT(spin[1], 0.9 * spin[0]);
+}
+
+// Constant torque: it rolls down a slope steeper than mu_r as with a spring, and below it has no threshold: it stays,
+// but for its chatter about w = 0, within one step's change of spin.
+TEST(DemRolling, AConstantTorqueHoldsASphereOnASlopeBelowItsAngle) {
+    constexpr double mu_r = 0.2;
+    for (const auto precision : {exact, mixed}) {
+        auto below = on_plane(mu_r, std::atan(0.95 * mu_r));
+        below.setup.material.rolling_law = dem::RollingLaw::cdt;
+        const auto engine = dem::make_engine(below.setup, method(precision));
+        engine->run(100000);
+        const auto state = tests::state_of(*engine);
+        const double chatter = mu_r * below.mass * gravity * radius * below.setup.time_step /
+                               (0.4 * below.mass * radius * radius);  // rad/s a step
+        EXPECT_LT(std::abs(state.angular_velocity[0][1]), 2 * chatter);
+        EXPECT_LT(state.position[0][0], 5 * below.overlap);
+
+        const double slope = std::atan(1.2 * mu_r);
+        auto above = on_plane(mu_r, slope);
+        above.setup.material.rolling_law = dem::RollingLaw::cdt;
+        const double ratio = radius / above.arm;
+        const double expected =
+            gravity * (std::sin(slope) - mu_r * std::cos(slope) * ratio) / (1 + 0.4 * ratio * ratio);
+        EXPECT_NEAR(acceleration(above.setup, precision, 20000, 60000) / expected, 1, 1e-3);
+    }
+}
+
+// The torque follows the whole relative rotation, of which the part along n is then taken out: a twisting pair is
+// resisted less in rolling, and not at all in twisting.
+TEST(DemRolling, AConstantTorqueIsDirectedByTheWholeRotation) {
+    auto s = soft_spheres(0.3, 1e-7);
+    s.material.rolling_law = dem::RollingLaw::cdt;
+    s.material.friction = 1e-9;
+    s.spheres = {{{0, 0, 0}, {}, {30, 40, 0}, 1e-3, true}, {{1.99e-3, 0, 0}, {}, {}, 1e-3, true}};
+    const double overlap = 1e-5, effective = 5e-4;
+    const double elastic = 4.0 / 3 * dem::effective_modulus(s.material) * std::sqrt(effective * overlap) * overlap;
+    std::vector<dem::ContactForce> contacts;
+    for (const auto precision : {exact, mixed}) {
+        const auto engine = dem::make_engine(s, method(precision));
+        engine->contacts(contacts);
+        ASSERT_EQ(contacts.size(), 1U);
+        const double sign = contacts[0].first == 0 ? -1 : 1;
+        const double tolerance = precision == exact ? 1e-12 : 1e-5;  // the overlap is 2e5 units of position
+        EXPECT_NEAR(sign * contacts[0].rolling_moment[1] / (0.3 * elastic * effective), 0.8, tolerance);
+        EXPECT_NEAR(contacts[0].rolling_moment[0] / (0.3 * elastic * effective), 0, tolerance);
+    }
 }

@@ -109,6 +109,33 @@ TEST(FastAgainstPlain, RollingResistance) {
             }
 }
 
+TEST(FastAgainstPlain, AConstantTorqueAgainstRolling) {
+    for (const double spread : {0.0, 0.25})
+        for (const double cohesion : {0.0, 2e5}) {
+            dem::Setup s = test::boxed_lattice(5, 0.4, spread, 13);
+            s.material.rolling_friction = 0.2;
+            s.material.rolling_law = dem::RollingLaw::cdt;
+            s.material.cohesion = cohesion;
+            compare({"constant_torque", s, 300});
+        }
+}
+
+// Contacts that last beyond touch, with everything that follows their radius; slow spheres, some of which stick.
+TEST(FastAgainstPlain, SurfaceEnergy) {
+    for (const auto law : {dem::CohesionLaw::jkr, dem::CohesionLaw::dmt})
+        for (const auto rolling : {dem::RollingLaw::epsd, dem::RollingLaw::cdt})
+            for (const auto limit : {dem::FrictionLimit::contact, dem::FrictionLimit::net})
+                for (const double spread : {0.0, 0.25}) {
+                    dem::Setup s = test::boxed_lattice(4, 0.3, spread, 14);
+                    s.material.cohesion_law = law;
+                    s.material.surface_energy = 2;
+                    s.material.rolling_law = rolling;
+                    s.material.rolling_friction = spread > 0 ? 0.1 : 0;
+                    s.material.friction_limit = limit;
+                    compare({law == dem::CohesionLaw::jkr ? "jkr" : "dmt", s, 400});
+                }
+}
+
 TEST(FastAgainstPlain, NewWallsAndRemovedParticles) {
     dem::Setup s = test::boxed_lattice(5, 0.5, 0, 10);
     test::PlainDem plain(s);

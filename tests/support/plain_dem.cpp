@@ -35,7 +35,10 @@ Vec3 cross(const Vec3& a, const Vec3& b) {
 
 struct PlainDem::Contact {
     Vec3 n, velocity, surface;  // v_i - v_j; (R_i - d/2) w_i + (R_j - d/2) w_j
-    double overlap, radius, mass, neck;
+    double overlap, radius, mass;
+    double root;             // radius of the contact
+    double neck;             // attraction
+    double forgiven;         // what Coulomb's limit has beyond the net force
     Vec3 turning;            // w_i - w_j
     double inverse_inertia;  // sum of 1/(7/5 m R^2)
     dem::Material material;  // of both, or of the wall's surface
@@ -82,7 +85,7 @@ void PlainDem::respond(const Contact& c, bool update, Vec3& history, Vec3& force
     const double young = m.youngs_modulus / (2 * (1 - m.poisson_ratio * m.poisson_ratio));
     const double shear = m.youngs_modulus / (4 * (2 - m.poisson_ratio) * (1 + m.poisson_ratio));
     const double log_e = std::log(m.restitution), beta = log_e / std::sqrt(log_e * log_e + pi * pi);
-    const double root = std::sqrt(c.radius * c.overlap);
+    const double root = c.root;
     const double kn = 4.0 / 3 * young * root, kt = 8 * shear * root;
     const double gn = -2 * std::sqrt(5.0 / 6) * beta * std::sqrt(2 * young * root * c.mass);
     const double gt = -2 * std::sqrt(5.0 / 6) * beta * std::sqrt(8 * shear * root * c.mass);
@@ -92,7 +95,7 @@ void PlainDem::respond(const Contact& c, bool update, Vec3& history, Vec3& force
     Vec3 s = history;
     if (update) s = s + setup_.time_step * vt;
     s = s - dot(s, c.n) * c.n;
-    const double limit = m.friction * std::abs(m.friction_limit == dem::FrictionLimit::net ? normal - c.neck : normal);
+    const double limit = m.friction * std::abs(normal - c.neck + c.forgiven);
     Vec3 tangential = (-kt) * s - gt * vt;
     if (kt * norm(s) > limit) {
         tangential = (-limit / norm(s)) * s;
@@ -108,11 +111,18 @@ Vec3 PlainDem::rolling(const Contact& c, bool update, Vec3& history, const Vec3&
     const dem::Material& m = c.material;
     if (m.rolling_friction == 0) return {};
     const double young = m.youngs_modulus / (2 * (1 - m.poisson_ratio * m.poisson_ratio));
-    const double kn = 4.0 / 3 * young * std::sqrt(c.radius * c.overlap);
+    const double kn = 4.0 / 3 * young * c.root;
+    if (m.rolling_law == dem::RollingLaw::cdt) {
+        const double turns = norm(c.turning);
+        if (turns == 0) return {};
+        double elastic = kn * c.overlap;
+        if (m.cohesion_law == dem::CohesionLaw::jkr && m.surface_energy > 0)
+            elastic += 3 * pi * m.surface_energy * c.radius - c.neck;
+        const Vec3 torque = (m.rolling_friction * elastic * c.radius / turns) * c.turning;
+        return (-1.0) * (torque - dot(torque, c.n) * c.n);
+    }
     const double kr = 2.25 * kn * std::pow(m.rolling_friction * c.radius, 2);
-    const double net = dot(force, c.n);
-    const double seen = m.friction_limit == dem::FrictionLimit::net ? net : net + c.neck;
-    const double limit = m.rolling_friction * c.radius * std::abs(seen);
+    const double limit = m.rolling_friction * c.radius * std::abs(dot(force, c.n) + c.forgiven);
     const Vec3 turning = c.turning - dot(c.turning, c.n) * c.n;
     Vec3 moment = history;
     if (update) moment = moment + (setup_.time_step * kr) * turning;
@@ -123,6 +133,35 @@ Vec3 PlainDem::rolling(const Contact& c, bool update, Vec3& history, const Vec3&
     }
     if (update) history = moment;
     return (-1.0) * (moment + viscous);
+}
+
+/// Radius and attraction of a contact; `area` of those that attract by one.
+void PlainDem::attract(Contact& c, double area) const {
+    const dem::Material& m = setup_.material;
+    const double young = m.youngs_modulus / (2 * (1 - m.poisson_ratio * m.poisson_ratio)), w = m.surface_energy;
+    c.root = std::sqrt(c.radius * std::max(c.overlap, 0.0));
+    c.neck = m.cohesion * area;
+    c.forgiven = c.neck;
+    if (m.cohesion_law == dem::CohesionLaw::dmt) c.neck = c.forgiven = 2 * pi * w * c.radius;
+    if (m.cohesion_law == dem::CohesionLaw::jkr && w > 0) {
+        double low = std::cbrt(pi * w * c.radius * c.radius / (8 * young)), high = 10 * c.radius;
+        for (int k = 0; k < 100; ++k) {  // d(a) grows beyond `low`
+            const double a = (low + high) / 2;
+            (a * a / c.radius - std::sqrt(2 * pi * w * a / young) < c.overlap ? low : high) = a;
+        }
+        c.root = low;
+        c.neck = 2.0 / 3 * std::sqrt(2 * pi * w * young * low * low * low);
+        c.forgiven = 3 * pi * w * c.radius;
+    }
+    if (m.friction_limit == dem::FrictionLimit::net) c.forgiven = 0;
+}
+
+/// The overlap at which a contact ends, which lasts beyond touch if it is old and its law is JKR's.
+double PlainDem::end_of_contact(double radius, bool lasts) const {
+    const dem::Material& m = setup_.material;
+    if (!lasts || m.cohesion_law != dem::CohesionLaw::jkr) return 0;
+    const double ratio = 2 * pi * m.surface_energy * (1 - m.poisson_ratio * m.poisson_ratio) / m.youngs_modulus;
+    return -0.75 * std::cbrt(ratio * ratio * radius);
 }
 
 void PlainDem::pair(std::size_t i, std::size_t j, bool update) {
@@ -136,11 +175,13 @@ void PlainDem::pair(std::size_t i, std::size_t j, bool update) {
     const double ri = setup_.spheres[i].radius, rj = setup_.spheres[j].radius;
     if (dot(d, d) > 1.1 * (ri + rj) * (ri + rj)) return;  // far: it left contact, and was forgotten, on its way
     const double r = norm(d), overlap = ri + rj - r;
-    if (overlap <= 0) {
+    if (overlap <= end_of_contact(ri * rj / (ri + rj), pairs_that_last_.contains({i, j}))) {
         pair_history_.erase({i, j});
         pair_rolling_.erase({i, j});
+        pairs_that_last_.erase({i, j});
         return;
     }
+    if (update) pairs_that_last_.insert({i, j});
     largest_overlap_ = std::max(largest_overlap_, overlap / (2 * std::min(ri, rj)));
     Contact c{};
     c.material = m;
@@ -157,7 +198,7 @@ void PlainDem::pair(std::size_t i, std::size_t j, bool update) {
         area = 2 * pi * 2 * c.radius * overlap;
     else
         area = pi * (2 * c.radius * overlap - overlap * overlap) / 4;
-    c.neck = m.cohesion * area;
+    attract(c, area);
     Vec3 force{}, turn{};
     respond(c, update, pair_history_[{i, j}], force, turn);
     f_[i] = f_[i] + force;
@@ -201,11 +242,13 @@ void PlainDem::wall(std::size_t i, std::size_t w, bool update) {
     c.n = pose.turn(c.n);
     c.velocity = v_[i] - geometry::twist_at(wall.motions, t).at(x_[i] - distance * c.n);
     c.overlap = ri - distance;
-    if (c.overlap <= 0) {
+    if (c.overlap <= end_of_contact(ri, at_walls_that_last_.contains({i, w}))) {
         wall_history_.erase({i, w});
         wall_rolling_.erase({i, w});
+        at_walls_that_last_.erase({i, w});
         return;
     }
+    if (update) at_walls_that_last_.insert({i, w});
     c.surface = (ri - c.overlap / 2) * w_[i];
     c.radius = ri;
     c.mass = mass(i);
@@ -213,7 +256,7 @@ void PlainDem::wall(std::size_t i, std::size_t w, bool update) {
                         : m.cohesion_law == dem::CohesionLaw::sjkr2
                             ? 2 * pi * ri * c.overlap
                             : pi * (2 * ri * c.overlap - c.overlap * c.overlap) / 4;
-    c.neck = m.cohesion * area;
+    attract(c, area);
     Vec3 force{}, turn{};
     respond(c, update, wall_history_[{i, w}], force, turn);
     f_[i] = f_[i] + force;

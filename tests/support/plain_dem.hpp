@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -37,6 +38,8 @@ private:
     void forces(bool update);
     void pair(std::size_t i, std::size_t j, bool update);
     void wall(std::size_t i, std::size_t w, bool update);
+    void attract(Contact& c, double area) const;
+    [[nodiscard]] double end_of_contact(double radius, bool lasts) const;
     /// Force on i and n x F_t of one contact.
     void respond(const Contact& c, bool update, dem::Vec3& history, dem::Vec3& force, dem::Vec3& turn) const;
     /// Moment on i of the rolling resistance.
@@ -49,6 +52,7 @@ private:
     std::vector<dem::Vec3> x_, v_, w_, f_, t_;
     std::vector<char> gone_;
     std::map<Key, dem::Vec3> pair_history_, wall_history_, pair_rolling_, wall_rolling_;
+    std::set<Key> pairs_that_last_, at_walls_that_last_;
     std::int64_t wall_steps_ = 0;
     std::int64_t steps_ = 0;
     double largest_overlap_ = 0;

@@ -150,7 +150,20 @@ TEST(Compiled, TheFirstCombinationThatFitsIsTaken) {
     EXPECT_EQ(chosen([](Material& m) { m.cohesion = 1, m.friction = 0; }), 3);
     EXPECT_EQ(chosen([](Material& m) { m.cohesion = 1, m.cohesion_law = CohesionLaw::paper; }), 3);
     EXPECT_EQ(chosen([](Material& m) { m.cohesion = 1, m.friction_limit = FrictionLimit::net; }), 3);
-    EXPECT_EQ(chosen([](Material& m) { m.rolling_friction = 0.1; }), 4);
+    const auto rolling = [](RollingLaw law) {
+        return [law](Material& m) { m.rolling_friction = 0.1, m.rolling_law = law; };
+    };
+    EXPECT_EQ(chosen(rolling(RollingLaw::cdt)), 4);
+    EXPECT_EQ(chosen(rolling(RollingLaw::epsd)), combinations() - 1);
+    EXPECT_EQ(chosen([&](Material& m) { rolling(RollingLaw::cdt)(m), m.cohesion = 1; }), combinations() - 2);
+    const auto adhesive = [&](CohesionLaw law, RollingLaw of_rolling) {
+        return chosen([&](Material& m) { rolling(of_rolling)(m), m.cohesion_law = law, m.surface_energy = 1; });
+    };
+    EXPECT_EQ(adhesive(CohesionLaw::jkr, RollingLaw::epsd), 5);
+    EXPECT_EQ(adhesive(CohesionLaw::jkr, RollingLaw::cdt), 6);
+    EXPECT_EQ(adhesive(CohesionLaw::dmt, RollingLaw::epsd), 7);
+    EXPECT_EQ(adhesive(CohesionLaw::dmt, RollingLaw::cdt), 8);
+    EXPECT_EQ(chosen([](Material& m) { m.cohesion_law = CohesionLaw::jkr; }), 1) << "without surface energy";
     Material plain;  // of many sizes only some are compiled
     plain.friction = 0;
     EXPECT_EQ(

@@ -118,6 +118,8 @@ private:
     void wall_contacts(Contacts& contacts);
     void find_touches(Contacts& contacts);
     void judge_passages(const Contacts& contacts);
+    template <class T>
+    static bool begins(const Laws& laws, T& t, Memory& memory);
     [[nodiscard]] Touch<Partner::particle> touch(std::size_t i, std::size_t j, const Vec3& branch, double r2) const;
     [[nodiscard]] Touch<Partner::wall> touch(std::size_t i, const geometry::Closest& closest, const Vec3& v) const;
     /// Entry k of a column of memories, or `none` where laws remember nothing.
@@ -178,6 +180,7 @@ private:
     double density_;
     double swing_factor_;  // dt^2 2 E*: times sqrt(R* d)/m* it is the square of a contact's phase per step
     double skin_;
+    double beyond_pair_ = 0, beyond_wall_ = 0;  // how far contacts may last beyond touch, m
     std::size_t spheres_at_start_;
     std::vector<Vec3> spin_at_start_;  // by id, where no law turns particles and some spin
 

@@ -26,7 +26,7 @@ template <class Laws, Needs case_needs>
     t.normal = (1 / t.distance) * branch;
     t.effective_radius = effective_radius(i, j);
     t.reduced_mass = reduced_mass(i, j);
-    t.root = std::sqrt(t.effective_radius * t.overlap);
+    t.root = std::sqrt(t.effective_radius * (Laws::reaches ? std::max(t.overlap, 0.0) : t.overlap));
     t.damping_root = std::sqrt(t.root * t.reduced_mass);
     const Vec3 v = p_.velocity[i] - p_.velocity[j];
     t.normal_velocity = dot(v, t.normal);
@@ -53,7 +53,7 @@ template <class Laws, Needs case_needs>
     t.normal = closest.normal;
     t.effective_radius = t.radius_i;
     t.reduced_mass = 1 / inverse_mass(i);
-    t.root = std::sqrt(t.effective_radius * t.overlap);
+    t.root = std::sqrt(t.effective_radius * (Laws::reaches ? std::max(t.overlap, 0.0) : t.overlap));
     t.damping_root = std::sqrt(t.root * t.reduced_mass);
     const Vec3 v = p_.velocity[i] - wall_velocity;
     t.normal_velocity = dot(v, t.normal);
@@ -66,6 +66,15 @@ template <class Laws, Needs case_needs>
     }
     t.time_step = time_step_;
     return t;
+}
+
+/// Where laws reach beyond touch: completes what is near if it is a contact, else ends its memory.
+template <class Laws, Needs case_needs>
+template <class T>
+bool ClearEngine<Laws, case_needs>::begins(const Laws& laws, T& t, Memory& memory) {
+    laws.begin(t, memory.data());
+    if (!t.touching) memory = {};
+    return t.touching;
 }
 
 template <class Laws, Needs case_needs>
@@ -102,7 +111,8 @@ std::size_t ClearEngine<Laws, case_needs>::find_touching(std::size_t first, std:
             const auto entry = list_[k];
             const std::size_t j = entry.j();
             const Vec3 branch = x - (p_.position[j] + image_shifts_[entry.image()]);
-            const double reach = radius_i + radius(j);
+            double reach = radius_i + radius(j);
+            if constexpr (Laws::reaches) reach += beyond_pair_;
             const double r2 = dot(branch, branch);
             const bool inside = r2 < reach * reach;
             touching_[found] = {branch, r2, static_cast<std::uint32_t>(i), k};
@@ -131,15 +141,18 @@ void ClearEngine<Laws, case_needs>::pair_contacts() {
         for (std::size_t c = 0; c < found; ++c) {
             const auto& [branch, r2, i, k] = touching_[c];
             const std::size_t j = list_[k].j();
-            const auto t = touch(i, j, branch, r2);
+            auto t = touch(i, j, branch, r2);
+            Memory none{};
+            Memory& memory = memory_at(pairs_.value, k, none);
+            if constexpr (Laws::reaches)
+                if (!begins(laws_, t, memory)) continue;
             if constexpr (equal_contacts) {
                 largest = std::max(largest, t.overlap);
             } else {
                 largest = std::max(largest, t.overlap / (2 * std::min(t.radius_i, t.radius_j)));
                 stiffest_ = std::max(stiffest_, t.root / t.reduced_mass);
             }
-            Memory none{};
-            const auto r = laws_.template respond<advance>(t, memory_at(pairs_.value, k, none).data());
+            const auto r = laws_.template respond<advance>(t, memory.data());
             const Vec3 f = r.normal * t.normal - r.resistance;
             p_.force[i] += f;
             p_.force[j] -= f;
@@ -165,7 +178,7 @@ void ClearEngine<Laws, case_needs>::pair_contacts() {
 template <class Laws, Needs case_needs>
 void ClearEngine<Laws, case_needs>::find_touches(Contacts& contacts) {
     touched_before_.swap(contacts.touches);
-    contacts.wall.find(contacts.near, p_.position, radii(), 0, contacts.touches);
+    contacts.wall.find(contacts.near, p_.position, radii(), beyond_wall_, contacts.touches);
     if constexpr (Laws::remembers) {
         memory_before_.swap(contacts.memory);
         const auto& before = touched_before_;
@@ -200,11 +213,14 @@ void ClearEngine<Laws, case_needs>::wall_contacts(Contacts& contacts) {
         const auto& [entry, place] = contacts.touches[k];
         const std::size_t i = contacts.near[entry];
         const Vec3 wall_velocity = twist.at(p_.position[i] - place.distance * place.normal);
-        const auto t = touch(i, place, wall_velocity);
+        auto t = touch(i, place, wall_velocity);
+        Memory none{};
+        Memory& memory = memory_at(contacts.memory, k, none);
+        if constexpr (Laws::reaches)
+            if (!begins(contacts.laws, t, memory)) continue;
         largest = std::max(largest, t.overlap / (2 * t.radius_i));
         stiffest_ = std::max(stiffest_, t.root * inverse_mass(i));
-        Memory none{};
-        const auto r = contacts.laws.template respond<advance>(t, memory_at(contacts.memory, k, none).data());
+        const auto r = contacts.laws.template respond<advance>(t, memory.data());
         const Vec3 f = r.normal * t.normal - r.resistance;
         const double arm = t.radius_i - t.overlap / 2;
         p_.force[i] += f;
@@ -242,10 +258,15 @@ void ClearEngine<Laws, case_needs>::for_each_touching_pair(Visit&& visit) const 
         for (std::uint32_t k = list_.begin(i); k < list_.end(i); ++k) {
             const std::size_t j = list_[k].j();
             const Vec3 branch = p_.position[i] - (p_.position[j] + image_shifts_[list_[k].image()]);
-            const double reach = radius(i) + radius(j);
+            double reach = radius(i) + radius(j);
+            if constexpr (Laws::reaches) reach += beyond_pair_;
             const double r2 = dot(branch, branch);
+            if (!(r2 < reach * reach)) continue;
             Memory none{};
-            if (r2 < reach * reach) visit(i, j, touch(i, j, branch, r2), memory_at(pairs_.value, k, none));
+            const Memory& memory = memory_at(pairs_.value, k, none);
+            auto t = touch(i, j, branch, r2);
+            if constexpr (Laws::reaches) laws_.begin(t, memory.data());
+            if (t.touching) visit(i, j, t, memory);
         }
 }
 
@@ -261,7 +282,9 @@ void ClearEngine<Laws, case_needs>::for_each_touched_wall(Visit&& visit) const {
             Memory memory{};
             if constexpr (Laws::remembers) memory = contacts.memory[k];
             const Vec3 v = contacts.wall.twist().at(p_.position[i] - place.distance * place.normal);
-            visit(i, w, touch(i, place, v), memory);
+            auto t = touch(i, place, v);
+            if constexpr (Laws::reaches) contacts.laws.begin(t, memory.data());
+            if (t.touching) visit(i, w, t, memory);
         }
     }
 }

@@ -50,6 +50,10 @@ ClearEngine<Laws, case_needs>::ClearEngine(const Setup& setup, const Method& met
         smallest = std::min(smallest, s.radius);
     }
     largest_radius_ = largest;
+    if constexpr (Laws::reaches) {
+        beyond_pair_ = Laws::beyond(material_, largest / 2);
+        beyond_wall_ = Laws::beyond(material_, largest);
+    }
     if constexpr (!needs.spin) {
         spin_at_start_.resize(n);
         for (std::size_t i = 0; i < n; ++i) spin_at_start_[i] = setup.spheres[i].angular_velocity;
@@ -64,7 +68,8 @@ ClearEngine<Laws, case_needs>::ClearEngine(const Setup& setup, const Method& met
         skin_ = default_skin * 2 * smallest;
         // Two images of one particle must never reach the same partner.
         for (std::size_t k = 0; k < 3; ++k)
-            if (domain_.periodic[k]) skin_ = std::min(skin_, 0.999 * (domain_.length(k) / 2 - 2 * largest));
+            if (domain_.periodic[k])
+                skin_ = std::min(skin_, 0.999 * (domain_.length(k) / 2 - 2 * largest) - beyond_pair_);
     }
     walls_ = make_walls(setup.walls);
     rebuild();
@@ -174,7 +179,7 @@ void ClearEngine<Laws, case_needs>::rebuild(std::span<const std::int32_t> remove
         if ((mobile(i) && domain_.outside(x)) || leaving.contains(p_.id[i])) continue;
         staying.push_back(i);
     }
-    cells_.sort(p_.position, staying, radii(), skin_, domain_);
+    cells_.sort(p_.position, staying, radii(), skin_ + beyond_pair_, domain_);
     std::vector<std::uint32_t> fresh_index(p_.size(), particles::gone);
     const auto order = cells_.order();
     for (std::uint32_t k = 0; k < order.size(); ++k) fresh_index[order[k]] = k;
@@ -184,12 +189,12 @@ void ClearEngine<Laws, case_needs>::rebuild(std::span<const std::int32_t> remove
     const auto matters = [this](std::size_t i, std::size_t j) { return mobile(i) || mobile(j); };
     if constexpr (Laws::remembers) {
         particles::NeighbourList fresh;
-        fresh.build(cells_, p_.position, radii(), skin_, domain_, matters);
+        fresh.build(cells_, p_.position, radii(), skin_ + beyond_pair_, domain_, matters);
         pairs_.carry(list_, fresh, fresh_index, exchanged());
         list_ = std::move(fresh);
         if constexpr (Laws::remembers_separation) forget_separated();
     } else {
-        list_.build(cells_, p_.position, radii(), skin_, domain_, matters);
+        list_.build(cells_, p_.position, radii(), skin_ + beyond_pair_, domain_, matters);
     }
     list_walls(fresh_index);
     position_at_build_ = p_.position;
@@ -244,7 +249,7 @@ void ClearEngine<Laws, case_needs>::list_walls(std::span<const std::uint32_t> fr
     for (auto& contacts : walls_) {
         const auto before = std::move(contacts.near);
         contacts.near.clear();
-        contacts.wall.find(all, p_.position, radii(), skin_, within);
+        contacts.wall.find(all, p_.position, radii(), skin_ + beyond_wall_, within);
         for (const WallTouch& touch : within)
             if (contacts.near.empty() || contacts.near.back() != all[touch.entry])
                 contacts.near.push_back(all[touch.entry]);

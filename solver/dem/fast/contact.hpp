@@ -21,7 +21,14 @@ struct Kernel {
     static constexpr bool spin = Laws::spin;
     static constexpr bool rolls = Laws::rolls;
     static constexpr int histories = Laws::memories;
+    static constexpr bool reaches = Laws::reaches;
 };
+
+/// Lanes that may be contacts, before laws that reach beyond touch decide.
+template <class Kernel>
+GRAINSWEEP_LANES M may_touch(F depth) {
+    return broadcast(Kernel::reaches ? -1e30f : 0.0f) < depth;
+}
 
 /// Kinematics of one contact per lane, with the words of dem::Touch.
 template <class Kernel, Partner partner>
@@ -47,12 +54,18 @@ struct Meeting {
     GRAINSWEEP_LANES void derive() {
         effective_radius = root_radius * root_radius;
         normal_velocity = dot(velocity, normal);
-        overlap = max(overlap, broadcast(1e-30f));
+        const F squeezed = max(overlap, broadcast(1e-30f));
+        if constexpr (!Kernel::reaches) overlap = squeezed;
         // sqrt(R* d) and its root: one by the divider, one by multiplications, so that both units work
-        root = root_radius * sqrt(overlap);
+        root = root_radius * sqrt(squeezed);
         root_of_root = root * inverse_root(root);
         // tangential velocity at the contact: v - v_n n - surface x n
         if constexpr (Kernel::spin) slip = add_cross(fnma(normal_velocity, normal, velocity), normal, surface);
+    }
+    GRAINSWEEP_LANES void hold(M holds) { touching = touching & holds; }
+    GRAINSWEEP_LANES void touch_over(F contact_radius) {
+        root = contact_radius;
+        root_of_root = root * inverse_root(root);
     }
     GRAINSWEEP_LANES F damped(const Arithmetic<F>::Damping& d) const {
         if constexpr (partner == Partner::wall)
@@ -100,6 +113,7 @@ struct Outcome {
 template <class Kernel, Partner partner>
 GRAINSWEEP_LANES Outcome respond(const typename Kernel::Laws& laws, Meeting<Kernel, partner>& m, F* memory) {
     m.derive();
+    if constexpr (Kernel::reaches) laws.begin(m, memory);
     const Response<F> r = laws.template respond<true>(m, memory);
     Outcome o{};
     if constexpr (Kernel::spin) {

@@ -13,7 +13,15 @@ using namespace geometry;
 
 ContactReader::ContactReader(const AnyContact& laws, const ListSpace& space, const Field& field, const std::int32_t* id,
                              std::span<const Motion> motions, std::int32_t width, std::span<const ParkedContact> parked)
-    : laws_(laws), space_(space), field_(field), id_(id), motions_(motions), width_(width), parked_(parked) {
+    : laws_(laws),
+      space_(space),
+      field_(field),
+      id_(id),
+      motions_(motions),
+      width_(width),
+      parked_(parked),
+      beyond_pair_(space.scale.length * static_cast<double>(field.constants.beyond)),
+      beyond_wall_(space.scale.length * static_cast<double>(field.constants.beyond_wall)) {
     std::ranges::transform(laws.memory(), memory_unit_.begin(),
                            [&](const MemoryKind& kind) { return unit_of(kind.dimension, space.scale); });
 }
@@ -47,7 +55,7 @@ void ContactReader::add(const AnyContact& laws, Touch<partner> t, std::int32_t i
     into.push_back({id_[i], second, t.overlap, t.normal, r.normal, -r.resistance, -r.rolling});
 }
 
-bool ContactReader::touches(std::int32_t i, std::int32_t j, Touch<Partner::particle>& t) const {
+bool ContactReader::touches(std::int32_t i, std::int32_t j, const Memory& memory, Touch<Partner::particle>& t) const {
     const Record &a = field_.records[i], &b = field_.records[j];
     Vec3 branch{};
     for (std::size_t axis = 0; axis < 3; ++axis)  // the difference of two positions is that of the nearest images
@@ -56,16 +64,16 @@ bool ContactReader::touches(std::int32_t i, std::int32_t j, Touch<Partner::parti
                        space_.scale.unit[axis];
     t.radius_i = radius(i);
     t.radius_j = radius(j);
-    const double reach = t.radius_i + t.radius_j;
+    const double sum = t.radius_i + t.radius_j, reach = sum + beyond_pair_;
     const double square = dot(branch, branch);
     if (!(square < reach * reach)) return false;
     t.distance = std::sqrt(square);
-    t.overlap = reach - t.distance;
-    if (!(t.overlap > 0) || (!(a.inverse_mass > 0) && !(b.inverse_mass > 0))) return false;
+    t.overlap = sum - t.distance;
+    if (!(a.inverse_mass > 0) && !(b.inverse_mass > 0)) return false;
     t.normal = (1 / t.distance) * branch;
-    t.effective_radius = t.radius_i * t.radius_j / reach;
-    t.root = std::sqrt(t.effective_radius * t.overlap);
-    return true;
+    t.effective_radius = t.radius_i * t.radius_j / sum;
+    t.root = std::sqrt(t.effective_radius * std::max(t.overlap, 0.0));
+    return laws_.begin(t, memory.data());
 }
 
 template <class Visit>
@@ -77,12 +85,14 @@ void ContactReader::for_each_pair(Visit&& visit) const {
         const bool remembered = (field_.touching[k / width_] >> (k % width_) & 1) != 0;
         const std::int64_t at = remembered ? stream++ : 0;
         if (i >= field_.count || j >= field_.count) continue;  // they fill the list up
+        const Memory of_pair = remembered ? memory(field_.history, at) : Memory{};
         Touch<Partner::particle> t;
-        if (touches(i, j, t)) visit(i, j, t, remembered ? memory(field_.history, at) : Memory{});
+        if (touches(i, j, of_pair, t)) visit(i, j, t, of_pair);
     }
     for (const ParkedContact& p : parked_) {
+        const Memory of_pair = memory(p);
         Touch<Partner::particle> t;
-        if (touches(p.first, p.second, t)) visit(p.first, p.second, t, memory(p));
+        if (touches(p.first, p.second, of_pair, t)) visit(p.first, p.second, t, of_pair);
     }
 }
 
@@ -104,10 +114,11 @@ void ContactReader::stand_still(ParkedContact& contact) const {
     contact.overlap = 0;
     std::fill_n(contact.force, 3, 0.0F);
     std::fill_n(contact.torque[0], 6, 0.0F);
-    if (!touches(contact.first, contact.second, t)) return;
+    const Memory of_pair = memory(contact);
+    if (!touches(contact.first, contact.second, of_pair, t)) return;
     complete(contact.first, contact.second, t);
     std::vector<ContactForce> one;
-    add(laws_, t, contact.first, contact.second, {}, {}, {}, memory(contact), one);
+    add(laws_, t, contact.first, contact.second, {}, {}, {}, of_pair, one);
     const ContactForce& c = one.front();
     const Scale& s = space_.scale;
     const double unit = s.mass * s.length / (s.time * s.time);
@@ -142,18 +153,19 @@ void ContactReader::for_each_at_wall(const Walls& walls, std::size_t w, Visit&& 
         if (i >= field_.count) continue;  // fills the segment up
         const Vec3 x = wall.image().of(position_of(field_.records[i], space_.scale));
         touched.clear();
-        wall.find(0, x, radius(i), touched);
+        wall.find(0, x, radius(i) + beyond_wall_, touched);
         for (const auto& [entry, closest] : touched) {
             Touch<Partner::wall> t;
             t.radius_i = t.effective_radius = radius(i);
             t.distance = closest.distance;
             t.overlap = t.radius_i - closest.distance;
             const bool single = walls.is_single(w);
-            if (!(t.overlap > 0) || (!single && found == field_.touched[w].end)) continue;
+            if (!single && (!(t.overlap > -beyond_wall_) || found == field_.touched[w].end)) continue;
+            const Memory of_contact = single ? memory(field_.wall_history, k) : memory(field_.touch_memory, found++);
             t.normal = closest.normal;
-            t.root = std::sqrt(t.effective_radius * t.overlap);
-            visit(i, wall.twist().at(x - closest.distance * closest.normal), t,
-                  single ? memory(field_.wall_history, k) : memory(field_.touch_memory, found++));
+            t.root = std::sqrt(t.effective_radius * std::max(t.overlap, 0.0));
+            if (!walls.laws(w).begin(t, of_contact.data())) continue;
+            visit(i, wall.twist().at(x - closest.distance * closest.normal), t, of_contact);
         }
     }
 }

@@ -49,7 +49,7 @@ private:
     [[nodiscard]] double radius(std::int32_t i) const;
     [[nodiscard]] double mass(std::int32_t i) const;  ///< kg; infinite where frozen
     [[nodiscard]] Memory memory(const float* const* column, std::int64_t at) const;
-    [[nodiscard]] bool touches(std::int32_t i, std::int32_t j, Touch<Partner::particle>& t) const;
+    [[nodiscard]] bool touches(std::int32_t i, std::int32_t j, const Memory& memory, Touch<Partner::particle>& t) const;
     /// Calls visit(i, j, touch, memory) for the pairs that touch, with the geometry of the touch only.
     template <class Visit>
     void for_each_pair(Visit&& visit) const;
@@ -69,6 +69,7 @@ private:
     std::span<const Motion> motions_;
     std::int32_t width_;
     std::span<const ParkedContact> parked_;
+    double beyond_pair_ = 0, beyond_wall_ = 0;  // m
     Memory memory_unit_{};
 };
 

@@ -87,6 +87,17 @@ struct Arithmetic<fast::F> {
     }
     GRAINSWEEP_LANES static V3 vector(const F* memory) { return {memory[0], memory[1], memory[2]}; }
     GRAINSWEEP_LANES static void remember(F* memory, V3 v) { memory[0] = v.x, memory[1] = v.y, memory[2] = v.z; }
+    static constexpr int iterations = 4;
+    GRAINSWEEP_LANES static F divided(F a, F b) { return a * fast::inverse(b); }
+    GRAINSWEEP_LANES static F larger(F a, F b) { return fast::max(a, b); }
+    GRAINSWEEP_LANES static F smaller(F a, F b) { return fast::min(a, b); }
+    /// a^(21/64), and Newton's method for a^(1/3): the guess is within 5 % for a > 1e-4, 13 % for a > 1e-11.
+    GRAINSWEEP_LANES static F cbrt(F a) {
+        const F fourth = sqrt(sqrt(a)), sixteenth = sqrt(sqrt(fourth));
+        F y = fourth * sixteenth * sqrt(sqrt(sixteenth));
+        for (int k = 0; k < 3; ++k) y = (y + y + divided(a, y * y)) * number(1.0 / 3);
+        return y;
+    }
     GRAINSWEEP_LANES static F product(F a, F b, F c) { return a * (b * c); }
     GRAINSWEEP_LANES static F fnma(F a, F b, F c) { return fast::fnma(a, b, c); }
     GRAINSWEEP_LANES static F abs(F a) { return fast::abs(a); }
@@ -95,6 +106,7 @@ struct Arithmetic<fast::F> {
     GRAINSWEEP_LANES static V3 add(V3 v, F factor, V3 w) { return fast::fma(w, factor, v); }
     GRAINSWEEP_LANES static V3 across(V3 v, V3 n) { return fast::fnma(dot(v, n), n, v); }
     GRAINSWEEP_LANES static V3 scaled(V3 v, F factor) { return v * factor; }
+    GRAINSWEEP_LANES static V3 directed(F size, V3 v) { return v * (size * fast::inverse_root(square(v, 1e-37f))); }
     GRAINSWEEP_LANES static Cut<F, Mask> cut(F k, V3 s, F limit) { return cut_to(k * k * square(s, 1e-30f), limit); }
     GRAINSWEEP_LANES static Cut<F, Mask> cut(V3 s, F limit) { return cut_to(square(s, 1e-37f), limit); }
     GRAINSWEEP_LANES static V3 spring(F k, F scale, V3 s, F viscosity, V3 v) {

@@ -73,6 +73,7 @@ struct Constants {
     float radius;                    ///< of all particles where they are equal
     double reach_squared;            ///< (2 radius)^2, exact
     float candidate_squared;         ///< the same, enlarged by the rounding of single precision
+    float beyond, beyond_wall;       ///< how far contacts may last beyond touch, of pairs and at walls
     float root_radius;               ///< sqrt(R*) of an equal pair
     float rotation;                  ///< 2.5/R^2 where radii are equal
     double laws[constants_at_most];  ///< of the combination of laws, in order

@@ -48,7 +48,7 @@ struct Grid {
 /// neighbours lie close in memory.
 Grid make_grid(const Field& f, const ListSpace& space) {
     Grid g;
-    const double cut = (1.0 + space.skin) * (1 + 1e-5);
+    const double cut = (1.0 + space.skin + f.constants.beyond) * (1 + 1e-5);
     for (int a = 0; a < 3; ++a) {
         const double unit = f.constants.unit[a];
         Axis& axis = g.axis[a];
@@ -162,7 +162,7 @@ void pad_pairs(const Field& f, Columns& c) {
 void find_pairs(Field& f, Columns& c, const Kernels& kernels, const ListSpace& space) {
     for (;;) {
         f.outer_capacity = static_cast<std::int32_t>(c.outer_first.capacity()) - spare;
-        const std::int64_t found = kernels.search(f, space.skin);
+        const std::int64_t found = kernels.search(f, space.skin + f.constants.beyond);
         if (found + spare <= f.outer_capacity) {
             f.outer_count = static_cast<std::int32_t>(found);
             break;

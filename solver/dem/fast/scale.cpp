@@ -65,6 +65,9 @@ Constants make_constants(const Setup& setup, const Scale& scale, const Needs& ne
     c.radius = 0.5F;
     c.reach_squared = 1;
     c.candidate_squared = 1 + 4e-6F;
+    const auto contact = make_contact(needs.combination, setup.material);
+    c.beyond = static_cast<float>(contact->beyond(0.25 * scale.length) / scale.length);
+    c.beyond_wall = static_cast<float>(contact->beyond(0.5 * scale.length) / scale.length);
     c.root_radius = 0.5F;
     c.rotation = needs.unequal ? 2.5F : 10.0F;
     write_law_constants(needs.combination, setup.material, scale, c.laws);

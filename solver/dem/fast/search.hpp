@@ -134,6 +134,7 @@ std::int32_t refresh(const Field& f, float skin) {
         F limit = broadcast(cut * cut * rounding_allowance), reach;
         if constexpr (unequal) {
             reach = load(f.outer_reach + k);
+            reach = reach + broadcast(c.beyond);
             const F far = reach + broadcast(skin);
             limit = far * far * broadcast(rounding_allowance);
             reach = reach * reach * broadcast(rounding_allowance);

@@ -134,7 +134,7 @@ GRAINSWEEP_PHASE void meet(const Field& f, const typename Kernel::Laws& laws, Pa
         const F square = max(single(reach_squared) - near, broadcast(1e-12f));
         Meeting<Kernel, Partner::particle> m;
         m.time_step = broadcast(f.history_step);
-        m.touching = broadcast(0.0f) < near;
+        m.touching = may_touch<Kernel>(near);
         const F inverse_distance = inverse_root(square);
         m.overlap = near * inverse(fma(square, inverse_distance, reach));
         m.normal = {single(ix) * (inverse_distance * broadcast(c.unit_single[0])),

@@ -70,7 +70,7 @@ GRAINSWEEP_PHASE void press(const Field& f, const typename Kernel::Laws& laws, W
         m.time_step = broadcast(f.history_step);
         m.radius = radius;
         m.overlap = load(t.overlap + at);
-        m.touching = broadcast(0.0f) < m.overlap;
+        m.touching = may_touch<Kernel>(m.overlap);
         m.normal = load_vector(t.normal, at);
         m.velocity = V3{rows[0], rows[1], rows[2]} - surface_velocity;
         const F half_overlap = broadcast(0.5f) * m.overlap;

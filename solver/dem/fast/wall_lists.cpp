@@ -54,7 +54,7 @@ void list_wall_contacts(Field& f, Columns& c, const Kernels& kernels, const List
     const std::int32_t old_count = keep && f.wall_count > 0 ? f.segments[f.wall_count - 1].end : 0;
     const std::vector<Place> old_particle(f.wall_particle, f.wall_particle + old_count);
     const Mobile mobile(walls.count() > 0 ? f : Field{}, space.scale);
-    const double near = static_cast<double>(space.skin) * (1 + 1e-5) * space.scale.length;
+    const double near = static_cast<double>(space.skin + f.constants.beyond_wall) * (1 + 1e-5) * space.scale.length;
     std::vector<WallTouch> within;
     for (std::size_t w = 0; w < walls.count(); ++w) {
         const WallSegment old = f.segments[w];

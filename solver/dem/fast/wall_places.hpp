@@ -115,7 +115,7 @@ GRAINSWEEP_LANES void store(float (&rows)[3][tile + 2 * width], int at, V3 a, un
     store(rows[2] + at, compress(a.z, lanes));
 }
 
-/// Packs what touches from p.slot on, up to `end` or until a tile is full.
+/// Packs what touches, or may still hold, from p.slot on, up to `end` or until a tile is full.
 template <class S>
 GRAINSWEEP_PHASE void find_places(const Field& f, const PlacedWall& w, std::int32_t end, WallTile& t, WallProgress& p) {
     Place partner[width];
@@ -128,7 +128,7 @@ GRAINSWEEP_PHASE void find_places(const Field& f, const PlacedWall& w, std::int3
         const D3 r = positions_at(f, w, particle, partner);
         const geometry::Near<D> surface = nearest<S>(w, r);
         const F overlap = single(exact(radii_of(f.records, particle)) - surface.distance);
-        const unsigned lanes = bits(broadcast(0.0f) < overlap);
+        const unsigned lanes = bits(broadcast(-f.constants.beyond_wall) < overlap);
         p.touch[b] = static_cast<std::uint16_t>(lanes);
         if (lanes == 0) continue;
         const D3 normal{surface.x, surface.y, surface.z};

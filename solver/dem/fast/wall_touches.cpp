@@ -49,7 +49,8 @@ void WallTouches::find(Field& f, Columns& c, const Walls& walls, const Scale& sc
         segment_[w].begin = segment_[w].end = static_cast<std::int32_t>(particle_.size());
         if (walls.is_single(w)) continue;
         gather_near(f, w, scale);
-        walls[w].find(near_, position_, {0, radius_}, 0, now_);
+        const double beyond = static_cast<double>(f.constants.beyond_wall) * scale.length;
+        walls[w].find(near_, position_, {0, radius_}, beyond, now_);
         c.hold_touches(particle_.size() + now_.size());
         inherit(walls[w], old, c);
         write(c, walls[w], scale);

@@ -48,6 +48,11 @@ struct Arithmetic<double> {
     static void remember(double* memory, const Vector& v) {
         for (std::size_t k = 0; k < 3; ++k) memory[k] = v[k];
     }
+    static constexpr int iterations = 6;  ///< of Newton's method that begins with one digit
+    static double divided(double a, double b) { return a / b; }
+    static double larger(double a, double b) { return a < b ? b : a; }
+    static double smaller(double a, double b) { return b < a ? b : a; }
+    static double cbrt(double a) { return std::cbrt(a); }  ///< a > 0
     static double product(double a, double b, double c) { return a * b * c; }
     static double fnma(double a, double b, double c) { return c - a * b; }  ///< c - a b
     static double abs(double a) { return std::abs(a); }
@@ -61,6 +66,11 @@ struct Arithmetic<double> {
     /// v without its part along n.
     static Vector across(const Vector& v, const Vector& n) { return add(v, -geometry::dot(v, n), n); }
     static Vector scaled(const Vector& v, double factor) { return geometry::operator*(factor, v); }
+    /// A vector of this size in the direction of v, 0 where v is 0.
+    static Vector directed(double size, const Vector& v) {
+        const double length = geometry::norm(v);
+        return scaled(v, length > 0 ? size / length : 0.0);
+    }
     /// Of k |s| against a limit.
     static Cut<double, bool> cut(double k, const Vector& s, double limit) {
         return cut_to(k * std::sqrt(geometry::dot(s, s)), limit);

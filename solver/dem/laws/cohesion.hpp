@@ -22,8 +22,9 @@ namespace grainsweep::dem {
             return {.band = 4 * pi, .wall_band = 2 * pi};
         case CohesionLaw::paper:
             return {.cap = pi / 4, .wall_cap = pi / 4};
+        default:
+            return {};  // not by area
     }
-    return {};
 }
 
 /// `lens`: sjkr of which friction sees nothing, the case worth a law of its own.
@@ -33,8 +34,9 @@ struct CohesionOver : LawTraits {
     static constexpr Aspect aspect = Aspect::cohesion;
     static constexpr int constants = 7;
 
-    static bool wanted(const Material& m) { return m.cohesion > 0; }
+    static bool wanted(const Material& m) { return m.cohesion > 0 && !acts_by_surface_energy(m.cohesion_law); }
     static bool suits(const Material& m) {
+        if (acts_by_surface_energy(m.cohesion_law)) return !(m.surface_energy > 0);
         return !lens || (m.cohesion_law == CohesionLaw::sjkr && m.friction_limit == FrictionLimit::contact);
     }
     static std::array<Quantity, constants> constants_of(const Material& m) {

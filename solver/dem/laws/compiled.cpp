@@ -16,7 +16,10 @@ void for_each_combination(CombinationList<Combinations...>, F&& f) {
 template <class C>
 class ContactOf final : public AnyContact {
 public:
-    explicit ContactOf(const Material& m) : AnyContact(C::memory_kinds()), laws_(C::of(m)) {}
+    explicit ContactOf(const Material& m) : AnyContact(C::memory_kinds()), material_(m), laws_(C::of(m)) {}
+    double beyond(double effective_radius) const override { return C::beyond(material_, effective_radius); }
+    bool begin(Touch<Partner::particle>& t, const double* memory) const override { return begun(t, memory); }
+    bool begin(Touch<Partner::wall>& t, const double* memory) const override { return begun(t, memory); }
     Response<double> respond(const Touch<Partner::particle>& t, double* memory) const override {
         return laws_.template respond<false>(t, memory);
     }
@@ -31,6 +34,14 @@ public:
     }
 
 private:
+    template <class T>
+    bool begun(T& t, const double* memory) const {
+        if constexpr (!C::reaches) return t.overlap > 0;
+        laws_.begin(t, memory);
+        return t.touching;
+    }
+
+    Material material_;
     C laws_;
 };
 

@@ -3,8 +3,11 @@
 #pragma once
 
 #include "solver/dem/laws/cohesion.hpp"
+#include "solver/dem/laws/constant_torque.hpp"
 #include "solver/dem/laws/contact.hpp"
+#include "solver/dem/laws/dmt.hpp"
 #include "solver/dem/laws/hertz.hpp"
+#include "solver/dem/laws/jkr.hpp"
 #include "solver/dem/laws/mindlin.hpp"
 #include "solver/dem/laws/rolling.hpp"
 
@@ -42,6 +45,12 @@ using Compiled = CombinationList<Combination<Columns::equal, Hertz>,            
                                  Combination<Columns::sizes, Hertz, Mindlin>,                              //
                                  Combination<Columns::equal, Hertz, Mindlin, LensCohesion>,                //
                                  Combination<Columns::any, Hertz, Cohesion, Mindlin>,                      //
+                                 Combination<Columns::any, Hertz, Mindlin, ConstantTorque>,                //
+                                 Combination<Columns::any, Hertz, Jkr, Mindlin, RollingResistance>,        //
+                                 Combination<Columns::any, Hertz, Jkr, Mindlin, ConstantTorque>,           //
+                                 Combination<Columns::any, Hertz, Dmt, Mindlin, RollingResistance>,        //
+                                 Combination<Columns::any, Hertz, Dmt, Mindlin, ConstantTorque>,           //
+                                 Combination<Columns::any, Hertz, Cohesion, Mindlin, ConstantTorque>,      //
                                  Combination<Columns::any, Hertz, Cohesion, Mindlin, RollingResistance>>;  //
 
 /// Calls visit.operator()<Combination>() for number `index` of the list.
@@ -78,6 +87,11 @@ public:
     /// Of every component of the memory.
     [[nodiscard]] const std::vector<MemoryKind>& memory() const { return memory_; }
     /// Forces at the present memory, which stays as it is.
+    /// How far contacts may last beyond touch, m.
+    [[nodiscard]] virtual double beyond(double effective_radius) const = 0;
+    /// Whether a near pair, or a particle near a wall, is a contact; completes it.
+    [[nodiscard]] virtual bool begin(Touch<Partner::particle>& t, const double* memory) const = 0;
+    [[nodiscard]] virtual bool begin(Touch<Partner::wall>& t, const double* memory) const = 0;
     [[nodiscard]] virtual Response<double> respond(const Touch<Partner::particle>& t, double* memory) const = 0;
     [[nodiscard]] virtual Response<double> respond(const Touch<Partner::wall>& t, double* memory) const = 0;
     [[nodiscard]] virtual double energy(const Touch<Partner::particle>& t, const double* memory) const = 0;
@@ -89,7 +103,7 @@ private:
 [[nodiscard]] std::unique_ptr<const AnyContact> make_contact(int combination, const Material& material);
 
 /// Components of the longest memory.
-inline constexpr int memories_at_most = 6;
+inline constexpr int memories_at_most = 7;
 /// Constants of the longest combination.
 inline constexpr int constants_at_most = 20;
 

@@ -4,6 +4,7 @@
 #include "solver/dem/laws/touch.hpp"
 #include "solver/dem/material.hpp"
 
+#include <algorithm>
 #include <type_traits>
 #include <vector>
 
@@ -16,6 +17,7 @@ template <class Real, template <class> class... Laws>
 struct Contact : Laws<Real>... {
     static constexpr bool spin = (Laws<Real>::spin || ...);
     static constexpr bool rolls = (Laws<Real>::rolls || ...);
+    static constexpr bool reaches = (Laws<Real>::reaches || ...);
     static constexpr bool remembers_separation = (Laws<Real>::remembers_separation || ...);
     /// Components of its memory.
     static constexpr int memories = (0 + ... + Laws<Real>::memory_kind.components);
@@ -25,6 +27,18 @@ struct Contact : Laws<Real>... {
 
     /// From the constants of all laws, in order.
     explicit Contact(const double* c) : Laws<Real>(c + constants_before<Laws<Real>>())... {}
+
+    /// Where a law reaches beyond touch, once before the rest: whether a near pair is a contact, and its radius.
+    template <class T>
+    [[gnu::always_inline]] void begin(T& t, const Real* memory) const {
+        (Laws<Real>::begin(t, memory + memory_before<Laws<Real>>()), ...);
+    }
+    /// How far contacts may last beyond touch, m.
+    [[nodiscard]] static double beyond(const Material& m, double effective_radius) {
+        double largest = 0;
+        ((largest = std::max(largest, Laws<Real>::beyond(m, effective_radius))), ...);
+        return largest;
+    }
 
     /// Force of a touching pair; `advance` true: memories move on by one time step.
     template <bool advance, class T>

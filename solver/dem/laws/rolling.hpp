@@ -29,7 +29,7 @@ struct RollingResistance : LawTraits {
     static constexpr int constants = 3;
 
     static bool wanted(const Material& m) { return m.rolling_friction > 0; }
-    static bool suits(const Material&) { return true; }
+    static bool suits(const Material& m) { return m.rolling_law == RollingLaw::epsd || !wanted(m); }
     static std::array<Quantity, constants> constants_of(const Material& m) {
         const double mu_r = m.rolling_friction;
         return {{{2.25 * mu_r * mu_r * (4.0 / 3.0 * effective_modulus(m)), pressure},

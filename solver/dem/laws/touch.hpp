@@ -10,6 +10,7 @@
 
 namespace grainsweep::dem {
 
+struct Material;
 using geometry::Vec3;
 
 /// What touches particle i. A wall has R* = R and m* = m, whatever its curvature.
@@ -33,6 +34,7 @@ struct Touch {
     Vec3 turning{};               ///< w_i - w_j, rad/s; only where a law resists rolling
     double rolling_inertia = 0;   ///< 1/(1/I_i + 1/I_j), I = 7/5 m R^2 about the contact, kg m2; likewise
     double time_step = 0;         ///< s, by which memories advance
+    bool touching = true;         ///< false: near, and no law makes it a contact
 
     /// The damper of a coefficient, N s/m.
     [[nodiscard]] double damped(const Arithmetic::Damping& d) const { return d.coefficient * damping_root; }
@@ -53,7 +55,14 @@ struct Touch {
             return f.strength * (disc + f.form.band * effective_radius * overlap + f.form.cap * cap * overlap);
         }
     }
-    /// x where the contact is one: always.
+    /// For laws that reach beyond touch: it is a contact only where `holds`.
+    void hold(bool holds) { touching = touching && holds; }
+    /// Its radius is not Hertz's but this.
+    void touch_over(double contact_radius) {
+        root = contact_radius;
+        damping_root = std::sqrt(root * reduced_mass);
+    }
+    /// x where the contact is one: always, when laws are applied.
     template <class X>
     [[nodiscard]] const X& kept(const X& x) const {
         return x;
@@ -81,7 +90,8 @@ struct Dimension {
     double length = 0, mass = 0, time = 0, inertia = 0;
 };
 inline constexpr Dimension number{}, length{.length = 1}, pressure{.length = -1, .mass = 1, .time = -2},
-    root_of_pressure{.length = -0.5, .mass = 0.5, .time = -1}, moment{.length = 2, .mass = 1, .time = -2};
+    root_of_pressure{.length = -0.5, .mass = 0.5, .time = -1}, energy_per_area{.mass = 1, .time = -2},
+    moment{.length = 2, .mass = 1, .time = -2};
 
 /// A constant of a law, in SI.
 struct Quantity {
@@ -104,6 +114,13 @@ struct LawTraits {
     static constexpr bool spin = false;   ///< needs the slip, and turns particles
     static constexpr bool rolls = false;  ///< resists rolling: needs `turning`
     static constexpr MemoryKind memory_kind{};
+    /// Contacts may last beyond touch, by beyond(material, R*), m, where the overlap is negative: begin(touch, memory)
+    /// says whether a near pair is a contact and what its radius is, before laws are applied. Only for combinations
+    /// that are compiled for any spheres.
+    static constexpr bool reaches = false;
+    static double beyond(const Material&, double) { return 0; }
+    template <class T>
+    void begin(T&, const void*) const {}
     /// The memory of a pair outlives a separation: until the neighbour list is rebuilt, and beyond if the pair touches
     /// again at that moment.
     static constexpr bool remembers_separation = false;
