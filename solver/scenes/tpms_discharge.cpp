@@ -295,7 +295,8 @@ double estimate_cost(const Inputs& inputs) {
     const TpmsQuestion question(inputs, 1);
     const double spheres = 1.18 * std::pow(question.edge, 3);
     const double steps = question.end_time * question.free_fall_time() / question.time_step;
-    const double cohesive = std::min(1.0, question.material.cohesion / 35e3);
+    const double cohesive =
+        std::min(1.0, question.material.cohesion / 35e3 + (question.material.surface_energy > 0 ? 1 : 0));
     const double mobile = 0.42 * spheres * (0.25 + 0.5 * cohesive);
     const bool mixed = question.precision == dem::Method::Precision::mixed;
     return steps * mobile * (mixed ? 25e-9 : 150e-9) + 4e-5 * spheres;

@@ -116,7 +116,7 @@ TEST(FastAgainstPlain, AConstantTorqueAgainstRolling) {
             s.material.rolling_friction = 0.2;
             s.material.rolling_law = dem::RollingLaw::cdt;
             s.material.cohesion = cohesion;
-            compare({"constant_torque", s, 300});
+            test::compare_with_plain({"constant_torque", s, 300});
         }
 }
 
@@ -132,7 +132,7 @@ TEST(FastAgainstPlain, SurfaceEnergy) {
                     s.material.rolling_law = rolling;
                     s.material.rolling_friction = spread > 0 ? 0.1 : 0;
                     s.material.friction_limit = limit;
-                    compare({law == dem::CohesionLaw::jkr ? "jkr" : "dmt", s, 400});
+                    test::compare_with_plain({law == dem::CohesionLaw::jkr ? "jkr" : "dmt", s, 400});
                 }
 }
 

@@ -30,8 +30,9 @@ Inputs defaults(const std::vector<ParameterSpec>& specs) {
 std::vector<ParameterSpec> block() {
     return kit::declared(powder.diameter, powder.size_distribution, powder.size_spread, powder.size_file,
                          powder.density, powder.youngs_modulus, powder.poisson_ratio, powder.restitution,
-                         powder.friction, powder.rolling_friction, powder.cohesion, powder.cohesion_law,
-                         powder.time_step, powder.time_step_fraction, powder.precision);
+                         powder.friction, powder.rolling_friction, powder.rolling_law, powder.cohesion,
+                         powder.cohesion_law, powder.surface_energy, powder.time_step, powder.time_step_fraction,
+                         powder.precision);
 }
 
 }  // namespace
@@ -141,7 +142,15 @@ TEST(Kit, BondNumberIsTheLargestAttractionOverTheWeight) {
         EXPECT_NEAR(into.scalars.at("bond_number") * dem::sphere_mass(radius, material.density) * 9.81 / largest, 1,
                     1e-6);
     }
-    inputs["cohesion"] = 0.0;
+    inputs["surface_energy"] = 2e-3;  // which 'paper' does not know
+    EXPECT_EQ(powder.material(inputs).surface_energy, 0);
+    for (const auto& [word, factor] : {std::pair("jkr", 1.5), std::pair("dmt", 2.0)}) {
+        inputs["cohesion_law"] = std::string(word);
+        const auto material = powder.material(inputs);
+        EXPECT_EQ(material.cohesion, 0) << "which " << word << " does not know";
+        EXPECT_NEAR(kit::pull_off_force(material, 50e-6) / (factor * std::numbers::pi * 2e-3 * 12.5e-6), 1, 1e-12);
+    }
+    inputs["surface_energy"] = 0.0;
     Observations none;
     kit::record_bond_number(none, powder.material(inputs), 50e-6, 9.81);
     EXPECT_TRUE(none.scalars.empty());

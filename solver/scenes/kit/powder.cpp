@@ -34,8 +34,11 @@ dem::Material Powder::material(const Inputs& inputs) const {
     material.restitution = restitution(inputs);
     material.friction = friction(inputs);
     material.rolling_friction = rolling_friction(inputs);
-    material.cohesion = cohesion(inputs);
+    material.rolling_law = rolling_law(inputs);
     material.cohesion_law = cohesion_law(inputs);
+    // what belongs to the other kind of law has no effect
+    (dem::acts_by_surface_energy(material.cohesion_law) ? material.surface_energy : material.cohesion) =
+        (dem::acts_by_surface_energy(material.cohesion_law) ? surface_energy : cohesion)(inputs);
     return material;
 }
 
@@ -101,6 +104,11 @@ std::optional<double> own(const Real& property, const Inputs& inputs, bool posit
 }
 
 double pull_off_force(const dem::Material& material, double diameter) {
+    const double radius_of_pair = diameter / 4;
+    if (material.cohesion_law == dem::CohesionLaw::jkr)
+        return 1.5 * std::numbers::pi * material.surface_energy * radius_of_pair;
+    if (material.cohesion_law == dem::CohesionLaw::dmt)
+        return 2 * std::numbers::pi * material.surface_energy * radius_of_pair;
     // The largest value of a d - b d^(3/2), b = 4/3 E* sqrt(R*): 4 a^3/(27 b^2), R* = R/2.
     const double radius = diameter / 2;
     const double a = material.cohesion * area_factor(material.cohesion_law) * radius;
@@ -109,7 +117,7 @@ double pull_off_force(const dem::Material& material, double diameter) {
 }
 
 void record_bond_number(Observations& into, const dem::Material& material, double diameter, double gravity) {
-    if (!(material.cohesion > 0)) return;
+    if (!(material.cohesion > 0 || material.surface_energy > 0)) return;
     const double weight = dem::sphere_mass(diameter / 2, material.density) * gravity;
     bond_number.record(into, pull_off_force(material, diameter) / weight);
 }

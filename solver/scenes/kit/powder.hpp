@@ -62,18 +62,35 @@ struct Powder {
                           0.0,
                           {0, 1},
                           {if_set("friction")}};
+    Choice<dem::RollingLaw, 2> rolling_law{"rolling_law",
+                                           "how rolling is resisted: 'epsd' by an elastic-plastic spring with a "
+                                           "dashpot, 'cdt' by a constant torque against "
+                                           "the relative rotation",
+                                           {{{"epsd", dem::RollingLaw::epsd}, {"cdt", dem::RollingLaw::cdt}}},
+                                           {if_set("rolling_friction")}};
     Real wall_friction{"wall_friction", "1", "Coulomb friction at the walls; -1: friction", as_powder, {as_powder, 2}};
     Real wall_rolling_friction{
         "wall_rolling_friction", "1", "rolling friction at the walls; -1: rolling_friction", as_powder, {as_powder, 1}};
     Real wall_restitution{
         "wall_restitution", "1", "restitution at the walls; -1: restitution", as_powder, {as_powder, 1}};
-    Real cohesion{"cohesion", "J/m3", "cohesion energy density", 0.0, {0, 1e6}};
-    Choice<dem::CohesionLaw, 3> cohesion_law{
+    Real cohesion{"cohesion", "J/m3",   "cohesion energy density of 'sjkr', 'sjkr2', 'paper'",
+                  0.0,        {0, 1e6}, {if_word("cohesion_law", "sjkr", "sjkr2", "paper")}};
+    Choice<dem::CohesionLaw, 5> cohesion_law{
         "cohesion_law",
-        "area the cohesion acts on: 'sjkr' cut of the spheres, 'sjkr2' 4 pi R* d, 'paper' "
-        "pi (2 R* d - d^2)/4",
-        {{{"sjkr", dem::CohesionLaw::sjkr}, {"sjkr2", dem::CohesionLaw::sjkr2}, {"paper", dem::CohesionLaw::paper}}},
-        {if_set("cohesion")}};
+        "attraction: cohesion times an area, 'sjkr' cut of the spheres, 'sjkr2' 4 pi R* d, 'paper' "
+        "pi (2 R* d - d^2)/4; or by surface_energy, 'jkr' Johnson, Kendall & Roberts, 'dmt' Derjaguin, Muller & "
+        "Toporov",
+        {{{"sjkr", dem::CohesionLaw::sjkr},
+          {"sjkr2", dem::CohesionLaw::sjkr2},
+          {"paper", dem::CohesionLaw::paper},
+          {"jkr", dem::CohesionLaw::jkr},
+          {"dmt", dem::CohesionLaw::dmt}}}};
+    Real surface_energy{"surface_energy",
+                        "J/m2",
+                        "work of adhesion w of 'jkr' and 'dmt': of two surfaces of surface energy g each, 2 g",
+                        0.0,
+                        {0, 10},
+                        {if_word("cohesion_law", "jkr", "dmt")}};
     Real time_step{"time_step",
                    "s",
                    "time step; 0: time_step_fraction of the shorter of the Rayleigh time and the Hertz "
@@ -110,9 +127,10 @@ struct Powder {
 inline constexpr Scalar bond_number{
     "bond_number", "1",
     "largest attraction of two particles of diameter D at rest over their weight: with cohesion energy density k, "
-    "contact area c R d (c = pi, 2 pi, pi/4 for sjkr, sjkr2, paper) and Hertz's repulsion, (c k R)^3/(6 E*^2 R m g)"};
+    "contact area c R d (c = pi, 2 pi, pi/4 for sjkr, sjkr2, paper) and Hertz's repulsion, (c k R)^3/(6 E*^2 R m g); "
+    "with surface energy w 3/4 pi w R/(m g) for jkr, pi w R/(m g) for dmt, whatever the stiffness"};
 
-/// The largest attraction of two equal spheres at rest, N, to first order in their overlap; cohesion > 0.
+/// The largest attraction of two equal spheres at rest, N; of cohesion by an area to first order in the overlap.
 [[nodiscard]] double pull_off_force(const dem::Material& material, double diameter);
 /// Records it, where there is cohesion.
 void record_bond_number(Observations& into, const dem::Material& material, double diameter, double gravity);

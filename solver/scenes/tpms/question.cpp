@@ -33,7 +33,6 @@ constexpr kit::Powder powder = [] {
         {0, 1});
     p.restitution = p.restitution.with("coefficient of restitution", 0.64, {0.01, 1});
     p.cohesion = p.cohesion.with("cohesion energy density k_c", 0, {0, 1e7});
-    p.cohesion_law = p.cohesion_law.with("area on which the cohesion energy density acts");
     p.youngs_modulus = p.youngs_modulus.with("Young's modulus of particles and wall", 2.11e6, {1e4, 1e12});
     p.poisson_ratio = p.poisson_ratio.with("Poisson's ratio", 0.3, {0, 0.5});
     p.density = p.density.with("density of the particle material", 7980, {1, 3e4});
@@ -70,9 +69,11 @@ constexpr kit::Whole packing_seed{"packing_seed",
                                   {if_word("packing", "generated")}};
 constexpr kit::Choice<dem::FrictionLimit, 2> friction_limit{
     "friction_limit",
-    "what limits friction: the contact force without cohesion, or the net normal force",
+    "what limits friction: the contact force without cohesion ('jkr': the net one plus twice the pull-off force), or "
+    "the "
+    "net normal force",
     {{{"contact", dem::FrictionLimit::contact}, {"net", dem::FrictionLimit::net}}},
-    {if_set("friction"), if_set("cohesion")}};
+    {if_set("friction")}};
 constexpr kit::Real gravity{"gravity", "m/s2", "acceleration of free fall", 9.81, above(0, 1e5)};
 constexpr kit::Real tilt{"tilt", "deg", "angle between gravity and -z", 0, {0, 180}};
 constexpr kit::Real tilt_azimuth{
@@ -118,10 +119,11 @@ dem::Material material_of(const Inputs& inputs) {
 std::vector<ParameterSpec> tpms_discharge_parameters() {
     using namespace ask;
     return kit::declared(cell, side, edge, shell, packing, packing_fraction, packing_seed, powder.diameter,
-                         powder.friction, powder.rolling_friction, friction_limit, powder.restitution, powder.cohesion,
-                         powder.cohesion_law, powder.youngs_modulus, powder.poisson_ratio, powder.density, gravity,
-                         tilt, tilt_azimuth, vibration_amplitude, vibration_frequency, vibration_direction, end_time,
-                         ends_when_quiet, powder.time_step, powder.precision, rest_speed);
+                         powder.friction, powder.rolling_friction, powder.rolling_law, friction_limit,
+                         powder.restitution, powder.cohesion, powder.cohesion_law, powder.surface_energy,
+                         powder.youngs_modulus, powder.poisson_ratio, powder.density, gravity, tilt, tilt_azimuth,
+                         vibration_amplitude, vibration_frequency, vibration_direction, end_time, ends_when_quiet,
+                         powder.time_step, powder.precision, rest_speed);
 }
 
 const std::string& tpms_packing_text(const Inputs& inputs, const Files& files) {
