@@ -112,10 +112,64 @@ void Mesh::contacts(const Vec3& position, double reach, std::span<const std::uin
     if (one_contact_angle() > 0) unite_normals(into);
 }
 
+Mesh::Prism::Prism(const Triangle& t) {
+    normal[0] = t.normal;
+    offset[0] = dot(t.normal, t.corner[0]);
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3& a = t.corner[k];
+        const Vec3 across = cross(t.corner[(k + 1) % 3] - a, t.normal);
+        // That the third corner lies inside of.
+        const double side = dot(across, t.corner[(k + 2) % 3] - a) > 0 ? -1 : 1;
+        normal[k + 1] = (side / norm(across)) * across;
+        offset[k + 1] = dot(normal[k + 1], a);
+    }
+}
+
+bool Mesh::Prism::may_touch(const Vec3& x, double reach2) const {
+    const double height = dot(normal[0], x) - offset[0];
+    double outside = 0;
+    for (std::size_t k = 1; k < 4; ++k) outside = std::max(outside, dot(normal[k], x) - offset[k]);
+    return height * height + outside * outside <= reach2;
+}
+
+Mesh Mesh::prepared(double reach) const {
+    auto body = std::make_shared<Body>(*body_);
+    body->reach = reach;
+    body->reached = TriangleGrid(body->triangles, reach);
+    body->prisms.clear();
+    for (const Triangle& t : body->triangles) body->prisms.emplace_back(t);
+    Mesh same;
+    same.body_ = std::move(body);
+    return same;
+}
+
 void Mesh::touching(const Vec3& x, double reach, std::vector<Closest>& into) const {
+    const auto add = [&](const MeshContact& c) { into.push_back({c.distance, c.normal}); };
+    if (reach > body_->reach) {
+        std::vector<MeshContact> found;
+        contacts(x, reach, found);
+        std::ranges::for_each(found, add);
+        return;
+    }
+    // Planes in double precision are off by rounding of the coordinates: what they leave out is farther than the reach.
+    const double beyond = (1 + 1e-9) * reach + tolerance();
+    std::array<std::uint32_t, 16> few{};
+    std::size_t count = 0;
+    const auto here = body_->reached.at(x);
+    for (const std::uint32_t t : here) {
+        if (!body_->prisms[t].may_touch(x, beyond * beyond)) continue;
+        if (count < few.size()) few[count] = t;
+        ++count;
+    }
+    if (count == 0) return;
+    if (count == 1) {
+        const MeshContact one = contact_with(body_->triangles[few[0]], few[0], x);
+        if (one.distance < reach) add(one);
+        return;
+    }
     std::vector<MeshContact> found;
-    contacts(x, reach, found);
-    for (const MeshContact& c : found) into.push_back({c.distance, c.normal});
+    contacts(x, reach, count <= few.size() ? std::span<const std::uint32_t>(few).first(count) : here, found);
+    std::ranges::for_each(found, add);
 }
 
 /// Steps 2 and 3, to the sorted nearest points: faces before edges before vertices.

@@ -65,6 +65,10 @@ public:
     /// `margin`: it goes on across the faces, and a plate from one to the other has no edge there.
     [[nodiscard]] Mesh repeated(const Domain& domain, double margin) const;
 
+    /// The same, which finds at once where spheres of radius up to `reach` touch: the triangles that they can touch are
+    /// known for every place. Finds the same bits.
+    [[nodiscard]] Mesh prepared(double reach) const;
+
     [[nodiscard]] std::span<const Triangle> triangles() const { return body_->triangles; }
     /// As it was given, without images.
     [[nodiscard]] const TriangleSurface& surface() const { return body_->surface; }
@@ -114,12 +118,25 @@ public:
     }
 
 private:
+    /// Four planes about a triangle: its own, and across it through each of its sides, positive outside.
+    struct Prism {
+        std::array<Vec3, 4> normal{};
+        std::array<double, 4> offset{};
+
+        explicit Prism(const Triangle& t);
+        /// Not farther than the root of reach2, or by little.
+        [[nodiscard]] bool may_touch(const Vec3& x, double reach2) const;
+    };
     struct Body {
         TriangleSurface surface;
         double one_contact_angle = 0;
         std::vector<Triangle> triangles;
         double tolerance = 0;
         TriangleGrid grid;
+        // Where it is prepared:
+        double reach = 0;
+        TriangleGrid reached;
+        std::vector<Prism> prisms;
     };
 
     void keep_places(std::vector<MeshContact>& touched) const;

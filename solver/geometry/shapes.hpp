@@ -8,7 +8,8 @@
 // whose contacts go on from step to step by their normals (contact_memory.hpp). One without an inside, that a centre
 // could pass, has crossed(from, to), the part of it that a point moving straight passes through, if any. One that is
 // more than an image of itself across a periodic face has repeated(domain, margin): itself and its images as far as a
-// centre in the domain finds them within the margin.
+// centre in the domain finds them within the margin. One that can be made faster for spheres of known size has
+// prepared(reach).
 //
 // One with closest(x) may have the same for vectors of positions (number.hpp): Numbers, plain doubles in units of its
 // user's choice, numbers(centre, unit, origin), which gives them and what positions are then relative to, and
@@ -49,6 +50,12 @@ concept Thin = requires(const std::remove_cvref_t<S>& shape, const Vec3& x) {
 template <class S>
 concept Repeated = requires(const std::remove_cvref_t<S>& shape, const Domain& domain) {
     { shape.repeated(domain, 1.0) } -> std::same_as<std::remove_cvref_t<S>>;
+};
+
+/// A shape that is faster for spheres of radius up to a reach when it knows that.
+template <class S>
+concept Preparable = requires(const std::remove_cvref_t<S>& shape) {
+    { shape.prepared(1.0) } -> std::same_as<std::remove_cvref_t<S>>;
 };
 
 /// A shape whose closest points can be found for vectors of positions.

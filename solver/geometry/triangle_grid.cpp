@@ -6,49 +6,88 @@
 namespace grainsweep::geometry {
 namespace {
 
+struct Box {
+    Vec3 low, high;
+};
+
+Box box_of(const Triangle& t) {
+    Box box{t.corner[0], t.corner[0]};
+    for (std::size_t n = 1; n < 3; ++n)
+        for (std::size_t k = 0; k < 3; ++k) {
+            box.low[k] = std::min(box.low[k], t.corner[n][k]);
+            box.high[k] = std::max(box.high[k], t.corner[n][k]);
+        }
+    return box;
+}
+
 /// Twice the mean distance between the middles of triangles, were they spread over their area evenly: a few triangles
-/// in a cell of a fine surface. At most `most` cells all together, however thin the box is.
-double cell_edge(std::span<const Triangle> triangles, const Vec3& extent, double most) {
+/// in a cell of a fine surface.
+double natural_edge(std::span<const Triangle> triangles) {
     double area = 0;
     for (const Triangle& t : triangles) area += norm(cross(t.corner[1] - t.corner[0], t.corner[2] - t.corner[0])) / 2;
-    double edge = 2 * std::sqrt(area / static_cast<double>(triangles.size()));
-    const auto cells = [&](double h) {
-        return std::ceil(extent[0] / h + 1) * std::ceil(extent[1] / h + 1) * std::ceil(extent[2] / h + 1);
-    };
-    while (cells(edge) > most) edge *= 1.25;
-    return edge;
+    return 2 * std::sqrt(area / static_cast<double>(triangles.size()));
+}
+
+/// Cells that the boxes around triangles reach into, all together.
+double visited(std::span<const Triangle> triangles, double margin, double edge) {
+    double sum = 0;
+    for (const Triangle& t : triangles) {
+        const Box box = box_of(t);
+        double cells = 1;
+        for (std::size_t k = 0; k < 3; ++k) cells *= (box.high[k] - box.low[k] + 2 * margin) / edge + 2;
+        sum += cells;
+    }
+    return sum;
 }
 
 }  // namespace
 
 TriangleGrid::TriangleGrid(std::span<const Triangle> triangles) {
     if (triangles.empty()) return;
-    low_ = high_ = triangles.front().corner[0];
-    for (const Triangle& t : triangles)
-        for (const Vec3& x : t.corner)
-            for (std::size_t k = 0; k < 3; ++k) {
-                low_[k] = std::min(low_[k], x[k]);
-                high_[k] = std::max(high_[k], x[k]);
-            }
-    const Vec3 extent = high_ - low_;
-    edge_ = cell_edge(triangles, extent, 4096 + 8 * static_cast<double>(triangles.size()));
-    for (std::size_t k = 0; k < 3; ++k) cells_[k] = static_cast<std::size_t>(std::floor(extent[k] / edge_)) + 1;
+    choose_cells(triangles, natural_edge(triangles));
+    fill(triangles);
+}
 
-    // A triangle reaches into a cell at most where it comes near its middle; rounding is far below the 1 % beyond.
-    const double half_diagonal = 1.01 * std::sqrt(0.75) * edge_;
+TriangleGrid::TriangleGrid(std::span<const Triangle> triangles, double margin) : margin_(margin) {
+    if (triangles.empty()) return;
+    choose_cells(triangles, margin / 2);
+    fill(triangles);
+}
+
+/// Longer cells where there were too many of them, however thin the box is, or too much to do to fill them.
+void TriangleGrid::choose_cells(std::span<const Triangle> triangles, double edge) {
+    const auto count = static_cast<double>(triangles.size());
+    const double most = (margin_ > 0 ? 1048576 : 4096) + 8 * count, most_visited = 2e6 + 300 * count;
+    const Box first = box_of(triangles.front());
+    low_ = first.low, high_ = first.high;
+    for (const Triangle& t : triangles)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Box box = box_of(t);
+            low_[k] = std::min(low_[k], box.low[k]);
+            high_[k] = std::max(high_[k], box.high[k]);
+        }
+    Vec3 extent = high_ - low_;
+    for (std::size_t k = 0; k < 3; ++k) extent[k] += 2 * margin_, origin_[k] = low_[k] - margin_;
+    const auto cells = [&](double h) {
+        return std::ceil(extent[0] / h + 1) * std::ceil(extent[1] / h + 1) * std::ceil(extent[2] / h + 1);
+    };
+    while (cells(edge) > most || visited(triangles, margin_, edge) > most_visited) edge *= 1.25;
+    edge_ = edge;
+    for (std::size_t k = 0; k < 3; ++k) cells_[k] = static_cast<std::size_t>(std::floor(extent[k] / edge_)) + 1;
+}
+
+void TriangleGrid::fill(std::span<const Triangle> triangles) {
+    // A triangle comes within the margin of a cell at most where it comes near its middle; rounding is far below the
+    // 1 % beyond.
+    const double near_middle = 1.01 * (std::sqrt(0.75) * edge_ + margin_);
     const auto for_each_entry = [&](auto&& visit) {
         for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-            const auto& c = triangles[t].corner;
-            Vec3 low = c[0], high = c[0];
-            for (std::size_t k = 0; k < 3; ++k)
-                for (std::size_t n = 1; n < 3; ++n) {
-                    low[k] = std::min(low[k], c[n][k]);
-                    high[k] = std::max(high[k], c[n][k]);
-                }
-            for_each_cell(range(low, high), [&](const std::array<std::size_t, 3>& place, std::size_t cell) {
-                Vec3 middle = low_;
+            Box box = box_of(triangles[t]);
+            for (std::size_t k = 0; k < 3; ++k) box.low[k] -= margin_, box.high[k] += margin_;
+            for_each_cell(range(box.low, box.high), [&](const std::array<std::size_t, 3>& place, std::size_t cell) {
+                Vec3 middle = origin_;
                 for (std::size_t k = 0; k < 3; ++k) middle[k] += (static_cast<double>(place[k]) + 0.5) * edge_;
-                if (triangles[t].nearest(middle).distance <= half_diagonal) visit(t, cell);
+                if (triangles[t].nearest(middle).distance <= near_middle) visit(t, cell);
             });
         }
     };
@@ -60,9 +99,17 @@ TriangleGrid::TriangleGrid(std::span<const Triangle> triangles) {
     for_each_entry([&](std::uint32_t t, std::size_t cell) { entries_[next[cell]++] = t; });
 }
 
+std::span<const std::uint32_t> TriangleGrid::at(const Vec3& x) const {
+    if (entries_.empty()) return {};
+    for (std::size_t k = 0; k < 3; ++k)
+        if (!(x[k] >= low_[k] - margin_ && x[k] <= high_[k] + margin_)) return {};
+    const std::size_t cell = cell_along(0, x[0]) + cells_[0] * (cell_along(1, x[1]) + cells_[1] * cell_along(2, x[2]));
+    return std::span(entries_).subspan(begin_[cell], begin_[cell + 1] - begin_[cell]);
+}
+
 std::size_t TriangleGrid::cell_along(std::size_t axis, double x) const {
     const double last = static_cast<double>(cells_[axis] - 1);
-    return static_cast<std::size_t>(std::clamp(std::floor((x - low_[axis]) / edge_), 0.0, last));
+    return static_cast<std::size_t>(std::clamp(std::floor((x - origin_[axis]) / edge_), 0.0, last));
 }
 
 std::array<TriangleGrid::Range, 3> TriangleGrid::range(const Vec3& low, const Vec3& high) const {

@@ -112,6 +112,35 @@ TEST(Mesh, FindsTheContactsOfThePlainRule) {
     }
 }
 
+TEST(Mesh, PreparedForSpheresItFindsTheSameBits) {
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        const Soup waves =
+            tests::plate(1, 12, [](double x, double y) { return 0.3 * std::sin(3 * x) * std::cos(4 * y); });
+        for (const Soup& soup : {random_soup(seed, 60, 0.8), random_fans(seed), waves, shattered_plate(seed, 40),
+                                 tests::joined(tests::box(0.5, 0.7), tests::drum(31, 0.9, 0.4))}) {
+            const Mesh mesh = mesh_of(soup, seed % 2 == 0 ? 0.3 : 0);
+            for (const double reach : {0.02, 0.2, 1.5}) {
+                const Mesh prepared = mesh.prepared(reach);
+                const stats::Stream random(seed, 11);
+                std::uint64_t at = 0;
+                for (int k = 0; k < 80; ++k) {
+                    const Vec3 x = draw(random, at, {1.4, 1.4, 1.4});
+                    for (const double own : {0.5 * reach, reach, 1.1 * reach}) {
+                        std::vector<Closest> plain, found;
+                        mesh.touching(x, own, plain);
+                        prepared.touching(x, own, found);
+                        ASSERT_EQ(plain.size(), found.size());
+                        for (std::size_t c = 0; c < plain.size(); ++c) {
+                            ASSERT_EQ(plain[c].distance, found[c].distance);
+                            ASSERT_EQ(plain[c].normal, found[c].normal);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
 TEST(Mesh, AContactIsALeastDistanceAndTheLeastOfAllIsOne) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
         const Soup soup = tests::joined(random_fans(seed), random_soup(seed, 10, 0.5));

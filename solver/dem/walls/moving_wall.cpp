@@ -111,6 +111,12 @@ MovingWall::MovingWall(Wall wall, const Domain& domain, double largest) : wall_(
     }
     require_possible(domain);
     found_ = with_images(domain);
+    std::visit(
+        [&](auto& shape) {
+            if constexpr (Preparable<decltype(shape)>)
+                if (largest > 0) shape = shape.prepared(largest);
+        },
+        found_);
     thin_ = std::visit([](const auto& s) { return Thin<decltype(s)>; }, found_);
     if (!bounded_)
         for (std::size_t k = 0; k < 3; ++k) {
@@ -261,6 +267,12 @@ void MovingWall::inherit(std::span<const WallTouch> before, std::span<const Wall
     if (before.empty() || now.empty()) return;
     if (single_contact_) {
         from[0] = 0;
+        return;
+    }
+    if (before.size() == 1 && now.size() == 1) {  // nearly always
+        std::uint32_t matched = no_contact;
+        match_contacts({&before[0].place.normal, 1}, {&now[0].place.normal, 1}, {&matched, 1});
+        from[0] = matched == no_contact ? -1 : 0;
         return;
     }
     const auto normals = [](std::span<const WallTouch> touches) {
