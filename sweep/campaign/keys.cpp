@@ -195,11 +195,11 @@ std::vector<Key> design_keys(const designs::DesignInfo& design) {
 
 std::span<const std::string> reserved_names() {
     static const std::vector<std::string> names = {
-        "campaign",      "sim_case",   "case_input",          "campaign_case",
-        "attempt",       "observable", "observation",         "convergence",
-        "provenance",    "series",     "convergence_history", "parameter",
-        "inputs",        "json_each",  "json_tree",           "attempt_computer",
-        "table_checksum"};  // json_ ...: SQLite's own
+        "campaign",       "sim_case",     "case_input",          "campaign_case",
+        "attempt",        "observable",   "observation",         "convergence",
+        "provenance",     "series",       "convergence_history", "parameter",
+        "inputs",         "json_each",    "json_tree",           "attempt_computer",
+        "table_checksum", "file_checksum"};  // json_ ...: SQLite's own
     return names;
 }
 

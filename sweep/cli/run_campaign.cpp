@@ -310,6 +310,7 @@ RunReport run_campaign(const RunRequest& request) {
         ending = scheduler.run();
     }
     sweep(folder, store);
+    store.remember_file();
     const auto tally = plan.tally();
     return {exit_code(ending, tally), campaign.name, database, describe(ending, tally, judge.get()),
             judge ? std::optional(judge->converged_at().has_value()) : std::nullopt};

@@ -42,6 +42,8 @@ struct Store::Impl {
     bool dead_attempts_closed = false;
     bool in_group = false;
     bool sound = false;              ///< checked: what is read is what was written
+    bool as_remembered = false;      ///< so was the whole file when it was opened to write, by its checksum
+    bool whole = false;              ///< everything in the file is sound, as of the last enrol
     std::vector<std::string> notes;  ///< damage met by the last enrol, and what became of it
     std::int64_t settled_in_group = 0;
     std::map<std::pair<std::string, std::int64_t>, Keys> observables;  ///< (scene, revision) -> keys
@@ -86,9 +88,10 @@ struct CampaignTexts {
                                                          const campaign::Campaign& campaign);
 
 [[nodiscard]] CaseState stored_state(const Connection& db, std::int64_t key);
-/// Forgets damaged answers of these cases and brings their states up to date.
-void ask_damaged_again(Store::Impl& archive, const campaign::Cases& cases,
-                       const std::vector<DeclaredParameter>& parameters, KnownCases& known);
+/// Checks every case of the file, forgets damaged answers of these and brings their states up to date. Returns whether
+/// all others are sound.
+[[nodiscard]] bool ask_damaged_again(Store::Impl& archive, const campaign::Cases& cases,
+                                     const std::vector<DeclaredParameter>& parameters, KnownCases& known);
 
 /// Creates or renews the view that bears the campaign's name.
 void make_campaign_view(Store::Impl& archive, const campaign::Campaign& campaign, std::int64_t campaign_key);

@@ -305,6 +305,33 @@ bool Connection::has_moved() const {
     int moved = 0;
     return sqlite3_file_control(handle_.get(), "main", SQLITE_FCNTL_HAS_MOVED, &moved) == SQLITE_OK && moved != 0;
 }
+namespace {
+
+sqlite3_file* file_behind(sqlite3* database) {
+    sqlite3_file* file = nullptr;
+    check(database, sqlite3_file_control(database, "main", SQLITE_FCNTL_FILE_POINTER, &file));
+    return file;
+}
+
+[[noreturn]] void fail_reading(sqlite3* database, int code) {
+    throw BrokenWorld(fmt::format("{}: reading it failed ({})", file_of(database), sqlite3_errstr(code)));
+}
+
+}  // namespace
+
+std::int64_t Connection::file_bytes() const {
+    sqlite3_file* file = file_behind(handle_.get());
+    sqlite3_int64 bytes = 0;
+    if (const int code = file->pMethods->xFileSize(file, &bytes); code != SQLITE_OK) fail_reading(handle_.get(), code);
+    return bytes;
+}
+
+void Connection::read_file(std::int64_t offset, std::span<std::byte> into) const {
+    sqlite3_file* file = file_behind(handle_.get());
+    const int code = file->pMethods->xRead(file, into.data(), static_cast<int>(into.size()), offset);
+    if (code != SQLITE_OK) fail_reading(handle_.get(), code);
+}
+
 bool Connection::in_transaction() const {
     return sqlite3_get_autocommit(handle_.get()) == 0;
 }

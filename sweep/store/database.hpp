@@ -10,6 +10,7 @@
 #include "solver/scenes/values.hpp"
 #include "sweep/store/broken_world.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -175,6 +176,10 @@ public:
     [[nodiscard]] bool in_transaction() const;
     /// Whether the file's name no longer leads to the file that was opened: moved, deleted or replaced.
     [[nodiscard]] bool has_moved() const;
+    /// The file as it lies, without what waits in a write-ahead log. Through SQLite's own descriptor: to open and close
+    /// the file once more would end this process's locks on it.
+    [[nodiscard]] std::int64_t file_bytes() const;
+    void read_file(std::int64_t offset, std::span<std::byte> into) const;
 
     /// Every statement prepared from now on must please the authorizer; empty: all do.
     void authorize(Authorizer authorizer) const;

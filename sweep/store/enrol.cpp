@@ -317,6 +317,11 @@ void drop_damaged_verdicts(Store::Impl& archive, std::int64_t campaign_key) {
 
 namespace {
 
+/// Whether what is damaged is put right by enrolling this campaign.
+bool only_of(std::int64_t campaign_key, const std::vector<DamagedTable>& damaged) {
+    return std::ranges::all_of(damaged, [&](const DamagedTable& one) { return one.part == campaign_key; });
+}
+
 /// Places of the campaign, every one of its cases entered.
 std::vector<Place> all_places(const campaign::Cases& cases, const Placing& placing) {
     std::vector<Place> places;
@@ -347,8 +352,13 @@ std::vector<CaseState> Store::enrol(const Campaign& campaign, const campaign::Ca
     store_provenance(*impl_, campaign, key, provenance);
 
     KnownCases known = known_cases(db, cases);
-    ask_damaged_again(*impl_, cases, parameters, known);
-    drop_damaged_verdicts(*impl_, key);
+    const bool as_remembered = std::exchange(impl_->as_remembered, false);
+    impl_->whole = as_remembered;
+    if (!as_remembered) {
+        const bool others_sound = ask_damaged_again(*impl_, cases, parameters, known);
+        drop_damaged_verdicts(*impl_, key);
+        impl_->whole = others_sound && only_of(key, damaged_parts(db));
+    }
     Placing placing(cases, std::move(known.keys), parameters, key);
     if (placing.adds_to(db)) {
         if (placing.inside()) forget_convergence(db, key);

@@ -62,25 +62,23 @@ void forget_answer(Connection& db, const DamagedCase& damage) {
 
 }  // namespace
 
-void ask_damaged_again(Store::Impl& archive, const campaign::Cases& cases,
+bool ask_damaged_again(Store::Impl& archive, const campaign::Cases& cases,
                        const std::vector<DeclaredParameter>& parameters, KnownCases& known) {
     auto& db = archive.db;
     auto& [keys, states] = known;
-    std::int64_t first = std::numeric_limits<std::int64_t>::max(), last = -1;
-    for (std::size_t k = 0; k < keys.size(); ++k) {
-        if (keys[k] == 0 || (states[k].attempts == 0 && !states[k].outcome)) continue;
-        first = std::min(first, keys[k]);
-        last = std::max(last, keys[k]);
-    }
-    if (last < first) return;
-    const auto damaged = damaged_cases(db, first, last);
-    if (damaged.empty()) return;
+    std::int64_t strays = 0;
+    const auto damaged = damaged_cases(db, 0, std::numeric_limits<std::int64_t>::max(), &strays);
+    if (damaged.empty()) return strays == 0;
+    bool others_sound = strays == 0;
     std::unordered_map<std::int64_t, std::size_t> places;
     for (std::size_t k = 0; k < keys.size(); ++k)
         if (keys[k] != 0) places.emplace(keys[k], k);
     for (const auto& damage : damaged) {
         const auto found = places.find(damage.key);
-        if (found == places.end()) continue;  // of another campaign
+        if (found == places.end()) {  // of another campaign
+            others_sound = false;
+            continue;
+        }
         const auto question = cases.question(found->second);
         if (damage.identity) restore_question(db, damage.key, question, parameters);
         if (damage.identity || damage.answer) forget_answer(db, damage);
@@ -93,6 +91,7 @@ void ask_damaged_again(Store::Impl& archive, const campaign::Cases& cases,
                                             damage.what,
                                             damage.identity || damage.answer ? "; it is asked again" : ""));
     }
+    return others_sound;
 }
 
 }  // namespace grainsweep::store

@@ -4,6 +4,7 @@
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/store/aggregates.hpp"
 #include "sweep/store/archive.hpp"
+#include "sweep/store/file_checksum.hpp"
 #include "sweep/store/moment.hpp"
 #include "sweep/store/schema.hpp"
 #include "sweep/store/soundness.hpp"
@@ -28,6 +29,8 @@ using campaign::WrongQuestion;
 namespace {
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+// A larger file would be read for longer than the checks of a run take.
+constexpr std::int64_t most_remembered_bytes = std::int64_t{8} << 30U;
 constexpr std::int64_t application = 0x67737770;  // "gswp" in the file's header: application_id
 
 std::int64_t pragma(const Connection& db, std::string_view name) {
@@ -171,6 +174,11 @@ void check_structure(const Connection& db, const std::filesystem::path& file) {
     }
 }
 
+bool is_as_remembered_now(Connection& db, const std::filesystem::path& file) {
+    const Transaction one_state(db, Transaction::Kind::read);
+    return is_as_remembered(db, file);
+}
+
 std::unique_ptr<Store::Impl> open_to_write(const std::filesystem::path& file, Store::Disk disk) {
     check_name(file);
     std::error_code ignored;
@@ -182,9 +190,12 @@ std::unique_ptr<Store::Impl> open_to_write(const std::filesystem::path& file, St
     const bool empty = schema_version(db, file) == 0;  // before anything is changed in a foreign file
     const bool network = disk == Store::Disk::network || (disk == Store::Disk::found_out && on_network(file));
     db.use(network ? Connection::Journal::rollback : Connection::Journal::write_ahead);
-    if (!empty) check_structure(db, file);
+    const bool as_remembered = !empty && is_as_remembered_now(db, file);
+    if (!empty && !as_remembered) check_structure(db, file);
     migrate(db, file);
-    return std::make_unique<Store::Impl>(file, std::move(lock), std::move(db));
+    auto archive = std::make_unique<Store::Impl>(file, std::move(lock), std::move(db));
+    archive->as_remembered = as_remembered || empty;
+    return archive;
 }
 
 std::unique_ptr<Store::Impl> open_to_read(const std::filesystem::path& file) {
@@ -314,6 +325,17 @@ std::int64_t Store::Impl::computer_key(const campaign::Computer& by) {
         by.version, by.commit, by.build, by.instruction_path, by.processor, by.host);
     if (!rows.next()) throw BrokenWorld(fmt::format("database '{}': a row just written is not there", file.string()));
     return found->second = rows.get<std::int64_t>(0);
+}
+
+void Store::remember_file() {
+    impl_->require_writer();
+    if (impl_->in_group) throw std::logic_error("the file is remembered inside a group");
+    if (!impl_->whole || enrols() || impl_->db.file_bytes() > most_remembered_bytes) return;
+    impl_->require_in_place();
+    try {
+        store::remember_file(impl_->db);
+    } catch (const BrokenWorld&) {  // all results are on disk; the next to open the file checks its rows
+    }
 }
 
 void Store::group(const std::function<void()>& writes) {

@@ -1,5 +1,6 @@
 // What is damaged: in words for the user, and before anything is read as data.
 #include "sweep/store/archive.hpp"
+#include "sweep/store/file_checksum.hpp"
 #include "sweep/store/soundness.hpp"
 
 #include <fmt/format.h>
@@ -133,6 +134,8 @@ void Store::Impl::require_sound() {
     if (sound) return;
     std::optional<Transaction> one_state;
     if (!db.in_transaction()) one_state.emplace(db, Transaction::Kind::read);
+    sound = is_as_remembered(db, file);
+    if (sound) return;
     require_order();
     auto tables = damaged_descriptions(db);
     for (auto& part : damaged_parts(db)) tables.push_back(std::move(part));

@@ -93,6 +93,8 @@ void settle(store::Store& store, const campaign::Case& question, std::int64_t at
 
 void take_back_to_schema(int version, const std::filesystem::path& file) {
     store::Connection db(file, store::Connection::Access::write);
+    db.execute("DROP TABLE file_checksum; PRAGMA user_version = 5");  // 6
+    if (version == 5) return;
     db.execute(  // 5
         "DROP TABLE table_checksum; ALTER TABLE sim_case DROP COLUMN checksum; ALTER TABLE sim_case DROP COLUMN "
         "checksum_by_observable; ALTER TABLE attempt DROP COLUMN checksum; PRAGMA user_version = 4");

@@ -38,7 +38,7 @@ private:
 /// begin and finish, in one group.
 void settle(store::Store& store, const campaign::Case& question, std::int64_t attempt);
 
-/// Gives the file the form of an older schema (1, 2 or 4), with what is in it.
+/// Gives the file the form of an older schema (1, 2, 4 or 5), with what is in it.
 void take_back_to_schema(int version, const std::filesystem::path& file);
 
 [[nodiscard]] std::string dump_of(const store::Store& store);

@@ -1,0 +1,25 @@
+// The checksum of a whole database file. To check every row and index of a million cases takes seconds, to add up the
+// hashes of the pages a fraction of one: a file that is as the last run left it, which had found or written all of it
+// sound, is sound.
+//
+// Not counted are the page of the checksum itself and the parts of the first page that SQLite changes when it writes
+// that one: the change counter (bytes 24 to 27) and the version that goes with it (92 to 99);
+// https://www.sqlite.org/fileformat.html
+#pragma once
+
+#include "sweep/store/database.hpp"
+
+#include <cstdint>
+#include <filesystem>
+
+namespace grainsweep::store {
+
+/// Whether the file is, byte by byte, as remember_file() left it. False where that is not known: there is no checksum,
+/// or a write-ahead log is waiting. Inside a transaction, of reading at least.
+[[nodiscard]] bool is_as_remembered(const Connection& db, const std::filesystem::path& file);
+
+/// Stores the checksum of the file as it is. Does nothing where a reader keeps the write-ahead log from being brought
+/// home. Not inside a transaction.
+void remember_file(Connection& db);
+
+}  // namespace grainsweep::store
