@@ -78,7 +78,7 @@ std::vector<geometry::Motion> motions_of(const json& mesh) {
                 dem::Vibration{.amplitude = vec(m["amplitude"]), .frequency = 1 / m["period"].get<double>()});
         else if (kind == "rotate")
             motions.push_back(dem::Rotation{.point = vec(m["origin"]),
-                                            .axis = vec(m["axis"]),
+                                            .axis = (1 / geometry::norm(vec(m["axis"]))) * vec(m["axis"]),
                                             .speed = 2 * std::numbers::pi / m["period"].get<double>()});
         else
             throw std::runtime_error("unknown motion " + kind);

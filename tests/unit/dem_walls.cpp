@@ -1,5 +1,6 @@
 // Walls in an engine: their own surface, checkpoints, what is reported and refused, periodic images.
 #include "solver/dem/engine.hpp"
+#include "stats/random.hpp"
 #include "tests/support/moving_walls.hpp"
 #include "tests/support/spheres.hpp"
 
@@ -7,6 +8,8 @@
 
 #include <array>
 #include <cmath>
+#include <cstring>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -121,4 +124,44 @@ TEST(DemWalls, PeriodicImagesAreMet) {
     const auto engine = dem::make_engine(setup, {});
     engine->run(600);
     EXPECT_NEAR(tests::state_of(*engine).velocity[0][0], 0.15, 1e-3);
+}
+
+// Whatever the bytes of a mesh in a checkpoint are, it is refused with a sentence or goes on to an answer or a fault.
+TEST(DemWalls, AlteredCheckpointsOfAMeshAreRefusedOrGoOn) {
+    const auto moving = tests::moving_meshes().back();
+    auto setup = one_sphere(moving.position, moving.velocity, {moving.wall});
+    const auto engine = dem::make_engine(setup, {});
+    engine->run(60);
+    std::vector<std::byte> sound;
+    engine->save(sound);
+    int refused = 0;
+    for (std::uint64_t trial = 0; trial < 300; ++trial) {
+        stats::Generator chance(trial);
+        auto bytes = sound;
+        const std::size_t at = chance.below(bytes.size() / 8 - 1) * 8;
+        constexpr std::array<double, 6> numbers = {0, -1, 1e-3, 1e8, 1e300, std::numeric_limits<double>::quiet_NaN()};
+        constexpr std::array<std::int64_t, 5> wholes = {0, 1, 11, 1 << 20, std::numeric_limits<std::int64_t>::max()};
+        switch (chance.below(4)) {
+            case 0:
+                bytes[at + chance.below(8)] ^= static_cast<std::byte>(1U << chance.below(8));
+                break;
+            case 1:
+                std::memcpy(bytes.data() + at, &numbers.at(chance.below(numbers.size())), sizeof(double));
+                break;
+            case 2:
+                std::memcpy(bytes.data() + at, &wholes.at(chance.below(wholes.size())), sizeof(std::int64_t));
+                break;
+            default:
+                bytes.resize(at);
+        }
+        const auto fresh = dem::make_engine(setup, {});
+        try {
+            fresh->restore(bytes);
+            fresh->run(40);
+        } catch (const std::invalid_argument& refusal) {
+            EXPECT_GT(std::string(refusal.what()).size(), 5U);
+            ++refused;
+        }
+    }
+    EXPECT_GT(refused, 100);
 }

@@ -111,10 +111,10 @@ MovingWall::MovingWall(Wall wall, const Domain& domain, double largest) : wall_(
     }
     require_possible(domain);
     found_ = with_images(domain);
-    std::visit(
+    std::visit(  // a little beyond, for contacts that adhesion keeps
         [&](auto& shape) {
             if constexpr (Preparable<decltype(shape)>)
-                if (largest > 0) shape = shape.prepared(largest);
+                if (largest > 0) shape = shape.prepared(1.05 * largest);
         },
         found_);
     thin_ = std::visit([](const auto& s) { return Thin<decltype(s)>; }, found_);
