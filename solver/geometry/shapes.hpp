@@ -25,6 +25,7 @@
 #include "solver/geometry/domain.hpp"
 #include "solver/geometry/mesh.hpp"
 #include "solver/geometry/plane.hpp"
+#include "solver/geometry/tube.hpp"
 
 #include <concepts>
 #include <variant>
@@ -32,7 +33,7 @@
 
 namespace grainsweep::geometry {
 
-using Shape = std::variant<Plane, Bar, Cylinder, Cone, Mesh>;
+using Shape = std::variant<Plane, Bar, Cylinder, Cone, Mesh, Tube>;
 
 /// A shape that is touched in one place at most.
 template <class S>

@@ -179,6 +179,17 @@ void show(const geometry::Mesh& mesh, const geometry::Pose& pose, const Vec3&, c
     surface.edges = outline(mesh);
 }
 
+void show(const geometry::Tube& given, const geometry::Pose& pose, const Vec3&, const Vec3&, WallSurface& surface) {
+    const Vec3 base = pose.from_body(given.base), end = base + given.length * pose.turn(given.axis);
+    show_round(base, end, given.inner, given.inner, false, surface);
+    WallSurface outer;
+    show_round(base, end, given.outer, given.outer, false, outer);
+    const auto first = static_cast<std::int32_t>(surface.corners.size());
+    surface.corners.insert(surface.corners.end(), outer.corners.begin(), outer.corners.end());
+    for (const auto& [a, b, c] : outer.triangles) surface.triangles.push_back({first + a, first + b, first + c});
+    for (const auto& [a, b] : outer.edges) surface.edges.push_back({first + a, first + b});
+}
+
 }  // namespace
 
 WallSurface surface_of(const dem::Wall& wall, std::string name, const Vec3& low, const Vec3& high, double time) {

@@ -4,6 +4,7 @@
 #include "solver/geometry/domain.hpp"
 #include "solver/geometry/motion.hpp"
 #include "solver/geometry/plane.hpp"
+#include "solver/geometry/tube.hpp"
 #include "stats/random.hpp"
 
 #include <gtest/gtest.h>
@@ -154,6 +155,40 @@ TEST(RoundBody, FindsTheClosestPointOfConesAndCylinders) {
                 ASSERT_NEAR(endless.closest(x).distance, side == Side::inside ? base - from_axis : from_axis - base,
                             1e-13);
             }
+}
+
+TEST(Tube, FindsTheClosestPointOfItsWall) {
+    const stats::Stream random(3, 5);
+    std::uint64_t draw = 0;
+    const Tube tube{{0, 0, -1}, {0, 0, 1}, 2, 2.6, 3};
+    const Tube turned{tilted(tube.base), tilted(tube.axis), 2, 2.6, 3};
+    for (int k = 0; k < 300; ++k) {
+        const auto place = [&] { return -4 + 8 * random.uniform(draw++); };
+        const Vec3 x{place(), place(), place()};
+        const double rho = std::hypot(x[0], x[1]), s = x[2] + 1;
+        double least = 1e9;
+        constexpr int n = 4000;
+        for (int i = 0; i <= n; ++i) {
+            const double u = static_cast<double>(i) / n;
+            for (const double r : {2.0, 2.6}) least = std::min(least, std::hypot(rho - r, s - 3 * u));
+            for (const double z : {0.0, 3.0}) least = std::min(least, std::hypot(rho - 2 - 0.6 * u, s - z));
+        }
+        const bool within = rho > 2 && rho < 2.6 && s > 0 && s < 3;
+        const auto closest = tube.closest(x);
+        ASSERT_NEAR(closest.distance, within ? -least : least, 1e-3) << x[0] << " " << x[1] << " " << x[2];
+        ASSERT_NEAR(norm(closest.normal), 1, 1e-12);
+        ASSERT_NEAR(tube.closest(x + 1e-6 * closest.normal).distance - closest.distance, 1e-6, 1e-11);
+        ASSERT_NEAR(turned.closest(tilted(x)).distance, closest.distance, 1e-12);
+        ASSERT_NEAR(norm(turned.closest(tilted(x)).normal - tilted(closest.normal)), 0, 1e-10);
+    }
+    EXPECT_EQ(tube.closest({1.5, 0, 0}).normal, (Vec3{-1, 0, 0})) << "from the wall to the axis";
+    EXPECT_EQ(tube.closest({0, 3, 0}).normal, (Vec3{0, 1, 0}));
+    EXPECT_NEAR(tube.extent(2).high, 2, 1e-15);
+    EXPECT_NEAR(tube.extent(0).low, -2.6, 1e-15);
+    EXPECT_TRUE(tube.unchanged_by_turn({0, 0, 7}, {0, 0, -2}));
+    EXPECT_FALSE(tube.unchanged_by_shift({0, 0, 1}));
+    EXPECT_EQ(tube.flaw(), "");
+    EXPECT_NE((Tube{{}, {0, 0, 1}, 2, 2, 3}).flaw(), "");
 }
 
 TEST(Motions, ComposeInClosedForm) {

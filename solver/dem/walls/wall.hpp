@@ -19,6 +19,7 @@ using geometry::Rotation;
 using geometry::Shape;
 using geometry::Side;
 using geometry::Translation;
+using geometry::Tube;
 using geometry::Vec3;
 using geometry::Vibration;
 
