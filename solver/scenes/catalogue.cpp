@@ -30,6 +30,8 @@ std::span<const SceneInfo> scene_catalogue() {
         powder_spreading_scene(),
         tpms_discharge_scene(),
         rotating_drum_scene(),
+        hopper_scene(),
+        heap_scene(),
         rehearsal_scene(),
         thermovibration_scene(),
     };

@@ -134,6 +134,32 @@ TEST(ScenePictures, ADrumShowsItsPlates) {
     EXPECT_EQ(scene_of("rotating_drum", {{"precision", std::string("double")}})->snapshot().periods[1], 0.03);
 }
 
+TEST(ScenePictures, AHopperShowsWhatHoldsThePowder) {
+    const auto walls = [](const Inputs& changed) {
+        Inputs inputs = changed;
+        inputs["particles"] = std::int64_t{50};
+        return scene_of("hopper", inputs)->snapshot().walls;
+    };
+    const auto flat = walls({});
+    ASSERT_EQ(flat.size(), 2U) << "cylinder, floor";
+    EXPECT_NEAR(highest(flat[0], 0), 0.04, 1e-9);
+    EXPECT_NEAR(highest(flat[1], 2), 0, 1e-12);
+    EXPECT_NEAR(lowest(flat[1], 2), -0.0005, 1e-12);
+    const auto conical = walls({{"shape", std::string("conical")}});
+    ASSERT_EQ(conical.size(), 2U);
+    EXPECT_NEAR(highest(conical[1], 2), 0.0225 * std::sqrt(3.0), 1e-9) << "30 degrees to the vertical";
+    EXPECT_EQ(walls({{"opening", std::string("slot")}}).size(), 4U) << "sides and two plates";
+}
+
+TEST(ScenePictures, ATubeIsLiftedFromItsHeap) {
+    const auto scene = scene_of("heap", {{"particles", std::int64_t{50}}, {"settle_time", 0.1}, {"lift_speed", 0.2}});
+    EXPECT_NEAR(lowest(named(scene->snapshot(), "tube"), 2), 0.0001, 1e-12);
+    EXPECT_NEAR(highest(named(scene->snapshot(), "tube"), 1), 0.031, 1e-9);
+    scene->advance(0.15);
+    EXPECT_NEAR(lowest(named(scene->snapshot(), "tube"), 2), 0.0101, 1e-4);
+    EXPECT_EQ(highest(named(scene->snapshot(), "plate"), 2), 0);
+}
+
 TEST(ScenePictures, ACellShowsItsSurfaceAndItsEdges) {
     const auto scene = scene_of("tpms_discharge", {{"edge", 8.0}, {"shell", 2.0}});
     const Snapshot picture = scene->snapshot();

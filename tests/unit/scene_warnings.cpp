@@ -64,6 +64,24 @@ TEST(SceneWarnings, OfTheDrum) {
     EXPECT_EQ(of({{"youngs_modulus", 1e5}}), Kinds{"particles too soft for the fall"});
 }
 
+TEST(SceneWarnings, OfTheHopper) {
+    const auto of = [](const Inputs& changed) { return kinds("hopper", changed); };
+    EXPECT_EQ(of({{"opening_size", 0.004}}), Kinds{"opening below one diameter"});
+    EXPECT_EQ(of({{"opening_size", 0.055}}), Kinds{"opening nearly as wide as the container"});
+    EXPECT_EQ(of({{"particles", std::int64_t{300}}}), (Kinds{"few particles", "low filling"}));
+    EXPECT_EQ(of({{"settle_time", 0.1}}), Kinds{"powder still falling"});
+    EXPECT_EQ(of({{"youngs_modulus", 1e5}}), Kinds{"particles too soft for the fall"});
+}
+
+TEST(SceneWarnings, OfTheHeap) {
+    const auto of = [](const Inputs& changed) { return kinds("heap", changed); };
+    EXPECT_EQ(of({{"particles", std::int64_t{300}}}), Kinds{"few particles"});
+    EXPECT_EQ(of({{"lift_speed", 2.0}}), Kinds{"tube lifted faster than the powder falls"});
+    EXPECT_EQ(of({{"settle_time", 0.1}}), Kinds{"powder still falling"});
+    EXPECT_EQ(of({{"end_time", 0.3}}), Kinds{"tube still in the heap"});
+    EXPECT_EQ(of({{"youngs_modulus", 1e5}}), Kinds{"particles too soft for the fall"});
+}
+
 TEST(SceneWarnings, OfDischarge) {
     const auto of = [](const Inputs& changed) { return kinds("tpms_discharge", changed); };
     EXPECT_EQ(of({{"shell", 0.6}}), Kinds{"leaky shell"});

@@ -4,6 +4,7 @@
 #include "solver/particles/bytes.hpp"
 #include "solver/scenes/dem_picture.hpp"
 #include "solver/scenes/drum/record.hpp"
+#include "solver/scenes/kit/slices.hpp"
 
 #include <algorithm>
 #include <array>
@@ -47,13 +48,7 @@ Experiment::Experiment(const Study& study, std::uint64_t seed, const dem::Method
 void Experiment::advance(double until) {
     while (!finished() && health().stable() && time() < until) {
         const std::int64_t stop = study_.step_of_frame(frames_taken());
-        const double left = std::ceil((until - time()) / study_.time_step);
-        const std::int64_t most = stop - step_;
-        const std::int64_t steps =
-            left < static_cast<double>(most) ? std::max<std::int64_t>(1, std::llround(left)) : most;
-        const std::int64_t before = engine_->work().steps;
-        engine_->run(steps);
-        step_ += engine_->work().steps - before;
+        step_ = kit::run_towards(*engine_, step_, stop, study_.time_step, until);
         if (health().stable() && step_ == stop) take_frame();
     }
 }

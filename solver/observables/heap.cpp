@@ -1,0 +1,115 @@
+#include "solver/observables/heap.hpp"
+
+#include "solver/observables/line_fit.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+
+namespace grainsweep::observables {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+constexpr double foot = 0.2, shoulder = 0.8;  // of the height, between which the slope is fitted
+constexpr std::size_t inner_rings = 3;
+constexpr double thin = 0.5;     // D: a lower ring is none of the heap
+constexpr double most_in = 0.9;  // of the spheres, within the run-out
+
+struct Grain {
+    double x, y, top, z, volume;
+};
+
+std::vector<Grain> about_their_centre(const dem::State& state) {
+    std::vector<Grain> grains;
+    double mass = 0, cx = 0, cy = 0;
+    for (std::size_t i = 0; i < state.position.size(); ++i) {
+        if (state.mobile[i] == 0) continue;
+        const auto& x = state.position[i];
+        const double r = state.radius[i];
+        grains.push_back({x[0], x[1], x[2] + r, x[2], r * r * r});
+        mass += grains.back().volume;
+        cx += grains.back().volume * x[0];
+        cy += grains.back().volume * x[1];
+    }
+    for (Grain& g : grains) g.x -= cx / mass, g.y -= cy / mass;
+    return grains;
+}
+
+std::vector<double> outline_of(const std::vector<Grain>& grains, double d, std::int64_t rings) {
+    std::map<std::pair<std::int64_t, std::int64_t>, double> top;
+    for (const Grain& g : grains) {
+        double& height =
+            top[{static_cast<std::int64_t>(std::floor(g.x / d)), static_cast<std::int64_t>(std::floor(g.y / d))}];
+        height = std::max(height, g.top);
+    }
+    std::vector<double> sum(static_cast<std::size_t>(rings), 0), columns(sum.size(), 0);
+    const auto ring = [](std::int64_t i, std::int64_t j) {
+        return static_cast<std::size_t>(std::hypot(static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5));
+    };
+    for (std::int64_t i = -rings; i < rings; ++i)
+        for (std::int64_t j = -rings; j < rings; ++j)
+            if (ring(i, j) < sum.size()) columns[ring(i, j)] += 1;
+    for (const auto& [at, height] : top)
+        if (ring(at.first, at.second) < sum.size()) sum[ring(at.first, at.second)] += height;
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] /= std::max(columns[k], 1.0);
+    return sum;
+}
+
+double angle_by_moments(const std::vector<Grain>& grains, double within) {
+    double mass = 0, z = 0, r = 0;
+    for (const Grain& g : grains) {
+        const double from_axis = std::hypot(g.x, g.y);
+        if (from_axis > within) continue;
+        mass += g.volume;
+        z += g.volume * g.z;
+        r += g.volume * from_axis;
+    }
+    return mass > 0 && r > 0 ? std::atan(2 * z / r) / degree : HeapShape::unknown;
+}
+
+}  // namespace
+
+HeapShape heap_shape(const dem::State& state, double diameter, double reach) {
+    HeapShape shape;
+    const auto grains = about_their_centre(state);
+    if (grains.empty()) return shape;
+    const auto rings = std::max<std::int64_t>(static_cast<std::int64_t>(inner_rings), std::llround(reach / diameter));
+    shape.outline = outline_of(grains, diameter, rings);
+    const auto& h = shape.outline;
+    const auto middle = [diameter](std::size_t k) { return (static_cast<double>(k) + 0.5) * diameter; };
+    shape.height = *std::max_element(h.begin(), h.begin() + static_cast<std::ptrdiff_t>(inner_rings));
+
+    std::vector<std::array<double, 2>> slope;
+    for (std::size_t k = 0; k < h.size() && h[k] >= foot * shape.height; ++k)
+        if (h[k] <= shoulder * shape.height) slope.push_back({middle(k), h[k]});
+    const Line line = fitted_line(slope);
+    shape.angle = std::atan(-line.slope) / degree;
+    shape.residual = line.residual;
+
+    std::size_t edge = 0;
+    while (edge < h.size() && h[edge] >= thin * diameter) ++edge;
+    shape.angle_moment =
+        angle_by_moments(grains, edge < h.size() ? middle(edge) : std::numeric_limits<double>::infinity());
+
+    std::vector<double> distance;
+    for (const Grain& g : grains) distance.push_back(std::hypot(g.x, g.y));
+    std::ranges::sort(distance);
+    shape.run_out = distance[static_cast<std::size_t>(most_in * static_cast<double>(distance.size()))];
+    return shape;
+}
+
+double rms_speed(const dem::State& state) {
+    double squares = 0, seen = 0;
+    for (std::size_t i = 0; i < state.velocity.size(); ++i) {
+        if (state.mobile[i] == 0) continue;
+        const auto& v = state.velocity[i];
+        squares += v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+        seen += 1;
+    }
+    return seen > 0 ? std::sqrt(squares / seen) : 0;
+}
+
+}  // namespace grainsweep::observables

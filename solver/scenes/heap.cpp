@@ -1,0 +1,42 @@
+// Heap: powder in a tube on a plate; the tube is lifted, the powder runs out below it and makes a heap: the static
+// angle of repose.
+//
+// Definitions as in heap/study.hpp (geometry, times) and solver/observables/heap.hpp (what is measured).
+#include "solver/scenes/catalogue.hpp"
+#include "solver/scenes/heap/experiment.hpp"
+#include "solver/scenes/heap/question.hpp"
+#include "solver/scenes/heap/record.hpp"
+#include "solver/scenes/heap/warnings.hpp"
+#include "solver/scenes/kit/pace.hpp"
+
+namespace grainsweep {
+
+SceneInfo heap_scene() {
+    SceneInfo info;
+    info.name = "heap";
+    info.summary = "powder running out of a tube lifted from a plate: static angle of repose, outline, run-out";
+    info.revision = heap::revision;
+    const auto numerics = [](double fraction, const char* precision) {
+        return Inputs{{"time_step_fraction", fraction}, {"precision", std::string(precision)}};
+    };
+    info.accuracy = {{"fast", numerics(0.35, "mixed")},
+                     {"balanced", numerics(0.2, "mixed")},
+                     {"reference", numerics(0.05, "double")}};
+    info.parameters = heap::question::parameters();
+    info.observables = heap::record::observables();
+    info.maker = [](const Inputs& inputs, std::uint64_t seed, Artefacts&,
+                    const Files& files) -> std::unique_ptr<Scene> {
+        return std::make_unique<heap::Experiment>(heap::study_of(inputs, &files), seed,
+                                                  heap::question::powder.method(inputs));
+    };
+    info.estimate_cost = [](const Inputs& inputs) {
+        const auto s = heap::study_of(inputs);
+        return static_cast<double>(s.particles) * static_cast<double>(s.last_step) *
+               kit::seconds_per_particle_step(heap::question::powder.method(inputs));
+    };
+    info.warnings = heap::warnings_of;
+    info.proven_answer = [](const Inputs&) -> std::optional<ProvenAnswer> { return std::nullopt; };
+    return info;
+}
+
+}  // namespace grainsweep

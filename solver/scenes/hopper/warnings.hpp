@@ -1,0 +1,13 @@
+// What a user must know before asking a hopper case whose inputs make little sense together.
+#pragma once
+
+#include "solver/scenes/values.hpp"
+
+#include <vector>
+
+namespace grainsweep::hopper {
+
+/// At most one warning of a kind. Throws std::invalid_argument where the inputs are impossible together.
+[[nodiscard]] std::vector<Warning> warnings_of(const Inputs& inputs);
+
+}  // namespace grainsweep::hopper
