@@ -42,9 +42,9 @@ inline constexpr kit::Real end_time{
     return kit::declared(tube_diameter, lift_speed, particles, floor, gravity, settle_time, end_time, powder.diameter,
                          powder.size_distribution, powder.size_spread, powder.size_file, powder.density,
                          powder.youngs_modulus, powder.poisson_ratio, powder.restitution, powder.friction,
-                         powder.rolling_friction, powder.wall_friction, powder.wall_rolling_friction,
-                         powder.wall_restitution, powder.cohesion, powder.cohesion_law, powder.time_step,
-                         powder.time_step_fraction, powder.precision);
+                         powder.rolling_friction, powder.rolling_law, powder.wall_friction,
+                         powder.wall_rolling_friction, powder.wall_restitution, powder.cohesion, powder.cohesion_law,
+                         powder.surface_energy, powder.time_step, powder.time_step_fraction, powder.precision);
 }
 
 }  // namespace grainsweep::heap::question

@@ -53,8 +53,9 @@ inline constexpr kit::Real frame_interval{
                          settle_time, end_time, stop_share, frame_interval, powder.diameter, powder.size_distribution,
                          powder.size_spread, powder.size_file, powder.density, powder.youngs_modulus,
                          powder.poisson_ratio, powder.restitution, powder.friction, powder.rolling_friction,
-                         powder.wall_friction, powder.wall_rolling_friction, powder.wall_restitution, powder.cohesion,
-                         powder.cohesion_law, powder.time_step, powder.time_step_fraction, powder.precision);
+                         powder.rolling_law, powder.wall_friction, powder.wall_rolling_friction,
+                         powder.wall_restitution, powder.cohesion, powder.cohesion_law, powder.surface_energy,
+                         powder.time_step, powder.time_step_fraction, powder.precision);
 }
 
 }  // namespace grainsweep::hopper::question
