@@ -12,9 +12,10 @@ constexpr std::size_t group_rows = 256;
 constexpr auto idle_look = std::chrono::seconds(1);
 constexpr auto group_wait = std::chrono::milliseconds(10);
 
-// Places of a campaign that are entered between two groups, in about a second: a few large pieces, because ids are
-// spread over their index, and each piece writes most of its pages.
-constexpr std::size_t enrolled_between_groups = 131'072;
+// Places of a campaign that are entered between two groups: few at first, so that the first answers do not wait, at
+// last as many as take about a second. Large pieces are cheaper, because ids are spread over their index and each piece
+// writes most of its pages.
+constexpr std::size_t first_piece = 8192, largest_piece = 131'072;
 
 // Entries and samples that may wait, some 25 MB: more than a disk that works leaves behind.
 constexpr std::size_t most_waiting = 250'000;
@@ -35,7 +36,8 @@ std::size_t weight_of(const Recorder::Entry& entry) {
 
 }  // namespace
 
-Recorder::Recorder(Store& store) : store_(store), enrols_(store.enrols()), thread_([this] { run(); }) {}
+Recorder::Recorder(Store& store)
+    : store_(store), enrols_(store.enrols()), piece_(first_piece), thread_([this] { run(); }) {}
 
 Recorder::~Recorder() {
     {
@@ -102,7 +104,7 @@ bool Recorder::write_waiting(std::unique_lock<std::mutex>& lock) {
     bool enrols = false;
     try {
         if (!group.empty()) write_group(group, kept);
-        if (enrols_) store_.enrol_more(enrolled_between_groups);
+        if (enrols_) store_.enrol_more(std::exchange(piece_, std::min(2 * piece_, largest_piece)));
         enrols = store_.enrols();
     } catch (...) {
         failure = std::current_exception();

@@ -59,7 +59,8 @@ private:
     std::vector<campaign::CaseResult> durable_;
     std::exception_ptr failure_;
     bool busy_ = false, closing_ = false;
-    bool enrols_;  ///< places of the campaign are left to be entered
+    bool enrols_;        ///< places of the campaign are left to be entered
+    std::size_t piece_;  ///< of them, between two groups
     std::thread thread_;
 };
 
