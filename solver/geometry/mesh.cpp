@@ -113,23 +113,17 @@ void Mesh::contacts(const Vec3& position, double reach, std::span<const std::uin
 }
 
 Mesh::Prism::Prism(const Triangle& t) {
-    normal[0] = t.normal;
-    offset[0] = dot(t.normal, t.corner[0]);
+    const auto set = [&](std::size_t k, const Vec3& normal, const Vec3& point) {
+        x[k] = normal[0], y[k] = normal[1], z[k] = normal[2], offset[k] = dot(normal, point);
+    };
     for (std::size_t k = 0; k < 3; ++k) {
         const Vec3& a = t.corner[k];
         const Vec3 across = cross(t.corner[(k + 1) % 3] - a, t.normal);
         // That the third corner lies inside of.
         const double side = dot(across, t.corner[(k + 2) % 3] - a) > 0 ? -1 : 1;
-        normal[k + 1] = (side / norm(across)) * across;
-        offset[k + 1] = dot(normal[k + 1], a);
+        set(k, (side / norm(across)) * across, a);
     }
-}
-
-bool Mesh::Prism::may_touch(const Vec3& x, double reach2) const {
-    const double height = dot(normal[0], x) - offset[0];
-    double outside = 0;
-    for (std::size_t k = 1; k < 4; ++k) outside = std::max(outside, dot(normal[k], x) - offset[k]);
-    return height * height + outside * outside <= reach2;
+    set(3, t.normal, t.corner[0]);
 }
 
 Mesh Mesh::prepared(double reach) const {
@@ -151,19 +145,30 @@ void Mesh::touching(const Vec3& x, double reach, std::vector<Closest>& into) con
         std::ranges::for_each(found, add);
         return;
     }
-    // Planes in double precision are off by rounding of the coordinates: what they leave out is farther than the reach.
+    // The planes are off by rounding, far below the tolerance: what they leave out is farther than the reach, and what
+    // they find within its sides is.
     const double beyond = (1 + 1e-9) * reach + tolerance();
     std::array<std::uint32_t, 16> few{};
     std::size_t count = 0;
+    double last_outside = 0;
     const auto here = body_->reached.at(x);
     for (const std::uint32_t t : here) {
-        if (!body_->prisms[t].may_touch(x, beyond * beyond)) continue;
+        const auto h = body_->prisms[t].heights(x);
+        const double beside = std::max(std::max(h[0], h[1]), h[2]), outside = std::max(beside, 0.0);
+        if (!(h[3] * h[3] + outside * outside <= beyond * beyond)) continue;
         if (count < few.size()) few[count] = t;
+        last_outside = beside;
         ++count;
     }
     if (count == 0) return;
     if (count == 1) {
-        const MeshContact one = contact_with(body_->triangles[few[0]], few[0], x);
+        const Triangle& t = body_->triangles[few[0]];
+        if (last_outside < -tolerance()) {  // its face
+            const double height = t.height(x);
+            if (std::abs(height) < reach) into.push_back({std::abs(height), height >= 0 ? t.normal : -t.normal});
+            return;
+        }
+        const MeshContact one = contact_with(t, few[0], x);
         if (one.distance < reach) add(one);
         return;
     }

@@ -118,14 +118,18 @@ public:
     }
 
 private:
-    /// Four planes about a triangle: its own, and across it through each of its sides, positive outside.
+    /// Four planes about a triangle, the same component of all side by side: across it through each of its sides,
+    /// positive outside, and its own.
     struct Prism {
-        std::array<Vec3, 4> normal{};
-        std::array<double, 4> offset{};
+        std::array<double, 4> x{}, y{}, z{}, offset{};
 
         explicit Prism(const Triangle& t);
-        /// Not farther than the root of reach2, or by little.
-        [[nodiscard]] bool may_touch(const Vec3& x, double reach2) const;
+        /// Heights of a place above them, m.
+        [[nodiscard]] std::array<double, 4> heights(const Vec3& place) const {
+            std::array<double, 4> h{};
+            for (std::size_t k = 0; k < 4; ++k) h[k] = x[k] * place[0] + y[k] * place[1] + z[k] * place[2] - offset[k];
+            return h;
+        }
     };
     struct Body {
         TriangleSurface surface;

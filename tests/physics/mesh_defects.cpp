@@ -359,6 +359,8 @@ TEST(MeshDefects, FacetsOfAnySizeAreFound) {
     EXPECT_LT(apart(central, course(setup, 600)), 1e-9);
 }
 
+// 10, curved walls made of facets: mesh_convergence.cpp.
+
 // 11. Lists follow a moving mesh, whatever the skin.
 TEST(MeshDefects, ListsFollowAMovingMesh) {
     for (const std::string name : {"v_linear_normal", "v_wiggle_z", "v_paddle", "v_paddle_tip", "v_roll_and_travel"}) {
