@@ -137,6 +137,12 @@ Mesh Mesh::prepared(double reach) const {
     return same;
 }
 
+void Mesh::touching(const Vec3& x, double reach, std::span<const std::uint32_t> of, std::vector<Closest>& into) const {
+    std::vector<MeshContact> found;
+    contacts(x, reach, of, found);
+    for (const MeshContact& c : found) into.push_back({c.distance, c.normal});
+}
+
 void Mesh::touching(const Vec3& x, double reach, std::vector<Closest>& into) const {
     const auto add = [&](const MeshContact& c) { into.push_back({c.distance, c.normal}); };
     if (reach > body_->reach) {

@@ -33,6 +33,7 @@
 #include "solver/geometry/domain.hpp"
 #include "solver/geometry/triangle.hpp"
 #include "solver/geometry/triangle_grid.hpp"
+#include "solver/geometry/triangle_numbers.hpp"
 #include "solver/geometry/triangle_surface.hpp"
 
 #include <cstdint>
@@ -92,6 +93,16 @@ public:
 
     // What every shape has (shapes.hpp).
     void touching(const Vec3& x, double reach, std::vector<Closest>& into) const;
+    void touching(const Vec3& x, double reach, std::span<const std::uint32_t> of, std::vector<Closest>& into) const;
+    [[nodiscard]] std::size_t pieces() const { return triangles().size(); }
+    using PieceNumbers = TriangleNumbers;
+    [[nodiscard]] PieceNumbers piece(std::size_t number, double unit) const {
+        return numbers_of(triangles()[number], unit);
+    }
+    template <class R>
+    [[gnu::always_inline]] static inline NearPiece<R> near_piece(const R* numbers, R x, R y, R z) {
+        return near_triangle(numbers, x, y, z);
+    }
     [[nodiscard]] bool unchanged_by_shift(const Vec3&) const { return false; }
     [[nodiscard]] bool unchanged_by_turn(const Vec3&, const Vec3&) const { return false; }
     [[nodiscard]] Extent extent(std::size_t along) const { return {low()[along], high()[along]}; }

@@ -15,6 +15,11 @@
 // user's choice, numbers(centre, unit, origin), which gives them and what positions are then relative to, and
 // near(numbers, x, y, z).
 //
+// One with touching is made of pieces, each known by a number from 0 on, so that a user who keeps those near a centre
+// need not look for them again: pieces(), near(x, reach, into), which lists those nearer than the reach, and
+// touching(x, reach, of, into), by some of them, which must be those nearer than the reach at least. For vectors of
+// positions: PieceNumbers, plain doubles, piece(number, unit), and near_piece(numbers, x, y, z).
+//
 // All have: unchanged_by_shift, unchanged_by_turn (motions that leave its surface where it is), extent, flaw, and
 // fields, which visits what it is made of in one order, for checkpoints.
 #pragma once
@@ -28,6 +33,8 @@
 #include "solver/geometry/tube.hpp"
 
 #include <concepts>
+#include <cstdint>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -63,6 +70,16 @@ concept Preparable = requires(const std::remove_cvref_t<S>& shape) {
 template <class S>
 concept Vectorised = requires(const S& shape, const Vec3& centre, Vec3& origin) {
     { shape.numbers(centre, 1.0, origin) } -> std::same_as<typename S::Numbers>;
+};
+
+/// A shape made of pieces, of which a centre is near a few.
+template <class S>
+concept Pieced = requires(const S& shape, const Vec3& x, std::span<const std::uint32_t> of,
+                          std::vector<Closest>& places, std::vector<std::uint32_t>& pieces) {
+    { shape.piece(0, 1.0) } -> std::same_as<typename S::PieceNumbers>;
+    shape.pieces();
+    shape.near(x, 1.0, pieces);
+    shape.touching(x, 1.0, of, places);
 };
 
 /// A shape that can be given displaced, so that its numbers round as if it had been given there.

@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -193,6 +194,11 @@ int main(int argc, char** argv) {
         }
         return beds.at(spread_of_radii);
     };
+    std::optional<dem::Setup> drum;
+    const auto turning_drum = [&] {
+        if (!drum) drum = test::turning_drum();
+        return *drum;
+    };
     const std::map<std::string, std::function<void(const std::string&)>> scenes = {
         {"settled_20k", [&](const auto& s) { run_everywhere(o, s, bed(0), o.steps); }},
         {"chute_20k", [&](const auto& s) { run_everywhere(o, s, test::flowing(bed(0), 26, 0.02), o.steps); }},
@@ -209,10 +215,11 @@ int main(int argc, char** argv) {
              run_everywhere(o, s, test::replicated(test::flowing(bed(0), 26, 0.02), 3, 3), o.steps / 4);
          }},
         {"loose_gas_20k", [&](const auto& s) { run_everywhere(o, s, test::loose_gas(27), o.steps); }},
-        {"drum", [&](const auto& s) { run_everywhere(o, s, test::turning_drum(), o.steps); }},
+        {"drum", [&](const auto& s) { run_everywhere(o, s, turning_drum(), o.steps); }},
+        {"drum_mesh", [&](const auto& s) { run_everywhere(o, s, test::of_triangles(turning_drum()), o.steps); }},
         {"drum_rolling",
          [&](const auto& s) {
-             dem::Setup setup = test::turning_drum();
+             dem::Setup setup = turning_drum();
              setup.material.rolling_friction = 0.1;
              run_everywhere(o, s, setup, o.steps);
          }},

@@ -8,6 +8,7 @@
 
 #include "solver/dem/fast/mixed_engine.hpp"
 #include "stats/random.hpp"
+#include "tests/support/surfaces.hpp"
 
 namespace grainsweep::test {
 
@@ -138,6 +139,37 @@ dem::Setup loose_gas(int per_side) {
                 s.spheres.push_back(p);
             }
     return s;
+}
+
+dem::Setup of_triangles(dem::Setup setup) {
+    constexpr int rings = 28, slices = 14;
+    const auto& mantle = std::get<dem::Cylinder>(setup.walls.at(0).shape);
+    const double length = std::get<dem::Plane>(setup.walls.at(2).shape).point[1];
+    // Ring k of a disc has 6 k corners.
+    const auto corner = [&](int k, int n, double y) {
+        const double angle = k == 0 ? 0 : std::numbers::pi / 3 * n / k, r = mantle.radius * k / rings;
+        return dem::Vec3{r * std::cos(angle), y, r * std::sin(angle)};
+    };
+    tests::Soup soup;
+    for (const double y : {0.0, length})
+        for (int k = 1; k <= rings; ++k)
+            for (int sector = 0; sector < 6; ++sector)
+                for (int n = 0; n < k; ++n) {
+                    const int outer = sector * k + n, inner = sector * (k - 1) + n;
+                    soup.push_back({corner(k, outer, y), corner(k, outer + 1, y), corner(k - 1, inner, y)});
+                    if (n + 1 < k)
+                        soup.push_back({corner(k - 1, inner, y), corner(k, outer + 1, y), corner(k - 1, inner + 1, y)});
+                }
+    for (int n = 0; n < 6 * rings; ++n)
+        for (int slice = 0; slice < slices; ++slice) {
+            const double low = length * slice / slices, high = length * (slice + 1) / slices;
+            const auto square = tests::quadrilateral(corner(rings, n, low), corner(rings, n + 1, low),
+                                                     corner(rings, n + 1, high), corner(rings, n, high));
+            soup.insert(soup.end(), square.begin(), square.end());
+        }
+    const double one_contact_angle = 1.3 * std::numbers::pi / (3 * rings);
+    setup.walls = {{dem::Mesh(tests::surface_of(soup), one_contact_angle), setup.walls[0].motions}};
+    return setup;
 }
 
 dem::Setup turning_drum() {

@@ -5,12 +5,13 @@
 #include "solver/dem/fast/search.hpp"
 #include "solver/dem/fast/sweep.hpp"
 #include "solver/dem/fast/wall_contacts.hpp"
+#include "solver/dem/fast/wall_pieces.hpp"
 
 namespace grainsweep::dem::fast {
 namespace {
 
 template <class K>
-constexpr Kernels compiled{width, sweep<K>, advance<K>, walls<K>, search<K::unequal>, refresh<K::unequal>};
+constexpr Kernels compiled{width, sweep<K>, advance<K>, walls<K>, find_pieces, search<K::unequal>, refresh<K::unequal>};
 
 template <class Combination>
 GRAINSWEEP_LANES const Kernels& kernels_for(const Needs& n) {

@@ -147,10 +147,7 @@ template <class Visit>
 void ContactReader::for_each_at_wall(const Walls& walls, std::size_t w, Visit&& visit) const {
     const MovingWall& wall = walls[w];
     std::vector<WallTouch> touched;
-    std::int32_t found = field_.touched[w].begin;  // of those found before the kernel, in the same order
-    for (std::int32_t k = field_.segments[w].begin; k < field_.segments[w].end; ++k) {
-        const auto i = static_cast<std::int32_t>(field_.wall_particle[k] / places_per_index);
-        if (i >= field_.count) continue;  // fills the segment up
+    for_each_near(field_, walls, w, [&](std::int32_t i, std::int32_t slot) {
         const Vec3 x = wall.image().of(position_of(field_.records[i], space_.scale));
         touched.clear();
         wall.find(0, x, radius(i) + beyond_wall_, touched);
@@ -159,15 +156,23 @@ void ContactReader::for_each_at_wall(const Walls& walls, std::size_t w, Visit&& 
             t.radius_i = t.effective_radius = radius(i);
             t.distance = closest.distance;
             t.overlap = t.radius_i - closest.distance;
-            const bool single = walls.is_single(w);
-            if (!single && (!(t.overlap > -beyond_wall_) || found == field_.touched[w].end)) continue;
-            const Memory of_contact = single ? memory(field_.wall_history, k) : memory(field_.touch_memory, found++);
+            if (!(t.overlap > -beyond_wall_)) continue;
+            const Memory of_contact = memory_at_wall(walls, w, i, slot++);
             t.normal = closest.normal;
             t.root = std::sqrt(t.effective_radius * std::max(t.overlap, 0.0));
             if (!walls.laws(w).begin(t, of_contact.data())) continue;
             visit(i, wall.twist().at(x - closest.distance * closest.normal), t, of_contact);
         }
-    }
+    });
+}
+
+/// Of a particle's contact; of one that the last step did not have, none.
+ContactReader::Memory ContactReader::memory_at_wall(const Walls& walls, std::size_t w, std::int32_t i,
+                                                    std::int32_t slot) const {
+    if (walls.is_single(w)) return memory(field_.wall_history, slot);
+    const bool had =
+        slot < field_.touched[w].end && field_.touch_particle[slot] == static_cast<Place>(i * places_per_index);
+    return had ? memory(field_.touch_memory, slot) : Memory{};
 }
 
 void ContactReader::wall(const Walls& walls, std::size_t w, std::vector<ContactForce>& into) const {

@@ -56,6 +56,7 @@ private:
     /// Calls visit(i, touch, memory) for the particles that touch the wall.
     template <class Visit>
     void for_each_at_wall(const Walls& walls, std::size_t w, Visit&& visit) const;
+    [[nodiscard]] Memory memory_at_wall(const Walls& walls, std::size_t w, std::int32_t i, std::int32_t slot) const;
     void complete(std::int32_t i, std::int32_t j, Touch<Partner::particle>& t) const;
     [[nodiscard]] Memory memory(const ParkedContact& contact) const;
     template <Partner partner>

@@ -40,17 +40,16 @@ Depth deepest_at_walls(const FaultView& s) {
     Depth depth;
     double gap = std::numeric_limits<double>::infinity();
     std::vector<WallTouch> touched;
-    for (std::int32_t w = 0; w < s.field.wall_count; ++w)
-        for (std::int32_t k = s.field.segments[w].begin; k < s.field.segments[w].end; ++k) {
-            const auto i = static_cast<std::int32_t>(s.field.wall_particle[k] / places_per_index);
-            if (i >= s.field.count) continue;
+    for (std::size_t w = 0; w < s.walls.count(); ++w)
+        for_each_near(s.field, s.walls, w, [&](std::int32_t i, std::int32_t) {
             const Record& r = s.field.records[i];
             const double radius = static_cast<double>(r.radius) * s.scale.length;
             touched.clear();
-            s.walls[static_cast<std::size_t>(w)].find(0, position_of(r, s.scale), radius, touched);
+            s.walls[w].find(0, position_of(r, s.scale), radius, touched);
             for (const WallTouch& touch : touched)
-                if (const double g = (touch.place.distance - radius) / radius; g < gap) gap = g, depth = {i, w};
-        }
+                if (const double g = (touch.place.distance - radius) / radius; g < gap)
+                    gap = g, depth = {i, static_cast<std::int32_t>(w)};
+        });
     return depth;
 }
 

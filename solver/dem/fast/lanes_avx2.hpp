@@ -39,6 +39,9 @@ GRAINSWEEP_LANES I load(const std::int32_t* p) {
 GRAINSWEEP_LANES I load(const std::uint32_t* p) {
     return load(reinterpret_cast<const std::int32_t*>(p));
 }
+GRAINSWEEP_LANES D load(const double* p) {
+    return {_mm256_loadu_pd(p), _mm256_loadu_pd(p + 4)};
+}
 GRAINSWEEP_LANES void store(float* p, F a) {
     _mm256_storeu_ps(p, a.v);
 }

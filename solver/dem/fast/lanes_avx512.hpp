@@ -41,6 +41,9 @@ GRAINSWEEP_LANES I load(const std::int32_t* p) {
 GRAINSWEEP_LANES I load(const std::uint32_t* p) {
     return load(reinterpret_cast<const std::int32_t*>(p));
 }
+GRAINSWEEP_LANES D load(const double* p) {
+    return {_mm512_loadu_pd(p), _mm512_loadu_pd(p + 8)};
+}
 GRAINSWEEP_LANES void store(float* p, F a) {
     _mm512_storeu_ps(p, a.v);
 }

@@ -44,6 +44,9 @@ GRAINSWEEP_LANES I load(const std::int32_t* p) {
 GRAINSWEEP_LANES I load(const std::uint32_t* p) {
     return load(reinterpret_cast<const std::int32_t*>(p));
 }
+GRAINSWEEP_LANES D load(const double* p) {
+    return {_mm_loadu_pd(p), _mm_loadu_pd(p + 2)};
+}
 GRAINSWEEP_LANES void store(float* p, F a) {
     _mm_storeu_ps(p, a.v);
 }

@@ -96,6 +96,23 @@ struct alignas(16) PlacedWall {
     unsigned char numbers[numbers_at_most];
 };
 
+/// Overlap, in largest diameters, that says: this piece may be touched on one of its sides.
+constexpr float undecided = -1;
+
+/// Which pieces of a wall's shape particles may touch now, and where the touched ones are to be written.
+struct PieceList {
+    const double* numbers;  ///< of each piece, `stride` of them
+    std::int32_t stride;
+    double margin;               ///< a foot on the plane counts as inside a piece if it is so by more than this
+    std::int32_t near;           ///< particles
+    const Place* particle;       ///< of each
+    const std::int32_t* first;   ///< where its candidates begin
+    const std::int32_t* active;  ///< how many of them count now
+    const std::uint32_t* candidate;
+    std::int32_t* entry;   ///< out: number in `particle`
+    std::uint32_t* piece;  ///< out
+};
+
 /// What the particles did to a wall in one step: sums of their forces (to be reversed), of the torques of these about
 /// its pivot, and of forces times the velocity of the wall's material.
 struct WallSums {
@@ -192,6 +209,9 @@ struct Kernels {
     void (*advance)(const Field&, Tally&);
     /// Forces of the walls on listed particles, and what they sum up to.
     void (*walls)(const Field&, Tally&);
+    /// Pieces of a wall that particles touch, into the columns of touches from `at` on, in the order of the list.
+    /// Returns their number.
+    std::int32_t (*pieces)(const Field&, std::int32_t wall, const PieceList&, std::int32_t at);
     /// Outer list of pairs closer than `skin` beyond contact. Returns the count needed; more than
     /// outer_capacity: nothing beyond was written.
     std::int64_t (*search)(const Field&, float skin);

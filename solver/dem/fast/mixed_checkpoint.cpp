@@ -101,7 +101,7 @@ void MixedEngine::require_possible() const {
     require(drift_.steps >= 0 && drift_.steps < most_steps && wall_steps_ >= 0 && wall_steps_ < most_steps);
     require(work_.steps >= 0 && work_.steps < most_steps);
     require(watch_.spheres() == static_cast<std::size_t>(spheres_at_start_));
-    require(touches_.fits(walls_.count(), n));
+    require(touches_.fits(c, walls_.count(), n));
     require(!resting_.wanted() || resting_.fits(n));
 
     constexpr float rounding = 1e-5F;
@@ -174,11 +174,11 @@ void MixedEngine::restore(std::span<const std::byte> from) {
     columns_.hold_pairs(static_cast<std::size_t>(std::max(field_.outer_count, field_.inner_count)) + spare);
     columns_.hold_wall_contacts(size());
     columns_.bind(field_);
-    touches_.restored(field_, columns_);
     tidy_spare_entries();
     place_fillers(field_);
     list_advanced();
     stand_walls();
+    touches_.restored(field_, columns_, walls_, space_.scale, static_cast<double>(space_.skin) - drift_.outer);
     if (shaken_) shake();
 }
 

@@ -44,7 +44,7 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
     std::ranges::transform(laws_->memory(), columns_.exchanged,
                            [](const MemoryKind& kind) { return static_cast<float>(kind.exchanged); });
     load(setup);
-    touches_.begin(field_, columns_, walls_);
+    touches_.begin(field_, columns_, walls_, space_.scale);
     restart_forces();
     set_limits();
 }

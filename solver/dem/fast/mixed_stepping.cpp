@@ -67,6 +67,7 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
         rebuild(field_, columns_, *kernels_, space_, walls_, removed, needs_.resting ? &resting_ : nullptr,
                 drift_.steps);
         touches_.reorder(field_, columns_);
+        touches_.list(field_, walls_, space_.scale, static_cast<double>(space_.skin));
         columns_.forces.clear(size());  // what was carried over belongs to the old order
         if (field_.count < before) watch_.restart_balance();
         list_advanced();
@@ -91,11 +92,13 @@ void MixedEngine::stand_walls() {
 
 /// Forces of the walls. `moves`: as part of a step.
 void MixedEngine::press_walls(bool moves) {
-    touches_.find(field_, columns_, walls_, space_.scale);
+    touches_.find(field_, columns_, walls_, *kernels_, space_.scale, drift_.outer);
     kernels_->walls(field_, tally_);
     watch_.add_wall_work(walls_.book(field_.wall_sums, moves));
     if (!moves) return;
-    if (const auto passage = touches_.passage(field_, walls_, space_.scale, wall_time()))
+    const double smallest_radius = 0.5 * static_cast<double>(smallest_diameter_);
+    if (const auto passage =
+            touches_.passage(field_, walls_, space_.scale, wall_time(), drift_.last_step, smallest_radius))
         fault_ = describe(view(), "the centre of a particle passed through wall " + std::to_string(passage->wall),
                           passage->particle);
 }
@@ -214,7 +217,7 @@ void MixedEngine::set_walls(std::vector<Wall> walls) {
     columns_.hold_particles(size(), walls_.count());
     columns_.bind(field_);
     for (std::size_t w = 0; w < walls_.count(); ++w) columns_.segments[w] = {0, 0};
-    touches_.begin(field_, columns_, walls_);
+    touches_.begin(field_, columns_, walls_, space_.scale);
     restart_forces();
     set_limits();
 }

@@ -67,13 +67,9 @@ void list_wall_contacts(Field& f, Columns& c, const Kernels& kernels, const List
             for (int a = 0; a < c.histories; ++a)
                 c.wall_history_next[a][k] = from == none ? 0 : c.wall_history[a][static_cast<std::size_t>(from)];
         };
-        walls[w].find(mobile.index, mobile.position, {0, mobile.radius}, near, within);
-        std::uint32_t before = UINT32_MAX;
-        for (const WallTouch& touch : within) {
-            if (touch.entry == before) continue;  // in several places
-            before = touch.entry;
-            add(mobile.index[touch.entry], old_slot[mobile.index[touch.entry]]);
-        }
+        within.clear();
+        if (walls.is_single(w)) walls[w].find(mobile.index, mobile.position, {0, mobile.radius}, near, within);
+        for (const WallTouch& touch : within) add(mobile.index[touch.entry], old_slot[mobile.index[touch.entry]]);
         while ((n - begin) % kernels.width != 0) add(static_cast<std::size_t>(f.count) + 2, none);
         f.segments[w] = {begin, n};
     }

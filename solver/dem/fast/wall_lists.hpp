@@ -7,9 +7,24 @@
 
 namespace grainsweep::dem::fast {
 
-/// `keep`: histories follow their contacts, by columns.place; else they start at zero.
+/// Walls that may be touched in one place; of the others wall_touches.hpp knows. `keep`: histories follow their
+/// contacts, by columns.place; else they start at zero.
 void list_wall_contacts(Field& field, Columns& columns, const Kernels& kernels, const ListSpace& space,
                         const Walls& walls, bool keep);
+
+/// Calls visit(particle, slot) for the listed particles of a wall; of one that may be touched in several places for
+/// those that touch it, with the slot of the first contact.
+template <class Visit>
+void for_each_near(const Field& f, const Walls& walls, std::size_t w, Visit&& visit) {
+    const bool single = walls.is_single(w);
+    const WallSegment& s = single ? f.segments[w] : f.touched[w];
+    const Place* places = single ? f.wall_particle : f.touch_particle;
+    for (std::int32_t k = s.begin; k < s.end; ++k) {
+        const auto i = static_cast<std::int32_t>(places[k] / places_per_index);
+        const bool fills_up = i >= f.count, again = !single && k > s.begin && places[k] == places[k - 1];
+        if (!fills_up && !again) visit(i, k);
+    }
+}
 
 /// Position of a particle as forces see it, m.
 [[nodiscard]] Vec3 position_of(const Record& record, const Scale& scale);

@@ -1,6 +1,12 @@
-// Contacts with walls that a particle may touch in several places at once: found one particle after the other in
-// double precision, in the order of the lists. What they remember goes on by their normals
-// (geometry/contact_memory.hpp). The laws are evaluated as at all other walls (wall_contacts.hpp).
+// Contacts with walls that a particle may touch in several places at once, because their shapes are made of pieces.
+//
+//   list      at a rebuild: the pieces within the skin of each particle, its candidates
+//   refresh   when a particle may have come near another of them: the candidates that count until then
+//   find      each step: over lanes, which of these are touched (wall_pieces.hpp). One piece, inside its sides: that is
+//             the contact. Otherwise the shape says where it is touched, by those pieces
+//
+// What contacts remember goes on by their normals (geometry/contact_memory.hpp). The laws are evaluated as at all other
+// walls (wall_contacts.hpp).
 #pragma once
 
 #include <cstdint>
@@ -16,16 +22,19 @@ namespace grainsweep::dem::fast {
 class WallTouches {
 public:
     /// New walls: nothing is touched yet.
-    void begin(Field& field, Columns& columns, const Walls& walls);
-    /// Where the walls are touched now, by the lists there are; contacts keep their memories.
-    void find(Field& field, Columns& columns, const Walls& walls, const Scale& scale);
+    void begin(Field& field, Columns& columns, const Walls& walls, const Scale& scale);
+    /// The particles that may touch each wall until they have moved by `reach` against it, in largest diameters.
+    void list(const Field& field, const Walls& walls, const Scale& scale, double reach);
+    /// Where the walls are touched now; contacts keep their memories. `drift`: moved since the lists were made.
+    void find(Field& field, Columns& columns, const Walls& walls, const Kernels& kernels, const Scale& scale,
+              double drift);
     /// A wall without an inside pushes on what has passed it. A centre that did so in the step that ended at `time`, by
-    /// what find() found; one that did is no farther from the wall than they moved.
+    /// what find() found: it is no farther from the wall than `moved`, the most by which anything moved against it.
     struct Passage {
         std::int32_t particle, wall;
     };
     [[nodiscard]] std::optional<Passage> passage(const Field& field, const Walls& walls, const Scale& scale,
-                                                 double time);
+                                                 double time, double moved, double smallest_radius) const;
     /// After the particles were sorted: those of columns.place; contacts of removed ones end.
     void reorder(Field& field, Columns& columns);
 
@@ -33,31 +42,54 @@ public:
     template <class Archive>
     static void pass(auto& self, Archive& archive, auto& columns) {
         archive.list(self.segment_);
-        archive.list(self.particle_);
-        archive.list(self.normal_);
-        for (int a = 0; a < columns.histories; ++a) archive.column(columns.touch_memory[a], self.particle_.size());
+        const auto count = self.segment_.empty() ? 0 : static_cast<std::size_t>(self.segment_.back().end);
+        archive.column(columns.touch_particle, count);
+        for (auto& column : columns.touch_normal) archive.column(column, count);
+        for (int a = 0; a < columns.histories; ++a) archive.column(columns.touch_memory[a], count);
     }
     /// Whether this can be of `walls` walls and `particles` particles.
-    [[nodiscard]] bool fits(std::size_t walls, std::int32_t particles) const;
+    [[nodiscard]] bool fits(const Columns& columns, std::size_t walls, std::int32_t particles) const;
     /// After a state was read.
-    void restored(Field& field, Columns& columns) const;
+    void restored(Field& field, Columns& columns, const Walls& walls, const Scale& scale, double reach);
 
 private:
-    void gather_near(const Field& field, std::size_t wall, const Scale& scale);
-    void inherit(const MovingWall& wall, const WallSegment& old, Columns& columns);
-    void write(Columns& columns, const MovingWall& wall, const Scale& scale);
+    /// A wall's pieces, and the particles near them.
+    struct PieceWall {
+        std::size_t wall = 0;
+        std::int32_t stride = 0;
+        double margin = 0;
+        std::vector<double> numbers;  // in the engine's units, in the frame of the body
+        std::vector<Place> particle;  // ascending
+        std::vector<std::int32_t> first, active;
+        std::vector<std::uint32_t> candidate;  // a particle's active ones come first
+        std::vector<double> wake;              // drift from which on others may count
+    };
+    /// A contact of the step before.
+    struct Before {
+        Place particle;
+        float normal[3];
+    };
+    struct Spread {  // a range of before_
+        std::size_t begin, end;
+    };
+
+    void write_pieces(const Walls& walls, const Scale& scale);
+    static std::int64_t refresh(PieceWall& p, const Field& f, const MovingWall& wall, const Scale& scale, double drift);
+    std::int32_t settle(const PieceWall& p, const MovingWall& wall, const Field& f, Columns& c, const Scale& scale,
+                        WallSegment old, std::int32_t begin, std::int32_t found);
+    std::int32_t ask_shape(const MovingWall& wall, const Field& f, Columns& c, const Scale& scale, Place particle,
+                           std::int32_t at);
+    void inherit(const MovingWall& wall, Columns& c, Spread before, std::int32_t begin, std::int32_t end);
     void publish(Field& field, Columns& columns) const;
 
-    std::vector<WallSegment> segment_;    // of each wall, of the following
-    std::vector<std::int32_t> particle_;  // ascending in a segment
-    std::vector<Vec3> normal_;
+    std::vector<PieceWall> pieced_;
+    std::vector<WallSegment> segment_;  // of each wall, of the columns of touches
     // Of one call.
-    std::vector<std::int32_t> particle_before_;
-    std::vector<Vec3> normal_before_;
-    std::vector<std::uint32_t> near_;
-    std::vector<Vec3> position_;
-    std::vector<double> radius_;
-    std::vector<WallTouch> now_, one_before_;
+    std::vector<Before> before_;
+    std::vector<std::int32_t> entry_;
+    std::vector<std::uint32_t> piece_, of_one_;
+    std::vector<geometry::Closest> places_;
+    std::vector<WallTouch> touches_before_, touches_now_;
     std::vector<std::int32_t> from_;
 };
 

@@ -17,11 +17,15 @@ namespace {
 /// Gives a wall the numbers of its shape and what they are relative to.
 template <class S>
 void write_shape(const S& shape, const Pose& pose, const Scale& scale, PlacedWall& w) {
+    static_assert(Vectorised<S> || Pieced<S>);
+    Vec3 origin{};
+    const auto in_body_frame = [&] {
+        origin = (1 / scale.length) * (pose.shift - scale.centre) + (pose.turned ? pose.turn(origin) : origin);
+    };
     if constexpr (Vectorised<S>) {
         using Numbers = typename S::Numbers;
         static_assert(sizeof(Numbers) <= numbers_at_most);
         Numbers numbers{};
-        Vec3 origin{};
         bool stands = false;
         if constexpr (Movable<S>) {
             stands = !pose.turned;
@@ -29,11 +33,13 @@ void write_shape(const S& shape, const Pose& pose, const Scale& scale, PlacedWal
         }
         if (!stands) {
             numbers = shape.numbers({}, scale.length, origin);
-            origin = (1 / scale.length) * (pose.shift - scale.centre) + pose.turn(origin);
+            in_body_frame();
         }
-        std::ranges::copy(origin, w.origin);
         std::memcpy(w.numbers, &numbers, sizeof numbers);
+    } else {
+        in_body_frame();
     }
+    std::ranges::copy(origin, w.origin);
 }
 
 void write_pose(const MovingWall& wall, const Scale& scale, PlacedWall& w) {
@@ -82,7 +88,6 @@ Walls::Walls(const std::vector<Wall>& walls, const Domain& domain, const Scale& 
             throw std::invalid_argument("the surface of a wall has friction that nothing at the start had");
         moving_.emplace_back(walls[w], geometry::Domain{domain.low, domain.high, domain.periodic}, 0.5 * scale.length);
         single_.push_back(std::visit([]<class S>(const S&) { return Vectorised<S>; }, walls[w].shape));
-        all_single_ = all_single_ && single_.back();
         laws_.push_back(make_contact(combination, surface));
         write_law_constants(combination, surface, scale, placed_[w].laws);
         placed_[w].shape = static_cast<std::int32_t>(walls[w].shape.index());

@@ -26,7 +26,6 @@ public:
     [[nodiscard]] std::span<const MovingWall> all() const { return moving_; }
     /// Whether a wall is touched in one place at most, and found over lanes.
     [[nodiscard]] bool is_single(std::size_t w) const { return single_[w]; }
-    [[nodiscard]] bool all_single() const { return all_single_; }
     /// Of a wall's surface, in SI.
     [[nodiscard]] const AnyContact& laws(std::size_t w) const { return *laws_[w]; }
 
@@ -53,7 +52,6 @@ private:
     std::vector<MovingWall> moving_;
     std::vector<std::unique_ptr<const AnyContact>> laws_;
     std::vector<bool> single_;
-    bool all_single_ = true;
     std::vector<PlacedWall> placed_;
     std::vector<WallSums> sums_;  // of the last step
     std::vector<Vec3> pivot_;     // that their torques are about, m

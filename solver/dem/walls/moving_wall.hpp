@@ -45,6 +45,8 @@ public:
     void place(double time);
 
     [[nodiscard]] const Wall& wall() const { return wall_; }
+    /// The shape as particles find it in its body frame: with its images where they can touch more than one.
+    [[nodiscard]] const Shape& found() const { return found_; }
     [[nodiscard]] const geometry::Pose& pose() const { return pose_; }
     [[nodiscard]] geometry::Pose pose_at(double time) const { return geometry::pose_at(displacing_, time); }
     [[nodiscard]] const geometry::Twist& twist() const { return twist_; }  ///< of the material
@@ -81,7 +83,7 @@ private:
     [[nodiscard]] double bound_of_speed(std::span<const geometry::Motion> motions) const;
 
     Wall wall_;
-    Shape found_;  // as particles find it: the same, with its images where they can touch more than one
+    Shape found_;
     std::vector<geometry::Motion> displacing_;  // those that move the surface
     bool switches_ = false;                     // one of them starts late or ends
     bool bounded_ = false;
