@@ -27,6 +27,22 @@ bool within(const Vec3& a, const Vec3& b, double distance) {
     return dot(apart, apart) <= distance * distance;
 }
 
+/// The one face among nearest points, if all others lie on it: the only contact by steps 2 and 3. Nearly always.
+std::optional<std::size_t> only_face(std::span<const Triangle> triangles, double tolerance,
+                                     std::span<const MeshContact> touched) {
+    std::optional<std::size_t> face;
+    for (std::size_t k = 0; k < touched.size(); ++k) {
+        if (touched[k].feature != Feature::face) continue;
+        if (face) return std::nullopt;
+        face = k;
+    }
+    if (!face) return std::nullopt;
+    const Triangle& t = triangles[touched[*face].triangle];
+    for (std::size_t k = 0; k < touched.size(); ++k)
+        if (k != *face && !(t.nearest(touched[k].point).distance <= tolerance)) return std::nullopt;
+    return face;
+}
+
 }  // namespace
 
 Mesh::Mesh() : body_(std::make_shared<const Body>()) {}
@@ -86,7 +102,11 @@ Mesh Mesh::repeated(const Domain& domain, double margin) const {
 void Mesh::near(const Vec3& position, double reach, std::vector<std::uint32_t>& into) const {
     const Vec3 margin = {reach, reach, reach};
     body_->grid.in_box(position - margin, position + margin, into);
-    std::erase_if(into, [&](std::uint32_t t) { return !(body_->triangles[t].nearest(position).distance < reach); });
+    const double beyond = (1 + 1e-9) * reach + tolerance();
+    std::erase_if(into, [&](std::uint32_t t) {
+        if (!body_->prisms.empty() && !body_->prisms[t].may_touch(position, beyond * beyond)) return true;
+        return !(body_->triangles[t].nearest(position).distance < reach);
+    });
 }
 
 void Mesh::contacts(const Vec3& position, double reach, std::vector<MeshContact>& into) const {
@@ -103,6 +123,11 @@ void Mesh::contacts(const Vec3& position, double reach, std::span<const std::uin
         if (touched.distance < reach) into.push_back(touched);
     }
     if (into.size() < 2) return;
+    if (const auto face = only_face(body_->triangles, tolerance(), into)) {
+        into.front() = into[*face];
+        into.resize(1);
+        return;
+    }
     std::ranges::sort(into, {},
                       [](const MeshContact& c) { return std::tuple(c.feature, c.distance, c.point, c.normal); });
     keep_places(into);
