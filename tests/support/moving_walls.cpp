@@ -23,6 +23,7 @@ std::vector<Moving> moving_walls() {
     const dem::Cylinder roller{
         .point = {}, .axis = {0, 1, 0}, .radius = 0.01, .side = dem::Side::outside, .length = 0.02};
     const dem::Cone funnel{.base = {0, 0, -0.01}, .base_radius = 0.002, .end_radius = 0.012, .length = 0.02};
+    const dem::Tube tube{.base = {0, 0, -0.01}, .inner = 0.005, .outer = 0.0055, .length = 0.02};
     const Vec3 above{0.002, 0.001, 1.01e-3}, down{0.05, 0.02, -0.3};
     return {
         {"translation", {floor, {dem::Translation{.velocity = {0.1, -0.05, 0.2}}}}, above, down},
@@ -47,6 +48,10 @@ std::vector<Moving> moving_walls() {
         {"cone about another axis",
          {funnel, {dem::Rotation{.point = {0.001, 0, 0}, .axis = {0, 0, 1}, .speed = 50}}},
          {0.0058, 0, 0},
+         {0.4, 0.1, 0}},
+        {"tube that is lifted and turns",
+         {tube, {dem::Translation{.velocity = {0, 0, 0.3}}, dem::Rotation{.axis = {0, 0, 1}, .speed = 30}}},
+         {0.00399, 0, 0},
          {0.4, 0.1, 0}},
     };
 }
