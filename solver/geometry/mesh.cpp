@@ -104,7 +104,11 @@ void Mesh::near(const Vec3& position, double reach, std::vector<std::uint32_t>& 
     body_->grid.in_box(position - margin, position + margin, into);
     const double beyond = (1 + 1e-9) * reach + tolerance();
     std::erase_if(into, [&](std::uint32_t t) {
-        if (!body_->prisms.empty() && !body_->prisms[t].may_touch(position, beyond * beyond)) return true;
+        if (!body_->prisms.empty()) {  // most are farther than their planes alone say
+            const auto h = body_->prisms[t].heights(position);
+            const double outside = std::max({h[0], h[1], h[2], 0.0});
+            if (!(h[3] * h[3] + outside * outside <= beyond * beyond)) return true;
+        }
         return !(body_->triangles[t].nearest(position).distance < reach);
     });
 }
