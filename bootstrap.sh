@@ -2,6 +2,7 @@
 # From a fresh Debian machine to a running campaign or a green test run.
 #   ./bootstrap.sh run CONFIG [OPTIONS]   install what is missing, build, run the campaign, write its report
 #   ./bootstrap.sh test                   ... build everything, run the tests
+#   ./bootstrap.sh threads                ... build with the thread sanitizer, run what has threads
 #   ./bootstrap.sh build                  ... build build/grainsweep (Release) and stop
 #   ./bootstrap.sh bench [NAME]...        ... run the benchmarks, all or those named (JSON lines)
 set -euo pipefail
@@ -9,7 +10,7 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 jobs=$(nproc)
 
 usage() {
-    sed -n '2,6p' "${BASH_SOURCE[0]}" | sed 's/^# \{0,1\}//' >&2
+    sed -n '2,7p' "${BASH_SOURCE[0]}" | sed 's/^# \{0,1\}//' >&2
     exit 2
 }
 
@@ -105,6 +106,21 @@ test)
     (cd "$here" && configure sanitize -DGRAINSWEEP_TESTS=ON)
     cmake --build "$here/build-sanitize" -j "$jobs" --target test_unit
     "$here/build-sanitize/tests/test_unit" --gtest_brief=1
+    ;;
+threads)
+    # What has threads under the thread sanitizer: tests of the store, the loop and the workers, and whole campaigns.
+    install_missing "${program_packages[@]}" "${test_packages[@]}"
+    (cd "$here" && configure thread -DGRAINSWEEP_TESTS=ON)
+    quiet "building" cmake --build "$here/build-thread" -j "$jobs" --target test_threads grainsweep
+    export TSAN_OPTIONS=halt_on_error=1
+    "$here/build-thread/tests/test_threads" --gtest_brief=1
+    folder=$(mktemp -d)
+    trap 'rm -rf "$folder"' EXIT
+    sed 's/"points": 256/"points": 20000/' "$here/configs/rehearsal_small.json" >"$folder/many.json"
+    for try in first second; do
+        "$here/build-thread/grainsweep" run "$folder/many.json" --db "$folder/many.db" -j "$jobs" --quiet
+    done
+    echo "no data race"
     ;;
 bench)
     install_missing "${program_packages[@]}" "${test_packages[@]}"

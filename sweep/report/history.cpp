@@ -168,19 +168,24 @@ std::string points_line(const Responses& responses) {
                        responses.dropped(), responses.rows(), responses.finished());
 }
 
-History history_of(const Responses& responses, const ResponseColumn& response) {
+History figures_of(const Responses& responses, const ResponseColumn& response) {
     History history;
     history.settings = settings_for(responses);
     history.has_rule = responses.campaign.convergence.has_value();
     history.all = check_of_all(responses, response, history.settings);
+    history.provisional = check_of_finished(responses, response, history.settings);
+    warn(history, responses, response);
+    return history;
+}
+
+History history_of(const Responses& responses, const ResponseColumn& response) {
+    History history = figures_of(responses, response);
     if (responses.ordered_sample()) {
         history.checks = stats::judge_convergence(history.settings, judged_points(responses),
                                                   responses.judged(response), responses.settled_points);
     }
-    history.provisional = check_of_finished(responses, response, history.settings);
     history.verdict = verdict_of(history, responses);
     if (history.has_rule) history.converged = std::ranges::any_of(history.checks, &stats::Checkpoint::converged);
-    warn(history, responses, response);
     return history;
 }
 

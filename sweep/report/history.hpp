@@ -36,6 +36,8 @@ struct History {
 [[nodiscard]] std::string points_line(const Responses& responses);
 
 [[nodiscard]] History history_of(const Responses& responses, const ResponseColumn& response);
+/// The same without the checks on the way and their verdict, which take most of the time.
+[[nodiscard]] History figures_of(const Responses& responses, const ResponseColumn& response);
 
 /// One lattice of a family (same scene, factors and ranges) and how far its moments moved since the one before.
 struct LatticeStep {

@@ -51,13 +51,6 @@ std::string level_text(const campaign::Json& level) {
     return level.is_string() ? level.get<std::string>() : fmt::format("{:.6g}", level.get<double>());
 }
 
-std::vector<Cell> column_of(const store::Table& table, std::size_t column) {
-    std::vector<Cell> cells;
-    cells.reserve(table.rows.size());
-    for (const auto& row : table.rows) cells.push_back(row[column]);
-    return cells;
-}
-
 /// Levels that occur, in the order of the campaign file; those it does not name (files) after them.
 void read_levels(FactorColumn& factor, const std::vector<Cell>& cells, const campaign::Json* listed) {
     std::vector<std::string> texts;
@@ -75,26 +68,43 @@ void read_levels(FactorColumn& factor, const std::vector<Cell>& cells, const cam
     for (const auto& text : texts) factor.values.push_back(static_cast<double>(index.at(text)));
 }
 
-FactorColumn read_factor(const campaign::Json& given, const std::vector<Cell>& cells, const SceneInfo* scene) {
-    FactorColumn factor;
-    factor.name = given.at("name").get<std::string>();
-    if (const auto* parameter = scene == nullptr ? nullptr : scene->find_parameter(factor.name)) {
-        factor.unit = parameter->unit;
-        factor.meaning = parameter->meaning;
+/// A factor as its rows come by: numbers where it has a range, else cells until all are known.
+class FactorReader {
+public:
+    FactorReader(const campaign::Json& given, const SceneInfo* scene) : given_(given) {
+        factor_.name = given.at("name").get<std::string>();
+        if (const auto* parameter = scene == nullptr ? nullptr : scene->find_parameter(factor_.name)) {
+            factor_.unit = parameter->unit;
+            factor_.meaning = parameter->meaning;
+        }
+        factor_.log = given.value("scale", "linear") == "log";
+        if (given.contains("between")) {
+            factor_.low = given.at("between").at(0).get<double>();
+            factor_.high = given.at("between").at(1).get<double>();
+        }
     }
-    factor.log = given.value("scale", "linear") == "log";
-    if (given.contains("between")) {
-        factor.low = given.at("between").at(0).get<double>();
-        factor.high = given.at("between").at(1).get<double>();
+    void add(const Cell& cell) {
+        if (given_.contains("between"))
+            factor_.values.push_back(number(cell));
+        else
+            cells_.push_back(cell);
     }
-    const bool words = std::ranges::any_of(cells, [](const Cell& c) { return std::holds_alternative<std::string>(c); });
-    if (given.contains("levels") || words) {
-        read_levels(factor, cells, given.contains("levels") ? &given.at("levels") : nullptr);
-    } else {
-        for (const auto& cell : cells) factor.values.push_back(number(cell));
+    [[nodiscard]] FactorColumn take() {
+        const bool words =
+            std::ranges::any_of(cells_, [](const Cell& c) { return std::holds_alternative<std::string>(c); });
+        if (given_.contains("levels") || words) {
+            read_levels(factor_, cells_, given_.contains("levels") ? &given_.at("levels") : nullptr);
+        } else {
+            for (const auto& cell : cells_) factor_.values.push_back(number(cell));
+        }
+        return std::move(factor_);
     }
-    return factor;
-}
+
+private:
+    const campaign::Json& given_;
+    FactorColumn factor_;
+    std::vector<Cell> cells_;
+};
 
 /// A view calls an observable that bears the name of a factor "NAME_observed".
 std::string observable_name(const std::string& column, const SceneInfo* scene) {
@@ -229,30 +239,33 @@ Responses read_responses(const store::Store& store, const store::CampaignRecord&
     Responses responses;
     responses.campaign = record;
     const SceneInfo* scene = find_scene(record.scene);
-    // The campaign's view is the archive's public face; its columns are promised to users, too.
-    const auto table = store.query(fmt::format("SELECT * FROM \"{}\" ORDER BY point, replicate", record.name));
-    for (const auto& row : table.rows) {
+    const campaign::Json text = campaign::parse_json(record.text);
+    std::vector<FactorReader> factors;
+    for (const auto& given : text.at("factors")) factors.emplace_back(given, scene);
+    const auto first_observable = first_factor + factors.size();
+    const auto declare = [&](const std::vector<std::string>& columns) {
+        for (std::size_t column = first_observable; column < columns.size(); ++column) {
+            ResponseColumn response;
+            response.name = observable_name(columns[column], scene);
+            if (const auto* spec = scene == nullptr ? nullptr : scene->find_observable(response.name)) {
+                response.unit = spec->unit;
+                response.meaning = spec->meaning;
+            }
+            responses.observables.push_back(std::move(response));
+        }
+    };
+    const auto add = [&](const std::vector<Cell>& row) {
         responses.points.push_back(integer(row[point_column]));
         responses.replicates.push_back(integer(row[replicate_column]));
         responses.case_ids.push_back(std::get<std::string>(row[case_column]));
         responses.outcomes.push_back(outcome_of(row));
-    }
-
-    const campaign::Json text = campaign::parse_json(record.text);
-    std::size_t column = first_factor;
-    for (const auto& given : text.at("factors"))
-        responses.factors.push_back(read_factor(given, column_of(table, column++), scene));
-    for (; column < table.columns.size(); ++column) {
-        ResponseColumn response;
-        response.name = observable_name(table.columns[column], scene);
-        if (const auto* spec = scene == nullptr ? nullptr : scene->find_observable(response.name)) {
-            response.unit = spec->unit;
-            response.meaning = spec->meaning;
-        }
-        response.values.reserve(table.rows.size());
-        for (const auto& row : table.rows) response.values.push_back(number(row[column]));
-        responses.observables.push_back(std::move(response));
-    }
+        for (std::size_t j = 0; j < factors.size(); ++j) factors[j].add(row[first_factor + j]);
+        for (std::size_t k = first_observable; k < row.size(); ++k)
+            responses.observables[k - first_observable].values.push_back(number(row[k]));
+    };
+    // The campaign's view is the archive's public face; its columns are promised to users, too.
+    store.query(fmt::format("SELECT * FROM \"{}\" ORDER BY point, replicate", record.name), {}, declare, add);
+    for (auto& factor : factors) responses.factors.push_back(factor.take());
 
     responses.candidates = record.stored.candidates;
     const auto& design = text.at("design");

@@ -94,7 +94,7 @@ store::Table moments_table(const Responses& responses) {
     store::Table table;
     table.columns = {"observable", "unit", "mean", "sd", "skewness", "g1", "kurtosis", "values"};
     for (const auto* response : main_first(responses)) {
-        const auto history = history_of(responses, *response);
+        const auto history = figures_of(responses, *response);
         const auto& all = history.provisional ? *history.provisional : history.all;
         std::vector<store::Table::Cell> row = {response->name, response->unit};
         for (const auto statistic : stats::statistics)
@@ -136,7 +136,8 @@ std::string closing_summary(const store::Store& store, const std::string& campai
                         outcome_line(responses));
     if (!responses.campaign.condition.empty()) text << "where: " << points_line(responses) << '\n';
     if (const auto* main = responses.main_observable()) {
-        const auto history = history_of(responses, *main);
+        const bool has_rule = responses.campaign.convergence.has_value();
+        const auto history = has_rule ? history_of(responses, *main) : figures_of(responses, *main);
         if (history.has_rule) text << fmt::format("{}: {}\n", main->name, history.verdict);
         for (const auto& warning : history.warnings) text << "note: " << warning << '\n';
         if (responses.finished() > 0) {

@@ -1,6 +1,7 @@
 // What the files of the store share: the open database and what it remembers between calls.
 #pragma once
 
+#include "sweep/campaign/identity.hpp"
 #include "sweep/store/database.hpp"
 #include "sweep/store/placing.hpp"
 #include "sweep/store/soundness.hpp"
@@ -72,16 +73,12 @@ struct Store::Impl {
     [[nodiscard]] std::optional<OpenAttempt> take_open(const campaign::Attempt& attempt);
 };
 
-/// The campaign's identity as text, one line per factor, value or option.
-struct CampaignTexts {
-    std::string factors, fixed, options, extent;
+/// A stored campaign; none of that name.
+struct KnownCampaign {
+    std::int64_t key = 0;
+    campaign::Identity identity;
 };
-[[nodiscard]] CampaignTexts texts_of(const campaign::Campaign& campaign);
-/// The larger of two extents of one design that extends, option by option; of any other the later one.
-[[nodiscard]] std::string larger_extent(std::string_view design, const std::string& before, const std::string& after);
-/// Sequences of the design: point p belongs to sequence p mod this.
-[[nodiscard]] std::int64_t sequences_of(const campaign::Campaign& campaign);
-
+[[nodiscard]] std::optional<KnownCampaign> known_campaign(const Connection& db, std::string_view name);
 /// Throws WrongQuestion where the stored campaign of that name asks something else; returns its key, none where
 /// it is new.
 [[nodiscard]] std::optional<std::int64_t> match_campaign(const Store::Impl& archive,

@@ -240,28 +240,28 @@ void store_extent(Store::Impl& archive, const Campaign& campaign, std::int64_t k
         auto rows = archive.db.ask("SELECT design_extent FROM campaign WHERE campaign_id = ?", key);
         if (rows.next()) stored = rows.get<std::string>(0);
     }
-    const auto texts = texts_of(campaign);
+    const auto identity = campaign::identity_of(campaign);
     archive.db.run(
         "UPDATE campaign SET factors = ?1, design_options = ?2, design_extent = ?3, replicates = max(replicates, ?4), "
         "candidates = iif(?5, max(coalesce(candidates, (SELECT max(point) + 1 FROM campaign_case AS p WHERE "
         "p.campaign_id = campaign.campaign_id), 0), ?6), ?6), asked_candidates = ?6, asked_replicates = ?4 "
         "WHERE campaign_id = ?7",
-        texts.factors, texts.options, larger_extent(campaign.design, stored, texts.extent), campaign.replicates,
-        designs::design_named(campaign.design).extends, candidates, key);
+        identity.factors, identity.options, campaign::larger_extent(campaign.design, stored, identity.extent),
+        campaign.replicates, designs::design_named(campaign.design).extends, candidates, key);
 }
 
 std::int64_t store_campaign(Store::Impl& archive, const Campaign& campaign, const campaign::Cases& cases) {
     auto& db = archive.db;
     auto key = match_campaign(archive, campaign);
-    const auto texts = texts_of(campaign);
+    const auto identity = campaign::identity_of(campaign);
     if (!key) {
         refuse_taken_name(db, campaign);
         db.run(
             "INSERT INTO campaign (name, scene, revision, seed, factors, fixed, condition, design, design_options, "
             "design_extent, sequences, replicates) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
             campaign.name, campaign.scene().name, campaign.scene().revision, static_cast<std::int64_t>(campaign.seed),
-            texts.factors, texts.fixed, campaign.where, campaign.design, texts.options, texts.extent,
-            sequences_of(campaign), campaign.replicates);
+            identity.factors, identity.fixed, campaign.where, campaign.design, identity.options, identity.extent,
+            campaign::sequences_of(campaign), campaign.replicates);
         key = db.last_row();
     }
     store_extent(archive, campaign, *key, candidates_in(campaign, cases));
@@ -314,6 +314,34 @@ void drop_damaged_verdicts(Store::Impl& archive, std::int64_t campaign_key) {
 }
 
 }  // namespace
+
+std::optional<KnownCampaign> known_campaign(const Connection& db, std::string_view name) {
+    auto rows = db.ask(
+        "SELECT campaign_id, name, scene, revision, seed, factors, fixed, condition, design, design_options, "
+        "design_extent FROM campaign WHERE name = ?",
+        name);
+    if (!rows.next()) return std::nullopt;
+    KnownCampaign known{rows.get<std::int64_t>(0), {}};
+    auto& identity = known.identity;
+    identity.name = rows.get<std::string>(1);
+    identity.scene = rows.get<std::string>(2);
+    identity.revision = rows.get<std::int64_t>(3);
+    identity.seed = static_cast<std::uint64_t>(rows.get<std::int64_t>(4));
+    identity.factors = rows.get<std::string>(5);
+    identity.fixed = rows.get<std::string>(6);
+    identity.condition = rows.get<std::string>(7);
+    identity.design = rows.get<std::string>(8);
+    identity.options = rows.get<std::string>(9);
+    identity.extent = rows.get<std::string>(10);
+    return known;
+}
+
+std::optional<std::int64_t> match_campaign(const Store::Impl& archive, const Campaign& campaign) {
+    const auto known = known_campaign(archive.db, campaign.name);
+    if (!known) return std::nullopt;
+    campaign::require_same(known->identity, campaign::identity_of(campaign), archive.file.string());
+    return known->key;
+}
 
 namespace {
 

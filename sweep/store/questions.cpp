@@ -132,13 +132,9 @@ std::vector<CampaignRecord> Store::campaigns() const {
     return records;
 }
 
-std::vector<std::string> Store::factor_order(std::string_view campaign) const {
-    std::vector<std::string> names;
-    auto rows = impl_->db.ask("SELECT factors FROM campaign WHERE name = ?", campaign);
-    if (!rows.next()) return names;
-    std::istringstream lines(rows.get<std::string>(0));
-    for (std::string line; std::getline(lines, line);) names.push_back(line.substr(0, line.find(' ')));
-    return names;
+std::vector<std::string> Store::factor_order(std::string_view name) const {
+    const auto known = known_campaign(impl_->db, name);
+    return known ? campaign::factor_names(known->identity) : std::vector<std::string>{};
 }
 
 std::optional<CampaignRecord> Store::stored(const campaign::Campaign& campaign) const {

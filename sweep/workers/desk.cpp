@@ -34,8 +34,8 @@ sigset_t asking_set() {
 
 /// What no boss writes ends the worker: what it would compute is not known to be what was asked.
 [[noreturn]] void refuse(std::string_view line, std::string_view why) {
-    const std::string sentence =
-        fmt::format("grainsweep worker: standard input is not a boss's: {} ({})\n", shortened(line, 200), why);
+    const std::string sentence = fmt::format("grainsweep worker: standard input is not the main program's: {} ({})\n",
+                                             shortened(line, 200), why);
     (void)std::fwrite(sentence.data(), 1, sentence.size(), stderr);
     std::_Exit(boss_wrote_nonsense);
 }

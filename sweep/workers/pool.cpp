@@ -60,7 +60,7 @@ struct Pool::Impl {
         std::shared_ptr<Child> child;
         LineBuffer lines{longest_line};
         double beat = -heartbeat_every;  // when a heartbeat was last passed on
-        bool told_to_stop = false, remarked = false;
+        bool stop_sent = false, remarked = false;
 
         [[nodiscard]] std::string name() const {
             const auto& by = state.computer();
@@ -93,7 +93,7 @@ struct Pool::Impl {
 
     void read(const std::shared_ptr<Worker>& worker, std::string_view piece) {
         const bool fits = worker->lines.feed(piece, [&](std::string_view line) {
-            hear(worker, line);
+            receive(worker, line);
             return worker->state.phase() != Phase::dismissed;
         });
         if (fits || worker->state.phase() == Phase::dismissed) return;
@@ -101,9 +101,9 @@ struct Pool::Impl {
                                         shortened(worker->lines.begun(), 200)));
     }
 
-    void hear(const std::shared_ptr<Worker>& worker, std::string_view line) {
+    void receive(const std::shared_ptr<Worker>& worker, std::string_view line) {
         const bool fruitful = worker->state.has_begun_any();
-        auto meaning = worker->state.hear(line, clock.now());
+        auto meaning = worker->state.receive(line, clock.now());
         if (!fruitful && worker->state.has_begun_any()) {
             fruitless_in_a_row = 0;
             pause = shortest_pause;
@@ -114,9 +114,9 @@ struct Pool::Impl {
             pass_on(*worker, std::move(*beat));
         } else if (auto* back = std::get_if<GivenBack>(&meaning)) {
             events.emplace_back(std::move(*back));
-            tell_to_stop(worker);  // it is leaving: no more cases, and it gives back what it has left
+            send_stop(worker);  // it is leaving: no more cases, and it gives back what it has left
         } else if (const auto* banner = std::get_if<WorkerState::Banner>(&meaning)) {
-            forgive(banner->line);
+            remark_on_banner(banner->line);
         } else if (auto* complaint = std::get_if<WorkerState::Complaint>(&meaning)) {
             dismiss_for(worker, std::move(complaint->why));
         }
@@ -129,9 +129,9 @@ struct Pool::Impl {
         events.emplace_back(std::move(beat));
     }
 
-    void forgive(const std::string& banner) {
-        if (banner.empty() || banner == forgiven) return;
-        forgiven = banner;
+    void remark_on_banner(const std::string& banner) {
+        if (banner.empty() || banner == last_banner) return;
+        last_banner = banner;
         if (++remarks_on_banners > fruitless_limit) return;
         events.emplace_back(Remark{
             fmt::format("what starts the workers wrote to standard output, where only they should: '{}'", banner)});
@@ -147,7 +147,7 @@ struct Pool::Impl {
         Lost lost = account_for(*worker, describe_end(status));
         lost.from_outside = ended_from_outside(status, worker->child->log());
         lost.spoils_checkpoint = worker->state.resumed() || ending_signal(status) != SIGKILL;
-        bury(worker);
+        discard(worker);
         report(*worker, std::move(lost), was_killed(status));
     }
 
@@ -155,7 +155,7 @@ struct Pool::Impl {
     void dismiss_for(const std::shared_ptr<Worker>& worker, std::string complaint) {
         Lost lost = account_for(*worker, complaint);
         lost.spoils_checkpoint = true;
-        bury(worker);
+        discard(worker);
         report(*worker, std::move(lost), false);
     }
 
@@ -173,7 +173,7 @@ struct Pool::Impl {
 
     void report(const Worker& worker, Lost lost, bool killed) {
         const bool owed = lost.running || !lost.queued.empty();
-        if (!worker.state.has_begun_any() && (owed || !worker.state.was_ready() || worker.told_to_stop) && !retired)
+        if (!worker.state.has_begun_any() && (owed || !worker.state.was_ready() || worker.stop_sent) && !retired)
             note_fruitless(lost.reason, killed ? killed_fruitless_limit : fruitless_limit);
         if (owed) events.emplace_back(std::move(lost));
     }
@@ -194,7 +194,7 @@ struct Pool::Impl {
     }
 
     /// Nothing it wrote or will write counts; its process is on its way out.
-    void bury(const std::shared_ptr<Worker>& worker) {
+    void discard(const std::shared_ptr<Worker>& worker) {
         worker->state.dismiss();
         worker->child->close();
         std::erase(workers, worker);
@@ -203,7 +203,7 @@ struct Pool::Impl {
         const double now = clock.now();
         const bool launched = !options.launcher.empty();
         dying.push_back({worker->child, now, now, launched ? now + grace_before_kill : now});
-        hasten(dying.back(), now);
+        escalate(dying.back(), now);
     }
 
     /// It gave back its case and is to end by itself; its place is free.
@@ -217,7 +217,7 @@ struct Pool::Impl {
         dying.push_back({worker->child, now, now + grace_before_kill, now + 2 * grace_before_kill});
     }
 
-    static void hasten(Dying& one, double now) {
+    static void escalate(Dying& one, double now) {
         if (now >= one.kill_at && !std::exchange(one.killed, true)) return one.child->signal(SIGKILL);
         if (now >= one.ask_at && !std::exchange(one.asked, true)) one.child->signal(SIGTERM);
     }
@@ -246,9 +246,9 @@ struct Pool::Impl {
 
     static void send(const Worker& worker, const ToWorker& message) { worker.child->write(encode(message) + "\n"); }
 
-    void tell_to_stop(const std::shared_ptr<Worker>& worker) {
+    void send_stop(const std::shared_ptr<Worker>& worker) {
         worker->state.stop();
-        if (!std::exchange(worker->told_to_stop, true)) send(*worker, Stop{});
+        if (!std::exchange(worker->stop_sent, true)) send(*worker, Stop{});
     }
 
     // ---- time --------------------------------------------------------------------------------------------
@@ -275,7 +275,7 @@ struct Pool::Impl {
         }
         std::erase_if(dying, [&](Dying& one) {
             if (!one.child->runs()) return true;
-            hasten(one, now);
+            escalate(one, now);
             return false;
         });
     }
@@ -285,18 +285,18 @@ struct Pool::Impl {
         if (overdue == WorkerState::Overdue::answer) {
             TimedOut late{*worker->state.running(), worker->state.waiting(),
                           fmt::format("no answer within {} s", limits.wall), worker->state.running_seconds(now)};
-            bury(worker);
+            discard(worker);
             events.emplace_back(std::move(late));
         } else if (overdue == WorkerState::Overdue::silence) {
             Lost lost = account_for(*worker, fmt::format("{} gave no sign of life for {} s and is replaced",
                                                          worker->name(), limits.silence));
             lost.from_outside = true;
-            bury(worker);
+            discard(worker);
             report(*worker, std::move(lost), true);
         } else if (overdue == WorkerState::Overdue::start) {
             Lost lost = account_for(
                 *worker, fmt::format("{} was not ready within {} s and is replaced", worker->name(), limits.start));
-            bury(worker);
+            discard(worker);
             events.emplace_back(Remark{lost.reason});
             report(*worker, std::move(lost), false);
         }
@@ -353,7 +353,7 @@ struct Pool::Impl {
     bool retired = false;
     int fruitless_in_a_row = 0;  // workers lost before they began a case
     double not_before = 0, pause = shortest_pause;
-    std::string forgiven;  // the last banner
+    std::string last_banner;  // remarked on
     int remarks_on_banners = 0;
     std::string broken;  // why no worker can be had at all
 };
@@ -423,7 +423,7 @@ std::optional<PoolEvent> Pool::wait(std::chrono::milliseconds at_most) {
 
 void Pool::retire() {
     impl_->retired = true;
-    for (const auto& worker : impl_->workers) impl_->tell_to_stop(worker);
+    for (const auto& worker : impl_->workers) impl_->send_stop(worker);
 }
 
 bool Pool::can_start(const std::string& program) {
@@ -436,7 +436,7 @@ bool Pool::can_start(const std::string& program) {
 void Pool::dismiss() {
     std::vector<std::shared_ptr<Child>> all;
     for (const auto& worker : impl_->workers) {
-        const bool ends_by_itself = worker->told_to_stop && worker->state.was_ready() && worker->state.cases() == 0;
+        const bool ends_by_itself = worker->stop_sent && worker->state.was_ready() && worker->state.cases() == 0;
         worker->state.dismiss();
         if (!ends_by_itself) worker->child->signal(SIGTERM);
         all.push_back(worker->child);

@@ -37,13 +37,13 @@ std::string shortened(std::string_view text, std::size_t bytes) {
     return fmt::format("{} ...", text.substr(0, bytes));
 }
 
-WorkerState::Meaning WorkerState::hear(std::string_view line, double now) {
+WorkerState::Meaning WorkerState::receive(std::string_view line, double now) {
     if (phase_ == Phase::dismissed) return Nothing{};
-    if (phase_ == Phase::starting || !was_ready()) return hear_starting(line, now);
-    if (phase_ == Phase::leaving && given_.empty()) return Nothing{};  // a launcher that tidies up behind it
+    if (phase_ == Phase::starting || !was_ready()) return receive_starting(line, now);
+    if (phase_ == Phase::leaving && cases() == 0) return Nothing{};  // a launcher that tidies up behind it
     try {
         ToBoss message = decode_to_boss(line);
-        heard_ = now;
+        received_at_ = now;
         if (auto* done = std::get_if<Done>(&message)) return understand(*done);
         if (auto* begun = std::get_if<Begun>(&message)) return understand(*begun, now);
         if (const auto* alive = std::get_if<Alive>(&message)) return understand(*alive, now);
@@ -55,19 +55,19 @@ WorkerState::Meaning WorkerState::hear(std::string_view line, double now) {
     }
 }
 
-WorkerState::Meaning WorkerState::hear_starting(std::string_view line, double now) {
+WorkerState::Meaning WorkerState::receive_starting(std::string_view line, double now) {
     try {
         const ToBoss message = decode_to_boss(line);
         const auto* ready = std::get_if<Ready>(&message);
         if (ready == nullptr) return Complaint{"the worker answered before it was ready"};
         if (ready->protocol != protocol_number)
-            return Complaint{fmt::format("the worker is {} with protocol {}, the boss has {}",
+            return Complaint{fmt::format("the worker is {} with protocol {}, the main program has {}",
                                          described(ready->computer), ready->protocol, protocol_number)};
         if (!same_program(ready->computer, expected_->program))
-            return Complaint{fmt::format("the worker is {}, the boss is {}", described(ready->computer),
+            return Complaint{fmt::format("the worker is {}, the main program is {}", described(ready->computer),
                                          described(expected_->program))};
         computer_ = std::make_shared<const campaign::Computer>(ready->computer);
-        heard_ = now;
+        received_at_ = now;
         if (phase_ == Phase::starting) phase_ = Phase::serving;
         return Nothing{};
     } catch (const std::invalid_argument&) {
@@ -83,11 +83,11 @@ WorkerState::Meaning WorkerState::hear_starting(std::string_view line, double no
 }
 
 WorkerState::Meaning WorkerState::understand(Begun& begun, double now) {
-    if (begun_ || given_.empty() || given_.front() != begun.attempt)
+    if (running_ || waiting_.empty() || waiting_.front() != begun.attempt)
         return Complaint{"the worker began a case that was not its next"};
-    begun_ = has_begun_any_ = true;
-    resumed_ = begun.resumed;
-    began_ = now;
+    running_ = {std::move(waiting_.front()), begun.resumed, now};
+    waiting_.pop_front();
+    has_begun_any_ = true;
     return Nothing{};
 }
 
@@ -112,20 +112,20 @@ WorkerState::Meaning WorkerState::understand(Done& done) {
         result.outcome == campaign::Outcome::completed || result.outcome == campaign::Outcome::skipped;
     if (!measured) result.observations = {};  // numbers of a failure are no answer
     result.message = shortened(result.message, longest_message);
-    given_.pop_front();
-    begun_ = false;
+    running_.reset();
     return Finished{std::move(result), done.checkpointed};
 }
 
 WorkerState::Meaning WorkerState::understand(GiveBack& back, double now) {
-    const auto found = std::ranges::find(given_, back.attempt);
-    if (found == given_.end()) return Complaint{"the worker gave back a case it was not given"};
+    const auto found = std::ranges::find(waiting_, back.attempt);
     const bool running = is_running(back.attempt);
-    GivenBack event{back.attempt, shortened(back.reason, longest_message), running_seconds(now),
+    if (!running && found == waiting_.end()) return Complaint{"the worker gave back a case it was not given"};
+    GivenBack event{back.attempt, shortened(back.reason, longest_message), running ? running_seconds(now) : 0,
                     phase_ == Phase::leaving, back.broken};
-    if (!running) event.seconds = 0;
-    given_.erase(found);
-    if (running) begun_ = false;
+    if (running)
+        running_.reset();
+    else
+        waiting_.erase(found);
     phase_ = Phase::leaving;
     return event;
 }
@@ -145,13 +145,13 @@ std::optional<std::string> WorkerState::undeclared(const Observations& observati
 }
 
 bool WorkerState::is_running(const campaign::Attempt& attempt) const {
-    return begun_ && given_.front() == attempt;
+    return running_ && running_->attempt == attempt;
 }
 
 void WorkerState::give(const campaign::Attempt& attempt, double now) {
     assert(phase_ == Phase::serving);
-    if (given_.empty()) heard_ = now;  // before, nothing was expected of it
-    given_.push_back(attempt);
+    if (cases() == 0) received_at_ = now;  // before, nothing was expected of it
+    waiting_.push_back(attempt);
 }
 
 void WorkerState::stop() {
@@ -159,23 +159,19 @@ void WorkerState::stop() {
 }
 
 double WorkerState::silence(double now) const {
-    return given_.empty() && phase_ != Phase::leaving ? 0 : now - heard_;
+    return cases() == 0 && phase_ != Phase::leaving ? 0 : now - received_at_;
 }
 
 WorkerState::Overdue WorkerState::overdue(const TimeLimits& limits, double now) const {
     const auto over = [](double seconds, double limit) { return limit > 0 && seconds > limit; };
     if (phase_ == Phase::dismissed) return Overdue::nothing;
     if (!was_ready()) return over(now - launched_, limits.start) ? Overdue::start : Overdue::nothing;
-    if (begun_ && over(now - began_, limits.wall)) return Overdue::answer;
+    if (running_ && over(now - running_->began, limits.wall)) return Overdue::answer;
     return over(silence(now), limits.silence) ? Overdue::silence : Overdue::nothing;
 }
 
 std::optional<campaign::Attempt> WorkerState::running() const {
-    return begun_ ? std::optional(given_.front()) : std::nullopt;
-}
-
-std::vector<campaign::Attempt> WorkerState::waiting() const {
-    return {given_.begin() + (begun_ ? 1 : 0), given_.end()};
+    return running_ ? std::optional(running_->attempt) : std::nullopt;
 }
 
 }  // namespace grainsweep::workers

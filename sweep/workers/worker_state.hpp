@@ -47,10 +47,10 @@ public:
     struct Nothing {};
     using Meaning = std::variant<Nothing, Finished, Heartbeat, GivenBack, Banner, Complaint>;
 
-    WorkerState(const Expected& expected, double now) : expected_(&expected), launched_(now), heard_(now) {}
+    WorkerState(const Expected& expected, double now) : expected_(&expected), launched_(now), received_at_(now) {}
 
     /// A line of its standard output.
-    [[nodiscard]] Meaning hear(std::string_view line, double now);
+    [[nodiscard]] Meaning receive(std::string_view line, double now);
     /// A case is written to it. Only while it serves.
     void give(const campaign::Attempt& attempt, double now);
     /// `stop` is written to it.
@@ -66,19 +66,20 @@ public:
     [[nodiscard]] Phase phase() const { return phase_; }
     [[nodiscard]] bool was_ready() const { return computer_ != nullptr; }
     [[nodiscard]] bool has_begun_any() const { return has_begun_any_; }
-    [[nodiscard]] std::size_t cases() const { return given_.size(); }
-    /// The case it has begun and not answered.
+    /// What it was given and has not answered or given back.
+    [[nodiscard]] std::size_t cases() const { return waiting_.size() + (running_ ? 1 : 0); }
+    /// Of those the one it has begun.
     [[nodiscard]] std::optional<campaign::Attempt> running() const;
-    [[nodiscard]] bool resumed() const { return resumed_; }  ///< whether the running one is, from a checkpoint
-    [[nodiscard]] double running_seconds(double now) const { return begun_ ? now - began_ : 0; }
-    /// What it was given and has not begun.
-    [[nodiscard]] std::vector<campaign::Attempt> waiting() const;
+    [[nodiscard]] bool resumed() const { return running_ && running_->resumed; }
+    [[nodiscard]] double running_seconds(double now) const { return running_ ? now - running_->began : 0; }
+    /// And the others.
+    [[nodiscard]] std::vector<campaign::Attempt> waiting() const { return {waiting_.begin(), waiting_.end()}; }
     [[nodiscard]] const std::shared_ptr<const campaign::Computer>& computer() const { return computer_; }
-    [[nodiscard]] const std::string& banner() const { return banner_; }  ///< what was forgiven, shortened
+    [[nodiscard]] const std::string& banner() const { return banner_; }  ///< what it wrote before it was ready, shortened
     [[nodiscard]] double launched() const { return launched_; }
 
 private:
-    [[nodiscard]] Meaning hear_starting(std::string_view line, double now);
+    [[nodiscard]] Meaning receive_starting(std::string_view line, double now);
     [[nodiscard]] Meaning understand(Begun& begun, double now);
     [[nodiscard]] Meaning understand(const Alive& alive, double now);
     [[nodiscard]] Meaning understand(Done& done);
@@ -89,9 +90,15 @@ private:
     const Expected* expected_;
     Phase phase_ = Phase::starting;
     std::shared_ptr<const campaign::Computer> computer_;
-    std::deque<campaign::Attempt> given_;  ///< in order; where `begun_`, the first is being computed
-    bool begun_ = false, resumed_ = false, has_begun_any_ = false;
-    double launched_ = 0, heard_ = 0, began_ = 0;
+    struct Running {
+        campaign::Attempt attempt;
+        bool resumed = false;  ///< from a checkpoint
+        double began = 0;
+    };
+    std::optional<Running> running_;
+    std::deque<campaign::Attempt> waiting_;  ///< in the order in which it will begin them
+    bool has_begun_any_ = false;
+    double launched_ = 0, received_at_ = 0;
     double second_ = 0;  ///< heartbeats are counted from here
     int heartbeats_ = 0;
     std::string banner_;

@@ -29,7 +29,7 @@ TEST(WorkerProtocol, AnswersOfAnotherBuildAreNotStored) {
                                         R"(\":\"other}"; while next; do begun; done_with completed '"y":2'; done)");
         const auto run = campaign.run();
         EXPECT_EQ(run.code, 3) << run.err;
-        EXPECT_THAT(run.err, HasSubstr("the boss is"));
+        EXPECT_THAT(run.err, HasSubstr("the main program is"));
         EXPECT_EQ(campaign.ask(completed), 0) << part;
         EXPECT_EQ(campaign.ask("SELECT count(*) FROM attempt"), 0) << "it was given no case";
     }
@@ -202,7 +202,7 @@ TEST(WorkerProtocol, GarbageOnAWorkersInputEndsItWithASentence) {
         const std::string script = std::string(garbage) + R"( | "$0" worker; exit ${PIPESTATUS[1]})";
         const auto ended = Process({"/bin/bash", "-c", script, program_command({}).front()}, folder.path()).wait();
         EXPECT_EQ(ended.code, 2) << ended.err;
-        EXPECT_THAT(ended.err, HasSubstr("grainsweep worker: standard input is not a boss's: "));
+        EXPECT_THAT(ended.err, HasSubstr("grainsweep worker: standard input is not the main program's: "));
         EXPECT_LT(ended.err.size(), 1000U);
         EXPECT_LT(ended.most_memory, 200);
     }

@@ -79,8 +79,9 @@ protected:
         }
     }
 
-    Ending run(ScriptedCrew& crew, Rules rules = {}, Watchers watchers = {}, Judge* judge = nullptr) {
-        const auto states = store.enrol(campaign, placed, {});
+    Ending run(ScriptedCrew& crew, Rules rules = {}, Watchers watchers = {}, Judge* judge = nullptr,
+               std::size_t at_once = 1000) {
+        const auto states = store.enrol(campaign, placed, {}, at_once);
         std::vector<History> histories;
         for (const auto& state : states) histories.push_back({state.attempts, state.failures, state.outcome});
         const auto question = [this](std::uint32_t i) { return placed[i].question; };
@@ -107,6 +108,22 @@ TEST_F(SchedulerLoop, RecordsEveryAnswer) {
     EXPECT_EQ(crew.started.size(), 10U);
     EXPECT_EQ(stored("completed"), 10);
     EXPECT_TRUE(crew.retired);
+}
+
+// The recorder enters the rest between the answers, on a thread of its own.
+TEST_F(SchedulerLoop, ALongCampaignIsEnteredWhileItsFirstCasesRun) {
+    placed.clear();
+    for (int point = 0; point < 20'000; ++point) {
+        Inputs inputs = campaign.scene().defaults();
+        inputs["x1"] = point / 20'000.0;
+        placed.push_back({campaign::make_case(campaign.scene(), inputs, 1), point, 0, 0});
+    }
+    ScriptedCrew crew([](const auto& attempt) { return completed(attempt); }, 3);
+    EXPECT_EQ(run(crew, {.max_cases = 50}, {}, nullptr, 10), Ending::limited);
+    EXPECT_FALSE(store.enrols()) << "what is not computed is entered all the same";
+    EXPECT_EQ(std::get<std::int64_t>(store.query("SELECT count(*) FROM loop").rows.at(0).at(0)), 20'000);
+    EXPECT_EQ(stored("completed"), 50);
+    EXPECT_TRUE(store.verify().empty());
 }
 
 TEST_F(SchedulerLoop, ALostWorkersCaseIsTriedAgainAndItsQueueCostsNothing) {

@@ -25,7 +25,7 @@ protected:
     Worker()
         : expected{{"1.0", "abc", "feed", "avx2", "boss's", "boss"}, {{"y", Shape::scalar}, {"s", Shape::series}}} {}
 
-    WorkerState::Meaning say(const ToBoss& message, double now = 0) { return state.hear(encode(message), now); }
+    WorkerState::Meaning say(const ToBoss& message, double now = 0) { return state.receive(encode(message), now); }
     std::string complaint(const ToBoss& message) {
         const auto meaning = say(message);
         const auto* found = std::get_if<WorkerState::Complaint>(&meaning);
@@ -59,7 +59,7 @@ TEST_F(Worker, OfAnotherBuildIsRefused) {
     for (const auto& other :
          {campaign::Computer{"1.1", "abc", "feed", "", "", ""}, campaign::Computer{"1.0", "abd", "feed", "", "", ""},
           campaign::Computer{"1.0", "abc", "face", "", "", ""}}) {
-        EXPECT_NE(complaint(Ready{protocol_number, other}).find("the boss is 1.0 (abc, build feed)"),
+        EXPECT_NE(complaint(Ready{protocol_number, other}).find("the main program is 1.0 (abc, build feed)"),
                   std::string::npos);
         EXPECT_FALSE(state.was_ready());
     }
@@ -141,7 +141,7 @@ TEST_F(Worker, LeavesWhenItGivesBack) {
     EXPECT_EQ(state.phase(), Phase::leaving);
     const auto waiting = say(GiveBack{second, "signal 15"}, 3);
     EXPECT_DOUBLE_EQ(std::get<GivenBack>(waiting).seconds, 0);
-    EXPECT_TRUE(std::holds_alternative<WorkerState::Nothing>(state.hear("tidied up", 3))) << "its launcher's";
+    EXPECT_TRUE(std::holds_alternative<WorkerState::Nothing>(state.receive("tidied up", 3))) << "its launcher's";
 }
 
 TEST_F(Worker, MayFinishWhatItHasAfterAStop) {
@@ -154,17 +154,17 @@ TEST_F(Worker, MayFinishWhatItHasAfterAStop) {
 }
 
 TEST_F(Worker, MayFollowABannerButWritesNoNonsense) {
-    const auto banner = state.hear("Welcome to node 3", 0);
+    const auto banner = state.receive("Welcome to node 3", 0);
     EXPECT_EQ(std::get<WorkerState::Banner>(banner).line, "Welcome to node 3");
     EXPECT_EQ(state.phase(), Phase::starting);
     get_ready();
-    const auto meaning = state.hear("Welcome to node 3", 0);
+    const auto meaning = state.receive("Welcome to node 3", 0);
     EXPECT_NE(std::get<WorkerState::Complaint>(meaning).why.find("Welcome to node 3"), std::string::npos);
 }
 
 TEST_F(Worker, BannersAndHeartbeatsHaveAnEnd) {
     int banners = 0;
-    while (std::holds_alternative<WorkerState::Banner>(state.hear(std::string(100, 'x'), 0)) && banners < 10'000)
+    while (std::holds_alternative<WorkerState::Banner>(state.receive(std::string(100, 'x'), 0)) && banners < 10'000)
         ++banners;
     EXPECT_LT(banners, 1000);
     EXPECT_LT(state.banner().size(), 2000U);

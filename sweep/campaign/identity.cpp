@@ -1,10 +1,6 @@
-// What makes a campaign the same campaign: its scene, factors, fixed values, condition, seed and kind of design.
-//
-// More points or replicates extend it, where the design extends; of a design that does not, another size is another
-// design. Levels that a factor of a lattice gains renumber the points: the new placement replaces the old one. Cases
-// are known by what they ask, so every answer is kept and shared.
+#include "sweep/campaign/identity.hpp"
+
 #include "sweep/campaign/wrong_question.hpp"
-#include "sweep/store/archive.hpp"
 
 #include <fmt/format.h>
 
@@ -15,25 +11,22 @@
 #include <set>
 #include <sstream>
 
-namespace grainsweep::store {
-
-using campaign::Campaign;
+namespace grainsweep::campaign {
 
 namespace {
 
 std::string joined(const std::vector<Value>& values) {
     std::string text;
-    for (const auto& value : values) text += (text.empty() ? "" : " | ") + campaign::identity_text(value);
+    for (const auto& value : values) text += (text.empty() ? "" : " | ") + identity_text(value);
     return text;
 }
 
-std::string line_of(const campaign::Factor& factor) {
-    if (const auto* between = std::get_if<campaign::Between>(&factor.range)) {
-        return fmt::format("{} between {} {} {}", factor.name, campaign::shortest(between->low),
-                           campaign::shortest(between->high),
-                           between->scale == campaign::Scale::log ? "log" : "linear");
+std::string line_of(const Factor& factor) {
+    if (const auto* between = std::get_if<Between>(&factor.range)) {
+        return fmt::format("{} between {} {} {}", factor.name, shortest(between->low), shortest(between->high),
+                           between->scale == Scale::log ? "log" : "linear");
     }
-    return fmt::format("{} levels {}", factor.name, joined(std::get<campaign::Levels>(factor.range).values));
+    return fmt::format("{} levels {}", factor.name, joined(std::get<Levels>(factor.range).values));
 }
 
 std::string text_of(const designs::OptionValue& value) {
@@ -129,19 +122,31 @@ std::pair<std::string, std::string> first_difference(const std::string& before, 
 
 }  // namespace
 
-CampaignTexts texts_of(const Campaign& campaign) {
-    CampaignTexts texts;
+Identity identity_of(const Campaign& campaign) {
+    Identity identity;
+    identity.name = campaign.name;
+    identity.scene = campaign.scene().name;
+    identity.revision = campaign.scene().revision;
+    identity.seed = campaign.seed;
+    identity.condition = campaign.where;
+    identity.design = campaign.design;
     const auto& design = designs::design_named(campaign.design);
-    for (const auto& factor : campaign.space.factors) texts.factors += line_of(factor) + '\n';
+    for (const auto& factor : campaign.space.factors) identity.factors += line_of(factor) + '\n';
     for (const auto& [name, value] : campaign.space.fixed)
-        texts.fixed += fmt::format("{} = {}\n", name, campaign::identity_text(value));
+        identity.fixed += fmt::format("{} = {}\n", name, identity_text(value));
     for (const auto& [name, value] : campaign.request.options) {
         if (std::holds_alternative<designs::Rows>(value)) continue;  // compared row by row, by what they ask
         const auto* option = find_option(design, name);
         const bool extent = option != nullptr && option->extent;
-        (extent ? texts.extent : texts.options) += fmt::format("{} = {}\n", name, text_of(value));
+        (extent ? identity.extent : identity.options) += fmt::format("{} = {}\n", name, text_of(value));
     }
-    return texts;
+    return identity;
+}
+
+std::vector<std::string> factor_names(const Identity& identity) {
+    std::vector<std::string> names;
+    for (const auto& line : lines_of(identity.factors)) names.push_back(line.substr(0, line.find(' ')));
+    return names;
 }
 
 std::string larger_extent(std::string_view design, const std::string& before, const std::string& after) {
@@ -163,9 +168,8 @@ std::string larger_extent(std::string_view design, const std::string& before, co
 namespace {
 
 /// A design that does not extend stands as it was asked first.
-void refuse_another_size(const Store::Impl& archive, const Campaign& campaign, const std::string& stored,
-                         const CampaignTexts& asked) {
-    const auto& design = designs::design_named(campaign.design);
+void refuse_another_size(const Identity& stored, const Identity& asked, std::string_view archive) {
+    const auto& design = designs::design_named(asked.design);
     if (design.extends) return;
     const auto factors = lines_of(asked.factors);
     const auto value_of = [](const std::string& text, const designs::OptionSpec& option) {
@@ -178,16 +182,16 @@ void refuse_another_size(const Store::Impl& archive, const Campaign& campaign, c
     const auto shown = [](const std::string& value) { return value.empty() ? "none" : value; };
     for (const auto& option : design.options) {
         if (!option.extent || option.kind == designs::OptionSpec::Kind::rows) continue;
-        const auto before = value_of(stored, option), after = value_of(asked.extent, option);
+        const auto before = value_of(stored.options + stored.extent, option), after = value_of(asked.extent, option);
         const bool per_factor = option.kind == designs::OptionSpec::Kind::counts;
         if (before == after || (per_factor && counts_that_act(before, factors) == counts_that_act(after, factors)))
             continue;
-        throw campaign::wrong_question(
+        throw wrong_question(
             "$.design." + option.name, shown(after),
             fmt::format("campaign '{}' stands in '{}' with {}, and a {} of another size is another design, with other "
                         "points under the same numbers: give it a campaign name of its own; cases that both ask are "
                         "not computed again",
-                        campaign.name, archive.file.string(), shown(before), campaign.design));
+                        asked.name, archive, shown(before), asked.design));
     }
 }
 
@@ -199,52 +203,36 @@ std::int64_t sequences_of(const Campaign& campaign) {
     return count == nullptr ? 1 : *count;
 }
 
-std::optional<std::int64_t> match_campaign(const Store::Impl& archive, const Campaign& campaign) {
-    const auto& db = archive.db;
-    auto rows = db.ask(
-        "SELECT campaign_id, name, scene, revision, seed, factors, fixed, condition, design, design_options, "
-        "design_extent "
-        "FROM campaign WHERE name = ?",
-        campaign.name);
-    if (!rows.next()) return std::nullopt;
-
-    const std::string name = rows.get<std::string>(1);
-    const auto refuse = [&](std::string_view where, std::string_view asked, std::string_view stored) {
-        throw campaign::wrong_question(
-            where, asked,
-            fmt::format("campaign '{}' stands in '{}' with {}: another question needs another name", name,
-                        archive.file.string(), stored));
+void require_same(const Identity& stored, const Identity& asked, std::string_view archive) {
+    const auto refuse = [&](std::string_view where, std::string_view now, std::string_view before) {
+        throw wrong_question(where, now,
+                             fmt::format("campaign '{}' stands in '{}' with {}: another question needs another name",
+                                         stored.name, archive, before));
     };
-    const auto same = [&](std::string_view where, std::string_view what, const std::string& stored,
-                          const std::string& asked, bool may_add_levels = false) {
-        const auto [before, after] = first_difference(stored, asked, may_add_levels);
-        if (before != after) refuse(where, after, what.empty() ? before : fmt::format("{} {}", what, before));
+    const auto same = [&](std::string_view where, std::string_view what, const std::string& before,
+                          const std::string& now, bool may_add_levels = false) {
+        const auto [old, fresh] = first_difference(before, now, may_add_levels);
+        if (old != fresh) refuse(where, fresh, what.empty() ? old : fmt::format("{} {}", what, old));
     };
-    const auto texts = texts_of(campaign);
-    const auto& design = designs::design_named(campaign.design);
-    same("$.campaign", "the name", name, campaign.name);
-    same("$.scene", "scene", rows.get<std::string>(2), campaign.scene().name);
-    if (rows.get<std::int64_t>(3) != campaign.scene().revision) {
-        refuse("$.scene", fmt::format("revision {} of {}", campaign.scene().revision, campaign.scene().name),
-               fmt::format("revision {}, whose answers differ", rows.get<std::int64_t>(3)));
+    const auto& design = designs::design_named(asked.design);
+    same("$.campaign", "the name", stored.name, asked.name);
+    same("$.scene", "scene", stored.scene, asked.scene);
+    if (stored.revision != asked.revision) {
+        refuse("$.scene", fmt::format("revision {} of {}", asked.revision, asked.scene),
+               fmt::format("revision {}, whose answers differ", stored.revision));
     }
-    const auto seed = static_cast<std::uint64_t>(rows.get<std::int64_t>(4));
-    same("$.seed", "seed", std::to_string(seed), std::to_string(campaign.seed));
-    same("$.design.kind", "design", rows.get<std::string>(8), campaign.design);
-    same("$.factors", "factor", rows.get<std::string>(5), texts.factors,
-         design.beginning == designs::Beginning::corner);
-    same("$.fixed", "fixed", rows.get<std::string>(6), texts.fixed);
-    if (rows.get<std::string>(7) != campaign.where) {
-        const std::string stored = rows.get<std::string>(7);
-        refuse("$.where", campaign.where.empty() ? "none" : campaign.where,
-               stored.empty() ? "no condition" : fmt::format("the condition {}", stored));
+    same("$.seed", "seed", std::to_string(stored.seed), std::to_string(asked.seed));
+    same("$.design.kind", "design", stored.design, asked.design);
+    same("$.factors", "factor", stored.factors, asked.factors, design.beginning == designs::Beginning::corner);
+    same("$.fixed", "fixed", stored.fixed, asked.fixed);
+    if (stored.condition != asked.condition) {
+        refuse("$.where", asked.condition.empty() ? "none" : asked.condition,
+               stored.condition.empty() ? "no condition" : fmt::format("the condition {}", stored.condition));
     }
     // Which option is of the extent is the program's to say, not the archive's: both texts are sorted anew.
-    const auto options = rows.get<std::string>(9) + rows.get<std::string>(10);
-    same("$.design", "design option", options_of(design, options, false),
-         options_of(design, texts.options + texts.extent, false));
-    refuse_another_size(archive, campaign, options, texts);
-    return rows.get<std::int64_t>(0);
+    same("$.design", "design option", options_of(design, stored.options + stored.extent, false),
+         options_of(design, asked.options + asked.extent, false));
+    refuse_another_size(stored, asked, archive);
 }
 
-}  // namespace grainsweep::store
+}  // namespace grainsweep::campaign

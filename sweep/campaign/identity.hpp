@@ -1,0 +1,42 @@
+// What makes a campaign the same campaign: its scene, factors, fixed values, condition, seed and kind of design. An
+// archive keeps it as it stands here and decides nothing by it.
+//
+// More points or replicates extend a campaign, where the design extends; of a design that does not, another size is
+// another design. Levels that a factor of a lattice gains renumber the points: the new placement replaces the old one.
+// Cases are known by what they ask, so every answer is kept and shared.
+#pragma once
+
+#include "sweep/campaign/campaign.hpp"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace grainsweep::campaign {
+
+struct Identity {
+    std::string name, scene;
+    std::int64_t revision = 1;
+    std::uint64_t seed = 1;
+    std::string factors;    ///< one line each, in order: "name between low high scale" or "name levels a | b | ..."
+    std::string fixed;      ///< one line each: "name = value", the accuracy setting resolved
+    std::string condition;  ///< the `where` clause; empty: every point
+    std::string design;
+    std::string options;  ///< one line each, "name = value": those that say which design it is
+    std::string extent;   ///< those that say how much of it is asked
+};
+
+[[nodiscard]] Identity identity_of(const Campaign& campaign);
+/// Throws WrongQuestion, naming both, where `asked` is another campaign than the one that stands in `archive` under its
+/// name.
+void require_same(const Identity& stored, const Identity& asked, std::string_view archive);
+
+/// The names of the factors in the order that fixes the dimensions of the design.
+[[nodiscard]] std::vector<std::string> factor_names(const Identity& identity);
+/// The larger of two extents of one design that extends, option by option; of any other the later one.
+[[nodiscard]] std::string larger_extent(std::string_view design, const std::string& before, const std::string& after);
+/// Sequences of the design: point p belongs to sequence p mod this.
+[[nodiscard]] std::int64_t sequences_of(const Campaign& campaign);
+
+}  // namespace grainsweep::campaign
