@@ -43,6 +43,35 @@ std::optional<std::size_t> only_face(std::span<const Triangle> triangles, double
     return face;
 }
 
+/// The one of some triangles that a centre is above, where each other one within the reach is nearest on a side that
+/// lies on that one: the only contact by steps 2 and 3, told by planes. Nothing: look closely.
+std::optional<std::uint32_t> face_beside_sides(std::span<const Triangle> triangles, const auto& prisms,
+                                               double tolerance, const Vec3& x, double reach,
+                                               std::span<const std::uint32_t> of) {
+    const double rounding = 1e-3 * tolerance;
+    std::optional<std::uint32_t> face;
+    for (const std::uint32_t t : of) {
+        if (t >= prisms.size()) return std::nullopt;  // not prepared
+        const auto h = prisms[t].heights(x);
+        if (!(std::max({h[0], h[1], h[2]}) < -tolerance)) continue;
+        if (face || !(std::abs(h[3]) < reach)) return std::nullopt;
+        face = t;
+    }
+    if (!face) return std::nullopt;
+    for (const std::uint32_t t : of) {
+        if (t == *face) continue;
+        const auto h = prisms[t].heights(x);
+        const auto side = static_cast<std::size_t>(std::max_element(h.begin(), h.begin() + 3) - h.begin());
+        if (!(h[side] > tolerance)) return std::nullopt;
+        const Vec3 &from = triangles[t].corner[side], along = triangles[t].corner[(side + 1) % 3] - from;
+        const double share = dot(x - from, along) / dot(along, along);
+        if (!(share >= 0 && share <= 1)) return std::nullopt;
+        const auto on_face = prisms[*face].heights(from + share * along);
+        if (!(std::max({on_face[0], on_face[1], on_face[2], std::abs(on_face[3])}) <= rounding)) return std::nullopt;
+    }
+    return face;
+}
+
 }  // namespace
 
 Mesh::Mesh() : body_(std::make_shared<const Body>()) {}
@@ -167,6 +196,11 @@ Mesh Mesh::prepared(double reach) const {
 }
 
 void Mesh::touching(const Vec3& x, double reach, std::span<const std::uint32_t> of, std::vector<Closest>& into) const {
+    if (const auto face = face_beside_sides(body_->triangles, body_->prisms, tolerance(), x, reach, of)) {
+        const MeshContact one = contact_with(body_->triangles[*face], *face, x);
+        if (one.distance < reach) into.push_back({one.distance, one.normal});
+        return;
+    }
     std::vector<MeshContact> found;
     contacts(x, reach, of, found);
     for (const MeshContact& c : found) into.push_back({c.distance, c.normal});

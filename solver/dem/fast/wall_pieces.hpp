@@ -77,6 +77,9 @@ GRAINSWEEP_PHASE std::int32_t find_pieces_of(const Field& f, const PlacedWall& w
             lanes.particle[waiting] = list.particle[n];
             lanes.entry[waiting] = n;
             lanes.piece[waiting] = static_cast<std::int32_t>(list.candidate[k]);
+            const double* numbers = list.numbers + static_cast<std::int64_t>(lanes.piece[waiting]) * list.stride;
+            prefetch(numbers);
+            prefetch(numbers + 8);
             if (++waiting < width) continue;
             at += look_at<S>(f, w, list, lanes, partner, at);
             waiting = 0;
