@@ -18,9 +18,10 @@ enum class CohesionLaw { sjkr, sjkr2, paper, jkr, dmt };
 /// The force in Coulomb's limit: the contact force without the cohesive part, or the net normal force.
 enum class FrictionLimit { contact, net };
 
-/// How rolling is resisted: epsd by an elastic-plastic spring with a dashpot (laws/rolling.hpp), cdt by a torque of
-/// constant size against the relative rotation (laws/constant_torque.hpp).
-enum class RollingLaw { epsd, cdt };
+/// How rolling is resisted: epsd by an elastic-plastic spring with a dashpot, epsd_liggghts by the same as LIGGGHTS 3.8
+/// turns it at walls (laws/rolling.hpp), cdt by a torque of constant size against the relative rotation
+/// (laws/constant_torque.hpp).
+enum class RollingLaw { epsd, epsd_liggghts, cdt };
 
 [[nodiscard]] constexpr bool acts_by_surface_energy(CohesionLaw law) {
     return law == CohesionLaw::jkr || law == CohesionLaw::dmt;
@@ -36,7 +37,7 @@ struct Material {
     /// mu_r, tangent of the steepest slope on which a sphere stays at rest, [0, 1]; 0: no rolling resistance at all
     double rolling_friction = 0;
     RollingLaw rolling_law = RollingLaw::epsd;
-    /// eta_r, damping of the rolling spring over the critical one, [0, 1]; epsd only, and only while the spring holds:
+    /// eta_r, damping of the rolling spring over the critical one, [0, 1]; not of cdt, and only while the spring holds:
     /// what stopped rolling rocks on its spring, and 0.3 ends that within about one period
     double rolling_damping = 0.3;
     double cohesion = 0;        ///< cohesion energy density of sjkr, sjkr2, paper, J/m3; 0: none of them at all

@@ -131,6 +131,11 @@ TEST(DemRolling, EqualsLiggghts) {
     impact.spheres = {{{0, 0, 1.001e-3}, {0.1, 0.02, -0.2}, {10, -40, 20}, 1e-3, true}};
     EXPECT_LT(deviation("plane_impact", impact, exact), 2e-3);
     EXPECT_LT(deviation("plane_impact", impact, mixed), 2e-3);
+    for (auto* setup : {&rolling, &impact}) setup->material.rolling_law = dem::RollingLaw::epsd_liggghts;
+    EXPECT_LT(deviation("plane_roll", rolling, exact), 1e-11);
+    EXPECT_LT(deviation("plane_roll", rolling, mixed), 1e-4);
+    EXPECT_LT(deviation("plane_impact", impact, exact), 1e-11);
+    EXPECT_LT(deviation("plane_impact", impact, mixed), 1e-3);  // its first overlap is resolved to 2e-3
 }
 
 // Both laws: the moment of a rolling sphere is mu_r R F_n.

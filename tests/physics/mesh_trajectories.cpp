@@ -45,8 +45,6 @@ const std::map<std::string, Expected>& exceptions() {
         {"c_cone64_helix_curvature1e-05", {"c_cone64_helix_curvature1e-05", touching_start}},
         {"c_cone64_helix_curvature12", {"c_cone64_helix_curvature1e-05", touching_start}},
         {"c_cone128_helix_curvature12", {""}},
-        // The rolling spring is turned by (R - d/2)/(R - d) times the angle (solver/dem/laws/rolling.hpp).
-        {"m_diag_tilt_rolling", {"m_diag_tilt_rolling", 2e-3}},
         // Their time is a sum of steps and has drifted by 3e-13: 6e-12 of the phase, and stick and slip.
         {"v_wiggle_x", {"v_wiggle_x", 5e-11}},
         // The displacement is there the sum of velocities times the step: 3e-3 in velocity where it moves the contact.
@@ -57,7 +55,7 @@ const std::map<std::string, Expected>& exceptions() {
 
 /// Of the ends by the evaluation with one contact per touched place; none where that has another law or motion.
 std::optional<double> tolerance_of_end(const std::string& name) {
-    if (name == "m_tunnel" || name == "m_diag_tilt_rolling" || name == "v_wiggle_z") return std::nullopt;
+    if (name == "m_tunnel" || name == "v_wiggle_z") return std::nullopt;
     if (name.starts_with("v_drum64")) return 1e-7;  // bounces, and amplifies rounding
     if (name.find("helix") != std::string::npos) return touching_start;
     return name == "v_wiggle_x" ? 5e-10 : 1e-11;  // which ends slow

@@ -33,11 +33,6 @@ std::vector<std::pair<std::string, json>> cases() {
     return chosen;
 }
 
-/// At walls LIGGGHTS turns the rolling spring by (R - d/2)/(R - d) times the angle (solver/dem/laws/rolling.hpp).
-bool has_another_rolling(const json& c) {
-    return !c["mur"].is_null();
-}
-
 }  // namespace
 
 // Rounding alone: an independent evaluation differs by up to 1e-12 of the largest speed from the reference.
@@ -46,7 +41,7 @@ TEST(WallTrajectories, EqualTheReferenceToRounding) {
     for (const auto& [name, c] : cases()) {
         const auto d = tests::deviation(name, tests::setup_of_wall_case(c), {});
         EXPECT_EQ(d.fault, "") << name;
-        EXPECT_LT(d.largest(), has_another_rolling(c) ? 2e-3 : 1e-11) << name;
+        EXPECT_LT(d.largest(), 1e-11) << name;
         seen.insert(name);
     }
     EXPECT_EQ(seen.size(), 17U);
@@ -64,7 +59,7 @@ TEST(WallTrajectories, MixedPrecisionEqualsTheReference) {
         for (const auto path : test::paths()) {
             const auto d = tests::deviation(name, tests::setup_of_wall_case(c), {Method::Precision::mixed, path});
             EXPECT_EQ(d.fault, "") << name << " " << test::path_name(path);
-            const double tolerance = has_another_rolling(c) ? 2e-3 : beyond.contains(name) ? beyond.at(name) : 3e-6;
+            const double tolerance = beyond.contains(name) ? beyond.at(name) : 3e-6;
             EXPECT_LT(d.largest(), tolerance) << name << " " << test::path_name(path);
         }
 }

@@ -98,6 +98,7 @@ dem::Setup setup_of_wall_case(const json& c) {
     if (!c["mur"].is_null()) {
         s.material.rolling_friction = c["mur"];
         s.material.rolling_damping = c["murv"];
+        s.material.rolling_law = dem::RollingLaw::epsd_liggghts;
     }
     if (c["cohesion"] != "") s.material.cohesion = c["k"];
     s.gravity = vec(c["g"]);

@@ -31,8 +31,9 @@ GRAINSWEEP_LANES M may_touch(F depth) {
 }
 
 /// Kinematics of one contact per lane, with the words of dem::Touch.
-template <class Kernel, Partner partner>
+template <class Kernel, Partner of>
 struct Meeting {
+    static constexpr Partner partner = of;
     M touching;
     V3 normal;
     F overlap;

@@ -11,8 +11,10 @@
 // less than the angles the spring allows). Twisting about n is not resisted.
 //
 // mu_r is the tangent of the steepest slope on which a sphere stays at rest. Two differences to LIGGGHTS: at a wall it
-// takes (R - d/2)/(R - d) times w_i for the relative rotation, here w_i as everywhere else; and it moves M in its
-// evaluation before the first step. F_n is the normal force that Coulomb's limit sees, too.
+// takes (R - d/2)/(R - d) times w_i for the relative rotation, here w_i as everywhere else unless
+// RollingLaw::epsd_liggghts is asked for; and its evaluation before the first step has the moment of one step later,
+// which is epsd_liggghts's, too. F_n is the normal
+// force that Coulomb's limit sees, too.
 #pragma once
 
 #include "solver/dem/laws/touch.hpp"
@@ -26,22 +28,24 @@ struct RollingResistance : LawTraits {
     static constexpr Aspect aspect = Aspect::rolling;
     static constexpr bool spin = true, rolls = true;
     static constexpr MemoryKind memory_kind{3, -1, moment};
-    static constexpr int constants = 3;
+    static constexpr int constants = 4;
 
     static bool wanted(const Material& m) { return m.rolling_friction > 0; }
-    static bool suits(const Material& m) { return m.rolling_law == RollingLaw::epsd || !wanted(m); }
+    static bool suits(const Material& m) { return m.rolling_law != RollingLaw::cdt || !wanted(m); }
     static std::array<Quantity, constants> constants_of(const Material& m) {
         const double mu_r = m.rolling_friction;
         return {{{2.25 * mu_r * mu_r * (4.0 / 3.0 * effective_modulus(m)), pressure},
                  {mu_r, number},
-                 {2 * m.rolling_damping, {.inertia = -0.5}}}};
+                 {2 * m.rolling_damping, {.inertia = -0.5}},
+                 {m.rolling_law == RollingLaw::epsd_liggghts ? 0.5 : 0.0, number}}};
     }
     explicit RollingResistance(const double* c)
-        : stiffness(A::number(c[0])), friction(A::number(c[1])), dashpot(A::number(c[2])) {}
+        : stiffness(A::number(c[0])), friction(A::number(c[1])), dashpot(A::number(c[2])), lever(A::number(c[3])) {}
 
     Real stiffness;  ///< 2.25 mu_r^2 4/3 E*, Pa
     Real friction;   ///< mu_r
     Real dashpot;    ///< 2 eta_r
+    Real lever;      ///< at walls the rotation counts 1 + lever d/(R - d) times
 
     /// k_r, N m
     template <class T>
@@ -53,9 +57,14 @@ struct RollingResistance : LawTraits {
     template <bool advance, class T>
     [[gnu::always_inline]] void add(const T& t, Response<Real>& r, Real* moment_of_spring) const {
         const Real k = spring(t);
-        const auto turning = A::across(t.turning, t.normal);
+        auto turning = A::across(t.turning, t.normal);
+        if constexpr (T::partner == Partner::wall)
+            turning = A::scaled(turning, A::number(1) + lever * A::divided(t.overlap, t.effective_radius - t.overlap));
         auto m = A::vector(moment_of_spring);
-        if constexpr (advance) m = A::add(m, t.time_step * k, turning);
+        if constexpr (advance)
+            m = A::add(m, t.time_step * k, turning);
+        else
+            m = A::add(m, (lever + lever) * t.time_step * k, turning);
         const auto [yields, scale] = A::cut(m, A::product(friction, t.effective_radius, A::abs(r.seen)));
         m = A::scaled(m, scale);
         r.rolling = A::add(m, A::drop(yields, dashpot * A::sqrt(t.rolling_inertia * k)), turning);

@@ -17,8 +17,9 @@ using geometry::Vec3;
 enum class Partner { particle, wall };
 
 /// In double precision; fast/contact.hpp has the same words for lanes.
-template <Partner partner>
+template <Partner of>
 struct Touch {
+    static constexpr Partner partner = of;
     using Arithmetic = dem::Arithmetic<double>;
     double overlap = 0;           ///< d, m
     double distance = 0;          ///< between centres, or from the centre to the wall, m

@@ -62,12 +62,14 @@ struct Powder {
                           0.0,
                           {0, 1},
                           {if_set("friction")}};
-    Choice<dem::RollingLaw, 2> rolling_law{"rolling_law",
-                                           "how rolling is resisted: 'epsd' by an elastic-plastic spring with a "
-                                           "dashpot, 'cdt' by a constant torque against "
-                                           "the relative rotation",
-                                           {{{"epsd", dem::RollingLaw::epsd}, {"cdt", dem::RollingLaw::cdt}}},
-                                           {if_set("rolling_friction")}};
+    Choice<dem::RollingLaw, 3> rolling_law{
+        "rolling_law",
+        "how rolling is resisted: 'epsd' by an elastic-plastic spring with a dashpot, 'epsd_liggghts' by the same with "
+        "LIGGGHTS 3.8's angle at walls, 'cdt' by a constant torque against the relative rotation",
+        {{{"epsd", dem::RollingLaw::epsd},
+          {"epsd_liggghts", dem::RollingLaw::epsd_liggghts},
+          {"cdt", dem::RollingLaw::cdt}}},
+        {if_set("rolling_friction")}};
     Real wall_friction{"wall_friction", "1", "Coulomb friction at the walls; -1: friction", as_powder, {as_powder, 2}};
     Real wall_rolling_friction{
         "wall_rolling_friction", "1", "rolling friction at the walls; -1: rolling_friction", as_powder, {as_powder, 1}};
