@@ -113,7 +113,7 @@ TEST(MeshTrajectories, EndAsOneContactPerPlaceEnds) {
         }
         ++seen;
     }
-    EXPECT_EQ(seen, 37);
+    EXPECT_EQ(seen, 38);
 }
 
 // Mixed precision: 3e-6 of the largest speed. Spheres that start where they just touch, or meet a second face or an
