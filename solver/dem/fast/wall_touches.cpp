@@ -13,8 +13,8 @@ using namespace geometry;
 namespace {
 
 /// Gap below which a piece counts, in largest diameters: a wider one asks for more pieces, a narrower one to choose
-/// them anew more often. A drum of triangles is fastest at 0.03 (0.015 and 0.06: 5 % slower).
-constexpr double piece_skin = 0.03;
+/// them anew more often. Of 0.008, 0.015, 0.03 and 0.06 this is the fastest in a turning drum of triangles.
+constexpr double piece_skin = 0.015;
 
 std::size_t index_of(Place place) {
     return place / places_per_index;
