@@ -38,6 +38,69 @@ double solid_volume(const dem::State& state, double from, double to) {
     return volume;
 }
 
+namespace {
+
+double sphere(double r) {
+    return 4.0 / 3.0 * std::numbers::pi * r * r * r;
+}
+
+/// Of a sphere about 0 below z.
+double part_below(double z, double r) {
+    const double t = std::clamp(z, -r, r);
+    return std::numbers::pi * (2.0 / 3.0 * r * r * r + r * r * t - t * t * t / 3);
+}
+
+}  // namespace
+
+double solid_volume(const dem::State& state, double from, double to, double low, double high) {
+    double volume = 0;
+    for (std::size_t i = 0; i < state.position.size(); ++i) {
+        const auto& x = state.position[i];
+        if (x[0] >= from && x[0] < to && x[2] > low && x[2] <= high) volume += sphere(state.radius[i]);
+    }
+    return volume;
+}
+
+double solid_between(const dem::State& state, double from, double to, double low, double high) {
+    double volume = 0;
+    for (std::size_t i = 0; i < state.position.size(); ++i) {
+        const auto& x = state.position[i];
+        const double r = state.radius[i];
+        if (x[0] >= from && x[0] < to) volume += part_below(high - x[2], r) - part_below(low - x[2], r);
+    }
+    return volume;
+}
+
+Patches::Patches(double from, double to, double width, double side) : from_(from), to_(to), width_(width) {
+    const auto count = [side](double length) {
+        return static_cast<std::size_t>(std::max(1.0, std::round(length / side)));
+    };
+    along_ = count(to - from);
+    across_ = count(width);
+    dx_ = (to - from) / static_cast<double>(along_);
+    dy_ = width / static_cast<double>(across_);
+    volume_.assign(along_ * across_, 0);
+}
+
+void Patches::add(const dem::State& state, double sign) {
+    for (std::size_t i = 0; i < state.position.size(); ++i) {
+        const auto& x = state.position[i];
+        if (!(x[0] >= from_ && x[0] < to_)) continue;
+        const double y = x[1] - width_ * std::floor(x[1] / width_);
+        const auto column = std::min(along_ - 1, static_cast<std::size_t>((x[0] - from_) / dx_));
+        const auto row = std::min(across_ - 1, static_cast<std::size_t>(y / dy_));
+        volume_[row * along_ + column] += sign * sphere(state.radius[i]);
+    }
+}
+
+double Patches::deviation() const {
+    if (volume_.size() < 4) return std::numeric_limits<double>::quiet_NaN();
+    double mean = 0, squares = 0;
+    for (const double v : volume_) mean += v / static_cast<double>(volume_.size());
+    for (const double v : volume_) squares += (v - mean) * (v - mean);
+    return std::sqrt(squares / static_cast<double>(volume_.size()));
+}
+
 Relief::Relief(const dem::State& state, double from, double to, double width, double pitch) {
     const auto count = [pitch](double length) {
         return std::max<std::int64_t>(1, std::llround(std::ceil(length / pitch)));

@@ -23,6 +23,34 @@ namespace grainsweep::observables {
 /// Volume of the spheres whose centres have from <= x < to, m3.
 [[nodiscard]] double solid_volume(const dem::State& state, double from, double to);
 
+/// The same of those with low < z <= high, too.
+[[nodiscard]] double solid_volume(const dem::State& state, double from, double to, double low, double high);
+
+/// Volume of the parts of the spheres with low <= z <= high, over the centres with from <= x < to, m3. Spheres are cut
+/// by the planes: below z lies 2/3 r^3 + r^2 t - t^3/3 times pi of a sphere, t = z - z_centre within +-r.
+[[nodiscard]] double solid_between(const dem::State& state, double from, double to, double low, double high);
+
+/// Solid volume by patches of from <= x < to and one period in y, as near to squares of `side` as they divide it;
+/// by centres, x fastest, m3.
+class Patches {
+public:
+    /// Periodic in y with period `width` from 0. to > from, side > 0.
+    Patches(double from, double to, double width, double side);
+
+    /// Adds `sign` times the volumes of the spheres.
+    void add(const dem::State& state, double sign = 1);
+    /// Base area of one of them, m2.
+    [[nodiscard]] double area() const { return dx_ * dy_; }
+    [[nodiscard]] std::size_t size() const { return volume_.size(); }
+    /// Standard deviation of their volumes, m3; of fewer than four NaN.
+    [[nodiscard]] double deviation() const;
+
+private:
+    double from_, to_, width_, dx_ = 0, dy_ = 0;
+    std::size_t along_ = 1, across_ = 1;
+    std::vector<double> volume_;
+};
+
 /// Height of the uppermost sphere surface above the points of a square grid, seen from above; 0 where no sphere covers
 /// the point. The points fill from <= x < to and one period in y at a pitch of at most `pitch`.
 class Relief {

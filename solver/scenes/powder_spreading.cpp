@@ -1,4 +1,5 @@
-// Powder spreading: a blade sweeps a settled layer of powder over a base, and the flux under it is measured.
+// Powder spreading: a blade, a roller or another tool sweeps a settled layer of powder over a base or over the layers
+// below, and the flux under it and the layer behind it are measured.
 //
 // Scene, observables and default values after Wu (2020), "Parametric analysis of particle spreading with discrete
 // element method", MSc thesis, Embry-Riddle Aeronautical University; the layer is flat and gated instead of a free
@@ -34,8 +35,13 @@ Pace pace_of(const dem::Method& method) {
 double estimate_cost(const Inputs& inputs) {
     const auto s = spreading::study_of(inputs);
     const auto [settling, sweeping] = pace_of(spreading::question::powder.method(inputs));
-    return static_cast<double>(s.particles) *
-           (settling * static_cast<double>(s.settle_steps) + sweeping * static_cast<double>(s.sweep_steps));
+    const double each = settling * static_cast<double>(s.settle_steps) + sweeping * static_cast<double>(s.sweep_steps);
+    if (s.layers == 1) return static_cast<double>(s.particles) * each;
+    // Under each layer lie those before it, as dense as powder lies.
+    const double layer = spreading::settled_fraction * s.gap * s.width * (s.end_of_platform() - s.start_of_platform()) /
+                         spreading::sphere_volume(s.diameter);
+    const auto n = static_cast<double>(s.layers);
+    return n * each * (static_cast<double>(s.particles) + layer * (n - 1) / 2);
 }
 
 }  // namespace
@@ -43,7 +49,8 @@ double estimate_cost(const Inputs& inputs) {
 SceneInfo powder_spreading_scene() {
     SceneInfo info;
     info.name = "powder_spreading";
-    info.summary = "a blade spreads a settled layer of powder: flux under the blade and quality of the layer";
+    info.summary =
+        "a blade, a roller or another tool spreads layers of powder: flux under it and quality of the layers";
     info.revision = spreading::revision;
     // Error of mfr and cost of each: tests/bench/accuracy_speed, table in solver/dem/README.md.
     const auto numerics = [](double fraction, double width, const char* precision) {

@@ -65,10 +65,10 @@ struct FileWord {
 /// reads them.
 using Files = std::map<std::string, std::string, std::less<>>;
 
-/// When a parameter matters: only if `other` can be (is_zero / non-zero / one of `words`).
+/// When a parameter matters: only if `other` can be (is_zero / non-zero / one of `words` / a file).
 /// A campaign that gives a parameter without effect on any of its cases is refused.
 struct Relevance {
-    enum class Condition { zero, nonzero, is_word };
+    enum class Condition { zero, nonzero, is_word, is_file };
     std::string other;
     Condition condition = Condition::nonzero;
     std::vector<std::string> words;

@@ -22,6 +22,8 @@ bool satisfies(const Relevance& condition, const Value& value) {
             return !is_zero(value);
         case Relevance::Condition::is_word:
             return std::ranges::find(condition.words, to_text(value)) != condition.words.end();
+        case Relevance::Condition::is_file:
+            return std::holds_alternative<std::string>(value) && file_word(std::get<std::string>(value)).has_value();
     }
     return true;
 }
@@ -43,6 +45,8 @@ std::string demand_of(const Relevance& condition) {
             return "not zero";
         case Relevance::Condition::is_word:
             return in_words(condition.words);
+        case Relevance::Condition::is_file:
+            return "a file";
     }
     return {};
 }

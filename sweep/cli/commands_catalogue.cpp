@@ -40,6 +40,8 @@ std::string condition_text(const Relevance& condition) {
             return condition.other + " != 0";
         case Relevance::Condition::is_word:
             return condition.other + " is " + joined(condition.words);
+        case Relevance::Condition::is_file:
+            return condition.other + " is a file";
     }
     return {};
 }

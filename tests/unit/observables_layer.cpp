@@ -71,6 +71,29 @@ TEST(Layer, ReliefSeesTheUppermostSurfaceAcrossThePeriod) {
     EXPECT_EQ(Relief(spheres({}, 1), 0, 4, 4, 0.1).empty_share(), 1);
 }
 
+TEST(Layer, SlabsCutSpheres) {
+    const auto s = spheres({{1, 0, 1}, {1, 0, 2.5}, {5, 0, 1}}, 1);
+    const double whole = 4 * std::numbers::pi / 3;
+    EXPECT_NEAR(solid_between(s, 0, 2, -10, 10), 2 * whole, 1e-14);
+    EXPECT_NEAR(solid_between(s, 0, 2, 0, 1), whole / 2, 1e-14);
+    // A cap of height h has the volume pi h^2 (3 - h)/3: of the second sphere h = 0.5 lies below z = 2.
+    EXPECT_NEAR(solid_between(s, 0, 2, 1, 2), whole / 2 + std::numbers::pi * 0.25 * 2.5 / 3, 1e-14);
+    EXPECT_NEAR(solid_volume(s, 0, 2, 1, 3), whole, 1e-14) << "above 1";
+}
+
+TEST(Layer, PatchesSpreadAsTheirVolumes) {
+    Patches patches(0, 4, 2, 1.1);
+    EXPECT_EQ(patches.size(), 8U);
+    EXPECT_DOUBLE_EQ(patches.area(), 1);
+    EXPECT_EQ(patches.deviation(), 0);
+    patches.add(spheres({{0.5, 0.5, 0}, {3.9, -0.1, 0}, {9, 0.5, 0}}, 1));  // one beyond, one across the period
+    const double v = 4 * std::numbers::pi / 3;
+    EXPECT_NEAR(patches.deviation(), v * std::sqrt(2.0 / 8 - 1.0 / 16), 1e-12);
+    patches.add(spheres({{0.7, 0.2, 9}, {3.1, 1.1, 9}}, 1), -1);
+    EXPECT_NEAR(patches.deviation(), 0, 1e-12);
+    EXPECT_TRUE(std::isnan(Patches(0, 1, 1, 1).deviation()));
+}
+
 TEST(Layer, ProfileAveragesByHeight) {
     const auto s = spheres({{1, 0, 2.1}, {1, 0, 2.2}, {1, 0, 2.9}, {9, 0, 2.1}, {1, 0, 1.9}, {1, 0, 99}}, 0.5);
     VelocityProfile profile(3);

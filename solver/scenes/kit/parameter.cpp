@@ -27,12 +27,16 @@ ParameterSpec Whole::spec() const {
     return {std::string(name), "1", std::string(meaning), standard, bounds, relevance(only)};
 }
 
-const std::string& FileOr::contents(const Inputs& inputs, const Files& files) const {
+const std::string& contents_of(std::string_view name, const Inputs& inputs, const Files& files) {
     const auto given = files.find(name);
     if (given != files.end()) return given->second;
     const auto file = file_word(std::get<std::string>(value_of(inputs, name)));
     throw std::invalid_argument(std::string(name) + ": the contents of " + (file ? std::string(file->path) : "a file") +
                                 " are not given");
+}
+
+const std::string& FileOr::contents(const Inputs& inputs, const Files& files) const {
+    return contents_of(name, inputs, files);
 }
 
 ParameterSpec FileOr::spec() const {

@@ -43,6 +43,11 @@ template <class... Word>
     return {low, high, true, false};
 }
 
+/// The other parameter is a file.
+[[nodiscard]] constexpr When if_file(std::string_view other) {
+    return {other, Relevance::Condition::is_file, {}};
+}
+
 /// The names that conditions give, in the form of a ParameterSpec.
 [[nodiscard]] std::vector<Relevance> relevance(const Conditions& conditions);
 /// Throws std::logic_error where the scene does not declare the parameter.
@@ -105,6 +110,33 @@ struct Choice {
                 relevance(only)};
     }
     [[nodiscard]] constexpr Choice with(std::string_view its_meaning) const { return {name, its_meaning, words, only}; }
+};
+
+/// What stands in the file that a parameter names. Throws std::invalid_argument where it is not among the files.
+[[nodiscard]] const std::string& contents_of(std::string_view name, const Inputs& inputs, const Files& files);
+
+/// One of some words, read as what it stands for, or a file; the first word is the default.
+template <class Meant, std::size_t n>
+struct ChoiceOrFile {
+    std::string_view name, meaning;
+    std::array<Named<Meant>, n> words{};
+    Meant file{};                                        ///< what a file stands for
+    void (*check)(std::string_view contents) = nullptr;  ///< throws std::invalid_argument with one sentence
+    Conditions only{};
+
+    [[nodiscard]] Meant operator()(const Inputs& inputs) const {
+        if (file_word(std::get<std::string>(value_of(inputs, name)))) return file;
+        return Choice<Meant, n>{name, meaning, words, only}(inputs);
+    }
+    [[nodiscard]] const std::string& contents(const Inputs& inputs, const Files& files) const {
+        return contents_of(name, inputs, files);
+    }
+    [[nodiscard]] ParameterSpec spec() const {
+        ParameterSpec made = Choice<Meant, n>{name, meaning, words, only}.spec();
+        std::get<Words>(made.bounds).file_allowed = true;
+        std::get<Words>(made.bounds).check_file = check;
+        return made;
+    }
 };
 
 /// A file, or the word that says there is none; the word is the default.

@@ -14,6 +14,11 @@
 
 namespace grainsweep::kit {
 
+/// The surface in the contents of an STL file, m. Throws std::invalid_argument with the parameter's name and the
+/// reason.
+[[nodiscard]] geometry::Mesh mesh_of(std::string_view parameter, std::string_view contents, double scale,
+                                     double facet_angle);
+
 struct StlWall {
     FileOr file;
     Real scale, facet_angle;

@@ -1,4 +1,4 @@
-// The spreading experiment as it runs: settling, then sweeping, sampled at equal distances of blade travel.
+// The spreading experiment as it runs: settling, then sweeping, sampled at equal distances of travel; layer by layer.
 #pragma once
 
 #include "solver/dem/engine.hpp"
@@ -6,7 +6,15 @@
 #include "solver/scenes/scene.hpp"
 #include "solver/scenes/spreading/study.hpp"
 
+#include <limits>
+
 namespace grainsweep::spreading {
+
+/// What is said of each layer; NaN: undefined.
+struct LayerAnswer {
+    static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    double mfr = none, packing_fraction = none, roughness = none, empty_share = none, patch_sd = none, force = none;
+};
 
 class Experiment final : public Scene {
 public:
@@ -15,12 +23,14 @@ public:
 
     void advance(double until) override;
     void observe(Observations& into) const override;
-    [[nodiscard]] double time() const override { return study_.time_step * static_cast<double>(step_); }
-    [[nodiscard]] bool finished() const override { return step_ == last_step(); }
+    [[nodiscard]] double time() const override {
+        return study_.time_step * static_cast<double>(layer_ * study_.steps_of_layer() + step_);
+    }
+    [[nodiscard]] bool finished() const override { return layer_ + 1 == study_.layers && step_ == last_step(); }
     [[nodiscard]] double progress() const override;
     [[nodiscard]] Health health() const override { return {engine_->fault()}; }
     [[nodiscard]] double particle_steps() const override {
-        return engine_->work().particle_steps - borrowed_particle_steps_;
+        return earlier_particle_steps_ + engine_->work().particle_steps - borrowed_particle_steps_;
     }
     void save(Bytes& into) const override;
     void restore(std::span<const std::byte> from) override;
@@ -32,6 +42,7 @@ public:
     static constexpr std::size_t profile_layers = 12;
 
 private:
+    /// Of this layer, as is step_.
     [[nodiscard]] std::int64_t last_step() const { return step_of_sample(end_sample_); }
     [[nodiscard]] std::int64_t step_of_sample(std::int64_t sample) const;
     [[nodiscard]] double time_of_sample(std::size_t sample) const;
@@ -43,26 +54,48 @@ private:
     void end_settling();
     void start_sweep();
     void sample();
+    /// The next layer: engine, walls and columns, over the bed.
+    void supply(const dem::State& bed);
+    [[nodiscard]] dem::Setup setup_of_layer() const;
+    /// What `setup` is made of, by id.
+    void take_over(const dem::Setup& setup);
+    void next_layer();
+    /// The powder as it is now, without what is glued to the base.
+    [[nodiscard]] dem::State powder() const;
     /// Adds to left_behind_ what has left the box since the last sample, and notes the place of what is there.
     void count_left(double front);
+    [[nodiscard]] double mean_flux() const;
+    [[nodiscard]] LayerAnswer layer_answer() const;
     void observe_flux(Observations& into) const;
+    void observe_profile(Observations& into) const;
+    void observe_tool(Observations& into) const;
     void observe_layer(Observations& into) const;
+    void observe_layers(Observations& into, const LayerAnswer& last) const;
 
     Study study_;
+    std::uint64_t seed_;
+    dem::Method method_;
     Artefacts& artefacts_;
     std::unique_ptr<dem::Engine> engine_;
-    std::int64_t step_ = 0;
+    std::int64_t layer_ = 0;
+    std::int64_t step_ = 0;  // of this layer
     bool sweeping_ = false;
     double borrowed_particle_steps_ = 0;  // another case's work on the bed
+    double earlier_particle_steps_ = 0;   // of the layers below
+    double earlier_overlap_ = 0;
+    dem::State bed_;                   // on the platform when this layer was supplied
+    std::vector<LayerAnswer> layers_;  // below
     std::int64_t end_sample_ = sweep_samples;
-    std::vector<double> volume_;  // by id, of the sphere of diameter D
-    std::vector<double> behind_;  // volume behind the front face, by sample, with what left the box there
+    std::vector<double> volume_;  // by id, of the sphere of diameter D; 0 of what was not supplied for this layer
+    std::vector<double> behind_;  // volume behind the edge, by sample, with what left the box there
     std::vector<double> under_;   // volume under the blade and below the gap, by sample
+    std::vector<double> solid_;   // solid_behind by sample
+    double force_sum_ = 0, lift_sum_ = 0;  // of the measured samples, N
     enum class Place : char { ahead, behind, left };
-    std::vector<Place> place_;      // by id: of the front face at the last sample, or out of the box
-    double left_behind_ = 0;        // volume that left the box behind the front face
+    std::vector<Place> place_;      // by id: of the edge at the last sample, or out of the box
+    double left_behind_ = 0;        // volume that left the box behind the edge
     dem::Domain domain_;            // for pictures, as the walls
-    std::vector<dem::Wall> gates_;  // base and gates, between which the layer settles
+    std::vector<dem::Wall> gates_;  // between which the layer settles
     observables::VelocityProfile profile_{profile_layers};
     dem::State state_;  // scratch of sample()
 };

@@ -12,10 +12,9 @@
 namespace grainsweep::spreading {
 namespace {
 
-constexpr double settled_fraction = 0.55;  // random loose packing: a layer is no higher than that makes it
-constexpr double narrowest = 5;            // largest diameters between a particle and its periodic image
-constexpr double fewest_particles = 200;   // of which a layer's statistics can be formed
-constexpr double largest_overlap = 0.1;    // of a diameter: beyond it contact laws of small overlaps say nothing
+constexpr double narrowest = 5;           // largest diameters between a particle and its periodic image
+constexpr double fewest_particles = 200;  // of which a layer's statistics can be formed
+constexpr double largest_overlap = 0.1;   // of a diameter: beyond it contact laws of small overlaps say nothing
 constexpr double steps_per_vibration = 20;
 
 std::string text(const char* format, double a, double b = 0, double c = 0, double d = 0) {
@@ -38,14 +37,14 @@ void warn_of_gap(std::vector<Warning>& warnings, const Study& s, double layer) {
     const double smallest = s.sizes.smallest() * s.diameter;
     if (s.gap < smallest / 2)
         warnings.push_back({"gap below half a diameter",
-                            text("a gap of %.3g m is %.2g of the smallest diameter: the blade's edge meets particles "
+                            text("a gap of %.3g m is %.2g of the smallest diameter: the tool meets particles "
                                  "below their centre and pushes them ahead, so that next to nothing is spread",
                                  s.gap, s.gap / smallest)});
     if (s.gap >= layer)
         warnings.push_back(
             {"gap above the layer",
              text("the gap of %.3g m (%.3g diameters) is above the settled layer, about %.3g m high: the "
-                  "blade hardly touches the powder",
+                  "tool hardly touches the powder",
                   s.gap, s.gap / s.diameter, layer)});
     else if (s.gap > s.width)
         warnings.push_back({"gap above the width",
@@ -77,9 +76,9 @@ void warn_of_layer(std::vector<Warning>& warnings, const Study& s, double layer)
                                                         settling, fall)});
 }
 
-void warn_of_blade(std::vector<Warning>& warnings, const Study& s) {
+void warn_of_tool(std::vector<Warning>& warnings, const Study& s) {
     const double measured = (1 - measured_from) * s.travel;
-    if (s.blade_thickness >= measured)
+    if (s.tool == Tool::blade && s.blade_thickness >= measured)
         warnings.push_back(
             {"blade thicker than the measured travel",
              text("blade_thickness of %.3g m leaves no spread layer behind the blade within the measured "
@@ -96,25 +95,25 @@ void warn_of_blade(std::vector<Warning>& warnings, const Study& s) {
              text("a vibration of %.4g Hz has %.2g time steps of %.3g s in a period: at least %.0f follow it",
                   s.vibration_frequency, period / s.time_step, s.time_step, steps_per_vibration)});
     const double shaking = 2 * std::numbers::pi * s.vibration_frequency * s.vibration_amplitude;
-    const double overlap = hertz_overlap(s, std::hypot(s.speed, shaking));
+    const double fastest = std::hypot(s.speed * (1 + std::abs(s.roller_spin)), shaking);
+    const double overlap = hertz_overlap(s, fastest);
     if (overlap > largest_overlap)
         warnings.push_back(
             {"particles too soft for the speed",
              text("at %.3g m/s particles of this stiffness overlap by about %.2g of a diameter, and contact "
                   "laws hold for small overlaps: raise youngs_modulus",
-                  std::hypot(s.speed, shaking), overlap)});
+                  fastest, overlap)});
 }
 
 }  // namespace
 
 std::vector<Warning> warnings_of(const Inputs& inputs) {
     const Study s = study_of(inputs);
-    // The layer reaches 20 mm beyond the travel (study.hpp).
     const double layer = s.layer_area / (settled_fraction * layer_length(s));
     std::vector<Warning> warnings;
     warn_of_gap(warnings, s, layer);
     warn_of_layer(warnings, s, layer);
-    warn_of_blade(warnings, s);
+    warn_of_tool(warnings, s);
     return warnings;
 }
 

@@ -1,0 +1,28 @@
+// What spreads the powder: a blade, a roller or a surface from an STL file, and where it stands.
+//
+// A tool has three planes across the travel: its foremost point, which touches the layer's end at the start; its edge,
+// behind which powder has passed (of a blade the front face, of a roller the axis, of a surface the foremost of its
+// lowest points); and its rear, behind which the layer is free (of a blade the rear face, of a roller the axis, of a
+// surface its rearmost point). The lowest point of the tool is at height `gap` over the level it spreads on.
+//
+//     roller: v(surface) = speed (1 + spin) at its lowest point, so angular velocity -spin speed/R about y
+#pragma once
+
+#include "solver/dem/walls/wall.hpp"
+#include "solver/geometry/mesh.hpp"
+
+namespace grainsweep::spreading {
+
+enum class Tool { blade, roller, file };
+enum class Base { smooth, rough };
+
+struct Study;
+
+/// The tool as its wall, over a level, m.
+[[nodiscard]] dem::Wall tool_wall(const Study& study, double level);
+
+/// A surface from y = 0 to `width`, its lowest point at z = 0 and x = 0. Throws std::invalid_argument with one sentence
+/// where it is shorter than the width, or longer and no profile.
+[[nodiscard]] geometry::Mesh fitted(const geometry::Mesh& given, double width);
+
+}  // namespace grainsweep::spreading
