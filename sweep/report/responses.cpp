@@ -21,7 +21,7 @@ namespace grainsweep::report {
 namespace {
 
 using Cell = store::Table::Cell;
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
 // Columns of a campaign's view before its factors: point, sequence, replicate, case_id, seed, outcome, attempts,
 // wall_seconds.
@@ -35,7 +35,7 @@ std::int64_t integer(const Cell& cell) {
 double number(const Cell& cell) {
     if (const auto* real = std::get_if<double>(&cell)) return *real;
     if (const auto* whole = std::get_if<std::int64_t>(&cell)) return static_cast<double>(*whole);
-    return none;
+    return no_value;
 }
 
 /// A level as it is shown; a file by its name.

@@ -23,7 +23,7 @@ constexpr std::size_t narrow_text = 12;   // a column of text is not wrapped nar
 constexpr std::size_t longest_word = 32;  // of a cell that is kept whole: a name, a case id
 constexpr std::size_t shown_of_an_id = 12;
 constexpr std::size_t most_records = 3;
-constexpr std::int64_t exact_in_a_double = std::int64_t{1} << 53U;
+constexpr std::int64_t largest_exact = std::int64_t{1} << 53U;
 
 struct Column {
     std::string name;
@@ -73,7 +73,7 @@ std::size_t longest_piece(const std::vector<std::string>& pieces) {
 /// Short cells (0.2702 ± 0.0011) may be wrapped narrower than sentences.
 constexpr std::size_t short_cell = 24;
 
-void measure(Column& column, std::size_t narrowest = narrow_text) {
+void measure(Column& column, std::size_t narrow = narrow_text) {
     std::size_t widest = 0, word = 0;
     for (const auto& cell : column.cells) {
         widest = std::max(widest, columns_of(cell));
@@ -85,7 +85,7 @@ void measure(Column& column, std::size_t narrowest = narrow_text) {
     column.least =
         column.numeric
             ? std::max(widest, heading)
-            : std::min(column.natural, std::max({std::min(word, longest_word), std::min(widest, narrowest), heading}));
+            : std::min(column.natural, std::max({std::min(word, longest_word), std::min(widest, narrow), heading}));
 }
 
 std::vector<Column> columns_in(const store::Table& table) {
@@ -98,7 +98,7 @@ std::vector<Column> columns_in(const store::Table& table) {
             column.numeric = column.numeric && !std::holds_alternative<std::string>(row[j]);
             const auto* whole = std::get_if<std::int64_t>(&row[j]);
             column.huge =
-                column.huge || (whole != nullptr && (*whole > exact_in_a_double || *whole < -exact_in_a_double));
+                column.huge || (whole != nullptr && (*whole > largest_exact || *whole < -largest_exact));
         }
         measure(column);
         columns.push_back(std::move(column));

@@ -22,7 +22,7 @@
 namespace grainsweep::store {
 namespace {
 
-[[noreturn]] void broken(const std::filesystem::path& file, std::string_view what) {
+[[noreturn]] void failed(const std::filesystem::path& file, std::string_view what) {
     throw BrokenWorld(fmt::format("'{}': cannot be {}: {}", file.string(), what, std::strerror(errno)));
 }
 
@@ -51,7 +51,7 @@ std::filesystem::path aside_of(const std::filesystem::path& target) {
 
 AsideFile::AsideFile(std::filesystem::path target) : target_(std::move(target)), file_(aside_of(target_)) {
     descriptor_ = open(file_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor_ < 0) broken(target_, "made");
+    if (descriptor_ < 0) failed(target_, "made");
 }
 
 AsideFile::~AsideFile() {
@@ -74,15 +74,15 @@ void AsideFile::write(std::span<const std::byte> bytes) {
     while (!bytes.empty()) {
         const auto written = ::write(descriptor_, bytes.data(), bytes.size());
         if (written < 0 && errno == EINTR) continue;
-        if (written < 0) broken(target_, "written");
+        if (written < 0) failed(target_, "written");
         bytes = bytes.subspan(static_cast<std::size_t>(written));
     }
 }
 
 void AsideFile::take_place() {
-    if (fsync(descriptor_) != 0) broken(target_, "synced");
-    if (close(std::exchange(descriptor_, -1)) != 0) broken(target_, "closed");
-    if (rename(file_.c_str(), target_.c_str()) != 0) broken(target_, "put in place");
+    if (fsync(descriptor_) != 0) failed(target_, "synced");
+    if (close(std::exchange(descriptor_, -1)) != 0) failed(target_, "closed");
+    if (rename(file_.c_str(), target_.c_str()) != 0) failed(target_, "put in place");
     file_.clear();
 }
 
