@@ -97,8 +97,7 @@ std::vector<Column> columns_in(const store::Table& table) {
             column.cells.push_back(cell_text(row[j]));
             column.numeric = column.numeric && !std::holds_alternative<std::string>(row[j]);
             const auto* whole = std::get_if<std::int64_t>(&row[j]);
-            column.huge =
-                column.huge || (whole != nullptr && (*whole > largest_exact || *whole < -largest_exact));
+            column.huge = column.huge || (whole != nullptr && (*whole > largest_exact || *whole < -largest_exact));
         }
         measure(column);
         columns.push_back(std::move(column));
