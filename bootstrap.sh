@@ -105,7 +105,12 @@ test)
     # The unit tests once more under the address and undefined-behaviour sanitizers.
     (cd "$here" && configure sanitize -DGRAINSWEEP_TESTS=ON)
     cmake --build "$here/build-sanitize" -j "$jobs" --target test_unit
-    "$here/build-sanitize/tests/test_unit" --gtest_brief=1
+    shards=()
+    for ((shard = 0; shard < jobs; ++shard)); do
+        GTEST_TOTAL_SHARDS=$jobs GTEST_SHARD_INDEX=$shard "$here/build-sanitize/tests/test_unit" --gtest_brief=1 &
+        shards+=($!)
+    done
+    for shard in "${shards[@]}"; do wait "$shard"; done
     ;;
 threads)
     # What has threads under the thread sanitizer: tests of the store, the loop and the workers, and whole campaigns.
