@@ -21,7 +21,7 @@ program_packages=(
     libboost-filesystem-dev=/usr/include/boost/filesystem.hpp:libboost_filesystem.so libsqlite3-dev=/usr/include/sqlite3.h
     nlohmann-json3-dev=/usr/include/nlohmann/json.hpp libfmt-dev=/usr/include/fmt/format.h
     libcli11-dev=/usr/include/CLI/CLI.hpp libxxhash-dev=/usr/include/xxhash.h
-    libjs-chart.js=/usr/share/javascript/chart.js/chart.min.js
+    libnlopt-dev=/usr/include/nlopt.h libjs-chart.js=/usr/share/javascript/chart.js/chart.min.js
 )
 test_packages=(
     libgtest-dev=/usr/include/gtest/gtest.h libgmock-dev=/usr/include/gmock/gmock.h

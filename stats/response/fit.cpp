@@ -1,0 +1,186 @@
+#include "stats/response/fit.hpp"
+
+#include "stats/random.hpp"
+#include "stats/response/kriging.hpp"
+
+#include <nlopt.h>
+#include <boost/random/sobol.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <utility>
+
+namespace grainsweep::stats::response {
+namespace {
+
+constexpr std::size_t cases_of_first_search = 200, compared_per_start = 8, followed = 2;
+constexpr int most_evaluations = 80;
+constexpr double value_tolerance = 1e-4;  // of a log density: far below what tells models apart
+constexpr double singular = 1e10;         // stands for an infinite minus log density
+
+/// The objective as NLopt calls it, and the best point it was called at: L-BFGS may end on a worse one.
+struct Search {
+    const Likelihood* likelihood;
+    Eigen::VectorXd best;
+    double best_value = -std::numeric_limits<double>::infinity();
+};
+
+double objective(unsigned size, const double* x, double* gradient, void* data) {
+    auto& search = *static_cast<Search*>(data);
+    const Eigen::VectorXd at = Eigen::Map<const Eigen::VectorXd>(x, static_cast<Eigen::Index>(size));
+    Eigen::VectorXd slope;
+    const double value = search.likelihood->value(at, slope);
+    if (value > search.best_value) {
+        search.best_value = value;
+        search.best = at;
+    }
+    if (gradient) Eigen::Map<Eigen::VectorXd>(gradient, slope.size()) = -slope;
+    return std::isfinite(value) ? -value : singular;
+}
+
+struct Bounds {
+    Eigen::VectorXd low, high;
+};
+
+Bounds bounds(const Likelihood& likelihood) {
+    const Eigen::Index d = likelihood.points().cols(), size = likelihood.parameters();
+    Bounds b{Eigen::VectorXd::Constant(size, -5), Eigen::VectorXd::Constant(size, 5)};
+    b.low.head(d).setConstant(std::log(0.02));
+    b.high.head(d).setConstant(std::log(50.0));
+    b.low(d) = -4;
+    b.high(d) = 6;
+    b.low(d + 1) = std::log(smallest_noise);
+    b.high(d + 1) = std::log(2.0);
+    return b;
+}
+
+Search climb(const Likelihood& likelihood, const Eigen::VectorXd& from) {
+    const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> opt(
+        nlopt_create(NLOPT_LD_LBFGS, static_cast<unsigned>(likelihood.parameters())), &nlopt_destroy);
+    const Bounds b = bounds(likelihood);
+    Search search{&likelihood, from};
+    nlopt_set_lower_bounds(opt.get(), b.low.data());
+    nlopt_set_upper_bounds(opt.get(), b.high.data());
+    nlopt_set_min_objective(opt.get(), objective, &search);
+    nlopt_set_ftol_abs(opt.get(), value_tolerance);
+    nlopt_set_maxeval(opt.get(), most_evaluations);
+    Eigen::VectorXd x = from.cwiseMax(b.low).cwiseMin(b.high);
+    double value = 0;
+    // A line search that ends on round-off is reported as a failure; the best point seen counts either way.
+    (void)nlopt_optimize(opt.get(), x.data(), &value);
+    return search;
+}
+
+std::vector<Eigen::VectorXd> starting_points(Eigen::Index d, std::size_t count) {
+    const Eigen::Index size = d + 2;
+    Eigen::VectorXd low = Eigen::VectorXd::Constant(size, -1.5), high = Eigen::VectorXd::Constant(size, 1.5);
+    low(d) = -0.5;
+    high(d) = 2;
+    low(d + 1) = std::log(0.001);
+    high(d + 1) = std::log(0.3);
+    boost::random::sobol sequence(static_cast<std::size_t>(size));
+    std::vector<Eigen::VectorXd> points;
+    for (std::size_t s = 0; s < count; ++s) {
+        Eigen::VectorXd at(size);
+        for (Eigen::Index j = 0; j < size; ++j) {
+            const double u = static_cast<double>(sequence()) / static_cast<double>(boost::random::sobol::max());
+            at(j) = low(j) + u * (high(j) - low(j));
+        }
+        points.push_back(std::move(at));
+    }
+    return points;
+}
+
+Likelihood likelihood_of(const Eigen::MatrixXd& points, const Eigen::VectorXd& values, std::size_t cases, bool map) {
+    const auto chosen = spread_choice(points.rows(), cases);
+    return {points(chosen, Eigen::all), values(chosen), map};
+}
+
+}  // namespace
+
+std::vector<Eigen::Index> spread_choice(Eigen::Index n, std::size_t count) {
+    std::vector<Eigen::Index> rows(static_cast<std::size_t>(n));
+    std::iota(rows.begin(), rows.end(), Eigen::Index{0});
+    if (rows.size() <= count) return rows;
+    const auto order = permutation(static_cast<std::uint32_t>(n), Generator(bits_at(1, 0x726573706f6e7365ULL, 0)));
+    for (std::size_t i = 0; i < count; ++i) rows[i] = static_cast<Eigen::Index>(order[i]);
+    rows.resize(count);
+    std::ranges::sort(rows);
+    return rows;
+}
+
+std::optional<Hyperparameters> fit_lengths(const Eigen::MatrixXd& points, const Eigen::VectorXd& values,
+                                           const FitSettings& settings) {
+    const Likelihood small = likelihood_of(points, values, std::min(settings.cases, cases_of_first_search), false);
+    std::vector<std::pair<double, Eigen::VectorXd>> starts;
+    for (auto& at : starting_points(points.cols(), settings.starts * compared_per_start))
+        starts.emplace_back(small.value(at), std::move(at));
+    const auto better = [](const auto& a, const auto& b) { return a.first > b.first; };
+    std::ranges::stable_sort(starts, better);
+    starts.resize(std::max<std::size_t>(settings.starts, 1));
+    for (auto& [value, at] : starts) {
+        const Search found = climb(small, at);
+        value = found.best_value;
+        at = found.best;
+    }
+    std::ranges::stable_sort(starts, better);
+    const auto done = [&](const Search& search) -> std::optional<Hyperparameters> {
+        if (!std::isfinite(search.best_value)) return std::nullopt;
+        return small.hyperparameters(search.best);
+    };
+    if (static_cast<std::size_t>(small.values().size()) ==
+        std::min(settings.cases, static_cast<std::size_t>(points.rows())))
+        return done({&small, starts.front().second, starts.front().first});
+    const Likelihood large = likelihood_of(points, values, settings.cases, false);
+    Search best{&large, {}};
+    std::vector<Eigen::VectorXd> climbed;
+    for (const auto& [value, at] : starts) {
+        // Starts that met on one maximum are followed once.
+        const bool met = std::ranges::any_of(climbed, [&a = at](const auto& c) { return (a - c).norm() < 0.3; });
+        if (met || climbed.size() == followed || !std::isfinite(value)) continue;
+        climbed.push_back(at);
+        const Search found = climb(large, at);
+        if (found.best_value > best.best_value) best = found;
+    }
+    return done(best);
+}
+
+std::optional<Hyperparameters> fit_map(const Eigen::MatrixXd& points, const Eigen::VectorXd& values,
+                                       const Hyperparameters& lengths, const FitSettings& settings) {
+    const Likelihood likelihood = likelihood_of(points, values, settings.cases, true);
+    const Search found = climb(likelihood, likelihood.parameters(lengths));
+    if (!std::isfinite(found.best_value)) return std::nullopt;
+    return likelihood.hyperparameters(found.best);
+}
+
+double leave_one_out_rms(const Hyperparameters& h, const Eigen::MatrixXd& points, const Eigen::VectorXd& values,
+                         std::size_t cases) {
+    const auto chosen = spread_choice(points.rows(), cases);
+    const auto kriging = solve_kriging(h, points(chosen, Eigen::all), values(chosen));
+    if (!kriging) return std::numeric_limits<double>::infinity();
+    return std::sqrt(leave_one_out(*kriging).residual.array().square().mean());
+}
+
+std::vector<Eigen::Index> space_filling_choice(const Eigen::MatrixXd& points, std::size_t count) {
+    std::vector<Eigen::Index> chosen;
+    const Eigen::RowVectorXd middle = Eigen::RowVectorXd::Constant(points.cols(), 0.5);
+    Eigen::ArrayXd nearest(points.rows()), from(points.rows());
+    squared_distances(points, middle, from);
+    Eigen::Index next = 0;
+    from.minCoeff(&next);
+    nearest.setConstant(std::numeric_limits<double>::infinity());
+    while (chosen.size() < std::min(count, static_cast<std::size_t>(points.rows()))) {
+        chosen.push_back(next);
+        squared_distances(points, points.row(next), from);
+        nearest = nearest.min(from);
+        nearest(next) = -1;  // never again, even where points coincide
+        nearest.maxCoeff(&next);
+    }
+    std::ranges::sort(chosen);
+    return chosen;
+}
+
+}  // namespace grainsweep::stats::response

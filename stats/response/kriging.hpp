@@ -1,0 +1,61 @@
+// Prediction with given hyperparameters: simple to write down as one symmetric system (universal kriging with a
+// constant mean; Cressie 1993, section 3.4).
+//
+//   [K 1; 1^T 0] [a; b] = [z; 0]      mean(x) = b + k(x)^T a,   k_i(x) = s^2 C(|M (x - x_i)|)
+//   var(x) = s^2 - k^T K^-1 k + (1 - 1^T K^-1 k)^2 / (1^T K^-1 1)       of the mean; a single run adds the noise g
+//
+// Leaving out (Dubrule 1983, Math. Geol. 15, 687), hyperparameters kept, mean estimated anew: the upper left block
+// of the inverse of the system is B = K^-1 - K^-1 1 1^T K^-1/(1^T K^-1 1), and without the cases S
+//
+//   z_S - prediction = B_SS^-1 (B z)_S,   its covariance B_SS^-1 (noise included),   B z = a
+//   a^(-S) = a - B(:, S) B_SS^-1 a_S,     b^(-S) = b - c_S^T B_SS^-1 a_S,   c = K^-1 1/(1^T K^-1 1)
+#pragma once
+
+#include "stats/response/matern.hpp"
+
+#include <Eigen/Core>
+
+#include <optional>
+
+namespace grainsweep::stats::response {
+
+struct Kriging {
+    Hyperparameters h;
+    Eigen::MatrixXd points;  ///< mapped (n, d)
+    Eigen::VectorXd values;
+    Eigen::MatrixXd factor;        ///< L of K = L L^T, lower half
+    Eigen::VectorXd weights;       ///< a
+    Eigen::VectorXd mean_weights;  ///< c
+    double mean = 0;               ///< b
+    double precision = 0;          ///< 1^T K^-1 1
+
+    [[nodiscard]] Eigen::Index size() const { return values.size(); }
+};
+
+/// None where K is singular in double precision.
+[[nodiscard]] std::optional<Kriging> solve_kriging(const Hyperparameters& h, const Eigen::MatrixXd& points,
+                                                   const Eigen::VectorXd& values);
+
+/// The system with rows appended; n^2 m operations.
+[[nodiscard]] std::optional<Kriging> extend_kriging(const Kriging& old, const Eigen::MatrixXd& points,
+                                                    const Eigen::VectorXd& values);
+
+struct KrigingPrediction {
+    Eigen::VectorXd mean;
+    Eigen::VectorXd variance;    ///< of the mean
+    Eigen::MatrixXd covariance;  ///< of the means, where asked for
+};
+
+/// At mapped points (m, d).
+[[nodiscard]] KrigingPrediction predict(const Kriging& model, const Eigen::MatrixXd& at, bool jointly);
+[[nodiscard]] Eigen::VectorXd predict_means(const Kriging& model, const Eigen::MatrixXd& at);
+
+struct LeftOut {
+    Eigen::VectorXd residual;  ///< observed minus predicted
+    Eigen::VectorXd variance;  ///< of the residual, noise included
+};
+
+/// Every case left out by itself.
+[[nodiscard]] LeftOut leave_one_out(const Kriging& model);
+
+}  // namespace grainsweep::stats::response

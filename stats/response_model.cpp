@@ -1,0 +1,224 @@
+#include "stats/response_model.hpp"
+
+#include "stats/response/fit.hpp"
+#include "stats/response/state.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+namespace grainsweep::stats {
+namespace {
+
+using response::Hyperparameters;
+using response::Kriging;
+
+constexpr std::size_t cases_for_map = 200;
+constexpr double outside_by = 1e-9;  // of the box: what round-off of a feature may do
+
+/// A double as a sentence shows it.
+std::string shown(double x) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", x);
+    return text;
+}
+
+Eigen::VectorXd edges(const std::vector<double>& given, std::size_t d, double otherwise) {
+    if (given.empty()) return Eigen::VectorXd::Constant(static_cast<Eigen::Index>(d), otherwise);
+    if (given.size() != d) throw std::invalid_argument("response model: the box has another number of features");
+    return Eigen::Map<const Eigen::VectorXd>(given.data(), static_cast<Eigen::Index>(d));
+}
+
+void check_sizes(Rows points, std::size_t values) {
+    if (points.dimensions == 0 || points.values.size() != points.dimensions * values)
+        throw std::invalid_argument("response model: " + std::to_string(points.values.size()) + " numbers are not " +
+                                    std::to_string(values) + " rows of " + std::to_string(points.dimensions));
+}
+
+bool all_finite(std::span<const double> numbers) {
+    return std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); });
+}
+
+/// Reasons to refuse that need no model. `used`: rows with a finite value.
+std::optional<Refusal> reason_to_refuse(Rows points, std::span<const double> values,
+                                        const std::vector<std::size_t>& used) {
+    const std::size_t n = used.size(), least = std::max<std::size_t>(12, 4 * (points.dimensions + 1));
+    if (!all_finite(points.values)) return Refusal{"no response model: a feature of a case is not a finite number"};
+    if (n < least)
+        return Refusal{"no response model: too few cases, " + std::to_string(n) + " with a value where " +
+                       std::to_string(points.dimensions) + " features need at least " + std::to_string(least)};
+    std::map<double, std::size_t> counts;
+    for (const std::size_t i : used) ++counts[values[i]];
+    const auto most = std::ranges::max_element(counts, {}, [](const auto& entry) { return entry.second; });
+    const double reach = std::max(std::abs(counts.begin()->first), std::abs(counts.rbegin()->first));
+    if (counts.rbegin()->first - counts.begin()->first <= 1e-12 * reach)
+        return Refusal{"no response model: the response is constant (" + shown(most->first) + " in all " +
+                       std::to_string(n) + " cases)"};
+    if (2 * most->second >= n)
+        return Refusal{"no response model: " + std::to_string(most->second) + " of " + std::to_string(n) +
+                       " responses equal " + shown(most->first) + ", half or more"};
+    return std::nullopt;
+}
+
+/// Lengths, and the linear map where it is asked for and pays.
+std::optional<Hyperparameters> find_hyperparameters(const Eigen::MatrixXd& x, const Eigen::VectorXd& z,
+                                                    const ResponseModelOptions& options) {
+    const response::FitSettings settings{options.starts, options.cases_in_fit};
+    const auto plain = response::fit_lengths(x, z, settings);
+    const bool wanted = options.map == LearnedMap::always || (options.map == LearnedMap::where_better &&
+                                                              static_cast<std::size_t>(z.size()) >= cases_for_map);
+    if (!plain || !wanted || x.cols() < 2) return plain;
+    const auto mapped = response::fit_map(x, z, *plain, settings);
+    if (!mapped) return plain;
+    if (options.map == LearnedMap::always) return mapped;
+    const auto error = [&](const Hyperparameters& h) { return response::leave_one_out_rms(h, x, z, settings.cases); };
+    return error(*mapped) < error(*plain) ? mapped : plain;
+}
+
+/// Leave-one-out figures and the local noise, which rests on them.
+void assess(ResponseModel::State& state) {
+    const Kriging& k = state.kriging;
+    const response::LeftOut out = response::leave_one_out(k);
+    state.noise = {k.points, out.residual.array().square() / out.variance.array()};
+    const Eigen::ArrayXd local = state.noise.factors_without_self();
+    const Eigen::ArrayXd errors = (local * out.variance.array()).sqrt();
+    const Eigen::ArrayXd scores = out.residual.array().abs() / errors;
+    ModelQuality& q = state.quality;
+    q.rests_on = static_cast<std::size_t>(k.size());
+    const double spread = std::sqrt((k.values.array() - k.values.mean()).square().mean());
+    q.leave_one_out_error = std::sqrt(out.residual.array().square().mean()) / spread;
+    q.coverage_50 = (scores < 0.674489750196082).cast<double>().mean();
+    q.coverage_95 = (scores < 1.959963984540054).cast<double>().mean();
+    q.noise_share = std::min(1.0, k.h.noise() * local.mean() / (spread * spread));
+    q.learned_map = !k.h.shear.isIdentity(0);
+    for (Eigen::Index i = 0; i < k.size(); ++i) {
+        q.residuals.push_back(state.scale * out.residual(i));
+        q.errors.push_back(state.scale * errors(i));
+    }
+    for (const double l : k.h.log_length) q.lengths.push_back(std::exp(l));
+}
+
+}  // namespace
+
+double Prediction::run_error() const {
+    return std::hypot(mean_error, scatter);
+}
+
+Eigen::MatrixXd ResponseModel::State::in_box(Rows points) const {
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    if (points.dimensions != static_cast<std::size_t>(low.size()) || points.values.size() % points.dimensions != 0)
+        throw std::invalid_argument("response model: points have another number of features");
+    const Eigen::Map<const RowMajor> raw(points.values.data(), static_cast<Eigen::Index>(points.size()), low.size());
+    return (raw.rowwise() - low.transpose()).array().rowwise() / (high - low).transpose().array();
+}
+
+Prediction ResponseModel::predict(std::span<const double> features) const {
+    return predict(Rows{features, features.size()}).front();
+}
+
+std::vector<Prediction> ResponseModel::predict(Rows points) const {
+    const State& s = *state_;
+    const Eigen::MatrixXd x = s.in_box(points);
+    const Eigen::MatrixXd at = response::mapped(s.kriging.h, x);
+    const auto p = response::predict(s.kriging, at, false);
+    const Eigen::VectorXd local = s.noise.factors(at);
+    std::vector<Prediction> result;
+    for (Eigen::Index i = 0; i < at.rows(); ++i) {
+        const bool inside = x.row(i).minCoeff() >= -outside_by && x.row(i).maxCoeff() <= 1 + outside_by;
+        result.push_back({s.offset + s.scale * p.mean(i), s.scale * std::sqrt(local(i) * p.variance(i)),
+                          s.scale * std::sqrt(local(i) * s.kriging.h.noise()), inside});
+    }
+    return result;
+}
+
+std::vector<double> ResponseModel::means(Rows points) const {
+    const State& s = *state_;
+    const Eigen::VectorXd z = response::predict_means(s.kriging, response::mapped(s.kriging.h, s.in_box(points)));
+    std::vector<double> result;
+    for (const double mean : z) result.push_back(s.offset + s.scale * mean);
+    return result;
+}
+
+JointPrediction ResponseModel::predict_jointly(Rows points) const {
+    const State& s = *state_;
+    const Eigen::MatrixXd at = response::mapped(s.kriging.h, s.in_box(points));
+    const auto p = response::predict(s.kriging, at, true);
+    const Eigen::VectorXd local = s.noise.factors(at).cwiseSqrt();
+    JointPrediction joint;
+    for (Eigen::Index i = 0; i < at.rows(); ++i) joint.mean.push_back(s.offset + s.scale * p.mean(i));
+    for (Eigen::Index i = 0; i < at.rows(); ++i)
+        for (Eigen::Index j = 0; j < at.rows(); ++j)
+            joint.covariance.push_back(s.scale * s.scale * local(i) * local(j) * p.covariance(i, j));
+    return joint;
+}
+
+ResponseModel ResponseModel::with_cases(Rows points, std::span<const double> values) const {
+    check_sizes(points, values.size());
+    if (!all_finite(points.values) || !all_finite(values))
+        throw std::invalid_argument("response model: an added case is not finite");
+    const Eigen::Map<const Eigen::VectorXd> raw(values.data(), static_cast<Eigen::Index>(values.size()));
+    const Eigen::VectorXd z = (raw.array() - state_->offset) / state_->scale;
+    auto longer = response::extend_kriging(state_->kriging, state_->in_box(points), z);
+    if (!longer) throw std::invalid_argument("response model: an added case repeats another without any noise");
+    auto next = std::make_shared<State>(State{state_->low, state_->high, state_->offset, state_->scale,
+                                              std::move(*longer), state_->noise, state_->quality});
+    next->quality.cases += values.size();
+    next->quality.rests_on += values.size();
+    return ResponseModel(std::move(next));
+}
+
+const ModelQuality& ResponseModel::quality() const {
+    return state_->quality;
+}
+
+std::size_t ResponseModel::dimensions() const {
+    return static_cast<std::size_t>(state_->low.size());
+}
+
+std::variant<ResponseModel, Refusal> fit_response(Rows points, std::span<const double> values,
+                                                  const ResponseModelOptions& options) {
+    check_sizes(points, values.size());
+    auto state = std::make_shared<ResponseModel::State>();
+    state->low = edges(options.low, points.dimensions, 0);
+    state->high = edges(options.high, points.dimensions, 1);
+    if (!((state->high - state->low).array() > 0).all())
+        throw std::invalid_argument("response model: the box of a feature is empty");
+    std::vector<std::size_t> used;
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (std::isfinite(values[i])) used.push_back(i);
+    if (const auto reason = reason_to_refuse(points, values, used)) return *reason;
+
+    Eigen::VectorXd y(static_cast<Eigen::Index>(used.size()));
+    for (std::size_t i = 0; i < used.size(); ++i) y(static_cast<Eigen::Index>(i)) = values[used[i]];
+    Eigen::MatrixXd x = state->in_box(points)(used, Eigen::all);
+    state->offset = y.mean();
+    state->scale = std::sqrt((y.array() - state->offset).square().mean());
+    Eigen::VectorXd z = (y.array() - state->offset) / state->scale;
+    state->quality.cases = used.size();
+    state->quality.excluded = values.size() - used.size();
+    const auto hyperparameters = find_hyperparameters(x, z, options);
+    if (used.size() > options.most_cases) {
+        const auto chosen = response::space_filling_choice(x, options.most_cases);
+        x = x(chosen, Eigen::all).eval();
+        z = z(chosen).eval();
+        for (std::size_t i = 0; i < chosen.size(); ++i) used[i] = used[static_cast<std::size_t>(chosen[i])];
+        used.resize(chosen.size());
+    }
+    auto kriging = hyperparameters ? response::solve_kriging(*hyperparameters, x, z) : std::nullopt;
+    if (!kriging) return Refusal{"no response model: its equations are singular in double precision"};
+    state->kriging = std::move(*kriging);
+    state->quality.used = std::move(used);
+    assess(*state);
+    if (!(state->quality.leave_one_out_error < options.refused_error))
+        return Refusal{"no response model: left-out cases are predicted with an error of " +
+                       shown(state->quality.leave_one_out_error) + " standard deviations of the response (limit " +
+                       shown(options.refused_error) + "), " + std::to_string(state->quality.cases) +
+                       " cases do not show how it depends on these factors"};
+    return ResponseModel(std::move(state));
+}
+
+}  // namespace grainsweep::stats
