@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <map>
 #include <set>
 #include <sstream>
@@ -15,9 +17,11 @@ namespace grainsweep::campaign {
 
 namespace {
 
+constexpr std::string_view level_separator = " | ";
+
 std::string joined(const std::vector<Value>& values) {
     std::string text;
-    for (const auto& value : values) text += (text.empty() ? "" : " | ") + identity_text(value);
+    for (const auto& value : values) text.append(text.empty() ? "" : level_separator).append(identity_text(value));
     return text;
 }
 
@@ -84,26 +88,51 @@ std::string counts_that_act(const std::string& value, const std::vector<std::str
     return acting;
 }
 
+std::vector<std::string> split(std::string_view text, std::string_view separator) {
+    std::vector<std::string> parts;
+    for (auto at = text.find(separator); at != std::string_view::npos; at = text.find(separator)) {
+        parts.emplace_back(text.substr(0, at));
+        text.remove_prefix(at + separator.size());
+    }
+    parts.emplace_back(text);
+    return parts;
+}
+
+double number_in(const std::string& text) {
+    double number = std::numeric_limits<double>::quiet_NaN();
+    std::from_chars(text.data(), text.data() + text.size(), number);
+    return number;
+}
+
+/// What line_of() wrote.
+StatedFactor factor_in(const std::string& line) {
+    constexpr std::string_view levels = " levels ", between = " between ";
+    StatedFactor factor;
+    factor.name = line.substr(0, line.find(' '));
+    if (line.compare(factor.name.size(), levels.size(), levels) == 0) {
+        factor.levels = split(std::string_view(line).substr(factor.name.size() + levels.size()), level_separator);
+    } else if (line.compare(factor.name.size(), between.size(), between) == 0) {
+        std::istringstream words(line.substr(factor.name.size() + between.size()));
+        std::string low, high, scale;
+        words >> low >> high >> scale;
+        factor.between = {number_in(low), number_in(high), scale == "log" ? Scale::log : Scale::linear};
+    }
+    return factor;
+}
+
+/// "a = 1\nb = 2\n" -> "a = 1, b = 2".
+std::string in_one_line(const std::string& lines) {
+    std::string text;
+    for (const auto& line : lines_of(lines)) text += (text.empty() ? "" : ", ") + line;
+    return text;
+}
+
 /// The same factor with every old level kept: a lattice grows so.
-bool levels_added(std::string_view before, std::string_view after) {
-    const auto parts = [](std::string_view line) {
-        std::vector<std::string_view> words;
-        const auto start = line.find(" levels ");
-        if (start == std::string_view::npos) return words;
-        words.push_back(line.substr(0, start));
-        line.remove_prefix(start + 8);
-        for (auto bar = line.find(" | "); bar != std::string_view::npos; bar = line.find(" | ")) {
-            words.push_back(line.substr(0, bar));
-            line.remove_prefix(bar + 3);
-        }
-        words.push_back(line);
-        return words;
-    };
-    const auto old_words = parts(before);
-    const auto new_words = parts(after);
-    return !old_words.empty() && !new_words.empty() && old_words.front() == new_words.front() &&
-           std::ranges::all_of(old_words,
-                               [&](auto word) { return std::ranges::find(new_words, word) != new_words.end(); });
+bool levels_added(const std::string& before, const std::string& after) {
+    const auto was = factor_in(before), is = factor_in(after);
+    return was.name == is.name && !was.levels.empty() && std::ranges::all_of(was.levels, [&](const auto& level) {
+               return std::ranges::find(is.levels, level) != is.levels.end();
+           });
 }
 
 /// First line in which two texts differ, "nothing" where one has ended.
@@ -143,10 +172,41 @@ Identity identity_of(const Campaign& campaign) {
     return identity;
 }
 
+std::vector<StatedFactor> factors_of(const Identity& identity) {
+    std::vector<StatedFactor> factors;
+    for (const auto& line : lines_of(identity.factors)) factors.push_back(factor_in(line));
+    return factors;
+}
+
 std::vector<std::string> factor_names(const Identity& identity) {
     std::vector<std::string> names;
-    for (const auto& line : lines_of(identity.factors)) names.push_back(line.substr(0, line.find(' ')));
+    for (auto& factor : factors_of(identity)) names.push_back(std::move(factor.name));
     return names;
+}
+
+std::optional<std::int64_t> points_of(const Identity& identity) {
+    for (const auto& line : lines_of(identity.extent)) {
+        const auto [name, value] = name_and_value(line);
+        if (name == "points") return std::strtoll(value.c_str(), nullptr, 10);
+    }
+    return std::nullopt;
+}
+
+std::string family_of(const Identity& identity) {
+    const auto* design = designs::find_design(identity.design);
+    const auto& all = identity.options + identity.extent;
+    return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", identity.scene, identity.revision, identity.factors,
+                       identity.fixed, identity.condition, identity.design,
+                       design == nullptr ? identity.options : options_of(*design, all, false));
+}
+
+std::string design_line(const Identity& identity) {
+    const auto options = in_one_line(identity.options + identity.extent);
+    return identity.design + (options.empty() ? "" : ": ") + options;
+}
+
+std::string fixed_line(const Identity& identity) {
+    return in_one_line(identity.fixed);
 }
 
 std::string larger_extent(std::string_view design, const std::string& before, const std::string& after) {

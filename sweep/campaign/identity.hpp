@@ -9,6 +9,7 @@
 #include "sweep/campaign/campaign.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,8 +33,26 @@ struct Identity {
 /// name.
 void require_same(const Identity& stored, const Identity& asked, std::string_view archive);
 
-/// The names of the factors in the order that fixes the dimensions of the design.
+/// A factor as it stands in an identity: a range, or levels as `identity_text` writes them (a file by its contents).
+struct StatedFactor {
+    std::string name;
+    std::optional<Between> between;
+    std::vector<std::string> levels;  ///< in the order of the campaign file; empty where there is a range
+    bool operator==(const StatedFactor&) const = default;
+};
+/// The factors in the order that fixes the dimensions of the design.
+[[nodiscard]] std::vector<StatedFactor> factors_of(const Identity& identity);
+/// Their names.
 [[nodiscard]] std::vector<std::string> factor_names(const Identity& identity);
+/// Points that the design was asked for at most; none where it is not asked for points.
+[[nodiscard]] std::optional<std::int64_t> points_of(const Identity& identity);
+/// Equal for campaigns that ask the same of a scene and differ in name, seed and how much of the design they ask for
+/// alone.
+[[nodiscard]] std::string family_of(const Identity& identity);
+/// "halton: points = 2400, scramble = random, sequences = 8".
+[[nodiscard]] std::string design_line(const Identity& identity);
+/// "friction = 0.2, restitution = 0.5"; empty: every parameter not varied has its default.
+[[nodiscard]] std::string fixed_line(const Identity& identity);
 /// The larger of two extents of one design that extends, option by option; of any other the later one.
 [[nodiscard]] std::string larger_extent(std::string_view design, const std::string& before, const std::string& after);
 /// Sequences of the design: point p belongs to sequence p mod this.

@@ -1,6 +1,6 @@
 #include "sweep/report/history.hpp"
 
-#include "sweep/campaign/json_text.hpp"
+#include "sweep/campaign/identity.hpp"
 #include "sweep/schedule/judge.hpp"
 
 #include <fmt/format.h>
@@ -133,19 +133,6 @@ std::string verdict_of(const History& history, const Responses& responses) {
     return check.converged ? fmt::format("converged at {} points: {}", check.points, line) : "not converged: " + line;
 }
 
-/// What makes two lattices siblings: scene, revision, fixed values, and factors with their ranges.
-std::string family_of(const store::CampaignRecord& record) {
-    const auto text = campaign::parse_json(record.text);
-    campaign::Json key = {{"scene", record.scene}, {"revision", record.revision}, {"factors", text.at("factors")}};
-    for (const auto* section : {"fixed", "where", "accuracy"})
-        if (text.contains(section)) key[section] = text.at(section);
-    for (auto& factor : key["factors"]) factor.erase("notes");
-    if (key.contains("fixed")) key["fixed"].erase("notes");
-    const auto& design = text.at("design");
-    if (design.contains("placement")) key["placement"] = design.at("placement");
-    return key.dump();
-}
-
 double change(Statistic statistic, double now, double before) {
     const double moved = std::abs(now - before);
     if (statistic == Statistic::skewness) return moved / 3;
@@ -205,12 +192,10 @@ std::vector<const stats::Checkpoint*> checks_to_show(const History& history, std
 std::vector<LatticeStep> lattice_family(const store::Store& store, const Responses& responses,
                                         const ResponseColumn& response) {
     if (responses.design().beginning != designs::Beginning::corner) return {};
-    const auto family = family_of(responses.campaign);
+    const auto family = campaign::family_of(responses.campaign);
     std::vector<LatticeStep> steps;
     for (const auto& record : store.campaigns()) {
-        if (record.design != responses.campaign.design || record.scene != responses.campaign.scene ||
-            family_of(record) != family)
-            continue;
+        if (campaign::family_of(record) != family) continue;
         const auto sibling = read_responses(store, record);
         if (sibling.settled < sibling.rows()) continue;  // half a lattice is no lattice
         LatticeStep step;

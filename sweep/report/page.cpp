@@ -1,7 +1,8 @@
 #include "sweep/report/page.hpp"
 
 #include "solver/scenes/scene.hpp"
-#include "sweep/campaign/json_text.hpp"
+#include "sweep/campaign/identity.hpp"
+#include "sweep/campaign/stored_text.hpp"
 #include "sweep/report/curves.hpp"
 #include "sweep/report/effects.hpp"
 #include "sweep/report/history.hpp"
@@ -216,18 +217,6 @@ Json json_of(const Curves& curves) {
     return value;
 }
 
-/// Top-level notes of a campaign file: a text or a list of texts.
-std::string notes_of(const campaign::Json& text) {
-    const auto found = text.find("notes");
-    if (found == text.end()) return "";
-    if (found->is_string()) return found->get<std::string>();
-    std::string all;
-    if (found->is_array())
-        for (const auto& line : *found)
-            if (line.is_string()) all += (all.empty() ? "" : "\n") + line.get<std::string>();
-    return all;
-}
-
 Json runs_of(const store::Store& store, const std::string& campaign) {
     return to_json(store.query(
         fmt::format("SELECT start, version, \"commit\", compiler, flags, instruction_path, processor, host, settled "
@@ -238,18 +227,17 @@ Json runs_of(const store::Store& store, const std::string& campaign) {
 
 Json campaign_of(const store::Store& store, const store::CampaignRecord& record, std::string_view database) {
     const auto responses = read_responses(store, record);
-    const auto text = campaign::parse_json(record.text);
     const SceneInfo* scene = find_scene(record.scene);
     Json value = {{"name", record.name},
                   {"database", database},
-                  {"notes", notes_of(text)},
+                  {"notes", campaign::remarks_in(record.text).notes},
                   {"scene", record.scene},
                   {"revision", record.revision},
                   {"summary", scene == nullptr ? "" : scene->summary},
                   {"design", record.design},
-                  {"design_text", text.at("design").dump()},
-                  {"fixed_text", text.contains("fixed") ? text.at("fixed").dump() : ""},
-                  {"where", text.value("where", "")},
+                  {"design_text", campaign::design_line(record)},
+                  {"fixed_text", campaign::fixed_line(record)},
+                  {"where", record.condition},
                   {"sequences", repeats(responses) ? record.sequences : 1},
                   {"replicates", record.replicates},
                   {"rows", responses.rows()},

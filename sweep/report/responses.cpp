@@ -2,13 +2,14 @@
 
 #include "solver/scenes/scene.hpp"
 #include "stats/random.hpp"
-#include "sweep/campaign/json_text.hpp"
+#include "sweep/campaign/identity.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/schedule/judge.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -47,61 +48,65 @@ std::string level_text(const Cell& cell) {
     return fmt::format("{:.6g}", number(cell));
 }
 
-std::string level_text(const campaign::Json& level) {
-    return level.is_string() ? level.get<std::string>() : fmt::format("{:.6g}", level.get<double>());
+/// What makes two levels the same, whichever type a view or an identity gives them: numbers by value, files by
+/// contents.
+std::string key_of_level(std::string_view word) {
+    double number = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    const bool whole = error == std::errc() && end == word.data() + word.size();
+    return whole ? campaign::shortest(number) : std::string(word);
 }
 
-/// Levels that occur, in the order of the campaign file; those it does not name (files) after them.
-void read_levels(FactorColumn& factor, const std::vector<Cell>& cells, const campaign::Json* listed) {
-    std::vector<std::string> texts;
-    texts.reserve(cells.size());
-    for (const auto& cell : cells) texts.push_back(level_text(cell));
-    std::vector<std::string> order;
-    if (listed != nullptr)
-        for (const auto& level : *listed) order.push_back(level_text(level));
+std::string key_of_cell(const Cell& cell) {
+    const auto* word = std::get_if<std::string>(&cell);
+    return word == nullptr ? campaign::shortest(number(cell)) : key_of_level(campaign::identity_text(*word));
+}
+
+/// Levels that occur, in the order of the campaign file.
+void read_levels(FactorColumn& factor, const std::vector<Cell>& cells, const std::vector<std::string>& listed) {
+    std::map<std::string, std::string> texts;
+    std::vector<std::string> keys;
+    keys.reserve(cells.size());
+    for (const auto& cell : cells) {
+        keys.push_back(key_of_cell(cell));
+        texts.try_emplace(keys.back(), level_text(cell));
+    }
     std::map<std::string, std::size_t> index;
-    for (const auto& level : order)
-        if (std::ranges::find(texts, level) != texts.end()) index.try_emplace(level, index.size());
-    for (const auto& text : texts) index.try_emplace(text, index.size());
+    for (const auto& level : listed)
+        if (const auto key = key_of_level(level); texts.contains(key)) index.try_emplace(key, index.size());
+    for (const auto& key : keys) index.try_emplace(key, index.size());
     factor.levels.resize(index.size());
-    for (const auto& [text, place] : index) factor.levels[place] = text;
-    for (const auto& text : texts) factor.values.push_back(static_cast<double>(index.at(text)));
+    for (const auto& [key, place] : index) factor.levels[place] = texts.at(key);
+    for (const auto& key : keys) factor.values.push_back(static_cast<double>(index.at(key)));
 }
 
 /// A factor as its rows come by: numbers where it has a range, else cells until all are known.
 class FactorReader {
 public:
-    FactorReader(const campaign::Json& given, const SceneInfo* scene) : given_(given) {
-        factor_.name = given.at("name").get<std::string>();
+    FactorReader(campaign::StatedFactor stated, const SceneInfo* scene) : stated_(std::move(stated)) {
+        factor_.name = stated_.name;
         if (const auto* parameter = scene == nullptr ? nullptr : scene->find_parameter(factor_.name)) {
             factor_.unit = parameter->unit;
             factor_.meaning = parameter->meaning;
         }
-        factor_.log = given.value("scale", "linear") == "log";
-        if (given.contains("between")) {
-            factor_.low = given.at("between").at(0).get<double>();
-            factor_.high = given.at("between").at(1).get<double>();
-        }
+        if (!stated_.between) return;
+        factor_.log = stated_.between->scale == campaign::Scale::log;
+        factor_.low = stated_.between->low;
+        factor_.high = stated_.between->high;
     }
     void add(const Cell& cell) {
-        if (given_.contains("between"))
+        if (stated_.between)
             factor_.values.push_back(number(cell));
         else
             cells_.push_back(cell);
     }
     [[nodiscard]] FactorColumn take() {
-        const bool words =
-            std::ranges::any_of(cells_, [](const Cell& c) { return std::holds_alternative<std::string>(c); });
-        if (given_.contains("levels") || words) {
-            read_levels(factor_, cells_, given_.contains("levels") ? &given_.at("levels") : nullptr);
-        } else {
-            for (const auto& cell : cells_) factor_.values.push_back(number(cell));
-        }
+        if (!stated_.between) read_levels(factor_, cells_, stated_.levels);
         return std::move(factor_);
     }
 
 private:
-    const campaign::Json& given_;
+    campaign::StatedFactor stated_;
     FactorColumn factor_;
     std::vector<Cell> cells_;
 };
@@ -239,9 +244,8 @@ Responses read_responses(const store::Store& store, const store::CampaignRecord&
     Responses responses;
     responses.campaign = record;
     const SceneInfo* scene = find_scene(record.scene);
-    const campaign::Json text = campaign::parse_json(record.text);
     std::vector<FactorReader> factors;
-    for (const auto& given : text.at("factors")) factors.emplace_back(given, scene);
+    for (auto& stated : campaign::factors_of(record)) factors.emplace_back(std::move(stated), scene);
     const auto first_observable = first_factor + factors.size();
     const auto declare = [&](const std::vector<std::string>& columns) {
         for (std::size_t column = first_observable; column < columns.size(); ++column) {
@@ -267,11 +271,7 @@ Responses read_responses(const store::Store& store, const store::CampaignRecord&
     store.query(fmt::format("SELECT * FROM \"{}\" ORDER BY point, replicate", record.name), {}, declare, add);
     for (auto& factor : factors) responses.factors.push_back(factor.take());
 
-    responses.candidates = record.stored.candidates;
-    const auto& design = text.at("design");
-    if (design.contains("points")) {
-        responses.candidates = std::max(responses.candidates, design.at("points").get<std::int64_t>());
-    }
+    responses.candidates = std::max(record.stored.candidates, campaign::points_of(record).value_or(0));
     if (!responses.ordered_sample() && !record.stopped_at) bring_settled_forward(responses);
     find_settled(responses);
     return responses;

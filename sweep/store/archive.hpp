@@ -73,6 +73,12 @@ struct Store::Impl {
     [[nodiscard]] std::optional<OpenAttempt> take_open(const campaign::Attempt& attempt);
 };
 
+/// The columns of `campaign` that hold an identity, and what is read from them, the first at `first`.
+inline constexpr std::string_view identity_columns =
+    "name, scene, revision, seed, factors, fixed, condition, design, design_options, design_extent";
+inline constexpr int identity_column_count = 10;
+[[nodiscard]] campaign::Identity identity_at(const Rows& rows, int first);
+
 /// A stored campaign; none of that name.
 struct KnownCampaign {
     std::int64_t key = 0;
@@ -89,6 +95,13 @@ struct KnownCampaign {
 /// all others are sound.
 [[nodiscard]] bool ask_damaged_again(Store::Impl& archive, const campaign::Cases& cases,
                                      const std::vector<DeclaredParameter>& parameters, KnownCases& known);
+
+/// Stores the places of an enrolled campaign whose placing does not simply add to what is there. Throws WrongQuestion
+/// where that would take stored places out of the campaign, BrokenWorld where a part of a damaged design is asked.
+void place_anew(Store::Impl& archive, const campaign::Campaign& campaign, std::int64_t campaign_key,
+                const campaign::Cases& cases, const Placing& placing);
+/// The verdicts given so far were about other places, or by another rule.
+void forget_convergence(Connection& db, std::int64_t campaign_key);
 
 /// Creates or renews the view that bears the campaign's name.
 void make_campaign_view(Store::Impl& archive, const campaign::Campaign& campaign, std::int64_t campaign_key);

@@ -9,9 +9,7 @@
 
 #include <algorithm>
 #include <cctype>
-#include <numeric>
 #include <stdexcept>
-#include <unordered_set>
 
 namespace grainsweep::store {
 
@@ -93,105 +91,6 @@ void close_dead_attempts(Store::Impl& archive) {
         db.run("DELETE FROM observation WHERE case_key = ?", key);
         renew_answer(db, key);
     }
-}
-
-struct Place {
-    std::int64_t point = 0, replicate = 0, sequence = 0, case_key = 0;
-};
-
-bool before(const Place& a, const Place& b) {
-    return std::pair(a.point, a.replicate) < std::pair(b.point, b.replicate);
-}
-
-std::vector<Place> stored_places(const Connection& db, std::int64_t campaign_key) {
-    std::vector<Place> places;
-    auto rows = db.ask(
-        "SELECT point, replicate, sequence, case_key FROM campaign_case WHERE campaign_id = ? "
-        "ORDER BY point, replicate",
-        campaign_key);
-    while (rows.next()) {
-        places.push_back({rows.get<std::int64_t>(0), rows.get<std::int64_t>(1), rows.get<std::int64_t>(2),
-                          rows.get<std::int64_t>(3)});
-    }
-    return places;
-}
-
-RowSum sum_of(std::span<const Place> places) {
-    RowSum sum;
-    for (const auto& it : places) sum.add(checksum_of_place(it.point, it.replicate, it.sequence, it.case_key));
-    return sum;
-}
-
-/// The verdicts given so far were about other places than there are now.
-void forget_convergence(Connection& db, std::int64_t campaign_key) {
-    db.run("DELETE FROM convergence WHERE campaign_id = ?", campaign_key);
-    store_sum(db, "convergence", campaign_key, {});
-    db.run("UPDATE campaign SET stopped_at = NULL WHERE campaign_id = ?", campaign_key);
-}
-
-/// Brings order into places that cannot simply be added to: where points were renumbered the new design replaces the
-/// old one, and a damaged one is put right.
-void place_anew(Store::Impl& archive, const Campaign& campaign, std::int64_t campaign_key, std::vector<Place> asked) {
-    auto& db = archive.db;
-    std::ranges::sort(asked, before);
-    const auto stored = stored_places(db, campaign_key);
-    const RowSum written = stored_sum(db, "campaign_case", campaign_key);
-    const bool damaged = sum_of(stored) != written;
-
-    std::vector<Place> fresh;
-    const Place* moved = nullptr;
-    auto old = stored.begin();
-    for (const auto& it : asked) {
-        while (old != stored.end() && before(*old, it)) ++old;
-        if (old == stored.end() || before(it, *old)) {
-            fresh.push_back(it);
-        } else if (old->case_key != it.case_key) {
-            moved = &it;
-            break;
-        }
-    }
-    if (damaged) {
-        if (static_cast<std::int64_t>(asked.size()) < written.rows) {
-            throw BrokenWorld(
-                fmt::format("database '{}': damaged: the design of campaign '{}' is not as written. A run of the whole "
-                            "campaign, {} "
-                            "cases, puts it right; this one asks for {}",
-                            archive.file.string(), campaign.name, written.rows, asked.size()));
-        }
-        archive.notes.push_back("the design was damaged in the database and is put right");
-        db.run("DELETE FROM campaign_case WHERE campaign_id = ?", campaign_key);
-        fresh = std::move(asked);
-        moved = nullptr;
-    } else if (moved != nullptr) {
-        const auto& design = designs::design_named(campaign.design);
-        if (design.beginning == designs::Beginning::listed) {
-            throw campaign::wrong_question(
-                "$.design.rows", fmt::format("another row {}", moved->point),
-                fmt::format("campaign '{}' stands in '{}' with its own: a list is extended at its end", campaign.name,
-                            archive.file.string()));
-        }
-        // What is stored never leaves the campaign's view.
-        std::unordered_set<std::int64_t> kept;
-        for (const auto& it : asked) kept.insert(it.case_key);
-        if (!std::ranges::all_of(stored, [&](const Place& it) { return kept.contains(it.case_key); })) {
-            throw campaign::wrong_question(
-                "$.design", fmt::format("{} cases", asked.size()),
-                fmt::format("campaign '{}' stands in '{}' with {}, and this {} does not contain them all: ask for no "
-                            "fewer replicates, or give another question another name",
-                            campaign.name, archive.file.string(), stored.size(), campaign.design));
-        }
-        db.run("DELETE FROM campaign_case WHERE campaign_id = ?", campaign_key);
-        fresh = std::move(asked);
-    }
-    for (const auto& it : fresh) {
-        db.run("INSERT INTO campaign_case (campaign_id, point, replicate, sequence, case_key) VALUES (?, ?, ?, ?, ?)",
-               campaign_key, it.point, it.replicate, it.sequence, it.case_key);
-    }
-    RowSum sum = damaged || moved != nullptr ? RowSum{} : written;
-    sum.add(sum_of(fresh));
-    if (!fresh.empty()) store_sum(db, "campaign_case", campaign_key, sum);
-    const bool inside = !stored.empty() && !fresh.empty() && fresh.front().point <= stored.back().point;
-    if (moved != nullptr || inside) forget_convergence(db, campaign_key);
 }
 
 std::string gates_text(const campaign::Convergence& rule) {
@@ -313,52 +212,9 @@ void drop_damaged_verdicts(Store::Impl& archive, std::int64_t campaign_key) {
     forget_convergence(db, campaign_key);
 }
 
-}  // namespace
-
-std::optional<KnownCampaign> known_campaign(const Connection& db, std::string_view name) {
-    auto rows = db.ask(
-        "SELECT campaign_id, name, scene, revision, seed, factors, fixed, condition, design, design_options, "
-        "design_extent FROM campaign WHERE name = ?",
-        name);
-    if (!rows.next()) return std::nullopt;
-    KnownCampaign known{rows.get<std::int64_t>(0), {}};
-    auto& identity = known.identity;
-    identity.name = rows.get<std::string>(1);
-    identity.scene = rows.get<std::string>(2);
-    identity.revision = rows.get<std::int64_t>(3);
-    identity.seed = static_cast<std::uint64_t>(rows.get<std::int64_t>(4));
-    identity.factors = rows.get<std::string>(5);
-    identity.fixed = rows.get<std::string>(6);
-    identity.condition = rows.get<std::string>(7);
-    identity.design = rows.get<std::string>(8);
-    identity.options = rows.get<std::string>(9);
-    identity.extent = rows.get<std::string>(10);
-    return known;
-}
-
-std::optional<std::int64_t> match_campaign(const Store::Impl& archive, const Campaign& campaign) {
-    const auto known = known_campaign(archive.db, campaign.name);
-    if (!known) return std::nullopt;
-    campaign::require_same(known->identity, campaign::identity_of(campaign), archive.file.string());
-    return known->key;
-}
-
-namespace {
-
 /// Whether what is damaged is put right by enrolling this campaign.
 bool only_of(std::int64_t campaign_key, const std::vector<DamagedTable>& damaged) {
     return std::ranges::all_of(damaged, [&](const DamagedTable& one) { return one.part == campaign_key; });
-}
-
-/// Places of the campaign, every one of its cases entered.
-std::vector<Place> all_places(const campaign::Cases& cases, const Placing& placing) {
-    std::vector<Place> places;
-    places.reserve(cases.size());
-    for (std::size_t i = 0; i < cases.size(); ++i) {
-        const auto& [point, sequence, replicate] = cases.place(i);
-        places.push_back({point, replicate, sequence, placing.key(i)});
-    }
-    return places;
 }
 
 }  // namespace
@@ -393,7 +249,7 @@ std::vector<CaseState> Store::enrol(const Campaign& campaign, const campaign::Ca
         placing.enter(db, at_once);
     } else {
         placing.enter_cases(db);
-        place_anew(*impl_, campaign, key, all_places(cases, placing));
+        place_anew(*impl_, campaign, key, cases, placing);
         placing = {{}, {}, {}, key};
     }
     make_campaign_view(*impl_, campaign, key);

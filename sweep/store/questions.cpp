@@ -1,4 +1,5 @@
 // What the archive is asked: by the scheduler, the statistics and the commands.
+#include "sweep/campaign/stored_text.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/store/archive.hpp"
 
@@ -106,27 +107,24 @@ std::string extent_columns(bool kept) {
 std::vector<CampaignRecord> Store::campaigns() const {
     impl_->require_sound();
     std::vector<CampaignRecord> records;
-    const auto extents = extent_columns(impl_->keeps_extents());
     auto rows = impl_->db.ask(fmt::format(
-        "SELECT name, scene, coalesce((SELECT campaign_text FROM provenance AS v WHERE v.campaign_id = g.campaign_id "
-        "ORDER BY provenance_id DESC LIMIT 1), ''), design, revision, sequences, replicates, stopped_at, "
-        "convergence_observable, convergence_rule, convergence_gates, convergence_tolerance, convergence_block, "
-        "convergence_stop, condition, {} FROM campaign AS g ORDER BY campaign_id",
-        extents));
+        "SELECT {}, coalesce((SELECT campaign_text FROM provenance AS v WHERE v.campaign_id = g.campaign_id "
+        "ORDER BY provenance_id DESC LIMIT 1), ''), sequences, replicates, stopped_at, convergence_observable, "
+        "convergence_rule, convergence_gates, convergence_tolerance, convergence_block, convergence_stop, {} "
+        "FROM campaign AS g ORDER BY campaign_id",
+        identity_columns, extent_columns(impl_->keeps_extents())));
     while (rows.next()) {
         CampaignRecord record;
-        record.name = rows.get<std::string>(0);
-        record.scene = rows.get<std::string>(1);
-        record.text = rows.get<std::string>(2);
-        record.design = rows.get<std::string>(3);
-        record.revision = static_cast<int>(rows.get<std::int64_t>(4));
-        record.sequences = rows.get<std::int64_t>(5);
-        record.replicates = rows.get<std::int64_t>(6);
-        record.stopped_at = rows.get<std::optional<std::int64_t>>(7);
-        record.convergence = rule_at(rows, 8);
-        record.condition = rows.get<std::string>(14);
-        record.stored = {rows.get<std::int64_t>(15), record.replicates};
-        record.asked = {rows.get<std::int64_t>(16), rows.get<std::int64_t>(17)};
+        static_cast<campaign::Identity&>(record) = identity_at(rows, 0);
+        int column = identity_column_count;
+        record.text = rows.get<std::string>(column++);
+        record.sequences = rows.get<std::int64_t>(column++);
+        record.replicates = rows.get<std::int64_t>(column++);
+        record.stopped_at = rows.get<std::optional<std::int64_t>>(column++);
+        record.convergence = rule_at(rows, column);
+        column += 6;
+        record.stored = {rows.get<std::int64_t>(column), record.replicates};
+        record.asked = {rows.get<std::int64_t>(column + 1), rows.get<std::int64_t>(column + 2)};
         records.push_back(std::move(record));
     }
     return records;
@@ -240,14 +238,18 @@ std::vector<CasePlace> Store::places(std::string_view case_id) const {
     const auto key = case_key(impl_->db, case_id);
     if (!key) return places;
     auto rows = impl_->db.ask(
-        "SELECT g.name, p.point, g.stopped_at, (SELECT json_extract(v.campaign_text, '$.limits.attempts') FROM "
-        "provenance AS v WHERE v.campaign_id = g.campaign_id ORDER BY v.provenance_id DESC LIMIT 1) "
+        "SELECT g.name, p.point, g.stopped_at, (SELECT v.campaign_text FROM provenance AS v "
+        "WHERE v.campaign_id = g.campaign_id ORDER BY v.provenance_id DESC LIMIT 1) "
         "FROM campaign_case AS p JOIN campaign AS g ON g.campaign_id = p.campaign_id WHERE p.case_key = ? "
         "ORDER BY g.campaign_id, p.point",
         *key);
     while (rows.next()) {
-        places.push_back({rows.get<std::string>(0), rows.get<std::int64_t>(1), rows.get<std::optional<std::int64_t>>(2),
-                          rows.get<std::optional<std::int64_t>>(3)});
+        auto name = rows.get<std::string>(0);
+        const auto attempts = !places.empty() && places.back().campaign == name
+                                  ? places.back().attempts
+                                  : campaign::remarks_in(rows.get<std::string_view>(3)).attempts;
+        places.push_back(
+            {std::move(name), rows.get<std::int64_t>(1), rows.get<std::optional<std::int64_t>>(2), attempts});
     }
     return places;
 }
@@ -274,8 +276,11 @@ std::optional<campaign::CaseResult> Store::result(std::string_view case_id) cons
         result.cost.particle_steps = rows.get<double>(5);
         phases = rows.get<std::string>(6);
     }
-    auto rows = impl_->db.ask("SELECT key, value FROM json_each(?)", phases);
-    while (rows.next()) result.cost.phases.emplace(rows.get<std::string>(0), rows.get<double>(1));
+    auto seconds = campaign::phases_in(phases);
+    if (!seconds)
+        throw BrokenWorld(fmt::format("database '{}': damaged: the cost of attempt {} of case {} is not as written",
+                                      impl_->file.string(), result.attempt.number, case_id));
+    result.cost.phases = std::move(*seconds);
     result.observations = observations_of(impl_->db, *key);
     return result;
 }

@@ -8,6 +8,7 @@
 
 #include "sweep/campaign/campaign.hpp"
 #include "sweep/campaign/case.hpp"
+#include "sweep/campaign/identity.hpp"
 #include "sweep/store/broken_world.hpp"
 
 #include <cstdint>
@@ -86,10 +87,9 @@ struct Extent {
     bool operator==(const Extent&) const = default;
 };
 
-struct CampaignRecord {
-    std::string name, scene, text, design;
-    std::string condition;  ///< the `where` clause; empty: every point
-    int revision = 1;
+/// What a campaign asks, and how far it has come.
+struct CampaignRecord : campaign::Identity {
+    std::string text;  ///< the campaign file of its last run
     std::int64_t sequences = 1, replicates = 1;
     Extent stored;  ///< never shrinks: what view and statistics are over
     Extent asked;   ///< by the last run

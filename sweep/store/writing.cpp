@@ -1,4 +1,5 @@
 // What is written while a campaign runs: attempts, answers, verdicts. Inside a group.
+#include "sweep/campaign/stored_text.hpp"
 #include "sweep/store/archive.hpp"
 #include "sweep/store/moment.hpp"
 #include "sweep/store/soundness.hpp"
@@ -15,20 +16,9 @@ namespace {
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
-/// Seconds by phase as a JSON object; names are the program's own, letters and underscores.
-std::optional<std::string> phases_text(const Cost& cost) {
-    if (cost.phases.empty()) return std::nullopt;
-    std::string text;
-    for (const auto& [name, seconds] : cost.phases) {
-        if (!std::isfinite(seconds)) continue;
-        text += fmt::format("{}\"{}\":{}", text.empty() ? "" : ",", name, campaign::shortest(seconds));
-    }
-    return "{" + text + "}";
-}
-
 /// False where it has an outcome already.
 bool close_attempt(Connection& db, const OpenAttempt& open, const campaign::CaseResult& result) {
-    const auto phases = phases_text(result.cost);
+    const auto phases = campaign::phases_text(result.cost.phases);
     AttemptRow row{.key = open.key,
                    .number = open.number,
                    .provenance = open.provenance,

@@ -173,6 +173,18 @@ std::string text_of(const fs::path& path) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+// A campaign is read once, in sweep/campaign: what stands in an archive is read back there, too.
+TEST(Architecture, TheReportParsesNoJsonAndTheStoreAsksForNone) {
+    static const std::regex parses(
+        R"(\bparse_json\b|\bJson::parse\b|\bjson::(?:parse|accept|sax_parse)\b|json_text\.hpp)");
+    static const std::regex asks(R"(\bjsonb?_\w+\s*\(|"\s*->>?\s*'\$)");
+    EXPECT_TRUE(std::regex_search(std::string("SELECT json_extract(a, '$.b')"), asks));
+    for (const auto& path : sources({"sweep/report"}))
+        EXPECT_FALSE(std::regex_search(text_of(path), parses)) << path << " parses JSON";
+    for (const auto& path : sources({"sweep/store"}))
+        EXPECT_FALSE(std::regex_search(text_of(path), asks)) << path << " looks into JSON";
+}
+
 // A law is a file in solver/dem/laws and a place in its list: the engines follow from the list.
 TEST(Architecture, EnginesNameNoContactLaw) {
     static const std::regex law(R"(\ntemplate <class Real(?:, bool \w+)?>\s+(?:struct|using) (\w+))");
