@@ -1,0 +1,51 @@
+// Which inputs reproduce what was measured: history matching and the likelihood of a calibration.
+//
+//   I^2(x) = (z - mean(x))^2 / (var_model(x) + var_measured + var_discrepancy + var_run(x)/replicates)
+//
+// (Vernon, Goldstein & Bower 2010, Bayesian Analysis 5, 619, eq. 7; the scatter of runs: Andrianakis et al. 2015, PLoS
+// Comput. Biol. 11, e1003968.) What has I > 3 for some target is ruled out (Pukelsheim's three sigma rule); with more
+// than five targets the second largest decides, so that one bad model does not rule out the truth.
+//
+//   log p(z | x) = -1/2 r^T V^-1 r - 1/2 log|V|,   V = diag(var_model(x) + var_run(x)/replicates) + C,  r = z - mean(x)
+//
+// C: covariance of measurement and discrepancy together: diagonal from the targets, or whole where points of one curve
+// are off together.
+#pragma once
+
+#include "stats/response_model.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace grainsweep::stats {
+
+/// What was measured of one response, in its unit.
+struct Target {
+    double value = 0;
+    double measured_error = 0;  ///< standard error of the measurement
+    double discrepancy = 0;     ///< standard deviation of what the simulation leaves out
+    std::int64_t replicates =
+        1;  ///< runs (or turns, or images) the measurement averages over; 0: its scatter is in its error
+};
+
+/// Implausibilities I of every target at every point: predictions[k][i] of target k at point i -> [k][i].
+/// Throws std::invalid_argument where sizes differ or a denominator is zero.
+[[nodiscard]] std::vector<std::vector<double>> implausibilities(std::span<const Target> targets,
+                                                                std::span<const std::vector<Prediction>> predictions);
+
+/// The implausibility that decides, at each point: the largest, or the second largest of more than five.
+[[nodiscard]] std::vector<double> deciding_implausibility(std::span<const std::vector<double>> implausibilities);
+
+/// log p(z | x) up to a constant, at each point. `covariance`: C, row-major, or empty (diagonal of the targets).
+/// Throws std::invalid_argument where sizes differ or V is not positive definite.
+[[nodiscard]] std::vector<double> log_likelihood(std::span<const Target> targets,
+                                                 std::span<const std::vector<Prediction>> predictions,
+                                                 std::span<const double> covariance = {});
+
+/// A target that no case comes near: its distance from the range of the responses seen, in the standard deviations that
+/// separate it from them (measured, discrepancy, scatter); 0 inside the range.
+[[nodiscard]] double beyond_what_was_reached(const Target& target, std::span<const double> responses);
+
+}  // namespace grainsweep::stats

@@ -1,0 +1,188 @@
+#include "stats/process_window.hpp"
+
+#include <boost/math/special_functions/erf.hpp>
+#include <boost/random/sobol.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <stdexcept>
+
+namespace grainsweep::stats {
+namespace {
+
+constexpr std::size_t integration_points = 1024;
+
+double normal_cdf(double u) {
+    return 0.5 * std::erfc(-u / std::numbers::sqrt2);
+}
+
+double normal_density(double u) {
+    return std::exp(-0.5 * u * u) / std::sqrt(2 * std::numbers::pi);
+}
+
+double spread(const Prediction& p, Judged judged) {
+    return judged == Judged::mean ? p.mean_error : p.run_error();
+}
+
+/// P(low <= y <= high), y ~ N(mean, error^2); a certain mean is inside or it is not.
+double within(const Bounds& bounds, double mean, double error) {
+    if (!(error > 0)) return mean >= bounds.low && mean <= bounds.high ? 1 : 0;
+    // Differences of the nearer tail: no cancellation far out.
+    const double low = (bounds.low - mean) / error, high = (bounds.high - mean) / error;
+    return low > 0 ? normal_cdf(-low) - normal_cdf(-high) : normal_cdf(high) - normal_cdf(low);
+}
+
+std::vector<std::vector<Prediction>> predict_all(std::span<const ModelAt> models) {
+    std::vector<std::vector<Prediction>> predictions;
+    for (const ModelAt& m : models) {
+        if (m.points.size() != models.front().points.size())
+            throw std::invalid_argument("process window: models are asked at different numbers of points");
+        predictions.push_back(m.model.predict(m.points));
+    }
+    return predictions;
+}
+
+/// Standard normal deviates of Sobol points, cells centred: (integration_points, d).
+std::vector<double> normal_points(std::size_t d) {
+    boost::random::sobol sequence(d);
+    const double cells = static_cast<double>(boost::random::sobol::max()) + 1;
+    std::vector<double> points(integration_points * d);
+    for (double& z : points) {
+        const double u = (static_cast<double>(sequence()) + 0.5 * cells / integration_points) / cells;
+        z = -std::numbers::sqrt2 * boost::math::erfc_inv(2 * std::min(u, 1 - 0x1p-53));
+    }
+    return points;
+}
+
+/// m* of the header; none where the condition is nowhere more likely than not.
+std::optional<double> effective_best(std::span<const Prediction> objective, std::span<const double> probability,
+                                     double sign) {
+    std::optional<double> best;
+    double best_cautious = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < objective.size(); ++i) {
+        const double cautious = sign * objective[i].mean - objective[i].mean_error;
+        if (probability[i] < 0.5 || cautious <= best_cautious) continue;
+        best_cautious = cautious;
+        best = sign * objective[i].mean;
+    }
+    return best;
+}
+
+}  // namespace
+
+std::vector<double> probability_within(std::span<const ModelAt> models, std::span<const Bounds> bounds, Judged judged) {
+    if (models.empty() || models.size() != bounds.size())
+        throw std::invalid_argument("process window: one pair of bounds is needed for each model");
+    const auto predictions = predict_all(models);
+    std::vector<double> probability(models.front().points.size(), 1);
+    for (std::size_t k = 0; k < models.size(); ++k)
+        for (std::size_t i = 0; i < probability.size(); ++i)
+            probability[i] *= within(bounds[k], predictions[k][i].mean, spread(predictions[k][i], judged));
+    return probability;
+}
+
+std::vector<double> probability_of(std::span<const std::vector<Prediction>> predictions, const Condition& condition,
+                                   Judged judged) {
+    if (predictions.empty()) throw std::invalid_argument("process window: no model");
+    const std::size_t d = predictions.size(), n = predictions.front().size();
+    const std::vector<double> deviates = normal_points(d);
+    std::vector<double> probability(n), responses(d);
+    for (std::size_t i = 0; i < n; ++i) {
+        std::size_t held = 0;
+        for (std::size_t q = 0; q < integration_points; ++q) {
+            for (std::size_t k = 0; k < d; ++k)
+                responses[k] = predictions[k][i].mean + spread(predictions[k][i], judged) * deviates[q * d + k];
+            held += condition(responses) ? 1U : 0U;
+        }
+        probability[i] = static_cast<double>(held) / integration_points;
+    }
+    return probability;
+}
+
+std::vector<double> probability_of(std::span<const ModelAt> models, const Condition& condition, Judged judged) {
+    return probability_of(predict_all(models), condition, judged);
+}
+
+std::optional<std::size_t> best_setting(std::span<const Prediction> objective, std::span<const double> probability,
+                                        bool maximise, double risk) {
+    std::optional<std::size_t> best;
+    const double sign = maximise ? 1 : -1;
+    for (std::size_t i = 0; i < objective.size(); ++i)
+        if (probability[i] >= 1 - risk && (!best || sign * objective[i].mean > sign * objective[*best].mean)) best = i;
+    return best;
+}
+
+std::vector<double> expected_improvement(std::span<const Prediction> objective, std::span<const double> probability,
+                                         bool maximise) {
+    if (objective.size() != probability.size())
+        throw std::invalid_argument("process window: one probability is needed for each setting");
+    const double sign = maximise ? 1 : -1;
+    const auto best = effective_best(objective, probability, sign);
+    std::vector<double> gain(objective.size());
+    for (std::size_t i = 0; i < gain.size(); ++i) {
+        const Prediction& p = objective[i];
+        gain[i] = probability[i];
+        if (!best) continue;
+        const double above = sign * p.mean - *best, s = p.mean_error;
+        const double improvement =
+            s > 0 ? above * normal_cdf(above / s) + s * normal_density(above / s) : std::max(above, 0.0);
+        const double learned = s > 0 ? 1 - p.scatter / std::hypot(s, p.scatter) : 0;
+        gain[i] *= improvement * learned;
+    }
+    return gain;
+}
+
+std::vector<std::size_t> next_cases(std::span<const ModelAt> candidates, const Condition& condition,
+                                    std::optional<Objective> objective, Judged judged, std::size_t count) {
+    if (candidates.empty() || (!condition && !objective))
+        throw std::invalid_argument("process window: next cases need a model and a condition or an objective");
+    if (objective && objective->model >= candidates.size())
+        throw std::invalid_argument("process window: the objective names a model that is not there");
+    std::vector<ModelAt> models(candidates.begin(), candidates.end());
+    std::vector<std::size_t> chosen;
+    while (chosen.size() < std::min(count, models.front().points.size())) {
+        const auto predictions = predict_all(models);
+        std::vector<double> probability(predictions.front().size(), 1);
+        if (condition) probability = probability_of(predictions, condition, judged);
+        std::vector<double> gain = probability;
+        if (objective)
+            gain = expected_improvement(predictions[objective->model], probability, objective->maximise);
+        else
+            for (double& p : gain) p = std::min(p, 1 - p);
+        for (const std::size_t i : chosen) gain[i] = 0;
+        const auto best = static_cast<std::size_t>(std::ranges::max_element(gain) - gain.begin());
+        if (!(gain[best] > 0)) break;
+        chosen.push_back(best);
+        for (std::size_t k = 0; k < models.size(); ++k) {
+            const std::span<const double> features = models[k].points.row(best);
+            models[k].model =
+                models[k].model.with_cases({features, features.size()}, std::span(&predictions[k][best].mean, 1));
+        }
+    }
+    return chosen;
+}
+
+std::vector<std::size_t> trade_off_front(std::span<const double> first, bool maximise_first,
+                                         std::span<const double> second, bool maximise_second) {
+    if (first.size() != second.size())
+        throw std::invalid_argument("process window: the two figures have different numbers of points");
+    const double sign = maximise_first ? 1 : -1, other_sign = maximise_second ? 1 : -1;
+    std::vector<std::size_t> order(first.size()), front;
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    // From the best first figure on, a point is on the front where its second figure is better than all before.
+    std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
+        if (first[a] != first[b]) return sign * first[a] > sign * first[b];
+        if (second[a] != second[b]) return other_sign * second[a] > other_sign * second[b];
+        return a < b;
+    });
+    for (const std::size_t i : order)
+        if (std::isfinite(first[i]) && std::isfinite(second[i]) &&
+            (front.empty() || other_sign * second[i] > other_sign * second[front.back()]))
+            front.push_back(i);
+    if (maximise_first) std::ranges::reverse(front);
+    return front;
+}
+
+}  // namespace grainsweep::stats

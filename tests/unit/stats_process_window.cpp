@@ -1,0 +1,132 @@
+#include "stats/process_window.hpp"
+#include "tests/support/ask_design.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <stdexcept>
+#include <variant>
+#include <vector>
+
+using namespace grainsweep::stats;
+using grainsweep::testing::ask_design;
+
+namespace {
+
+ResponseModel model_of(const std::function<double(double, double)>& f, std::int64_t n, double noise) {
+    const auto set = ask_design("halton", 2, {{"points", n}});
+    std::vector<double> values;
+    for (std::size_t i = 0; i < set.size(); ++i) {
+        // Scatter of two values, alternating: its standard deviation is `noise` exactly.
+        values.push_back(f(set.point(i)[0], set.point(i)[1]) + (i % 2 == 0 ? noise : -noise));
+    }
+    const auto fit = fit_response({set.coordinates, 2}, values);
+    return std::get<ResponseModel>(fit);
+}
+
+double hill(double x, double y) {
+    return 1 - std::pow(x - 0.7, 2) - std::pow(y - 0.3, 2);
+}
+
+std::vector<double> grid(std::size_t n) {
+    std::vector<double> points;
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n; ++j) {
+            points.push_back((static_cast<double>(i) + 0.5) / static_cast<double>(n));
+            points.push_back((static_cast<double>(j) + 0.5) / static_cast<double>(n));
+        }
+    return points;
+}
+
+double normal_cdf(double u) {
+    return 0.5 * std::erfc(-u / std::sqrt(2.0));
+}
+
+}  // namespace
+
+TEST(ProcessWindow, BoundsAndAnyConditionAgree) {
+    const auto first = model_of(hill, 60, 0.05);
+    const auto second = model_of([](double x, double y) { return x + y; }, 60, 0.05);
+    const auto points = grid(5);
+    const std::vector<ModelAt> models{{first, {points, 2}}, {second, {points, 2}}};
+    for (const Judged judged : {Judged::mean, Judged::single_run}) {
+        const auto closed =
+            probability_within(models, std::vector<Bounds>{{.low = 0.85}, {.low = 0.5, .high = 1.2}}, judged);
+        const auto integrated = probability_of(
+            models, [](auto y) { return y[0] >= 0.85 && y[1] >= 0.5 && y[1] <= 1.2; }, judged);
+        for (std::size_t i = 0; i < closed.size(); ++i) EXPECT_NEAR(integrated[i], closed[i], 0.01);
+    }
+    // One bound, one model: the normal integral of the prediction.
+    const auto p = first.predict(std::vector{0.5, 0.5});
+    const std::vector<double> middle{0.5, 0.5};
+    const std::vector<ModelAt> alone{{first, {middle, 2}}};
+    EXPECT_NEAR(probability_within(alone, std::vector<Bounds>{{.low = 0.9}}, Judged::single_run)[0],
+                normal_cdf((p.mean - 0.9) / p.run_error()), 1e-12);
+}
+
+TEST(ProcessWindow, ExpectedImprovementIsItsIntegral) {
+    // The closed form against a Riemann sum of max(y - best, 0) over the normal density.
+    const std::vector<Prediction> objective{{1.0, 0.01, 0.1}, {0.9, 0.2, 0.1}, {1.5, 0.1, 0.1}};
+    const std::vector<double> probability{1, 0.8, 0.1};  // the last is no best: its condition is hardly met
+    const auto gain = expected_improvement(objective, probability, true);
+    double sum = 0;
+    for (int i = -8000; i <= 8000; ++i) {
+        const double u = i * 1e-3, y = 0.9 + 0.2 * u;
+        sum += std::max(y - 1.0, 0.0) * std::exp(-0.5 * u * u) / std::sqrt(2 * M_PI) * 1e-3;
+    }
+    EXPECT_NEAR(gain[1], 0.8 * sum * (1 - 0.1 / std::hypot(0.2, 0.1)), 1e-6);
+    // Minimising the negative is the same.
+    auto negative = objective;
+    for (auto& p : negative) p.mean = -p.mean;
+    EXPECT_EQ(expected_improvement(negative, probability, false), gain);
+}
+
+TEST(ProcessWindow, BestSettingNeverTakesWhatIsNotAllowed) {
+    const std::vector<Prediction> objective{{1, 0.1, 0}, {3, 0.1, 0}, {2, 0.1, 0}};
+    EXPECT_EQ(best_setting(objective, std::vector{0.99, 0.5, 0.96}, true, 0.05), 2U);
+    EXPECT_EQ(best_setting(objective, std::vector{0.99, 0.5, 0.96}, false, 0.05), 0U);
+    EXPECT_FALSE(best_setting(objective, std::vector{0.1, 0.5, 0.9}, true, 0.05));
+}
+
+TEST(ProcessWindow, NextCasesGatherAtTheConstrainedOptimum) {
+    // The top of the hill is not allowed (x <= 0.5): what remains is best at its edge, x = 0.5, y = 0.3.
+    const auto objective = model_of(hill, 40, 0.01);
+    const auto limited = model_of([](double x, double) { return x; }, 40, 0.01);
+    const auto points = grid(20);
+    const std::vector<ModelAt> models{{objective, {points, 2}}, {limited, {points, 2}}};
+    const Condition allowed = [](auto y) { return y[1] <= 0.5; };
+    const auto chosen = next_cases(models, allowed, Objective{0, true}, Judged::mean, 4);
+    ASSERT_EQ(chosen.size(), 4U);
+    for (std::size_t a = 0; a < 4; ++a) {
+        EXPECT_NEAR(points[2 * chosen[a]], 0.5, 0.15);
+        EXPECT_NEAR(points[2 * chosen[a] + 1], 0.3, 0.25);
+        for (std::size_t b = 0; b < a; ++b) EXPECT_NE(chosen[a], chosen[b]);
+    }
+    // Without an objective: along the boundary, spread over it.
+    const auto boundary = next_cases(models, allowed, std::nullopt, Judged::mean, 3);
+    for (const std::size_t i : boundary) EXPECT_NEAR(points[2 * i], 0.5, 0.05);
+    EXPECT_THROW((void)next_cases(models, {}, std::nullopt, Judged::mean, 3), std::invalid_argument);
+}
+
+TEST(ProcessWindow, TradeOffFrontIsWhatNothingBeats) {
+    const std::vector<double> good{1, 2, 3, 3, 0.5}, bad{1, 2, 4, 3, 2};
+    EXPECT_EQ(trade_off_front(good, true, bad, false), (std::vector<std::size_t>{0, 1, 3}));
+    EXPECT_EQ(trade_off_front(good, false, bad, true), (std::vector<std::size_t>{4, 2}));
+    // By definition, on random figures.
+    const auto set = ask_design("random", 2, {{"points", 200}});
+    std::vector<double> a, b;
+    for (std::size_t i = 0; i < set.size(); ++i) {
+        a.push_back(set.point(i)[0]);
+        b.push_back(set.point(i)[1]);
+    }
+    std::vector<std::size_t> expected;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        bool beaten = false;
+        for (std::size_t j = 0; j < a.size(); ++j) beaten = beaten || (a[j] > a[i] && b[j] < b[i]);
+        if (!beaten) expected.push_back(i);
+    }
+    std::ranges::sort(expected, {}, [&](std::size_t i) { return a[i]; });
+    EXPECT_EQ(trade_off_front(a, true, b, false), expected);
+}
