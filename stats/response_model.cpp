@@ -14,10 +14,8 @@
 namespace grainsweep::stats {
 namespace {
 
-using response::Hyperparameters;
 using response::Kriging;
 
-constexpr std::size_t cases_for_map = 200;
 constexpr double outside_by = 1e-9;  // of the box: what round-off of a feature may do
 
 /// A double as a sentence shows it.
@@ -62,21 +60,6 @@ std::optional<Refusal> reason_to_refuse(Rows points, std::span<const double> val
         return Refusal{"no response model: " + std::to_string(most->second) + " of " + std::to_string(n) +
                        " responses equal " + shown(most->first) + ", half or more"};
     return std::nullopt;
-}
-
-/// Lengths, and the linear map where it is asked for and pays.
-std::optional<Hyperparameters> find_hyperparameters(const Eigen::MatrixXd& x, const Eigen::VectorXd& z,
-                                                    const ResponseModelOptions& options) {
-    const response::FitSettings settings{options.starts, options.cases_in_fit};
-    const auto plain = response::fit_lengths(x, z, settings);
-    const bool wanted = options.map == LearnedMap::always || (options.map == LearnedMap::where_better &&
-                                                              static_cast<std::size_t>(z.size()) >= cases_for_map);
-    if (!plain || !wanted || x.cols() < 2) return plain;
-    const auto mapped = response::fit_map(x, z, *plain, settings);
-    if (!mapped) return plain;
-    if (options.map == LearnedMap::always) return mapped;
-    const auto error = [&](const Hyperparameters& h) { return response::leave_one_out_rms(h, x, z, settings.cases); };
-    return error(*mapped) < error(*plain) ? mapped : plain;
 }
 
 /// Leave-one-out figures and the local noise, which rests on them.
@@ -200,7 +183,7 @@ std::variant<ResponseModel, Refusal> fit_response(Rows points, std::span<const d
     Eigen::VectorXd z = (y.array() - state->offset) / state->scale;
     state->quality.cases = used.size();
     state->quality.excluded = values.size() - used.size();
-    const auto hyperparameters = find_hyperparameters(x, z, options);
+    const auto hyperparameters = response::find_hyperparameters(x, z, {options.starts, options.cases_in_fit, options.map});
     if (used.size() > options.most_cases) {
         const auto chosen = response::space_filling_choice(x, options.most_cases);
         x = x(chosen, Eigen::all).eval();

@@ -16,7 +16,7 @@
 namespace grainsweep::stats::response {
 namespace {
 
-constexpr std::size_t cases_of_first_search = 200, compared_per_start = 8, followed = 2;
+constexpr std::size_t cases_of_first_search = 200, cases_for_map = 200, compared_per_start = 8, followed = 2;
 constexpr int most_evaluations = 80;
 constexpr double value_tolerance = 1e-4;  // of a log density: far below what tells models apart
 constexpr double singular = 1e10;         // stands for an infinite minus log density
@@ -154,6 +154,19 @@ std::optional<Hyperparameters> fit_map(const Eigen::MatrixXd& points, const Eige
     const Search found = climb(likelihood, likelihood.parameters(lengths));
     if (!std::isfinite(found.best_value)) return std::nullopt;
     return likelihood.hyperparameters(found.best);
+}
+
+std::optional<Hyperparameters> find_hyperparameters(const Eigen::MatrixXd& points, const Eigen::VectorXd& values,
+                                                    const FitSettings& settings) {
+    const auto plain = fit_lengths(points, values, settings);
+    const bool enough = static_cast<std::size_t>(values.size()) >= cases_for_map;
+    const bool wanted = settings.map == LearnedMap::always || (settings.map == LearnedMap::where_better && enough);
+    if (!plain || !wanted || points.cols() < 2) return plain;
+    const auto mapped = fit_map(points, values, *plain, settings);
+    if (!mapped) return plain;
+    if (settings.map == LearnedMap::always) return mapped;
+    const auto error = [&](const Hyperparameters& h) { return leave_one_out_rms(h, points, values, settings.cases); };
+    return error(*mapped) < error(*plain) ? mapped : plain;
 }
 
 double leave_one_out_rms(const Hyperparameters& h, const Eigen::MatrixXd& points, const Eigen::VectorXd& values,

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "stats/response/likelihood.hpp"
+#include "stats/response_model.hpp"
 
 #include <Eigen/Core>
 
@@ -23,6 +24,7 @@ inline constexpr double smallest_noise = 1e-8;
 struct FitSettings {
     std::size_t starts = 6;
     std::size_t cases = 800;
+    LearnedMap map = LearnedMap::where_better;  ///< of find_hyperparameters
 };
 
 /// `count` of n rows by a fixed permutation, ascending; all where there are no more.
@@ -35,6 +37,11 @@ struct FitSettings {
 /// A linear map besides, starting from fitted lengths.
 [[nodiscard]] std::optional<Hyperparameters> fit_map(const Eigen::MatrixXd& points, const Eigen::VectorXd& values,
                                                      const Hyperparameters& lengths, const FitSettings& settings);
+
+/// Lengths, and the linear map where it is asked for and lowers the leave-one-out error on the cases of the search.
+[[nodiscard]] std::optional<Hyperparameters> find_hyperparameters(const Eigen::MatrixXd& points,
+                                                                  const Eigen::VectorXd& values,
+                                                                  const FitSettings& settings);
 
 /// Root mean square of leave-one-out residuals over (at most `cases` of) the cases; infinite where K is singular.
 [[nodiscard]] double leave_one_out_rms(const Hyperparameters& h, const Eigen::MatrixXd& points,

@@ -97,6 +97,37 @@ Eigen::VectorXd predict_means(const Kriging& model, const Eigen::MatrixXd& at) {
     return mean;
 }
 
+Eigen::MatrixXd FoldWeights::predict(const Kriging& model, const Eigen::MatrixXd& at) const {
+    Eigen::MatrixXd mean(at.rows(), weights.cols());
+    for (Eigen::Index first = 0; first < at.rows(); first += block) {
+        const Eigen::Index count = std::min(block, at.rows() - first);
+        const Eigen::MatrixXd k = cross_covariance(model.h, model.points, at.middleRows(first, count));
+        mean.middleRows(first, count).noalias() = k.transpose() * weights;
+    }
+    mean.rowwise() += means;
+    return mean;
+}
+
+FoldWeights leave_folds_out(const Kriging& model, const std::vector<std::vector<Eigen::Index>>& left_out) {
+    Eigen::MatrixXd b = model.factor;
+    invert_lower(b);
+    b = gram_of_lower(b);
+    b.noalias() -= model.precision * model.mean_weights * model.mean_weights.transpose();
+    const auto folds = static_cast<Eigen::Index>(left_out.size());
+    FoldWeights result{Eigen::MatrixXd(model.size(), folds), Eigen::RowVectorXd(folds)};
+    for (Eigen::Index s = 0; s < folds; ++s) {
+        const auto& out = left_out[static_cast<std::size_t>(s)];
+        result.weights.col(s) = model.weights;
+        result.means(s) = model.mean;
+        if (out.empty()) continue;
+        const Eigen::VectorXd moved = Eigen::MatrixXd(b(out, out)).llt().solve(Eigen::VectorXd(model.weights(out)));
+        result.weights.col(s) -= b(Eigen::all, out) * moved;
+        for (const Eigen::Index i : out) result.weights(i, s) = 0;
+        result.means(s) -= model.mean_weights(out).dot(moved);
+    }
+    return result;
+}
+
 LeftOut leave_one_out(const Kriging& model) {
     Eigen::MatrixXd inverse_factor = model.factor;
     invert_lower(inverse_factor);

@@ -16,6 +16,7 @@
 #include <Eigen/Core>
 
 #include <optional>
+#include <vector>
 
 namespace grainsweep::stats::response {
 
@@ -54,6 +55,18 @@ struct LeftOut {
     Eigen::VectorXd residual;  ///< observed minus predicted
     Eigen::VectorXd variance;  ///< of the residual, noise included
 };
+
+/// Weights and means of several models, each without some of the cases: mean_s(x) = means(s) + k(x)^T weights.col(s).
+struct FoldWeights {
+    Eigen::MatrixXd weights;  ///< (n, folds); 0 for what a fold leaves out
+    Eigen::RowVectorXd means;
+
+    /// At mapped points: (m, folds).
+    [[nodiscard]] Eigen::MatrixXd predict(const Kriging& model, const Eigen::MatrixXd& at) const;
+};
+
+/// Fold s leaves out the cases left_out[s]; hyperparameters stay. n^3/3 operations once, then n^2 per fold.
+[[nodiscard]] FoldWeights leave_folds_out(const Kriging& model, const std::vector<std::vector<Eigen::Index>>& left_out);
 
 /// Every case left out by itself.
 [[nodiscard]] LeftOut leave_one_out(const Kriging& model);

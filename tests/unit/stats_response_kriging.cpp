@@ -131,6 +131,18 @@ TEST(Kriging, LeavingOutInClosedFormIsLeavingOut) {
     }
 }
 
+TEST(Kriging, FoldsLeftOutAreLeftOut) {
+    const Sample s = sample(31, 2, 12), at = sample(5, 2, 13);
+    const Hyperparameters h = some_hyperparameters(2);
+    const Kriging model = solve_kriging(h, s.x, s.z).value();
+    const std::vector<std::vector<Eigen::Index>> folds{{0, 3, 6, 9, 30}, {1, 2}, {}};
+    const Eigen::MatrixXd means = leave_folds_out(model, folds).predict(model, mapped(h, at.x));
+    for (std::size_t f = 0; f < folds.size(); ++f)
+        for (Eigen::Index i = 0; i < at.x.rows(); ++i)
+            EXPECT_NEAR(means(i, static_cast<Eigen::Index>(f)),
+                        plain_prediction(h, without(s, folds[f]), at.x.row(i)).mean, 1e-10);
+}
+
 TEST(Kriging, CasesAddedAreAsIfTheyHadBeenThere) {
     const Sample all = sample(40, 3, 4);
     const Hyperparameters h = some_hyperparameters(3);

@@ -1,0 +1,114 @@
+// Moments of a response with a model of it as control variate: the same answer from a fraction of the cases.
+//
+// S >= 4 independently randomised sequences are the folds. With standardised responses z, m_s the response model
+// without sequence s, v its noise variance and the closure g_p = E[z^p | m, v] = m, m^2 + v, m^3 + 3 m v, m^4 + 6 m^2 v
+// + 3 v^2:
+//
+//   M_p = mean over s of M_p^(s),   M_p^(s) = mean over Q of g_p(m_s(x_q)) + mean over i in s of (z_i^p -
+//   g_p(m_s(x_i))) mean, sd, g1, kurtosis = T(M_1 ... M_4)
+//
+// (cross-fitting as in Chernozhukov et al. 2018, Econometrics J. 21, C1; regression estimation: Saerndal, Swensson &
+// Wretman 1992, chapter 6). A sequence never decides the model that it is corrected with: hyperparameters are fitted on
+// at most 300 cases of the even sequences for the odd ones and the other way round, weights without the sequence follow
+// in closed form (response/kriging.hpp). A bad model costs accuracy, not truth. v is one value for each half, so that
+// it rests on no case of the sequence either; where it is at the bound of the fit (1e-8) it counts as 0 and g_p = m^p.
+//
+// 95 % half-width of a statistic: the larger of (a) Student t over the S values of grad T . M^(s), and (b) t with
+// n_eff - 1 degrees of freedom times sqrt(sum r_i^2/(n (n - 1))), r_i = grad T . (z_i^p - g_p)_p, n_eff = (sum r^2)^2/
+// sum r^4; and in quadrature the error of Q from its independent scramblings (Student t over their means).
+//
+// Two targets. With scatter: moments of single runs, what the plain estimate says. Without: of the mean response. By
+// the law of total cumulance, with noise of variance v_i that is symmetric about the mean,
+//   M - (0, E v, 3 E[m v], 6 E[m^2 v] + 3 E[v^2]),
+// (E m and E m^2 from M, covariances of v with m and m^2 over the cases). v_i is the square of the standard error a
+// scene states, or one value from replicates.
+//
+// Which estimate a statistic takes is decided before it is looked at: assisted where the error of the model on left-out
+// sequences is below 0.6 sd and, at the previous check, the assisted half-width was below the plain one (taking the
+// shorter one each time costs 3 to 10 % of coverage). Where both differ by more than twice their joint half-width the
+// model has gone wrong and the plain estimate stands, with a sentence.
+#pragma once
+
+#include "stats/moments.hpp"
+#include "stats/response_model.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace grainsweep::stats {
+
+/// The statistics there are, in the order of every array here. (Pearson's skewness has no such form: a median.)
+inline constexpr std::array assisted_statistics = {Statistic::mean, Statistic::sd, Statistic::g1, Statistic::kurtosis};
+
+struct AssistedSettings {
+    std::vector<double> low = {};      ///< box of the features; empty: 0
+    std::vector<double> high = {};     ///< empty: 1
+    std::size_t cases_in_fit = 300;    ///< of each half, for the hyperparameters
+    std::size_t most_training = 1500;  ///< cases the models rest on; all are used for the correction
+    std::size_t starts = 4;
+    double refused_error = 0.6;  ///< of the model on left-out sequences, in sd: not assisted from there on
+};
+
+struct AssistedInput {
+    Rows points;                             ///< features of the cases
+    std::span<const double> values;          ///< responses; what is not finite is left out
+    std::span<const std::size_t> sequences;  ///< of each case, 0 ... S - 1
+    /// Features of points that fill the box of the factors: independent scramblings of one size, one after the other.
+    Rows integration;
+    std::size_t scramblings = 1;  ///< at least 4 give integration an error of its own
+    /// Variance of a single run about its mean: one per case, one for all, or empty: unknown.
+    std::span<const double> noise_variance = {};
+    double noise_variance_error = 0;  ///< relative standard error of all of them together
+};
+
+struct AssistedEstimate {
+    double value = std::numeric_limits<double>::quiet_NaN();
+    double half_width = std::numeric_limits<double>::quiet_NaN();  ///< 95 %
+};
+
+/// One statistic by both estimators.
+struct AssistedStatistic {
+    AssistedEstimate plain;            ///< pooled value, Student t over the sequences
+    AssistedEstimate assisted;         ///< with scatter, as the plain one
+    AssistedEstimate without_scatter;  ///< NaN where the noise is unknown
+    bool takes_assisted = false;       ///< decided beforehand, see above
+    bool shorter = false;              ///< the assisted half-width is below the plain one: decides the next check
+
+    [[nodiscard]] const AssistedEstimate& chosen() const { return takes_assisted ? assisted : plain; }
+};
+
+/// What scatter adds to the second to fourth central moments (law of total cumulance), in units of sd^p.
+struct ScatterBudget {
+    double response = std::numeric_limits<double>::quiet_NaN();  ///< of the mean response
+    double scatter =
+        std::numeric_limits<double>::quiet_NaN();  ///< the rest: E v; 3 cov(m, v); 6 E[(m - E m)^2 v] + 3 E[v^2]
+};
+
+struct AssistedMoments {
+    std::size_t cases = 0;
+    std::size_t excluded = 0;
+    double model_error = std::numeric_limits<double>::quiet_NaN();  ///< rms on left-out sequences over the sd
+    std::array<AssistedStatistic, assisted_statistics.size()> statistics;
+    std::array<ScatterBudget, 3> budget;  ///< variance, third, fourth central moment; NaN where the noise is unknown
+    /// Why an assisted estimate was withdrawn, or is not taken: one sentence; empty: no reason to say anything.
+    std::string remark;
+
+    [[nodiscard]] const AssistedStatistic& of(Statistic statistic) const;
+};
+
+/// `previous`: the check before, with fewer cases of the same campaign; none: the model's error alone decides.
+/// Refuses: fewer than 4 sequences, fewer than 2 max(12, 4 (d + 1)) cases, a constant response, and
+/// rare events: more than half of the responses equal and fewer than 30 others (plain errors do not hold there either).
+/// Throws std::invalid_argument where sizes do not match.
+[[nodiscard]] std::variant<AssistedMoments, Refusal> assisted_moments(const AssistedInput& input,
+                                                                      const AssistedSettings& settings = {},
+                                                                      const AssistedMoments* previous = nullptr);
+
+}  // namespace grainsweep::stats
