@@ -53,7 +53,7 @@ struct ResponseModelOptions {
     std::vector<double> low = {};    ///< box of the features, one value each; empty: 0
     std::vector<double> high = {};   ///< empty: 1
     std::size_t starts = 6;          ///< searches of the likelihood
-    std::size_t cases_in_fit = 800;  ///< at most so many decide the hyperparameters (all enter the prediction)
+    std::size_t cases_in_fit = 500;  ///< at most so many decide the hyperparameters (all enter the prediction)
     std::size_t most_cases = 4000;   ///< of more, a subset that fills the space
     LearnedMap map = LearnedMap::where_better;
     double refused_error = 0.7;  ///< leave-one-out error, in sd, from which on the model is refused

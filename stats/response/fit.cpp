@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t cases_of_first_search = 200, cases_for_map = 200, compared_per_start = 8, followed = 2;
 constexpr int most_evaluations = 80;
-constexpr double value_tolerance = 1e-4;  // of a log density: far below what tells models apart
+constexpr double value_tolerance = 1e-3;  // of a log density: far below what tells models apart
 constexpr double singular = 1e10;         // stands for an infinite minus log density
 
 /// The objective as NLopt calls it, and the best point it was called at: L-BFGS may end on a worse one.

@@ -23,7 +23,7 @@ inline constexpr double smallest_noise = 1e-8;
 
 struct FitSettings {
     std::size_t starts = 6;
-    std::size_t cases = 800;
+    std::size_t cases = 500;
     LearnedMap map = LearnedMap::where_better;  ///< of find_hyperparameters
 };
 
