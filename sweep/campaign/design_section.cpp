@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <stdexcept>
 
 namespace grainsweep::campaign {
 
@@ -83,6 +84,44 @@ void check_size(const Cursor& place, const OptionValue& value, std::span<const s
     }
 }
 
+std::vector<std::string> names_for(const OptionSpec& option, const Campaign& campaign) {
+    std::vector<std::string> names;
+    if (option.kind == OptionSpec::Kind::factor) {
+        for (const auto& factor : campaign.space.factors)
+            if (std::holds_alternative<Between>(factor.range)) names.push_back(factor.name);
+    } else {
+        for (const auto& observable : campaign.scene().observables)
+            if (observable.shape == Shape::scalar) names.push_back(observable.name);
+    }
+    return names;
+}
+
+std::string read_word(const Cursor& place, const OptionSpec& option, const Campaign& campaign) {
+    if (option.kind == OptionSpec::Kind::word) return place.word(option.words);
+    const auto names = names_for(option, campaign);
+    if (names.empty()) place.refuse("needs a factor that varies between two values, and there is none");
+    return place.word(names);
+}
+
+designs::FactorRange range_of(const Factor& factor) {
+    if (std::holds_alternative<Levels>(factor.range)) return {factor.name, {}};
+    return {factor.name, [factor](double u) { return std::get<double>(value_at(factor, u)); }};
+}
+
+/// A design that grows chooses what comes next itself: what would choose beside it is refused.
+void check_growing(const Cursor& place, const Campaign& campaign) {
+    if (campaign.replicates != 1) {
+        throw wrong_question("$.replicates", std::to_string(campaign.replicates),
+                             fmt::format("a {} design repeats its points itself: give \"replicates\" within \"design\"",
+                                         campaign.design));
+    }
+    try {
+        (void)designs::design_named(campaign.design).sample(campaign.request);
+    } catch (const std::invalid_argument& error) {
+        throw wrong_question(place.path(), "", error.what());
+    }
+}
+
 }  // namespace
 
 void check_in_range(const Cursor& place, const Factor& factor, const Value& value) {
@@ -109,6 +148,7 @@ void read_design(const Cursor& place, Campaign& campaign, const std::filesystem:
     for (const auto& factor : campaign.space.factors) {
         const auto* levels = std::get_if<Levels>(&factor.range);
         request.levels.push_back(levels == nullptr ? 0 : levels->values.size());
+        request.factors.push_back(range_of(factor));
     }
     for (const auto& option : design.options) {
         if (option.kind == OptionSpec::Kind::rows) {
@@ -121,8 +161,11 @@ void read_design(const Cursor& place, Campaign& campaign, const std::filesystem:
             continue;
         }
         OptionValue value;
-        if (option.kind == OptionSpec::Kind::word) {
-            value = given->word(option.words);
+        if (option.kind == OptionSpec::Kind::word || option.kind == OptionSpec::Kind::factor ||
+            option.kind == OptionSpec::Kind::observable) {
+            value = read_word(*given, option, campaign);
+        } else if (option.kind == OptionSpec::Kind::number) {
+            value = given->number(option.bounds);
         } else if (option.kind == OptionSpec::Kind::counts) {
             value = read_counts(*given, option, request.levels);
             check_size(*given, value, request.levels, false);
@@ -132,6 +175,7 @@ void read_design(const Cursor& place, Campaign& campaign, const std::filesystem:
         }
         request.options[option.name] = std::move(value);
     }
+    if (design.grows) check_growing(place, campaign);
 }
 
 }  // namespace grainsweep::campaign

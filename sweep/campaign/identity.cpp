@@ -36,6 +36,7 @@ std::string line_of(const Factor& factor) {
 std::string text_of(const designs::OptionValue& value) {
     if (const auto* count = std::get_if<std::int64_t>(&value)) return std::to_string(*count);
     if (const auto* word = std::get_if<std::string>(&value)) return *word;
+    if (const auto* number = std::get_if<double>(&value)) return shortest(*number);
     std::string text;
     if (const auto* counts = std::get_if<std::vector<std::int64_t>>(&value)) {
         for (const auto count : *counts) text += (text.empty() ? "" : " ") + std::to_string(count);
@@ -283,7 +284,7 @@ void require_same(const Identity& stored, const Identity& asked, std::string_vie
     }
     same("$.seed", "seed", std::to_string(stored.seed), std::to_string(asked.seed));
     same("$.design.kind", "design", stored.design, asked.design);
-    same("$.factors", "factor", stored.factors, asked.factors, design.beginning == designs::Beginning::corner);
+    same("$.factors", "factor", stored.factors, asked.factors, design.beginning == designs::Beginning::corner && !design.grows);
     same("$.fixed", "fixed", stored.fixed, asked.fixed);
     if (stored.condition != asked.condition) {
         refuse("$.where", asked.condition.empty() ? "none" : asked.condition,

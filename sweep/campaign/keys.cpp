@@ -34,6 +34,12 @@ Key key_of(const designs::OptionSpec& option) {
         key.kind = Kind::word;
         key.words = option.words;
         if (!key.required) key.standard = json_word(std::get<std::string>(*option.default_value));
+    } else if (option.kind == OptionKind::factor || option.kind == OptionKind::observable) {
+        key.kind = Kind::text;
+    } else if (option.kind == OptionKind::number) {
+        key.kind = Kind::number;
+        key.bounds = option.bounds;
+        if (!key.required) key.standard = shortest(std::get<double>(*option.default_value));
     } else if (option.kind == OptionKind::count) {
         if (!key.required) key.standard = std::to_string(std::get<std::int64_t>(*option.default_value));
     } else {

@@ -193,11 +193,16 @@ Cases unfold(const Campaign& campaign, const Filter& filter) {
             if (!filter(inputs)) continue;
         }
         const std::string text = questions->text(p);
-        for (std::int64_t replicate = 0; replicate < campaign.replicates; ++replicate) {
-            places.push_back({static_cast<std::uint32_t>(p), static_cast<std::uint32_t>(p % sequences),
-                              static_cast<std::uint32_t>(replicate)});
+        const auto part = points.part.empty() ? static_cast<std::uint32_t>(p % sequences) : points.part[p];
+        const auto ask = [&](std::int64_t replicate) {
+            places.push_back({static_cast<std::uint32_t>(p), part, static_cast<std::uint32_t>(replicate)});
             hashes.push_back(PointQuestions::hash(text, questions->seed(text, replicate)));
+        };
+        if (!points.repeat.empty()) {
+            ask(points.repeat[p]);
+            continue;
         }
+        for (std::int64_t replicate = 0; replicate < campaign.replicates; ++replicate) ask(replicate);
     }
     if (places.empty()) {
         throw wrong_question("$.where", fmt::format("\"{}\"", campaign.where),

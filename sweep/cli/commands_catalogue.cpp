@@ -1,5 +1,6 @@
 // scenes, designs, schema: what exists, from the same tables that the reader checks against.
 #include "sweep/campaign/case.hpp"
+#include "sweep/campaign/cursor.hpp"
 #include "sweep/campaign/schema.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
@@ -202,12 +203,16 @@ std::string default_text(const designs::OptionSpec& option) {
     if (!option.default_value) return "required";
     if (const auto* count = std::get_if<std::int64_t>(&*option.default_value)) return std::to_string(*count);
     if (const auto* word = std::get_if<std::string>(&*option.default_value)) return *word;
+    if (const auto* number = std::get_if<double>(&*option.default_value)) return campaign::shortest(*number);
     return "";
 }
 
 std::string allowed_text(const designs::OptionSpec& option) {
     using Kind = designs::OptionSpec::Kind;
     if (option.kind == Kind::word) return joined(option.words);
+    if (option.kind == Kind::factor) return "a factor that varies between two values";
+    if (option.kind == Kind::observable) return "a scalar observable of the scene";
+    if (option.kind == Kind::number) return "a number" + campaign::in_words(option.bounds);
     if (option.kind == Kind::rows) return "[[...], ...] or \"file\": a CSV file";
     const std::string one = fmt::format("{} to {}", option.minimum, option.maximum);
     return option.kind == Kind::counts ? one + ", one number or one per factor" : one;

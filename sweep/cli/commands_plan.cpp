@@ -42,6 +42,7 @@ Json json_of(const designs::OptionValue& value) {
     }
     if (const auto* count = std::get_if<std::int64_t>(&value)) return *count;
     if (const auto* word = std::get_if<std::string>(&value)) return *word;
+    if (const auto* number = std::get_if<double>(&value)) return *number;
     return std::get<std::vector<std::int64_t>>(value);
 }
 

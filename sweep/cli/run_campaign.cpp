@@ -6,6 +6,7 @@
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/progress.hpp"
 #include "sweep/report/history.hpp"
+#include "sweep/schedule/growth.hpp"
 #include "sweep/schedule/judge.hpp"
 #include "sweep/schedule/plan.hpp"
 #include "sweep/schedule/scheduler.hpp"
@@ -246,74 +247,123 @@ void say_first(ProgressLine& line, const campaign::Campaign& campaign, const cam
 
 }  // namespace
 
-RunReport run_campaign(const RunRequest& request) {
-    campaign::Campaign campaign = campaign::read_campaign(request.config);
-    campaign::Forecast forecast;
-    const auto unfolded = [&] {
-        return campaign::asked_in(request.config, [&] {
-            store::check_campaign_name(campaign.name);
-            const auto filter = store::make_filter(campaign.where, campaign::filter_names(campaign));
-            auto cases = campaign::unfold(campaign, filter);
-            forecast = campaign::forecast(campaign.scene(), cases);  // refuses impossible cases before anything is made
-            return cases;
-        });
-    };
-    auto placed = unfolded();
+namespace {
 
+void refuse_what_cannot_start(const campaign::Campaign& campaign, const RunRequest& request, const fs::path& database) {
     const auto& launcher = campaign.execution.launcher;
     if (!launcher.empty() && !workers::Pool::can_start(launcher.front()))
         throw campaign::wrong_question(request.config.string() + ": $.execution.launcher[0]", launcher.front(),
                                        "there is no such program to start workers with");
 
-    const fs::path database = request.database.empty() ? fs::path(campaign.name + ".db") : request.database;
     if (const auto folder = fs::absolute(database).parent_path(); !fs::is_directory(folder))
         throw campaign::wrong_question("--db", database.string(),
                                        fmt::format("there is no folder '{}'", folder.string()));
-    const fs::path artefacts = artefact_folder(database);
+    if (request.again && designs::design_named(campaign.design).grows)
+        throw campaign::wrong_question("--again", to_string(*request.again),
+                                       fmt::format("the later points of a {} design rest on the answers there are; ask "
+                                                   "under another campaign name: what is settled is not computed again",
+                                                   campaign.design));
+}
 
-    store::Store store(database, store::Store::Mode::create);
-    const std::size_t workers = worker_count(campaign, request);
-    ProgressLine line(request.quiet, workers);
-    if (campaign::reorder_factors(campaign, store.factor_order(campaign.name))) {
-        line.note(fmt::format("note: the factors of '{}' keep the order in which they are stored: {}", campaign.name,
-                              campaign::factor_list(campaign.space)));
-        placed = unfolded();
+/// One run: a design that grows takes a round after the other, every other one.
+class Run {
+public:
+    explicit Run(const RunRequest& request)
+        : request_(request),
+          campaign_(campaign::read_campaign(request.config)),
+          workers_(worker_count(campaign_, request)) {
+        unfold();
+        database_ = request.database.empty() ? fs::path(campaign_.name + ".db") : request.database;
+        refuse_what_cannot_start(campaign_, request, database_);
+        artefacts_ = artefact_folder(database_);
+        line_.emplace(request.quiet, workers_);
+        store_.emplace(database_, store::Store::Mode::create);
     }
-    auto states =
-        campaign::asked_in(request.config, [&] { return store.enrol(campaign, placed, provenance(), entered_first); });
-    for (const auto& note : store.notes()) line.note(note);
-    const auto record = store.stored(campaign).value();
-    say_first(line, campaign, forecast, record);
-    std::unique_ptr<schedule::Judge> judge;
-    schedule::Questions questions;
-    {
-        const auto placement = placement_of(store, record, placed, std::move(states), std::move(forecast.seconds));
-        judge = make_judge(campaign, store, placement);
-        questions = questions_of(campaign, placement);
-    }
-    schedule::Plan plan(std::move(questions), rules_of(campaign, request, workers));
 
-    workers::Pool pool(pool_options(campaign, artefacts, request));
-    store::ArtefactFolder folder(artefacts);
-    sweep(folder, store);
-    schedule::Watchers watchers;
-    watchers.progress = [&](const schedule::Progress& progress) { line.update(progress); };
-    watchers.note = [&](const std::string& text) { line.note(text); };
-    watchers.forget_checkpoint = [&](const campaign::CaseId& id) {
-        folder.remove(workers::checkpoint_key(id, this_computer()));
-    };
-
-    Ending ending{};
-    {
-        store::Recorder recorder(store);
-        schedule::Scheduler scheduler(campaign.name, plan, pool, recorder, judge.get(), watchers);
-        ending = scheduler.run();
+    RunReport operator()() {
+        if (campaign::reorder_factors(campaign_, store_->factor_order(campaign_.name))) {
+            line_->note(fmt::format("note: the factors of '{}' keep the order in which they are stored: {}",
+                                    campaign_.name, campaign::factor_list(campaign_.space)));
+            unfold();
+        }
+        if (grow()) unfold();
+        bool first = true;
+        do {
+            enrol(std::exchange(first, false));
+            compute();
+            if (ending_ != Ending::finished || !grow()) break;
+            unfold();
+        } while (true);
+        store_->remember_file();
+        return {exit_code(ending_, tally_), campaign_.name, database_, describe(ending_, tally_, judge_.get()),
+                judge_ ? std::optional(judge_->converged_at().has_value()) : std::nullopt};
     }
-    sweep(folder, store);
-    store.remember_file();
-    const auto tally = plan.tally();
-    return {exit_code(ending, tally), campaign.name, database, describe(ending, tally, judge.get()),
-            judge ? std::optional(judge->converged_at().has_value()) : std::nullopt};
+
+private:
+    /// The design's points, those that follow from what is known included.
+    void unfold() {
+        placed_ = campaign::asked_in(request_.config, [&] {
+            store::check_campaign_name(campaign_.name);
+            const auto filter = store::make_filter(campaign_.where, campaign::filter_names(campaign_));
+            auto cases = campaign::unfold(campaign_, filter);
+            // Refuses impossible cases before anything is made.
+            forecast_ = campaign::forecast(campaign_.scene(), cases);
+            return cases;
+        });
+    }
+    /// Whether answers that are known by now bring new points.
+    bool grow() {
+        return campaign::asked_in(request_.config, [&] { return schedule::grow(campaign_, *store_); });
+    }
+    void enrol(bool first) {
+        states_ = campaign::asked_in(request_.config,
+                                     [&] { return store_->enrol(campaign_, placed_, provenance(), entered_first); });
+        for (const auto& note : store_->notes()) line_->note(note);
+        const auto record = store_->stored(campaign_).value();
+        if (first) say_first(*line_, campaign_, forecast_, record);
+        const auto placement = placement_of(*store_, record, placed_, std::move(states_), std::move(forecast_.seconds));
+        judge_ = make_judge(campaign_, *store_, placement);
+        questions_ = questions_of(campaign_, placement);
+    }
+    void compute() {
+        schedule::Plan plan(std::move(questions_), rules_of(campaign_, request_, workers_));
+        workers::Pool pool(pool_options(campaign_, artefacts_, request_));
+        store::ArtefactFolder folder(artefacts_);
+        sweep(folder, *store_);
+        schedule::Watchers watchers;
+        watchers.progress = [&](const schedule::Progress& progress) { line_->update(progress); };
+        watchers.note = [&](const std::string& text) { line_->note(text); };
+        watchers.forget_checkpoint = [&](const campaign::CaseId& id) {
+            folder.remove(workers::checkpoint_key(id, this_computer()));
+        };
+        {
+            store::Recorder recorder(*store_);
+            schedule::Scheduler scheduler(campaign_.name, plan, pool, recorder, judge_.get(), watchers);
+            ending_ = scheduler.run();
+        }
+        sweep(folder, *store_);
+        tally_ = plan.tally();
+    }
+
+    const RunRequest& request_;
+    campaign::Campaign campaign_;
+    std::size_t workers_;
+    fs::path database_, artefacts_;
+    std::optional<ProgressLine> line_;
+    std::optional<store::Store> store_;
+    campaign::Cases placed_;
+    campaign::Forecast forecast_;
+    std::vector<store::CaseState> states_;
+    std::unique_ptr<schedule::Judge> judge_;
+    schedule::Questions questions_;
+    Ending ending_{};
+    schedule::Plan::Tally tally_;
+};
+
+}  // namespace
+
+RunReport run_campaign(const RunRequest& request) {
+    return Run(request)();
 }
 
 }  // namespace grainsweep::cli

@@ -10,7 +10,7 @@ namespace grainsweep::designs {
 std::span<const DesignInfo> design_catalogue() {
     static const std::vector<DesignInfo> kinds = {
         halton_design(),  sobol_design(), latin_hypercube_design(), random_design(),
-        lattice_design(), list_design(),  saltelli_design(),        morris_design(),
+        lattice_design(), list_design(),  saltelli_design(),        morris_design(), refine_design(),
     };
     return kinds;
 }
@@ -49,6 +49,10 @@ const T& option_of(const DesignRequest& request, std::string_view option) {
 
 std::int64_t DesignRequest::count(std::string_view option) const {
     return option_of<std::int64_t>(*this, option);
+}
+
+double DesignRequest::number(std::string_view option) const {
+    return option_of<double>(*this, option);
 }
 
 const std::string& DesignRequest::word(std::string_view option) const {

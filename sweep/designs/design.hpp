@@ -22,12 +22,14 @@ namespace grainsweep::designs {
 /// A table of physical values, one row a point, one column a factor.
 using Rows = std::vector<std::vector<Value>>;
 
-using OptionValue = std::variant<std::int64_t, std::string, std::vector<std::int64_t>, Rows>;
+using OptionValue = std::variant<std::int64_t, std::string, std::vector<std::int64_t>, Rows, double>;
 
 /// What a design takes beside its kind: the campaign reader checks against this, `grainsweep designs`
 /// and the JSON schema print it.
 struct OptionSpec {
-    enum class Kind { count, word, counts, rows };  ///< counts: one whole number, or one per factor
+    /// counts: one whole number, or one per factor; number: a real one; factor: the name of one that varies between two
+    /// values; observable: that of a scalar of the scene.
+    enum class Kind { count, word, counts, rows, number, factor, observable };
     std::string name;
     std::string meaning;
     Kind kind = Kind::count;
@@ -38,25 +40,41 @@ struct OptionSpec {
     /// Says how much of the design is asked, not which design it is: the same campaign may ask for more of it where
     /// the design extends.
     bool extent = false;
+    Interval bounds = {};  ///< of a number
+};
+
+/// What a design may know of a factor.
+struct FactorRange {
+    std::string name;
+    /// The value at u in [0, 1] of a factor that varies between two; empty where it has levels.
+    std::function<double(double u)> value_at;
 };
 
 struct DesignRequest {
     std::vector<std::size_t> levels;  ///< per factor: number of its levels, 0 where it is continuous
     std::map<std::string, OptionValue, std::less<>> options;  ///< complete: defaults filled in
     std::uint64_t seed = 1;                                   ///< the campaign's
+    std::vector<FactorRange> factors = {};                    ///< looked at by designs that grow only
+    /// What is known of the points asked so far, by number: none where a point is not settled, NaN where it is without
+    /// an answer. Looked at by designs that grow only.
+    std::vector<std::optional<double>> answers = {};
 
     [[nodiscard]] std::size_t dimensions() const { return levels.size(); }
     [[nodiscard]] std::int64_t count(std::string_view option) const;
+    [[nodiscard]] double number(std::string_view option) const;
     [[nodiscard]] const std::string& word(std::string_view option) const;
 };
 
 /// Points in order of their number. Either coordinates in the unit cube (row-major, points x dimensions)
-/// or listed physical rows; point p belongs to sequence p mod sequences.
+/// or listed physical rows; point p belongs to sequence p mod sequences, and is asked as often as the campaign says,
+/// unless the columns `part` and `repeat` say otherwise.
 struct PointSet {
     std::size_t dimensions = 0;
     std::size_t sequences = 1;
     std::vector<double> coordinates;
-    Rows rows;
+    Rows rows = {};
+    std::vector<std::uint32_t> part = {};    ///< what takes the place of a point's sequence
+    std::vector<std::uint32_t> repeat = {};  ///< the one replicate of each point
 
     [[nodiscard]] std::size_t size() const {
         return rows.empty() ? (dimensions == 0 ? 0 : coordinates.size() / dimensions) : rows.size();
@@ -86,6 +104,9 @@ struct DesignInfo {
     /// convergence rule 'replicates' may compare them. (Elsewhere a sequence names a point's part in a block.)
     bool independent_sequences = false;
     bool independent_points = false;  ///< each is drawn without regard to the others
+    /// The points that come next depend on the answers to those before (request.answers): sample() gives all that
+    /// follow from what is known. The scalar whose answers these are stands in the option "observable".
+    bool grows = false;
     Beginning beginning = Beginning::sample;
     Purpose purpose = Purpose::statistics;
     /// How many points the request numbers, without forming them: the size of sample(request). Throws as that does.

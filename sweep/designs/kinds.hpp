@@ -13,6 +13,7 @@ namespace grainsweep::designs {
 [[nodiscard]] DesignInfo list_design();
 [[nodiscard]] DesignInfo saltelli_design();
 [[nodiscard]] DesignInfo morris_design();
+[[nodiscard]] DesignInfo refine_design();
 
 /// Streams that designs draw from, so that two kinds never share a draw of the campaign's seed.
 enum class DrawPurpose : std::uint64_t { random = 1, latin_hypercube = 2, sobol = 3, morris = 4 };

@@ -82,7 +82,12 @@ void warn(History& history, const Responses& responses, const ResponseColumn& re
             fmt::format("the campaign was judged on {}, not on {}", record.convergence->observable, response.name));
     }
     const auto& design = responses.design();
-    if (design.beginning == designs::Beginning::corner) {
+    if (design.grows) {
+        history.warnings.push_back(
+            fmt::format("the points of a {} gather where its answers pass the threshold: their moments describe no "
+                        "range",
+                        record.design));
+    } else if (design.beginning == designs::Beginning::corner) {
         history.warnings.push_back(fmt::format(
             "a {} has no errors and cannot be judged from inside: compare campaigns of growing levels", record.design));
     }

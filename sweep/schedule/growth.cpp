@@ -1,0 +1,25 @@
+#include "sweep/schedule/growth.hpp"
+
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace grainsweep::schedule {
+
+bool grow(campaign::Campaign& campaign, const store::Store& store) {
+    const auto& design = designs::design_named(campaign.design);
+    if (!design.grows) return false;
+    const auto record = store.stored(campaign);
+    if (!record) return false;
+    const auto before = design.size(campaign.request);
+    std::vector<std::optional<double>> answers(static_cast<std::size_t>(record->stored.candidates),
+                                               std::numeric_limits<double>::quiet_NaN());
+    for (const auto& it : store.values(campaign.name, campaign.request.word("observable"))) {
+        const bool settled = it.outcome && *it.outcome != campaign::Outcome::abandoned;
+        answers[static_cast<std::size_t>(it.point)] = settled ? std::optional(it.value) : std::nullopt;
+    }
+    campaign.request.answers = std::move(answers);
+    return design.size(campaign.request) > before;
+}
+
+}  // namespace grainsweep::schedule

@@ -1,0 +1,17 @@
+// Designs that grow: what the archive knows of a campaign's points decides which come next.
+#pragma once
+
+#include "sweep/campaign/campaign.hpp"
+#include "sweep/store/store.hpp"
+
+namespace grainsweep::schedule {
+
+/// Puts what `store` knows of the campaign's points into its request, and says whether that brings points beyond those
+/// there were. Does nothing for a design that does not grow, and for a campaign that is not stored.
+///
+/// A case that crashed or ran out of time as often as allowed, that is unstable or rejected, or whose observable is
+/// undefined, is settled without an answer, and so is a point that the `where` clause leaves out. Throws WrongQuestion
+/// where another campaign is stored under the name.
+bool grow(campaign::Campaign& campaign, const store::Store& store);
+
+}  // namespace grainsweep::schedule
