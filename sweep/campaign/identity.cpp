@@ -185,12 +185,17 @@ std::vector<std::string> factor_names(const Identity& identity) {
     return names;
 }
 
+std::map<std::string, std::string, std::less<>> options_in(const Identity& identity) {
+    std::map<std::string, std::string, std::less<>> options;
+    for (const auto& line : lines_of(identity.options + identity.extent)) options.insert(name_and_value(line));
+    return options;
+}
+
 std::optional<std::int64_t> points_of(const Identity& identity) {
-    for (const auto& line : lines_of(identity.extent)) {
-        const auto [name, value] = name_and_value(line);
-        if (name == "points") return std::strtoll(value.c_str(), nullptr, 10);
-    }
-    return std::nullopt;
+    const auto options = options_in(identity);
+    const auto points = options.find("points");
+    if (points == options.end()) return std::nullopt;
+    return std::strtoll(points->second.c_str(), nullptr, 10);
 }
 
 std::string family_of(const Identity& identity) {

@@ -9,6 +9,8 @@
 #include "sweep/campaign/campaign.hpp"
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -44,6 +46,8 @@ struct StatedFactor {
 [[nodiscard]] std::vector<StatedFactor> factors_of(const Identity& identity);
 /// Their names.
 [[nodiscard]] std::vector<std::string> factor_names(const Identity& identity);
+/// Every option of the design, as text.
+[[nodiscard]] std::map<std::string, std::string, std::less<>> options_in(const Identity& identity);
 /// Points that the design was asked for at most; none where it is not asked for points.
 [[nodiscard]] std::optional<std::int64_t> points_of(const Identity& identity);
 /// Equal for campaigns that ask the same of a scene and differ in name, seed and how much of the design they ask for

@@ -2,6 +2,7 @@
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/page_file.hpp"
 #include "sweep/cli/report_films.hpp"
+#include "sweep/report/brackets.hpp"
 #include "sweep/report/file_size.hpp"
 #include "sweep/report/history.hpp"
 #include "sweep/report/influence.hpp"
@@ -100,6 +101,25 @@ void for_each_campaign(const Store& store, const Subject& subject, With with) {
     }
 }
 
+/// What a design that brackets a passage has found, in place of moments; false: the campaign has another design.
+bool show_brackets(const Store& store, const Responses& responses, Format format, bool first, Json& all,
+                   store::Table& rows) {
+    const auto brackets = report::brackets_of(store, responses.campaign);
+    if (!brackets) return false;
+    if (format == Format::json) {
+        all.push_back({{"campaign", responses.campaign.name}});
+        all.back().update(report::to_json(*brackets));
+    } else if (format == Format::csv) {
+        if (first) rows = report::brackets_rows(*brackets, responses.campaign.name);
+    } else {
+        if (!first) std::cout << '\n';
+        std::cout << fmt::format("{}: {}; {}\n\n", responses.campaign.name, report::brackets_line(*brackets),
+                                 report::outcome_line(responses));
+        report::write(std::cout, report::brackets_table(*brackets), Format::text);
+    }
+    return true;
+}
+
 int converge(const Subject& subject, Format format) {
     const Store store(subject.database, Store::Mode::read);
     Json all = Json::array();
@@ -107,12 +127,14 @@ int converge(const Subject& subject, Format format) {
     bool converged = true;
     for_each_campaign(store, subject,
                       [&](const Responses& responses, const report::ResponseColumn& response, bool first) {
+                          if (show_brackets(store, responses, format, first, all, rows)) return;
                           const auto history = report::history_of(responses, response);
                           converged = converged && history.converged.value_or(false);
                           const auto lattices = report::lattice_family(store, responses, response);
                           if (format == Format::json) {
                               all.push_back(report::to_json(responses, response, history, lattices));
                           } else if (format == Format::csv) {
+                              if (!rows.columns.empty() && rows.columns.back() == "state") return;
                               append(rows, report::checks_rows(responses, response, history));
                               append(rows, report::provisional_rows(responses, response, history));
                           } else {

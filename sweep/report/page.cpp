@@ -3,6 +3,7 @@
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/identity.hpp"
 #include "sweep/campaign/stored_text.hpp"
+#include "sweep/report/brackets.hpp"
 #include "sweep/report/curves.hpp"
 #include "sweep/report/effects.hpp"
 #include "sweep/report/history.hpp"
@@ -258,6 +259,16 @@ Json campaign_of(const store::Store& store, const store::CampaignRecord& record,
         if (&response != main && std::ranges::none_of(response.values, finite)) continue;
         if (&response == main) value["main"] = value["observables"].size();
         value["observables"].push_back(json_of(responses, response));
+    }
+    value["brackets"] = nullptr;
+    if (const auto brackets = brackets_of(store, record)) {
+        const auto table = brackets_table(*brackets);
+        value["brackets"] = {{"says", brackets_line(*brackets)}, {"columns", table.columns}, {"rows", Json::array()}};
+        for (const auto& row : table.rows) {
+            Json cells = Json::array();
+            for (const auto& cell : row) cells.push_back(to_json(cell));
+            value["brackets"]["rows"].push_back(std::move(cells));
+        }
     }
     value["curves"] = json_of(read_curves(store, responses));
     value["failures"] = failures_of(store, responses);

@@ -1,5 +1,6 @@
 #include "sweep/report/summary.hpp"
 
+#include "sweep/report/brackets.hpp"
 #include "sweep/report/file_size.hpp"
 #include "sweep/report/table.hpp"
 
@@ -135,7 +136,10 @@ std::string closing_summary(const store::Store& store, const std::string& campai
     text << fmt::format("{}: {} cases of {}: {}\n", campaign, responses.rows(), responses.campaign.scene,
                         outcome_line(responses));
     if (!responses.campaign.condition.empty()) text << "where: " << points_line(responses) << '\n';
-    if (const auto* main = responses.main_observable()) {
+    if (const auto brackets = brackets_of(store, responses.campaign)) {
+        text << brackets_line(*brackets) << "\n\n";
+        write(text, brackets_table(*brackets), Format::text);
+    } else if (const auto* main = responses.main_observable()) {
         const bool has_rule = responses.campaign.convergence.has_value();
         const auto history = has_rule ? history_of(responses, *main) : figures_of(responses, *main);
         if (history.has_rule) text << fmt::format("{}: {}\n", main->name, history.verdict);

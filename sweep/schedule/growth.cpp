@@ -6,19 +6,24 @@
 
 namespace grainsweep::schedule {
 
+std::vector<std::optional<double>> known_answers(const store::Store& store, const store::CampaignRecord& record,
+                                                 std::string_view observable) {
+    std::vector<std::optional<double>> answers(static_cast<std::size_t>(record.stored.candidates),
+                                               std::numeric_limits<double>::quiet_NaN());
+    for (const auto& it : store.values(record.name, observable)) {
+        const bool settled = it.outcome && *it.outcome != campaign::Outcome::abandoned;
+        answers[static_cast<std::size_t>(it.point)] = settled ? std::optional(it.value) : std::nullopt;
+    }
+    return answers;
+}
+
 bool grow(campaign::Campaign& campaign, const store::Store& store) {
     const auto& design = designs::design_named(campaign.design);
     if (!design.grows) return false;
     const auto record = store.stored(campaign);
     if (!record) return false;
     const auto before = design.size(campaign.request);
-    std::vector<std::optional<double>> answers(static_cast<std::size_t>(record->stored.candidates),
-                                               std::numeric_limits<double>::quiet_NaN());
-    for (const auto& it : store.values(campaign.name, campaign.request.word("observable"))) {
-        const bool settled = it.outcome && *it.outcome != campaign::Outcome::abandoned;
-        answers[static_cast<std::size_t>(it.point)] = settled ? std::optional(it.value) : std::nullopt;
-    }
-    campaign.request.answers = std::move(answers);
+    campaign.request.answers = known_answers(store, *record, campaign.request.word("observable"));
     return design.size(campaign.request) > before;
 }
 

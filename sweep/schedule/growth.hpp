@@ -4,6 +4,10 @@
 #include "sweep/campaign/campaign.hpp"
 #include "sweep/store/store.hpp"
 
+#include <optional>
+#include <string_view>
+#include <vector>
+
 namespace grainsweep::schedule {
 
 /// Puts what `store` knows of the campaign's points into its request, and says whether that brings points beyond those
@@ -13,5 +17,11 @@ namespace grainsweep::schedule {
 /// undefined, is settled without an answer, and so is a point that the `where` clause leaves out. Throws WrongQuestion
 /// where another campaign is stored under the name.
 bool grow(campaign::Campaign& campaign, const store::Store& store);
+
+/// What is known of the points of a stored campaign, by number, as DesignRequest::answers: of the scalar that its
+/// design asks for.
+[[nodiscard]] std::vector<std::optional<double>> known_answers(const store::Store& store,
+                                                               const store::CampaignRecord& record,
+                                                               std::string_view observable);
 
 }  // namespace grainsweep::schedule

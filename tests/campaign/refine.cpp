@@ -39,7 +39,9 @@ TEST(RefineCampaign, EveryCombinationFindsItsCliffAndSaysSo) {
     folder.write("c.json", config(R"("width": 0.0078125, "replicates": 4)"));
     const auto ended = refine(folder, "a.db", {"-j", "2"});
     ASSERT_EQ(ended.code, 0) << ended.err;
-    EXPECT_THAT(ended.out, HasSubstr("passes 0.05"));
+    EXPECT_THAT(ended.out, HasSubstr("where y passes 0.05 along x3, to 0.007812: 3 found of 3"));
+    const auto rows = run_program({"converge", "a.db", "--format", "csv"}, folder.path());
+    EXPECT_THAT(rows.out, HasSubstr("campaign,observable,threshold,factor,x2,low,high"));
     // gap = 1.25 diameters: 1 + 4 x3 = 1.25 (1 + 2 x2)
     for (const double x2 : {0.11, 0.37, 0.61}) {
         const double at = (1.25 * (1 + 2 * x2) - 1) / 4;

@@ -39,7 +39,9 @@ DesignRequest request(std::vector<std::size_t> levels, double threshold, double 
     return asked;
 }
 
-const designs::DesignInfo& refine() { return designs::design_named("refine"); }
+const designs::DesignInfo& refine() {
+    return designs::design_named("refine");
+}
 
 /// Answers round by round until nothing is asked any more; returns how many rounds there were.
 int run(DesignRequest& asked, const std::function<double(std::span<const double>, std::uint32_t, std::uint32_t)>& y) {
@@ -51,7 +53,9 @@ int run(DesignRequest& asked, const std::function<double(std::span<const double>
     }
 }
 
-double step(double u, double at) { return u < at ? 0.0 : 1.0; }
+double step(double u, double at) {
+    return u < at ? 0.0 : 1.0;
+}
 
 }  // namespace
 

@@ -50,6 +50,14 @@ function distributionSection(response, sample, other) {
       table(columns, rows))));
 }
 
+// Where the answer passes its threshold, of a design that sought it.
+function bracketsSection(campaign) {
+  if (!campaign.brackets) return null;
+  const { says, columns, rows } = campaign.brackets;
+  return section("brackets", "Passages", says.replace(/^./, (c) => c.toUpperCase()) + ".",
+    el("div", { class: "card" }, table(columns.map((title, j) => [title, typeof rows[0][j] === "number" ? "number" : ""]), rows)));
+}
+
 function momentsSection(campaign, response, other) {
   if (!campaign.sample || response.history.points.length === 0) return null;
   return section("convergence", "Convergence", "Moments of the first points of the design against their number, with 95 % errors. " +
@@ -179,7 +187,7 @@ function render() {
   if (response && response.history.count > 0) {
     if (!chosen.view.x) firstView(model, response);
     parts = explorerSections(model, response, other);
-    page.append(...[distributionSection(response, campaign.sample, other), momentsSection(campaign, response, other), effectsSection(model, response, other),
+    page.append(...[bracketsSection(campaign), distributionSection(response, campaign.sample, other), momentsSection(campaign, response, other), effectsSection(model, response, other),
       influenceSection(response), filmsSection(model), parts.explore, parts.maps, parts.listed, parts.small, curvesSection(model), extremesSection(campaign, response)].filter(Boolean));
   } else if (values.some(Number.isFinite)) {  // answers, but none of the gapless beginning
     if (!chosen.view.x) firstView(model, response);

@@ -1,0 +1,68 @@
+#include "sweep/campaign/stored_request.hpp"
+
+#include <charconv>
+#include <sstream>
+#include <string>
+
+namespace grainsweep::campaign {
+namespace {
+
+template <class Number>
+Number number_in(const std::string& text) {
+    Number number{};
+    std::from_chars(text.data(), text.data() + text.size(), number);
+    return number;
+}
+
+designs::OptionValue value_of(const designs::OptionSpec& option, const std::string& text) {
+    using Kind = designs::OptionSpec::Kind;
+    switch (option.kind) {
+        case Kind::count:
+            return number_in<std::int64_t>(text);
+        case Kind::number:
+            return number_in<double>(text);
+        case Kind::counts: {
+            std::istringstream stream(text);
+            std::vector<std::int64_t> counts;
+            for (std::int64_t count = 0; stream >> count;) counts.push_back(count);
+            if (counts.size() == 1) return counts.front();
+            return counts;
+        }
+        case Kind::rows:
+            return designs::Rows{};
+        case Kind::word:
+        case Kind::factor:
+        case Kind::observable:
+            break;
+    }
+    return text;
+}
+
+}  // namespace
+
+designs::DesignRequest request_of(const Identity& identity) {
+    const auto& design = designs::design_named(identity.design);
+    designs::DesignRequest request;
+    request.seed = identity.seed;
+    for (auto& stated : factors_of(identity)) {
+        request.levels.push_back(stated.levels.size());
+        auto& range = request.factors.emplace_back();
+        range.name = stated.name;
+        if (stated.between)
+            range.value_at = [factor = Factor{stated.name, *stated.between}](double u) {
+                return std::get<double>(value_at(factor, u));
+            };
+    }
+    const auto stated = options_in(identity);
+    for (const auto& option : design.options) {
+        const auto found = stated.find(option.name);
+        if (found != stated.end()) {
+            request.options[option.name] = value_of(option, found->second);
+        } else if (option.default_value) {
+            request.options[option.name] = *option.default_value;
+        }
+    }
+    return request;
+}
+
+}  // namespace grainsweep::campaign
