@@ -84,7 +84,7 @@ TEST(RefineCampaign, WhatItCannotDoIsRefused) {
         return ended.err;
     };
     EXPECT_THAT(refused(config(R"("width": 2)")), HasSubstr("$.design: a width of 2"));
-    EXPECT_THAT(refused(config(R"("width": 0)")), HasSubstr("$.design.width: got 0, must be a number above 0"));
+    EXPECT_THAT(refused(config(R"("width": 0)")), HasSubstr("$.design.width: got 0; must be a number above 0"));
     EXPECT_THAT(refused(config(R"("width": 0.1)", R"(, "replicates": 2)")), HasSubstr("$.replicates: got 2"));
     std::string wrong = config(R"("width": 0.1)");
     wrong.replace(wrong.find("\"factor\": \"x3\""), 14, "\"factor\": \"x2\"");
