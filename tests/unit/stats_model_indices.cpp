@@ -1,0 +1,86 @@
+#include "stats/model_indices.hpp"
+#include "tests/support/ask_design.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <variant>
+#include <vector>
+
+using namespace grainsweep::stats;
+using grainsweep::testing::ask_design;
+
+namespace {
+
+struct Learned {
+    std::vector<double> points;
+    std::vector<std::size_t> groups;
+    ResponseModel model;
+};
+
+template <class Response>
+Learned learn(std::size_t d, std::int64_t n, const Response& response) {
+    const auto set = ask_design("halton", d, {{"points", n}, {"sequences", std::int64_t{8}}});
+    std::vector<double> values;
+    std::vector<std::size_t> groups;
+    for (std::size_t i = 0; i < set.size(); ++i) {
+        values.push_back(response(set.point(i)));
+        groups.push_back(i % 8);
+    }
+    return {set.coordinates, groups, std::get<ResponseModel>(fit_response({set.coordinates, d}, values))};
+}
+
+}  // namespace
+
+TEST(ModelIndices, LinearAndProductResponsesAreKnown) {
+    // y = x1 + 2 x2 + 3 x1 x2 over [0, 1]^2: effects (1 + 1.5) x1, (2 + 1.5) x2 and 3 (x1 - 1/2)(x2 - 1/2).
+    const auto learned = learn(2, 80, [](auto u) { return u[0] + 2 * u[1] + 3 * u[0] * u[1]; });
+    const auto indices = model_indices(learned.model, 2, learned.groups);
+    const double first = 6.25 / 12, second = 12.25 / 12, both = 9.0 / 144, whole = first + second + both;
+    EXPECT_NEAR(indices.first[0].value, first / whole, 0.005);
+    EXPECT_NEAR(indices.first[1].value, second / whole, 0.005);
+    EXPECT_NEAR(indices.total[0].value, (first + both) / whole, 0.005);
+    EXPECT_NEAR(indices.interactions[1].value, both / whole, 0.005);
+    EXPECT_NEAR(indices.pairs[0].value, both / whole, 0.005);
+    EXPECT_LT(indices.total[0].half_width, 0.05);
+}
+
+TEST(ModelIndices, IshigamiFromFewerPointsThanADesignForIt) {
+    // S = 0.3139, 0.4424, 0; T = 0.5576, 0.4424, 0.2437; all interaction is of x1 and x3 (Ishigami & Homma 1990).
+    const auto learned = learn(3, 400, [](auto u) {
+        const auto x = [&](std::size_t j) { return std::numbers::pi * (2 * u[j] - 1); };
+        return std::sin(x(0)) + 7 * std::pow(std::sin(x(1)), 2) + 0.1 * std::pow(x(2), 4) * std::sin(x(0));
+    });
+    const auto indices = model_indices(learned.model, 3, learned.groups);
+    const double first[] = {0.3139, 0.4424, 0}, total[] = {0.5576, 0.4424, 0.2437};
+    for (std::size_t j = 0; j < 3; ++j) {
+        EXPECT_NEAR(indices.first[j].value, first[j], 0.03);
+        EXPECT_NEAR(indices.total[j].value, total[j], 0.03);
+    }
+    EXPECT_NEAR(indices.pairs[1].value, 0.2437, 0.03);
+    EXPECT_NEAR(indices.pairs[0].value, 0, 0.02);
+    EXPECT_NEAR(indices.pairs[2].value, 0, 0.02);
+}
+
+TEST(ModelIndices, FeaturesMayBeFunctionsOfTheFactors) {
+    // The model knows one feature, x1 + x2; the indices are those of the two factors.
+    const auto set = ask_design("halton", 2, {{"points", std::int64_t{60}}});
+    std::vector<double> feature, values;
+    for (std::size_t i = 0; i < set.size(); ++i) {
+        feature.push_back(set.point(i)[0] + set.point(i)[1]);
+        values.push_back(feature.back());
+    }
+    const auto model = std::get<ResponseModel>(fit_response({feature, 1}, values, {.low = {0}, .high = {2}}));
+    const FeatureMap sum = [](Rows factors) {
+        std::vector<double> features;
+        for (std::size_t i = 0; i < factors.size(); ++i) features.push_back(factors.row(i)[0] + factors.row(i)[1]);
+        return features;
+    };
+    const auto indices = model_indices(model, 2, {}, sum);
+    EXPECT_NEAR(indices.first[0].value, 0.5, 0.005);
+    EXPECT_NEAR(indices.total[1].value, 0.5, 0.005);
+    EXPECT_THROW((void)model_indices(model, 2), std::invalid_argument);
+    EXPECT_THROW((void)model_indices(model, 2, std::vector<std::size_t>(3, 0), sum), std::invalid_argument);
+}
