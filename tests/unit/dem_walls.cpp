@@ -15,7 +15,7 @@
 #include <vector>
 
 using namespace grainsweep;
-using geometry::norm;
+using namespace grainsweep::geometry;
 using tests::all_moving_walls;
 using tests::one_sphere;
 
@@ -116,14 +116,38 @@ TEST(DemWalls, WhatCannotBeIsRefused) {
     EXPECT_NO_THROW((void)dem::make_engine(setup, {}));
 }
 
-// Across a periodic face a roller is met through its image.
+// Across a periodic face a roller is met through its image, with the velocity of its surface there, and feels it so.
 TEST(DemWalls, PeriodicImagesAreMet) {
     const dem::Cylinder roller{.point = {0.0495, 0, 0}, .axis = {0, 1, 0}, .radius = 2e-3, .side = dem::Side::outside};
-    auto setup = one_sphere({-0.0505 + 2e-3 + 1.01e-3, 0, 0}, {-0.3, 0, 0}, {roller});
+    const dem::Rotation turns{.point = roller.point, .axis = {0, 1, 0}, .speed = 100};
+    auto setup = one_sphere({-0.0505 + 2e-3 + 1.01e-3, 0, 0}, {-0.3, 0, 0}, {{roller, {turns}}});
+    auto beside = setup;
     setup.domain.periodic = {true, true, false};
-    const auto engine = dem::make_engine(setup, {});
-    engine->run(600);
-    EXPECT_NEAR(tests::state_of(*engine).velocity[0][0], 0.15, 1e-3);
+    const auto across = dem::make_engine(setup, {});
+    beside.spheres[0].position[0] = 0.0495 + 2e-3 + 1.01e-3;
+    beside.domain.high[0] = 0.06;
+    const auto straight = dem::make_engine(beside, {});
+    bool touched = false;
+    std::vector<dem::ContactForce> here, there;
+    for (int k = 0; k < 60; ++k) {
+        across->run(10), straight->run(10);
+        const auto load = across->wall_load(0, roller.point), expected = straight->wall_load(0, roller.point);
+        EXPECT_LT(norm(load.force - expected.force), 1e-8 * (norm(expected.force) + 1));
+        EXPECT_LT(norm(load.torque - expected.torque), 1e-8 * (norm(expected.torque) + 1e-3));
+        EXPECT_NEAR(load.work, expected.work, 1e-9 * (std::abs(expected.work) + 1e-6));
+        across->contacts(here), straight->contacts(there);
+        ASSERT_EQ(here.size(), there.size());
+        if (here.empty()) continue;
+        touched = true;
+        EXPECT_LT(norm(here[0].tangential_force - there[0].tangential_force),
+                  1e-8 * (norm(there[0].tangential_force) + 1));
+    }
+    EXPECT_TRUE(touched);
+    const auto a = tests::state_of(*across), b = tests::state_of(*straight);
+    EXPECT_NEAR(a.velocity[0][0], 0.15, 5e-3);
+    EXPECT_GT(std::abs(b.velocity[0][2]), 0.05) << "carried along";
+    EXPECT_LT(norm(a.velocity[0] - b.velocity[0]), 1e-9);
+    EXPECT_LT(norm(a.angular_velocity[0] - b.angular_velocity[0]), 1e-6);
 }
 
 // Whatever the bytes of a mesh in a checkpoint are, it is refused with a sentence or goes on to an answer or a fault.

@@ -212,7 +212,8 @@ void ClearEngine<Laws, case_needs>::wall_contacts(Contacts& contacts) {
     for (std::size_t k = 0; k < contacts.touches.size(); ++k) {
         const auto& [entry, place] = contacts.touches[k];
         const std::size_t i = contacts.near[entry];
-        const Vec3 wall_velocity = twist.at(p_.position[i] - place.distance * place.normal);
+        const Vec3 x = contacts.wall.image().of(p_.position[i]);  // where the wall is
+        const Vec3 wall_velocity = twist.at(x - place.distance * place.normal);
         auto t = touch(i, place, wall_velocity);
         Memory none{};
         Memory& memory = memory_at(contacts.memory, k, none);
@@ -226,7 +227,7 @@ void ClearEngine<Laws, case_needs>::wall_contacts(Contacts& contacts) {
         p_.force[i] += f;
         total += f;
         power += dot(f, wall_velocity);
-        turn += cross(p_.position[i] - arm * t.normal - twist.pivot, f);
+        turn += cross(x - arm * t.normal - twist.pivot, f);
         if constexpr (needs.spin) p_.torque[i] += arm * cross(t.normal, r.resistance);
         if constexpr (Laws::rolls) {
             p_.torque[i] -= r.rolling;
@@ -281,8 +282,8 @@ void ClearEngine<Laws, case_needs>::for_each_touched_wall(Visit&& visit) const {
             const std::size_t i = contacts.near[entry];
             Memory memory{};
             if constexpr (Laws::remembers) memory = contacts.memory[k];
-            const Vec3 v = contacts.wall.twist().at(p_.position[i] - place.distance * place.normal);
-            auto t = touch(i, place, v);
+            const Vec3 x = contacts.wall.image().of(p_.position[i]);
+            auto t = touch(i, place, contacts.wall.twist().at(x - place.distance * place.normal));
             if constexpr (Laws::reaches) contacts.laws.begin(t, memory.data());
             if (t.touching) visit(i, w, t, memory);
         }
