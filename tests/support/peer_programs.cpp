@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -25,7 +26,8 @@ std::ofstream open(const std::filesystem::path& file) {
     return out;
 }
 
-/// Header and particles of a data file; LIGGGHTS's granular and LAMMPS's sphere style agree.
+}  // namespace
+
 void write_data(const dem::Setup& s, int types, const std::filesystem::path& file) {
     auto out = open(file);
     out << fmt::format("state\n\n{} atoms\n{} atom types\n\n", s.spheres.size(), types);
@@ -49,13 +51,16 @@ std::string gravity_line(const dem::Vec3& g) {
                        g[0], g[1], g[2]);
 }
 
+namespace {
+
 std::string repeated(double value, int times) {
     std::string text;
     for (int i = 0; i < times; ++i) text += fmt::format(" {:.17g}", value);
     return text;
 }
 
-/// Global material properties of LIGGGHTS for `types` types of one material.
+}  // namespace
+
 std::string properties(const dem::Material& m, int types) {
     std::string t =
         fmt::format("fix m1 all property/global youngsModulus peratomtype{}\n", repeated(m.youngs_modulus, types)) +
@@ -67,8 +72,14 @@ std::string properties(const dem::Material& m, int types) {
     pairs("m3", "coefficientRestitution", m.restitution);
     pairs("m4", "coefficientFriction", m.friction);
     if (m.cohesion > 0) pairs("m5", "cohesionEnergyDensity", m.cohesion);
+    if (m.rolling_friction > 0) {
+        pairs("m6", "coefficientRollingFriction", m.rolling_friction);
+        pairs("m7", "coefficientRollingViscousDamping", m.rolling_damping);
+    }
     return t;
 }
+
+namespace {
 
 /// LAMMPS's Hertz: k_n = 4/3 E*, k_t = 8 G*, damping gamma_n m* sqrt(R* d) v instead of the exponent 1/4 that makes
 /// the restitution constant; gamma_n such that an impact at the powder's speeds loses about as much.
@@ -90,6 +101,7 @@ bool installed(const std::string& program) {
 
 Ran run_timed(const std::vector<std::string>& argv, const std::filesystem::path& folder) {
     const auto output = folder / "peer_output.txt";
+    const auto start = std::chrono::steady_clock::now();
     const pid_t child = fork();
     if (child < 0) throw std::runtime_error("cannot start a process");
     if (child == 0) {
@@ -109,6 +121,7 @@ Ran run_timed(const std::vector<std::string>& argv, const std::filesystem::path&
     Ran ran;
     ran.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     ran.user_seconds = static_cast<double>(used.ru_utime.tv_sec) + 1e-6 * static_cast<double>(used.ru_utime.tv_usec);
+    ran.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     std::ifstream in(output);
     std::ostringstream text;
     text << in.rdbuf();

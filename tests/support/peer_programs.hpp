@@ -18,11 +18,17 @@ namespace grainsweep::test {
 
 struct Ran {
     int code = -1;
-    double user_seconds = 0;
+    double user_seconds = 0, wall_seconds = 0;
     std::string out;
 };
 /// Runs a program to its end in `folder`, one thread, standard output and error caught.
 [[nodiscard]] Ran run_timed(const std::vector<std::string>& argv, const std::filesystem::path& folder);
+
+/// Header and particles of a data file; LIGGGHTS's granular and LAMMPS's sphere style agree.
+void write_data(const dem::Setup& setup, int types, const std::filesystem::path& file);
+/// Material properties of LIGGGHTS for `types` types of one material.
+[[nodiscard]] std::string properties(const dem::Material& material, int types);
+[[nodiscard]] std::string gravity_line(const dem::Vec3& gravity);
 
 /// What a state says in a few numbers: means over the mobile particles.
 struct Figures {
