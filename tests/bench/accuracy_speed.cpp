@@ -13,7 +13,6 @@
 // The last three are chaotic: single runs say nothing, means over seeds differ by the bias of the setting, and the
 // standard error of that difference stands beside it. Cost is processor time of this thread, every step and list
 // included. One JSON line per setting; the figure joins the settings no other beats.
-#include <ctime>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -36,15 +35,14 @@
 
 using namespace grainsweep;
 using dem::Method;
+using test::compare_means;
+using test::error_of_mean;
+using test::mean;
+using test::processor_seconds;
+using test::Runs;
 using test::Setting;
 
 namespace {
-
-double processor_seconds() {
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 /// A numerical setting of an engine.
 struct Numerics {
@@ -80,41 +78,6 @@ std::vector<Numerics> numerics(double finest, bool exact, bool softened) {
         all.push_back({"step 0.2 E x 10", 0.2, true, 0, 10});
     }
     return all;
-}
-
-/// One figure per seed.
-using Runs = std::vector<double>;
-
-double mean(const Runs& runs) {
-    double sum = 0;
-    for (const double x : runs) sum += x / static_cast<double>(runs.size());
-    return sum;
-}
-
-double error_of_mean(const Runs& runs) {
-    const double centre = mean(runs);
-    double square = 0;
-    for (const double x : runs) square += (x - centre) * (x - centre);
-    const auto n = static_cast<double>(runs.size());
-    return std::sqrt(square / (n - 1) / n);
-}
-
-/// Fills in errors against the setting marked as the reference: means of the differences from seed to seed, since what
-/// a start has in common with itself does not count.
-void compare_means(std::vector<Setting>& settings, const std::vector<Runs>& runs) {
-    std::size_t reference = 0;
-    for (std::size_t k = 0; k < settings.size(); ++k)
-        if (settings[k].is_reference) reference = k;
-    const double scale = mean(runs[reference]);
-    for (std::size_t k = 0; k < settings.size(); ++k) {
-        if (k == reference) continue;
-        Runs differences;
-        for (std::size_t seed = 0; seed < std::min(runs[k].size(), runs[reference].size()); ++seed)
-            differences.push_back((runs[k][seed] - runs[reference][seed]) / scale);
-        settings[k].error = mean(differences);
-        settings[k].unstable = std::isnan(settings[k].error);
-        settings[k].uncertainty = error_of_mean(differences);
-    }
 }
 
 // ---- collision -------------------------------------------------------------------------------------------------

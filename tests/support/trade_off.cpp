@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <fstream>
 #include <stdexcept>
 
@@ -74,6 +75,42 @@ std::string panel(const std::vector<Setting>& settings, double x0, double y0) {
 }
 
 }  // namespace
+
+double processor_seconds() {
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+double mean(const Runs& runs) {
+    double sum = 0;
+    for (const double x : runs) sum += x / static_cast<double>(runs.size());
+    return sum;
+}
+
+double error_of_mean(const Runs& runs) {
+    const double centre = mean(runs);
+    double square = 0;
+    for (const double x : runs) square += (x - centre) * (x - centre);
+    const auto n = static_cast<double>(runs.size());
+    return std::sqrt(square / (n - 1) / n);
+}
+
+void compare_means(std::vector<Setting>& settings, const std::vector<Runs>& runs) {
+    std::size_t reference = 0;
+    for (std::size_t k = 0; k < settings.size(); ++k)
+        if (settings[k].is_reference) reference = k;
+    const double scale = mean(runs[reference]);
+    for (std::size_t k = 0; k < settings.size(); ++k) {
+        if (k == reference) continue;
+        Runs differences;
+        for (std::size_t seed = 0; seed < std::min(runs[k].size(), runs[reference].size()); ++seed)
+            differences.push_back((runs[k][seed] - runs[reference][seed]) / scale);
+        settings[k].error = mean(differences);
+        settings[k].unstable = std::isnan(settings[k].error);
+        settings[k].uncertainty = error_of_mean(differences);
+    }
+}
 
 void mark_dominated(std::vector<Setting>& settings) {
     for (auto& s : settings)

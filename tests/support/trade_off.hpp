@@ -19,6 +19,18 @@ struct Setting {
     bool dominated = false;     ///< another of its scene costs less and errs less
 };
 
+/// One figure per seed.
+using Runs = std::vector<double>;
+
+[[nodiscard]] double mean(const Runs& runs);
+[[nodiscard]] double error_of_mean(const Runs& runs);
+/// Fills in errors against the setting marked as the reference: means of the differences from seed to seed, since what
+/// a start has in common with itself does not count.
+void compare_means(std::vector<Setting>& settings, const std::vector<Runs>& runs);
+
+/// Of this thread.
+[[nodiscard]] double processor_seconds();
+
 /// Marks the settings for which another one of the same scene is both cheaper and closer; an error counts as no less
 /// than its uncertainty.
 void mark_dominated(std::vector<Setting>& settings);

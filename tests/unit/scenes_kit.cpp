@@ -9,10 +9,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
 using namespace grainsweep;
+using geometry::norm;
+using geometry::operator-;
 
 namespace {
 
@@ -103,6 +106,31 @@ TEST(Kit, ALooseFillingTouchesNothing) {
     }
     EXPECT_EQ(kit::loose_filling({}, 0.2, 7, tube, 5, "full").at(6).radius, 0.1);
     EXPECT_THROW((void)kit::loose_filling({}, 0.2, 1000, tube, 5, "full"), std::invalid_argument) << "0.67";
+}
+
+// A lattice in a tube: no contacts, as high as it says, and none at all where spheres or tube are too wide or narrow.
+TEST(Kit, ALatticeInATubeTouchesNothing) {
+    const auto sizes = particles::SizeDistribution::uniform(0.1);
+    const kit::TubeLattice lattice(1, 0.2, sizes.largest() * 0.2, 300);
+    const auto spheres = lattice.filled(sizes, 0.5, 0.3, 7);
+    ASSERT_EQ(spheres.size(), 300U);
+    double top = 0;
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+        const auto& a = spheres[i];
+        EXPECT_LE(std::hypot(a.position[0], a.position[1]) + a.radius, 1);
+        EXPECT_GE(a.position[2] - a.radius, 0.5);
+        EXPECT_LE(std::abs(a.velocity[0]), 0.3);
+        top = std::max(top, a.position[2] + a.radius);
+        for (std::size_t j = 0; j < i; ++j)
+            EXPECT_GE(norm(a.position - spheres[j].position), a.radius + spheres[j].radius);
+    }
+    EXPECT_NEAR(top - 0.5, lattice.height(), 0.03);
+    constexpr double none = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(kit::TubeLattice(1, 0.2, 0.24, 300).height(), none) << "wide spheres";
+    EXPECT_EQ(kit::TubeLattice(0.1, 0.2, 0.2, 300).height(), none) << "a narrow tube";
+    EXPECT_EQ(kit::TubeLattice(1, 0.2, 0.2, 20).height(), none) << "less than a layer";
+    EXPECT_EQ(kit::TubeLattice(1e6, 1e-6, 1e-6, 2000).height(), none);
+    EXPECT_DOUBLE_EQ(kit::TubeLattice(0.3, 0.2, 0.2, 2).height(), (0.1 + 2 * 1.15) * 0.2) << "one above the other";
 }
 
 TEST(Kit, SizesInAFileAreTakenAsTheyAre) {

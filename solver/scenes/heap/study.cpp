@@ -14,7 +14,8 @@
 namespace grainsweep::heap {
 namespace {
 
-constexpr double loose_fraction = 0.22;             // of the filling, where centres can be
+constexpr double loose_fraction = 0.22;             // of a random filling, where centres can be
+constexpr double start_speed = 0.2;                 // sqrt(g D), of the lattice
 constexpr double heap_fraction = 0.58;              // of the cone that sets the reach
 constexpr double flat_tangent = 0.268;              // of 15 degrees
 constexpr double beyond_the_cone = 2.5;             // its radii
@@ -46,6 +47,16 @@ double largest(const Study& s) {
     return s.sizes.largest() * s.diameter;
 }
 
+/// Of a loose random filling.
+double random_height(const Study& s) {
+    const double inset = s.tube_radius - largest(s) / 2;
+    return solid_volume(s) / (loose_fraction * std::numbers::pi * inset * inset);
+}
+
+kit::TubeLattice lattice_of(const Study& s) {
+    return {s.tube_radius, s.diameter, largest(s), s.particles};
+}
+
 /// Of the rough part of the plate.
 double rough_radius(const Study& s) {
     return rough_share * s.reach();
@@ -57,12 +68,6 @@ double glued_spheres(const Study& s) {
 }
 
 }  // namespace
-
-double Study::fill_height() const {
-    const double inset = tube_radius - largest(*this) / 2;
-    return solid_volume(*this) / (loose_fraction * std::numbers::pi * inset * inset) + largest(*this) +
-           tube_gap * diameter;
-}
 
 double Study::reach() const {
     const double cone = std::cbrt(3 * solid_volume(*this) / (heap_fraction * std::numbers::pi * flat_tangent));
@@ -93,14 +98,15 @@ Study study_of(const Inputs& inputs, const Files* files) {
     require(2 * s.tube_radius >= narrowest * largest(s),
             text("tube_diameter of %.4g m is less than %.0f of the largest particles, %.4g m wide", 2 * s.tube_radius,
                  narrowest, largest(s)));
-    require(s.fill_height() < 1e3 * s.tube_radius,
+    s.fill_height = std::min(random_height(s), lattice_of(s).height()) + largest(s) + tube_gap * s.diameter;
+    require(s.fill_height < 1e3 * s.tube_radius,
             text("the particles would fill the tube %.3g of its diameters high: make it wider",
-                 s.fill_height() / (2 * s.tube_radius)));
+                 s.fill_height / (2 * s.tube_radius)));
     require(glued_spheres(s) <= most_glued,
             text("the rough plate would need %.4g glued particles; at most %.4g can be simulated", glued_spheres(s),
                  most_glued));
 
-    const double fastest = std::max(std::sqrt(2 * s.gravity * s.fill_height()), s.lift_speed);
+    const double fastest = std::max(std::sqrt(2 * s.gravity * s.fill_height), s.lift_speed);
     s.time_step = q::powder.step(inputs, s.sizes.smallest() * s.diameter / 2, fastest);
     const double settle = q::settle_time(inputs), end = q::end_time(inputs);
     require((settle + end) / s.time_step <= most_steps,
@@ -128,10 +134,25 @@ void glue(dem::Setup& setup, const Study& s, std::uint64_t seed) {
     }
 }
 
+/// On a lattice; at random where that is no higher, as in a narrow tube or of very unequal spheres.
+std::vector<dem::Sphere> powder_in_tube(const Study& s, std::uint64_t seed) {
+    const double floor = tube_gap * s.diameter;
+    const auto lattice = lattice_of(s);
+    if (lattice.height() < random_height(s))
+        return lattice.filled(s.sizes, floor, start_speed * std::sqrt(s.gravity * s.diameter), seed);
+    const particles::Room tube{
+        {-s.tube_radius, -s.tube_radius, floor},
+        {s.tube_radius, s.tube_radius, s.fill_height},
+        {},
+        [radius = s.tube_radius](const dem::Vec3& x, double r) { return std::hypot(x[0], x[1]) + r <= radius; }};
+    return kit::loose_filling(s.sizes, s.diameter, s.particles, tube, seed,
+                              "the tube cannot be filled loosely with these particles: make it wider");
+}
+
 }  // namespace
 
 dem::Setup filled(const Study& s, std::uint64_t seed) {
-    const double out = s.reach(), height = s.fill_height(), d = s.diameter;
+    const double out = s.reach(), height = s.fill_height, d = s.diameter;
     dem::Setup setup;
     setup.domain = {{-out, -out, -3 * largest(s)}, {out, out, height + 4 * largest(s)}, {}};
     setup.material = s.material;
@@ -146,13 +167,7 @@ dem::Setup filled(const Study& s, std::uint64_t seed) {
                   .outer = s.tube_radius + tube_wall * d,
                   .length = height},
         std::vector<geometry::Motion>{dem::Translation{.velocity = {0, 0, s.lift_speed}, .start = lift_start}}, s.wall);
-    const particles::Room tube{
-        {-s.tube_radius, -s.tube_radius, tube_gap * d},
-        {s.tube_radius, s.tube_radius, height},
-        {},
-        [radius = s.tube_radius](const dem::Vec3& x, double r) { return std::hypot(x[0], x[1]) + r <= radius; }};
-    setup.spheres = kit::loose_filling(s.sizes, d, s.particles, tube, seed,
-                                       "the tube cannot be filled loosely with these particles: make it wider");
+    setup.spheres = powder_in_tube(s, seed);
     if (s.rough) glue(setup, s, seed);
     return setup;
 }

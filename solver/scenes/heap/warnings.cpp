@@ -35,7 +35,7 @@ std::vector<Warning> warnings_of(const Inputs& inputs) {
                                  "collapses by itself, and the heap is flatter",
                                  s.lift_speed, free)});
     const double settling = static_cast<double>(s.settle_steps) * s.time_step;
-    const double fall = std::sqrt(2 * s.fill_height() / s.gravity);
+    const double fall = std::sqrt(2 * s.fill_height / s.gravity);
     if (settling < fall)
         warnings.push_back({"powder still falling",
                             text("settle_time of %.3g s ends before a particle has fallen the height of the loose "
@@ -47,7 +47,7 @@ std::vector<Warning> warnings_of(const Inputs& inputs) {
                             text("the tube is lifted by %.3g m until end_time, less than its diameter, %.3g m: powder "
                                  "may still be in it",
                                  lifted, 2 * s.tube_radius)});
-    const double speed = std::sqrt(2 * s.gravity * s.fill_height());
+    const double speed = std::sqrt(2 * s.gravity * s.fill_height);
     const double overlap = kit::impact_overlap(s.material, s.diameter, speed);
     if (overlap > largest_overlap)
         warnings.push_back({"particles too soft for the fall",
