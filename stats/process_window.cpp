@@ -1,5 +1,6 @@
 #include "stats/process_window.hpp"
 
+#include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/erf.hpp>
 #include <boost/random/sobol.hpp>
 
@@ -26,12 +27,19 @@ double spread(const Prediction& p, Judged judged) {
     return judged == Judged::mean ? p.mean_error : p.run_error();
 }
 
-/// P(low <= y <= high), y ~ N(mean, error^2); a certain mean is inside or it is not.
-double within(const Bounds& bounds, double mean, double error) {
-    if (!(error > 0)) return mean >= bounds.low && mean <= bounds.high ? 1 : 0;
+/// Distribution function of a prediction in its standard errors: Student's, normal where freedom is infinite.
+double cdf(double u, double freedom) {
+    if (std::isinf(u)) return u > 0 ? 1 : 0;
+    return std::isfinite(freedom) ? boost::math::cdf(boost::math::students_t(freedom), u) : normal_cdf(u);
+}
+
+/// P(low <= y <= high) of a prediction; a certain one is inside or it is not.
+double within(const Bounds& bounds, const Prediction& p, Judged judged) {
+    const double error = spread(p, judged);
+    if (!(error > 0)) return p.mean >= bounds.low && p.mean <= bounds.high ? 1 : 0;
     // Differences of the nearer tail: no cancellation far out.
-    const double low = (bounds.low - mean) / error, high = (bounds.high - mean) / error;
-    return low > 0 ? normal_cdf(-low) - normal_cdf(-high) : normal_cdf(high) - normal_cdf(low);
+    const double low = (bounds.low - p.mean) / error, high = (bounds.high - p.mean) / error;
+    return low > 0 ? cdf(-low, p.freedom) - cdf(-high, p.freedom) : cdf(high, p.freedom) - cdf(low, p.freedom);
 }
 
 std::vector<std::vector<Prediction>> predict_all(std::span<const ModelAt> models) {
@@ -44,14 +52,19 @@ std::vector<std::vector<Prediction>> predict_all(std::span<const ModelAt> models
     return predictions;
 }
 
-/// Standard normal deviates of Sobol points, cells centred: (integration_points, d).
-std::vector<double> normal_points(std::size_t d) {
+/// Deviates of Sobol points, cells centred, by the distribution of each model's predictions: (integration_points, d).
+std::vector<double> deviates(std::span<const std::vector<Prediction>> predictions) {
+    const std::size_t d = predictions.size();
     boost::random::sobol sequence(d);
     const double cells = static_cast<double>(boost::random::sobol::max()) + 1;
     std::vector<double> points(integration_points * d);
-    for (double& z : points) {
-        const double u = (static_cast<double>(sequence()) + 0.5 * cells / integration_points) / cells;
-        z = -std::numbers::sqrt2 * boost::math::erfc_inv(2 * std::min(u, 1 - 0x1p-53));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double drawn = (static_cast<double>(sequence()) + 0.5 * cells / integration_points) / cells;
+        const double u = std::min(drawn, 1 - 0x1p-53);
+        const auto& row = predictions[i % d];
+        const double freedom = row.empty() ? std::numeric_limits<double>::infinity() : row.front().freedom;
+        points[i] = std::isfinite(freedom) ? boost::math::quantile(boost::math::students_t(freedom), u)
+                                           : -std::numbers::sqrt2 * boost::math::erfc_inv(2 * u);
     }
     return points;
 }
@@ -79,7 +92,7 @@ std::vector<double> probability_within(std::span<const ModelAt> models, std::spa
     std::vector<double> probability(models.front().points.size(), 1);
     for (std::size_t k = 0; k < models.size(); ++k)
         for (std::size_t i = 0; i < probability.size(); ++i)
-            probability[i] *= within(bounds[k], predictions[k][i].mean, spread(predictions[k][i], judged));
+            probability[i] *= within(bounds[k], predictions[k][i], judged);
     return probability;
 }
 
@@ -87,13 +100,13 @@ std::vector<double> probability_of(std::span<const std::vector<Prediction>> pred
                                    Judged judged) {
     if (predictions.empty()) throw std::invalid_argument("process window: no model");
     const std::size_t d = predictions.size(), n = predictions.front().size();
-    const std::vector<double> deviates = normal_points(d);
+    const std::vector<double> points = deviates(predictions);
     std::vector<double> probability(n), responses(d);
     for (std::size_t i = 0; i < n; ++i) {
         std::size_t held = 0;
         for (std::size_t q = 0; q < integration_points; ++q) {
             for (std::size_t k = 0; k < d; ++k)
-                responses[k] = predictions[k][i].mean + spread(predictions[k][i], judged) * deviates[q * d + k];
+                responses[k] = predictions[k][i].mean + spread(predictions[k][i], judged) * points[q * d + k];
             held += condition(responses) ? 1U : 0U;
         }
         probability[i] = static_cast<double>(held) / integration_points;

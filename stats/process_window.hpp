@@ -3,10 +3,11 @@
 // Models of different responses are taken as independent of one another; each has features of its own, so that every
 // model comes with the same points in its own features.
 //
-//   P(condition at x) = integral over the responses y_k ~ N(mean_k(x), e_k(x)^2)
-//       e_k = standard error of the mean (is the mean response inside?), or of a single run with its scatter
+//   P(condition at x) = integral over the responses y_k = mean_k(x) + e_k(x) t,  t of Student's distribution
+//       e_k = standard error of the mean (is the mean response inside?), or of a single run with its scatter; degrees
+//       of freedom as Prediction says (all of one model alike)
 //
-// Bounds low <= y_k <= high for all k have a closed form (a product of normal integrals); any other condition is
+// Bounds low <= y_k <= high for all k have a closed form (a product); any other condition is
 // integrated over 1,024 Sobol points, the same for all x, so that contours are smooth (error about 0.002).
 //
 // Next cases: augmented expected improvement of Huang, Allen, Notz & Zeng (2006), J. Global Optim. 34, 441, eq. 12

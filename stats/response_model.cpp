@@ -1,7 +1,10 @@
 #include "stats/response_model.hpp"
 
+#include "stats/confidence.hpp"
 #include "stats/response/fit.hpp"
 #include "stats/response/state.hpp"
+
+#include <boost/math/distributions/students_t.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -62,6 +65,16 @@ std::optional<Refusal> reason_to_refuse(Rows points, std::span<const double> val
     return std::nullopt;
 }
 
+double student_quantile(std::int64_t freedom, double probability) {
+    return boost::math::quantile(boost::math::students_t(static_cast<double>(freedom)), probability);
+}
+
+/// Half-width of a 95 % interval in standard errors.
+double half_width_factor(double freedom) {
+    if (!std::isfinite(freedom)) return 1.959963984540054;
+    return boost::math::quantile(boost::math::students_t(freedom), 0.975);
+}
+
 /// Leave-one-out figures and the local noise, which rests on them.
 void assess(ResponseModel::State& state) {
     const Kriging& k = state.kriging;
@@ -74,8 +87,8 @@ void assess(ResponseModel::State& state) {
     q.rests_on = static_cast<std::size_t>(k.size());
     const double spread = std::sqrt((k.values.array() - k.values.mean()).square().mean());
     q.leave_one_out_error = std::sqrt(out.residual.array().square().mean()) / spread;
-    q.coverage_50 = (scores < 0.674489750196082).cast<double>().mean();
-    q.coverage_95 = (scores < 1.959963984540054).cast<double>().mean();
+    q.coverage_50 = (scores < student_quantile(state.noise.freedom(), 0.75)).cast<double>().mean();
+    q.coverage_95 = (scores < student_factor(state.noise.freedom())).cast<double>().mean();
     q.noise_share = std::min(1.0, k.h.noise() * local.mean() / (spread * spread));
     q.learned_map = !k.h.shear.isIdentity(0);
     for (Eigen::Index i = 0; i < k.size(); ++i) {
@@ -89,6 +102,14 @@ void assess(ResponseModel::State& state) {
 
 double Prediction::run_error() const {
     return std::hypot(mean_error, scatter);
+}
+
+double Prediction::mean_half_width() const {
+    return half_width_factor(freedom) * mean_error;
+}
+
+double Prediction::run_half_width() const {
+    return half_width_factor(freedom) * run_error();
 }
 
 Eigen::MatrixXd ResponseModel::State::in_box(Rows points) const {
@@ -113,7 +134,8 @@ std::vector<Prediction> ResponseModel::predict(Rows points) const {
     for (Eigen::Index i = 0; i < at.rows(); ++i) {
         const bool inside = x.row(i).minCoeff() >= -outside_by && x.row(i).maxCoeff() <= 1 + outside_by;
         result.push_back({s.offset + s.scale * p.mean(i), s.scale * std::sqrt(local(i) * p.variance(i)),
-                          s.scale * std::sqrt(local(i) * s.kriging.h.noise()), inside});
+                          s.scale * std::sqrt(local(i) * s.kriging.h.noise()), inside,
+                          static_cast<double>(s.noise.freedom())});
     }
     return result;
 }
@@ -183,7 +205,8 @@ std::variant<ResponseModel, Refusal> fit_response(Rows points, std::span<const d
     Eigen::VectorXd z = (y.array() - state->offset) / state->scale;
     state->quality.cases = used.size();
     state->quality.excluded = values.size() - used.size();
-    const auto hyperparameters = response::find_hyperparameters(x, z, {options.starts, options.cases_in_fit, options.map});
+    const auto hyperparameters =
+        response::find_hyperparameters(x, z, {options.starts, options.cases_in_fit, options.map});
     if (used.size() > options.most_cases) {
         const auto chosen = response::space_filling_choice(x, options.most_cases);
         x = x(chosen, Eigen::all).eval();

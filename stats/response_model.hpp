@@ -81,9 +81,14 @@ struct Prediction {
     double mean_error = std::numeric_limits<double>::quiet_NaN();  ///< standard error of the mean
     double scatter = std::numeric_limits<double>::quiet_NaN();     ///< standard deviation of a single run about it
     bool inside = true;                                            ///< false: outside the box, an extrapolation
+    /// Of the two errors, which rest on few cases nearby: intervals are Student's, not normal.
+    double freedom = std::numeric_limits<double>::infinity();
 
     /// Standard deviation of a single run about the predicted mean: sqrt(mean_error^2 + scatter^2).
     [[nodiscard]] double run_error() const;
+    /// 95 % half-widths, of the mean and of a single run about its predicted mean.
+    [[nodiscard]] double mean_half_width() const;
+    [[nodiscard]] double run_half_width() const;
 };
 
 /// At several points together.

@@ -33,6 +33,10 @@ Eigen::Index LocalNoise::neighbours() const {
                                     std::max<Eigen::Index>(points.rows() - 1, 1));
 }
 
+std::int64_t LocalNoise::freedom() const {
+    return neighbours() + static_cast<std::int64_t>(prior_cases);
+}
+
 Eigen::VectorXd LocalNoise::factors(const Eigen::MatrixXd& at) const {
     Eigen::VectorXd result(at.rows());
     Eigen::ArrayXd squared(points.rows());

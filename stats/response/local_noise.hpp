@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include <cstddef>
+#include <cstdint>
 
 namespace grainsweep::stats::response {
 
@@ -22,6 +22,8 @@ struct LocalNoise {
     /// At the cases themselves, each without itself.
     [[nodiscard]] Eigen::VectorXd factors_without_self() const;
     [[nodiscard]] Eigen::Index neighbours() const;
+    /// Degrees of freedom, k + 4.
+    [[nodiscard]] std::int64_t freedom() const;
 };
 
 }  // namespace grainsweep::stats::response

@@ -29,7 +29,8 @@ Learned learn(std::size_t d, std::int64_t n, const Response& response) {
         values.push_back(response(set.point(i)));
         groups.push_back(i % 8);
     }
-    return {set.coordinates, groups, std::get<ResponseModel>(fit_response({set.coordinates, d}, values))};
+    return {set.coordinates, groups,
+            std::get<ResponseModel>(fit_response({set.coordinates, d}, values, {.map = LearnedMap::never}))};
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <boost/math/distributions/students_t.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -40,10 +42,6 @@ std::vector<double> grid(std::size_t n) {
     return points;
 }
 
-double normal_cdf(double u) {
-    return 0.5 * std::erfc(-u / std::sqrt(2.0));
-}
-
 }  // namespace
 
 TEST(ProcessWindow, BoundsAndAnyConditionAgree) {
@@ -58,12 +56,12 @@ TEST(ProcessWindow, BoundsAndAnyConditionAgree) {
             models, [](auto y) { return y[0] >= 0.85 && y[1] >= 0.5 && y[1] <= 1.2; }, judged);
         for (std::size_t i = 0; i < closed.size(); ++i) EXPECT_NEAR(integrated[i], closed[i], 0.01);
     }
-    // One bound, one model: the normal integral of the prediction.
+    // One bound, one model: the distribution function of the prediction.
     const auto p = first.predict(std::vector{0.5, 0.5});
     const std::vector<double> middle{0.5, 0.5};
     const std::vector<ModelAt> alone{{first, {middle, 2}}};
     EXPECT_NEAR(probability_within(alone, std::vector<Bounds>{{.low = 0.9}}, Judged::single_run)[0],
-                normal_cdf((p.mean - 0.9) / p.run_error()), 1e-12);
+                boost::math::cdf(boost::math::students_t(p.freedom), (p.mean - 0.9) / p.run_error()), 1e-12);
 }
 
 TEST(ProcessWindow, ExpectedImprovementIsItsIntegral) {
