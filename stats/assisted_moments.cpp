@@ -312,17 +312,8 @@ void choose(AssistedMoments& result, const AssistedSettings& settings, const Ass
     }
 }
 
-}  // namespace
-
-const AssistedStatistic& AssistedMoments::of(Statistic statistic) const {
-    const auto found = std::ranges::find(assisted_statistics, statistic);
-    if (found == assisted_statistics.end()) throw std::invalid_argument("assisted moments: no such statistic");
-    return statistics[static_cast<std::size_t>(found - assisted_statistics.begin())];
-}
-
-std::variant<AssistedMoments, Refusal> assisted_moments(const AssistedInput& input, const AssistedSettings& settings,
-                                                        const AssistedMoments* previous) {
-    check_sizes(input);
+/// Both estimators, nothing chosen.
+std::variant<AssistedMoments, Refusal> estimate(const AssistedInput& input, const AssistedSettings& settings) {
     const Cases c = gather(input, settings);
     if (const auto reason = reason_to_refuse(input, c)) return *reason;
     Parts parts{std::vector<std::vector<Moment4>>(c.sequences), std::vector<Moment4>(c.sequence.size()),
@@ -339,8 +330,41 @@ std::variant<AssistedMoments, Refusal> assisted_moments(const AssistedInput& inp
         squares += std::pow(c.z(static_cast<Eigen::Index>(i)) - parts.predicted[i], 2);
     result.model_error = std::sqrt(squares / static_cast<double>(result.cases));
     add_assisted(result, c, parts, input.noise_variance_error);
-    choose(result, settings, previous);
     return result;
+}
+
+/// The first half of the rows.
+AssistedInput first_half(const AssistedInput& input) {
+    AssistedInput half = input;
+    const std::size_t n = input.values.size() / 2;
+    half.points.values = input.points.values.first(n * input.points.dimensions);
+    half.values = input.values.first(n);
+    half.sequences = input.sequences.first(n);
+    if (input.noise_variance.size() > 1) half.noise_variance = input.noise_variance.first(n);
+    return half;
+}
+
+}  // namespace
+
+const AssistedStatistic& AssistedMoments::of(Statistic statistic) const {
+    const auto found = std::ranges::find(assisted_statistics, statistic);
+    if (found == assisted_statistics.end()) throw std::invalid_argument("assisted moments: no such statistic");
+    return statistics[static_cast<std::size_t>(found - assisted_statistics.begin())];
+}
+
+std::variant<AssistedMoments, Refusal> assisted_moments(const AssistedInput& input, const AssistedSettings& settings,
+                                                        const AssistedMoments* previous) {
+    check_sizes(input);
+    auto answer = estimate(input, settings);
+    auto* result = std::get_if<AssistedMoments>(&answer);
+    if (result == nullptr) return answer;
+    std::variant<AssistedMoments, Refusal> half = Refusal{};
+    if (previous == nullptr && result->model_error < settings.refused_error) {
+        half = estimate(first_half(input), settings);
+        previous = std::get_if<AssistedMoments>(&half);
+    }
+    choose(*result, settings, previous);
+    return answer;
 }
 
 }  // namespace grainsweep::stats

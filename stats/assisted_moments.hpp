@@ -60,7 +60,8 @@ struct AssistedInput {
     Rows points;                             ///< features of the cases
     std::span<const double> values;          ///< responses; what is not finite is left out
     std::span<const std::size_t> sequences;  ///< of each case, 0 ... S - 1
-    /// Features of points that fill the box of the factors: independent scramblings of one size, one after the other.
+    /// Features of points that fill the factors' ranges as the design does (evenly in the factors, not in features such
+    /// as their logarithms): independent scramblings of one size, one after the other.
     Rows integration;
     std::size_t scramblings = 1;  ///< at least 4 give integration an error of its own
     /// Variance of a single run about its mean: one per case, one for all, or empty: unknown.
@@ -103,7 +104,8 @@ struct AssistedMoments {
     [[nodiscard]] const AssistedStatistic& of(Statistic statistic) const;
 };
 
-/// `previous`: the check before, with fewer cases of the same campaign; none: the model's error alone decides.
+/// `previous`: the check before, with fewer cases of the same campaign; none: the first half of the rows is that check,
+/// and where it is too small for one the model's error alone decides. Rows in the order of the design's points.
 /// Refuses: fewer than 4 sequences, fewer than 2 max(12, 4 (d + 1)) cases, a constant response, and
 /// rare events: more than half of the responses equal and fewer than 30 others (plain errors do not hold there either).
 /// Throws std::invalid_argument where sizes do not match.

@@ -1,6 +1,6 @@
 // How long a response model takes to be made and asked, at 400, 2,400 and 10,000 cases of the spreading response with
 // its noise; one JSON line each. With a table of cases (see table_of_cases.hpp) its leave-one-out figures instead:
-//   bench_response FILE.csv FACTORS RESPONSE...      the first FACTORS columns are factors
+//   bench_response FILE.csv LOW:HIGH,LOW:HIGH,... RESPONSE...      the first columns are factors with these ranges
 #include "stats/response_model.hpp"
 #include "tests/support/known_responses.hpp"
 #include "tests/support/table_of_cases.hpp"
@@ -8,7 +8,6 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
 #include <exception>
 #include <string>
@@ -60,9 +59,9 @@ int main(int argc, char** argv) {
     }
     try {
         const auto table = read_cases(argv[1]);
-        const std::vector<std::string> factors(table.names.begin(), table.names.begin() + std::atoi(argv[2]));
-        const auto features = features_of(table, factors);
-        for (int k = 3; k < argc; ++k) show(argv[k], {features, factors.size()}, table.of(argv[k]));
+        const auto box = read_box(argv[2]);
+        const auto features = features_of(table, 0, box);
+        for (int k = 3; k < argc; ++k) show(argv[k], {features, box.size()}, table.of(argv[k]));
     } catch (const std::exception& error) {
         std::fprintf(stderr, "%s\n", error.what());
         return 2;

@@ -46,18 +46,37 @@ inline TableOfCases read_cases(const std::string& path) {
     return table;
 }
 
-/// Features of the model: a factor's logarithm where its largest value is 2.5 times its smallest, scaled to [0, 1].
-inline std::vector<double> features_of(const TableOfCases& table, const std::vector<std::string>& factors) {
-    const std::size_t d = factors.size(), n = table.columns.front().size();
-    std::vector<double> features(n * d);
-    for (std::size_t j = 0; j < d; ++j) {
-        const auto& column = table.of(factors[j]);
-        const auto [low, high] = std::minmax_element(column.begin(), column.end());
-        const bool logarithm = *low > 0 && *high >= 2.5 * *low;
-        const auto scale = [&](double x) { return logarithm ? std::log(x) : x; };
-        for (std::size_t i = 0; i < n; ++i)
-            features[i * d + j] = (scale(column[i]) - scale(*low)) / (scale(*high) - scale(*low));
+/// How a factor becomes a feature in [0, 1]: by its logarithm where its highest value is 2.5 times its lowest.
+struct FactorScale {
+    double low, high;
+
+    [[nodiscard]] bool logarithmic() const { return low > 0 && high >= 2.5 * low; }
+    [[nodiscard]] double feature(double x) const {
+        return logarithmic() ? std::log(x / low) / std::log(high / low) : (x - low) / (high - low);
     }
+    [[nodiscard]] double at(double u) const { return low + u * (high - low); }
+};
+
+/// "0.1:0.3,1:5" -> the ranges of two factors.
+inline std::vector<FactorScale> read_box(const std::string& text) {
+    std::vector<FactorScale> box;
+    std::string range;
+    for (std::istringstream all(text); std::getline(all, range, ',');) {
+        const auto colon = range.find(':');
+        if (colon == std::string::npos) throw std::runtime_error("a range is LOW:HIGH, not " + range);
+        box.push_back({std::strtod(range.c_str(), nullptr), std::strtod(range.c_str() + colon + 1, nullptr)});
+    }
+    return box;
+}
+
+/// Features of the cases, row-major: factor j is column `first` + j.
+inline std::vector<double> features_of(const TableOfCases& table, std::size_t first,
+                                       const std::vector<FactorScale>& box) {
+    const std::size_t n = table.columns.front().size();
+    std::vector<double> features(n * box.size());
+    for (std::size_t j = 0; j < box.size(); ++j)
+        for (std::size_t i = 0; i < n; ++i)
+            features[i * box.size() + j] = box[j].feature(table.columns.at(first + j)[i]);
     return features;
 }
 

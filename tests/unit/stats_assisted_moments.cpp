@@ -107,14 +107,23 @@ TEST(AssistedMoments, AreThePlainOnesWhereTheModelSaysNothing) {
 
 TEST(AssistedMoments, TheCheckBeforeDecidesWhatIsTaken) {
     const auto asked = ask(known_responses()[2], 104);
-    const auto first = answered(asked);
-    for (const auto& s : first.statistics) EXPECT_TRUE(s.takes_assisted);
-    AssistedMoments before = first;
+    AssistedMoments before;
+    for (auto& s : before.statistics) s.shorter = true;
     before.statistics[0].shorter = false;
-    const auto second = answered(asked, &before);
-    EXPECT_FALSE(second.statistics[0].takes_assisted);
-    EXPECT_EQ(second.statistics[1].takes_assisted, first.statistics[1].shorter);
-    EXPECT_EQ(first.statistics[2].assisted.value, second.statistics[2].assisted.value);  // and nothing else changes
+    const auto answer = answered(asked, &before);
+    EXPECT_FALSE(answer.statistics[0].takes_assisted);
+    for (std::size_t k = 1; k < 4; ++k) EXPECT_TRUE(answer.statistics[k].takes_assisted);
+    // Without one, the first half of the cases is the check before.
+    const auto alone = answered(asked);
+    auto first = asked;
+    first.campaign.points.resize(52 * 3);
+    first.campaign.values.resize(52);
+    first.campaign.sequences.resize(52);
+    const auto check = answered(first);
+    for (std::size_t k = 0; k < 4; ++k) {
+        EXPECT_EQ(alone.statistics[k].takes_assisted, check.statistics[k].shorter);
+        EXPECT_EQ(alone.statistics[k].assisted.value, answer.statistics[k].assisted.value);  // and nothing else changes
+    }
 }
 
 TEST(AssistedMoments, ScatterIsSubtractedByTheLawOfTotalCumulance) {
