@@ -83,9 +83,9 @@ void count(const KnownResponse& response, std::int64_t n, std::uint64_t campaign
         }
 }
 
-class Coverage : public ::testing::TestWithParam<std::size_t> {};
-
 }  // namespace
+
+class Coverage : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(Coverage, OfAssistedMomentsHolds) {
     const auto campaigns = static_cast<std::uint64_t>(setting("GRAINSWEEP_CAMPAIGNS", 100));
