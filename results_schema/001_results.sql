@@ -113,7 +113,7 @@ CREATE TABLE attempt (
     provenance_id  INTEGER NOT NULL REFERENCES provenance,  -- the run it belongs to
     started        TEXT NOT NULL,      -- UTC, ISO 8601
     outcome        TEXT CHECK (outcome IN ('completed', 'skipped', 'unstable', 'rejected', 'crashed', 'timed_out',
-                                           'abandoned')),  -- NULL: running, or its boss died
+                                           'abandoned')),  -- NULL: running, or its main program died
     message        TEXT,               -- why, where it is not completed
     wall_seconds   REAL,
     cpu_seconds    REAL,

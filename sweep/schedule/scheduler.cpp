@@ -17,7 +17,7 @@ struct Overloaded : Cases... {
     using Cases::operator()...;
 };
 
-/// What the boss knows of an attempt that brought no answer: how long it took, not what it cost.
+/// What the main program knows of an attempt that brought no answer: how long it took, not what it cost.
 campaign::CaseResult unanswered(const campaign::Attempt& attempt, Outcome outcome, double seconds) {
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     campaign::CaseResult result;

@@ -40,9 +40,9 @@ struct CaseState {
 
 struct LoggedAttempt {
     std::int64_t number = 0;
-    std::optional<campaign::Outcome> outcome;  ///< none: running, or its boss died
+    std::optional<campaign::Outcome> outcome;  ///< none: running, or its main program died
     std::string message;
-    double wall_seconds = 0;  ///< NaN: running, or its boss died
+    double wall_seconds = 0;  ///< NaN: running, or its main program died
     std::string started;
     campaign::Computer computer;  ///< of an archive older than these columns: what ran the campaign; no build
 };
@@ -131,7 +131,7 @@ public:
     Store(Store&&) noexcept;
     Store& operator=(Store&&) noexcept;
 
-    /// Records campaign and cases (idempotent; extends), makes its view, closes attempts of a dead boss as
+    /// Records campaign and cases (idempotent; extends), makes its view, closes attempts of a dead main program as
     /// abandoned. Returns the state of each case, in the order given. Not inside group().
     ///
     /// Another scene, revision, default, factor set, range, fixed value, condition, seed, kind of design, scramble or

@@ -67,7 +67,7 @@ std::shared_ptr<Child> Child::start(asio::io_context& io, const std::vector<std:
         child->process_ = bp::child(
             executable, bp::args(std::vector<std::string>(argv.begin() + 1, argv.end())),
             bp::std_in<child->in_, bp::std_out> child->out_, bp::std_err > child->err_, error,
-            // a kill reaches all of the group, the terminal's Ctrl-C only the boss
+            // a kill reaches all of the group, the terminal's Ctrl-C only the main program
             bp::extend::on_exec_setup = [](auto&) { ::setpgid(0, 0); });
         child->id_ = child->process_.id();
         return error ? nullptr : child;

@@ -21,8 +21,8 @@
 namespace grainsweep::workers {
 namespace {
 
-constexpr int boss_is_gone = 3;
-constexpr int boss_wrote_nonsense = 2;
+constexpr int main_program_is_gone = 3;
+constexpr int nonsense_was_written = 2;
 constexpr std::array asking_signals = {SIGTERM, SIGINT, SIGHUP, SIGUSR1, SIGUSR2};
 
 sigset_t asking_set() {
@@ -32,12 +32,12 @@ sigset_t asking_set() {
     return set;
 }
 
-/// What no boss writes ends the worker: what it would compute is not known to be what was asked.
+/// What no main program writes ends the worker: what it would compute is not known to be what was asked.
 [[noreturn]] void refuse(std::string_view line, std::string_view why) {
     const std::string sentence = fmt::format("grainsweep worker: standard input is not the main program's: {} ({})\n",
                                              shortened(line, 200), why);
     (void)std::fwrite(sentence.data(), 1, sentence.size(), stderr);
-    std::_Exit(boss_wrote_nonsense);
+    std::_Exit(nonsense_was_written);
 }
 
 }  // namespace
@@ -122,7 +122,7 @@ void Desk::leave() {
     if (running_) write(GiveBack{*running_, reason_ + ", and it could not be saved in time"});
     for (const auto& run : questions_) write(GiveBack{{run.question.id, run.attempt}, reason_});
     flush();
-    std::_Exit(ending_ == Ending::silence ? boss_is_gone : 0);
+    std::_Exit(ending_ == Ending::silence ? main_program_is_gone : 0);
 }
 
 void Desk::end(Ending why, std::string reason) {
@@ -143,7 +143,7 @@ void Desk::read() {
     while (true) {
         const auto length = ::read(STDIN_FILENO, piece.data(), piece.size());
         if (length < 0 && errno == EINTR) continue;
-        if (length <= 0) std::_Exit(boss_is_gone);  // an answer is of no use
+        if (length <= 0) std::_Exit(main_program_is_gone);  // an answer is of no use
         const bool fits = lines.feed({piece.data(), static_cast<std::size_t>(length)}, [this](std::string_view line) {
             take(line);
             return true;
@@ -170,7 +170,7 @@ void Desk::take(std::string_view line) {
 // ---- signals and time ------------------------------------------------------------------------------------------
 
 // Counts its own seconds and looks at no clock: a process that is stopped (Ctrl-Z, a suspended machine) could not hear
-// its boss, which was stopped with it.
+// its main program, which was stopped with it.
 void Desk::attend() {
     const sigset_t set = asking_set();
     auto until = std::chrono::steady_clock::now() + std::chrono::seconds(1);
@@ -226,7 +226,7 @@ void Desk::flush() {
     while (!rest.empty()) {
         const auto length = ::write(STDOUT_FILENO, rest.data(), rest.size());
         if (length < 0 && errno == EINTR) continue;
-        if (length < 0) std::_Exit(boss_is_gone);
+        if (length < 0) std::_Exit(main_program_is_gone);
         rest.remove_prefix(static_cast<std::size_t>(length));
     }
     outgoing_.clear();

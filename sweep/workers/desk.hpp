@@ -1,5 +1,5 @@
-// A worker's dealings with its boss: questions come in, signs of life, answers and what is given back go out. Reading,
-// signals and the clock have threads of their own, so that they are attended to in the middle of a case.
+// A worker's dealings with its main program: questions come in, signs of life, answers and what is given back go out.
+// Reading, signals and the clock have threads of their own, so that they are attended to in the middle of a case.
 #pragma once
 
 #include "sweep/workers/message.hpp"
@@ -17,9 +17,9 @@ namespace grainsweep::workers {
 /// Why a worker is to end.
 enum class Ending {
     none,
-    asked,    ///< the boss wrote stop
+    asked,    ///< the main program wrote stop
     signal,   ///< a signal that asks a process to end
-    silence,  ///< no message from the boss for too long
+    silence,  ///< no message from the main program for too long
 };
 
 /// Belongs to the thread that computes, which makes it. Blocks the signals it waits for: make it before any thread.
@@ -71,7 +71,7 @@ private:
     std::atomic<Ending> ending_ = Ending::none;
     std::atomic<double> progress_;
     std::atomic<unsigned> looks_ = 0;  ///< calls of advanced()
-    std::atomic<int> silence_ = 0;     ///< seconds since the boss wrote
+    std::atomic<int> silence_ = 0;     ///< seconds since the main program wrote
     unsigned looks_seen_ = 0;          // of the thread that ticks
     timespec computed_seen_{};
     int ending_for_ = 0;  // seconds

@@ -1,28 +1,30 @@
-// The protocol between boss and worker, on one page.
+// The protocol between main program and worker, on one page.
 //
-// One JSON object per line, at most longest_line bytes, flushed. The boss writes Run, Lease, Stop to the worker's
-// standard input; the worker writes Ready, Begun, Alive, Done, GiveBack to its standard output. End of file in either
-// direction means that the other side is gone. Heartbeats stay short: some launchers delay lines above 1 kB.
+// One JSON object per line, at most longest_line bytes, flushed. The main program writes Run, Lease, Stop to the
+// worker's standard input; the worker writes Ready, Begun, Alive, Done, GiveBack to its standard output. End of file in
+// either direction means that the other side is gone. Heartbeats stay short: some launchers delay lines above 1 kB.
 //
-//   boss   {"run": {"attempt": 2, "id": "...", "scene": "...", "revision": 1, "seed": 7, "inputs": {...}}}
-//          {"lease": true}      the boss lives; a worker that gets no message for long gives back what it has and ends
+//   main program
+//          {"run": {"attempt": 2, "id": "...", "scene": "...", "revision": 1, "seed": 7, "inputs": {...}}}
+//          {"lease": true}      it lives; a worker that gets no message for long gives back what it has and ends
 //          {"stop": true}       no more cases; finish soon or give back, then end
-//   worker {"ready": {"protocol": 2, "version": "...", "commit": "...", "build": "...", "path": "avx2", ...}}
+//   worker
+//          {"ready": {"protocol": 2, "version": "...", "commit": "...", "build": "...", "path": "avx2", ...}}
 //          {"begun": {"id": "...", "attempt": 2, "resumed": false}}     the next of the cases it was given
 //          {"alive": {"id": "...", "attempt": 2, "progress": 0.4}}      every second that the case makes headway
 //          {"done": {"id": "...", "attempt": 2, "outcome": "completed", ...}}
 //          {"give_back": {"id": "...", "attempt": 2, "reason": "..."}}  unfinished; a checkpoint may exist.
 //                               With "broken": true: a file could not be written, and no other case would fare better
 //
-// The worker as the boss sees it (worker_state.hpp). Whatever has no arrow is answered by `dismissed`:
+// The worker as the main program sees it (worker_state.hpp). Whatever has no arrow is answered by `dismissed`:
 //
-//                      ready, of the boss's build
+//                      ready, of the same build
 //       starting ------------------------------------> serving <--+ begun, alive, done
 //          |  |  no message: a launcher's banner         |  |   | |   (one case at a time, in the order given)
 //          |  +--> starting                              |  |   +-+
 //          |                       give_back, or the     |  |
-//          |                       boss wrote stop       v  |
-//          |   the boss wrote stop                 leaving <-- begun, alive, done, give_back
+//          |                       stop was written      v  |
+//          |   stop was written                    leaving <-- begun, alive, done, give_back
 //          +--------------------------------------> |  |    |
 //          |                                        |  |    |
 //          | not ready in time;                     |  | no sign of life in time; no answer in time;

@@ -21,7 +21,7 @@ using namespace std::chrono_literals;
 using Phase = WorkerState::Phase;
 
 // A case predicted to take less than this waits its turn inside the worker, so that no worker idles while
-// the boss is busy.
+// the main program is busy.
 constexpr double short_case_seconds = 0.05;
 constexpr std::size_t queue_of_short_cases = 4;
 // Seconds.

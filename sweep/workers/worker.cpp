@@ -152,7 +152,7 @@ std::optional<campaign::CaseId> checkpointed_case(std::string_view key) {
 }
 
 int work(const WorkerOptions& options) {
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // a local boss; a remote one is noticed by end of file and lease
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // a local main program; a remote one is noticed by end of file and lease
     std::optional<store::ArtefactFolder> folder;
     std::string damage;  // met while computing the present case
     if (!options.artefacts.empty()) {

@@ -15,7 +15,7 @@ constexpr std::size_t most_banner_bytes = std::size_t{64} << 10U;
 constexpr std::size_t kept_banner_bytes = 500;
 // A message is a sentence or the last lines of a log.
 constexpr std::size_t longest_message = std::size_t{8} << 10U;
-// One heartbeat a second is usual. What a pipe holds may come at once after the boss was stopped, and is less.
+// One heartbeat a second is usual. What a pipe holds may come at once after the main program was stopped, and is less.
 constexpr int most_heartbeats = 10'000;
 
 std::string described(const campaign::Computer& program) {

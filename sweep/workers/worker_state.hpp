@@ -1,5 +1,5 @@
-// The boss's side of the protocol: what a worker may write when, and what it has in hands. The state diagram is in
-// message.hpp. Pure: sees no process, pipe or clock; `now` is seconds on any clock that only grows.
+// The main program's side of the protocol: what a worker may write when, and what it has in hands. The state diagram is
+// in message.hpp. Pure: sees no process, pipe or clock; `now` is seconds on any clock that only grows.
 #pragma once
 
 #include "solver/scenes/values.hpp"
@@ -75,7 +75,8 @@ public:
     /// And the others.
     [[nodiscard]] std::vector<campaign::Attempt> waiting() const { return {waiting_.begin(), waiting_.end()}; }
     [[nodiscard]] const std::shared_ptr<const campaign::Computer>& computer() const { return computer_; }
-    [[nodiscard]] const std::string& banner() const { return banner_; }  ///< what it wrote before it was ready, shortened
+    /// What it wrote before it was ready, shortened.
+    [[nodiscard]] const std::string& banner() const { return banner_; }
     [[nodiscard]] double launched() const { return launched_; }
 
 private:

@@ -40,7 +40,7 @@ struct Place {
     const char* file;
 };
 
-const std::vector<Place> of_the_boss = {
+const std::vector<Place> of_the_main_program = {
     {"open", "d.db"}, {"open", "d.db-wal"}, {"open", "d.db-shm"},   {"write", "d.db"},      {"write", "d.db-wal"},
     {"sync", "d.db"}, {"sync", "d.db-wal"}, {"remove", "d.db-wal"}, {"remove", "d.db-shm"}, {"remove", ".artefact"}};
 const std::vector<Place> of_a_worker = {
@@ -66,8 +66,8 @@ void kill_everywhere(const std::string& who, const std::vector<Place>& places, i
     EXPECT_GT(met, 40);
 }
 
-TEST(EveryCall, TheBossIsKilledAtIt) {
-    kill_everywhere("boss", with_pipes(of_the_boss), killed);
+TEST(EveryCall, TheMainProgramIsKilledAtIt) {
+    kill_everywhere("main", with_pipes(of_the_main_program), killed);
 }
 
 TEST(EveryCall, AWorkerIsKilledAtIt) {
@@ -75,12 +75,12 @@ TEST(EveryCall, AWorkerIsKilledAtIt) {
 }
 
 // A fault while closing is not reported: everything is on disk by then. Nor is one of a file that is only tidied away.
-TEST(EveryCall, OfTheBossToItsDatabaseFails) {
+TEST(EveryCall, OfTheMainProgramToItsDatabaseFails) {
     const SmallCampaign campaign;
     int reported = 0;
-    for (const auto& [call, file] : of_the_boss)
+    for (const auto& [call, file] : of_the_main_program)
         for (const int number : {EIO, ENOSPC})
-            at_every_time(campaign, {"boss", call, file, "before", 1, std::to_string(-number)}, [&](const auto& trial) {
+            at_every_time(campaign, {"main", call, file, "before", 1, std::to_string(-number)}, [&](const auto& trial) {
                 reported += trial.disturbed.code == 3 ? 1 : 0;
                 return trial.disturbed.code == 3 || trial.disturbed.code == 0;
             });

@@ -119,8 +119,8 @@ private:
                         "database or checkpoint reaches a quota",
                         {0, broken}};
             case 2:
-                return call("a call of the boss to its database fails",
-                            {"boss", one_of<std::string>({"write", "sync"}), one_of<std::string>({"c.db", "c.db-wal"}),
+                return call("a call of the main program to its database fails",
+                            {"main", one_of<std::string>({"write", "sync"}), one_of<std::string>({"c.db", "c.db-wal"}),
                              "before", number, error},
                             {0, broken});
             case 3:
@@ -129,8 +129,8 @@ private:
                              number, error},
                             {0, broken});
             case 4:
-                return call("SIGKILL of the boss at a call",
-                            {"boss", one_of<std::string>({"write", "sync"}), one_of<std::string>({"c.db-wal", "pipe"}),
+                return call("SIGKILL of the main program at a call",
+                            {"main", one_of<std::string>({"write", "sync"}), one_of<std::string>({"c.db-wal", "pipe"}),
                              when, 5 * number},
                             {0, killed});
             case 5:
@@ -142,7 +142,8 @@ private:
                 return call("a worker's call hangs (a dead file server)",
                             {"worker", "sync", ".aside", when, number, "1000"}, {0});
             case 7:
-                return call("the boss's disk hangs for 3 s", {"boss", "sync", "c.db-wal", when, number, "3"}, {0});
+                return call("the main program's disk hangs for 3 s", {"main", "sync", "c.db-wal", when, number, "3"},
+                            {0});
             default:
                 return {in_shell(R"(exec "$@")"), {}};
         }
@@ -164,13 +165,13 @@ private:
         switch (below(11)) {
             case 0:
                 run.codes.insert(killed);
-                return met("SIGKILL to the boss", send(run.process.pid(), SIGKILL));
+                return met("SIGKILL to the main program", send(run.process.pid(), SIGKILL));
             case 1:
                 return met("SIGKILL to a worker", send(worker_of(run), SIGKILL));
             case 2: {
                 const int signal = one_of<int>({SIGTERM, SIGINT, SIGUSR1});
                 run.codes.insert({interrupted, 128 + signal});  // the second before it is prepared for signals
-                met("TERM, INT or USR1 to the boss", send(run.process.pid(), signal));
+                met("TERM, INT or USR1 to the main program", send(run.process.pid(), signal));
                 if (below(3) == 0) met("and once more, to end at once", send(run.process.pid(), signal));
                 return;
             }
@@ -178,7 +179,7 @@ private:
                 return met("TERM, INT or USR1 to a worker",
                            send(worker_of(run), one_of<int>({SIGTERM, SIGINT, SIGUSR1})));
             case 4: {
-                met("the boss stopped (SIGSTOP) for up to 5 s", send(run.process.pid(), SIGSTOP));
+                met("the main program stopped (SIGSTOP) for up to 5 s", send(run.process.pid(), SIGSTOP));
                 std::this_thread::sleep_for(5s * chance_.uniform());
                 return run.process.signal(SIGCONT);
             }
@@ -241,7 +242,7 @@ private:
     void expect_sound() {
         for (int tries = 0; tries < 500 && !processes_with(folder_.path().string()).empty(); ++tries)
             std::this_thread::sleep_for(10ms);
-        EXPECT_TRUE(processes_with(folder_.path().string()).empty()) << "a process outlived its boss";
+        EXPECT_TRUE(processes_with(folder_.path().string()).empty()) << "a process outlived its main program";
         const auto verified = ask({"verify", "c.db"});
         const int completed = count("SELECT count(*) FROM sim_case WHERE outcome = 'completed'");
         EXPECT_TRUE(verified.code == 0 || (verified.code == 2 && completed_ == 0)) << verified.out << verified.err;

@@ -1,5 +1,5 @@
 // A file server that does not answer: a call that waits, without processor time, and that no signal a process handles
-// ends. The worker is replaced at no cost of its case; the boss waits with its disk and goes on with it.
+// ends. The worker is replaced at no cost of its case; the main program waits with its disk and goes on with it.
 #include "tests/support/failing_call.hpp"
 
 #include <fcntl.h>
@@ -34,7 +34,7 @@ TEST(HungMount, AWorkerThatWaitsForItsDiskIsReplaced) {
 
 TEST(HungMount, ABossThatWaitsForItsDiskGoesOnWithIt) {
     const SmallCampaign campaign;
-    const auto trial = campaign.attempt({"boss", "sync", "d.db-wal", "before", 5, "2"});
+    const auto trial = campaign.attempt({"main", "sync", "d.db-wal", "before", 5, "2"});
     EXPECT_TRUE(trial.happened);
     EXPECT_EQ(trial.disturbed.code, 0) << trial.disturbed.err;
     EXPECT_EQ(trial.disturbed.err, "");
@@ -58,9 +58,9 @@ TEST(HungMount, AnInputFileThatDoesNotOpenIsNoFailureOfTheCase) {
     folder.write("c.json", R"({"campaign": "c", "scene": "tpms_discharge",
         "factors": [{"name": "friction", "levels": [0.2]}], "fixed": {"packing": "packing.csv", "edge": 12, "shell": 1, "end_time": 0.001},
         "design": {"kind": "lattice"}, "execution": {"workers": 1, "silence_seconds": 3}})");
-    // The boss has read the file and waits a second before it hands out the case: the server goes.
+    // The main program has read the file and waits a second before it hands out the case: the server goes.
     const auto token = folder / "token";
-    Process run(command_with({"boss", "write", "pipe", "before", 1, "1"}, token, {"run", "c.json", "--quiet"}),
+    Process run(command_with({"main", "write", "pipe", "before", 1, "1"}, token, {"run", "c.json", "--quiet"}),
                 folder.path());
     while (run.running() && !has_happened(token)) std::this_thread::sleep_for(1ms);
     std::filesystem::rename(file, folder / "kept.csv");

@@ -1,4 +1,4 @@
-// What comes from outside is no failure of a case: signals that ask, frozen workers, a boss that is stopped.
+// What comes from outside is no failure of a case: signals that ask, frozen workers, a main program that is stopped.
 #include "tests/support/scripted_worker.hpp"
 
 #include <gmock/gmock.h>
@@ -132,7 +132,8 @@ TEST(Interference, WorkersThatAreNeverReadyEndTheRun) {
     EXPECT_EQ(campaign.ask("SELECT count(*) FROM attempt"), 0);
 }
 
-// Limits are of the boss's own running time: silence, a case's wall time and the lease all pass while it is stopped.
+// Limits are of the main program's own running time: silence, a case's wall time and the lease all pass while it is
+// stopped.
 TEST(Interference, ABossThatIsStoppedForAWhileCostsNothing) {
     const ScriptedCampaign campaign("exec \"$@\" --lease-seconds 15", 8,
                                     {{"fixed", {{"wait_seconds", 0.5}}},
@@ -151,7 +152,7 @@ TEST(Interference, ABossThatIsStoppedForAWhileCostsNothing) {
     EXPECT_EQ(campaign.ask("SELECT count(*) FROM scripted WHERE outcome = 'completed' AND attempts = 1"), 8);
 }
 
-// The boss is stopped for so long that its workers give it up: what they had is given back when it goes on.
+// The main program is stopped for so long that its workers give it up: what they had is given back when it goes on.
 TEST(Interference, ABossThatIsStoppedForLongFindsItsCasesGivenBack) {
     const ScriptedCampaign campaign("exec \"$@\" --lease-seconds 2", 1,
                                     {{"fixed", {{"wait_seconds", 7}}}, {"limits", {{"attempts", 1}}}});

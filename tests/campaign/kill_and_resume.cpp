@@ -1,4 +1,4 @@
-// Boss and workers are killed at seeded moments; the campaign is resumed and must end in the same science.
+// Main program and workers are killed at seeded moments; the campaign is resumed and must end in the same science.
 #include "stats/random.hpp"
 #include "tests/support/process.hpp"
 
@@ -68,7 +68,7 @@ void expect_no_orphans(const std::filesystem::path& db) {
     for (int tries = 0; tries < 200 && !processes_with(db.string()).empty(); ++tries) {
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
-    EXPECT_TRUE(processes_with(db.string()).empty()) << "a process outlived its boss";
+    EXPECT_TRUE(processes_with(db.string()).empty()) << "a process outlived its main program";
 }
 
 TEST(KillAndResume, OneAndFourWorkersGiveTheSameDump) {
@@ -95,12 +95,12 @@ TEST(KillAndResume, AConvergedCampaignStopsAtTheSamePointWithOneAndFourWorkers) 
     EXPECT_EQ(status.out.find("\"stopped_at\":null"), std::string::npos) << status.out;
 }
 
-TEST(KillAndResume, BossKilledAtTwentySeededMoments) {
+TEST(KillAndResume, MainProgramKilledAtTwentySeededMoments) {
     const Folder folder;
     folder.write("c.json", config);
     const std::string calm = undisturbed(folder, "2");
     for (std::uint64_t moment = 0; moment < 20; ++moment) {
-        const auto db = folder / ("boss" + std::to_string(moment) + ".db");
+        const auto db = folder / ("killed" + std::to_string(moment) + ".db");
         const auto command =
             program_command({"run", (folder / "c.json").string(), "--db", db.string(), "-j", "2", "--quiet"});
         {

@@ -1,4 +1,5 @@
-// A worker that receives nothing ends by itself; one that was stopped together with its boss has missed nothing.
+// A worker that receives nothing ends by itself; one that was stopped together with its main program has missed
+// nothing.
 #include "tests/support/process.hpp"
 
 #include <gtest/gtest.h>
@@ -42,22 +43,22 @@ TEST(Lease, TimeSpentStoppedDoesNotCountSilenceDoes) {
         return std::ranges::any_of(pair, runs_program);
     }));
     const auto told = std::ranges::find_if(pair, runs_program);
-    const auto boss = std::ranges::find_if_not(pair, runs_program);
-    ASSERT_NE(boss, pair.end());
+    const auto main_program = std::ranges::find_if_not(pair, runs_program);
+    ASSERT_NE(main_program, pair.end());
     const auto alive = [&] { return runs_program(*told); };
 
     std::this_thread::sleep_for(500ms);
     for (const pid_t pid : pair) ::kill(pid, SIGSTOP);
     std::this_thread::sleep_for(4s);
     ::kill(*told, SIGCONT);
-    std::this_thread::sleep_for(300ms);  // a boss sends every ten seconds, not at once
-    ::kill(*boss, SIGCONT);
+    std::this_thread::sleep_for(300ms);  // a main program sends every ten seconds, not at once
+    ::kill(*main_program, SIGCONT);
     std::this_thread::sleep_for(1200ms);
     EXPECT_TRUE(alive());
 
-    ::kill(*boss, SIGSTOP);
+    ::kill(*main_program, SIGSTOP);
     EXPECT_TRUE(soon([&] { return !alive(); }));
-    ::kill(*boss, SIGCONT);
+    ::kill(*main_program, SIGCONT);
     EXPECT_EQ(both.wait().code, 3);
 }
 

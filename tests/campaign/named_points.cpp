@@ -1,6 +1,6 @@
-// Boss and worker are killed at named points: between writing and syncing, syncing and renaming, handing out and
-// answering. The next run ends with the undisturbed dump, every attempt is counted as it was, nothing is left behind.
-// slow_faults kills at every such call there is, not only at one of each.
+// Main program and workers are killed at named points: between writing and syncing, syncing and renaming, handing out
+// and answering. The next run ends with the undisturbed dump, every attempt is counted as it was, nothing is left
+// behind. slow_faults kills at every such call there is, not only at one of each.
 #include "tests/support/failing_call.hpp"
 
 #include <gtest/gtest.h>
@@ -25,25 +25,25 @@ void expect_survived(const SmallCampaign& campaign, const std::vector<FailingCal
 }
 
 // The second commit of a run enrols its cases.
-TEST(NamedPoints, TheBossIsKilledAroundItsCommits) {
+TEST(NamedPoints, TheMainProgramIsKilledAroundItsCommits) {
     expect_survived(SmallCampaign(),
-                    {{"boss", "open", "d.db-wal", "after"},
-                     {"boss", "sync", "d.db-wal", "before", 2},
-                     {"boss", "sync", "d.db-wal", "after", 2},
-                     {"boss", "write", "d.db-wal", "before", 40},
-                     {"boss", "sync", "d.db", "before"},
-                     {"boss", "remove", "d.db-wal"}},
+                    {{"main", "open", "d.db-wal", "after"},
+                     {"main", "sync", "d.db-wal", "before", 2},
+                     {"main", "sync", "d.db-wal", "after", 2},
+                     {"main", "write", "d.db-wal", "before", 40},
+                     {"main", "sync", "d.db", "before"},
+                     {"main", "remove", "d.db-wal"}},
                     killed);
 }
 
-TEST(NamedPoints, TheBossIsKilledBetweenCaseAndAnswer) {
+TEST(NamedPoints, TheMainProgramIsKilledBetweenCaseAndAnswer) {
     expect_survived(SmallCampaign(),
-                    {{"boss", "write", "pipe", "before"},
-                     {"boss", "write", "pipe", "after", 2},
-                     {"boss", "read", "pipe", "after", 3},
-                     {"boss", "read", "pipe", "after", 6},
-                     {"boss", "remove", ".artefact"},
-                     {"boss", "remove", ".artefact", "after"}},
+                    {{"main", "write", "pipe", "before"},
+                     {"main", "write", "pipe", "after", 2},
+                     {"main", "read", "pipe", "after", 3},
+                     {"main", "read", "pipe", "after", 6},
+                     {"main", "remove", ".artefact"},
+                     {"main", "remove", ".artefact", "after"}},
                     killed);
 }
 

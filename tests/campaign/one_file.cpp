@@ -1,4 +1,4 @@
-// Beside a database nothing is left: not after a run, not after a boss was killed and one command read it.
+// Beside a database nothing is left: not after a run, not after a main program was killed and one command read it.
 #include "tests/support/process.hpp"
 
 #include <gtest/gtest.h>

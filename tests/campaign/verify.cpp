@@ -160,7 +160,7 @@ TEST(AskedAgain, OldAnswersStandUntilTheNewOnesAreStored) {
     }
 }
 
-// A worker that may write no large file stands for a full disk; the boss and its database are not limited.
+// A worker that may write no large file stands for a full disk; the main program and its database are not limited.
 TEST(AFullDisk, UnderTheArtefactsEndsTheRunAndIsNoFailureOfTheCase) {
     const Folder folder;
     const std::string start = R"({"campaign": "c", "scene": "tpms_discharge",

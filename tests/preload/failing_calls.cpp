@@ -2,7 +2,7 @@
 // takes long. The program has no part in it. tests/support/failing_call.hpp prepares what stands in the environment:
 //
 //   GRAINSWEEP_FAILING_CALL="WHO CALL FILE NUMBER WHEN WHAT TOKEN"
-//     WHO     boss or worker
+//     WHO     main (program) or worker
 //     CALL    open (to write), write, read, sync, truncate, rename or remove
 //     FILE    the end of the file's name, of a rename the old one; pipe: any pipe
 //     NUMBER  at the so-many-th such call of the process

@@ -1,5 +1,5 @@
-// The boss is killed (SIGKILL) after the k-th thing it showed, for every k; the disk's quota ends in mid-write.
-// The next boss needs no unlocking, finds what was shown, and ends with the undisturbed text.
+// The main program is killed (SIGKILL) after the k-th thing it showed, for every k; the disk's quota ends in mid-write.
+// The next main program needs no unlocking, finds what was shown, and ends with the undisturbed text.
 #include "tests/support/whole_campaign.hpp"
 
 #include <gtest/gtest.h>

@@ -11,7 +11,7 @@ namespace grainsweep::test {
 
 /// Which call of which process; the words are those of tests/preload/failing_calls.cpp.
 struct FailingCall {
-    std::string who;   ///< "boss" or "worker"
+    std::string who;   ///< "main" or "worker"
     std::string call;  ///< "open", "write", "read", "sync", "truncate", "rename" or "remove"
     std::string file;  ///< end of the file's name, or "pipe"
     std::string when = "before";

@@ -238,7 +238,7 @@ TEST(Plan, ResumesWhereTheArchiveEnds) {
                            {1, 0, Outcome::unstable},
                            {2, 2, Outcome::crashed},      // exhausted
                            {1, 1, Outcome::crashed},      // one try left
-                           {7, 0, Outcome::abandoned}});  // the boss died: always again
+                           {7, 0, Outcome::abandoned}});  // the main program died: always again
     EXPECT_EQ(plan.tally().decided, 3U);
     EXPECT_EQ(plan.settled_prefix(), 3U);
     const auto a = plan.next();

@@ -323,7 +323,7 @@ TEST_F(StoreEnrol, WhatADeadBossBeganIsAbandonedAndAnOldAnswerStands) {
         store.begin({cases[1].question.id, 2});
         store.begin({cases[2].question.id, 1});
     });
-    EXPECT_FALSE(store.enrol(campaign, cases, here())[2].outcome) << "this boss is alive";
+    EXPECT_FALSE(store.enrol(campaign, cases, here())[2].outcome) << "this main program is alive";
     store = Store(folder / "other.db", Store::Mode::create);
     Store next(file, Store::Mode::create);
     const auto states = next.enrol(campaign, cases, here());

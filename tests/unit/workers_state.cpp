@@ -23,7 +23,8 @@ const campaign::Attempt first{"a", 1}, second{"b", 1};
 class Worker : public testing::Test {
 protected:
     Worker()
-        : expected{{"1.0", "abc", "feed", "avx2", "boss's", "boss"}, {{"y", Shape::scalar}, {"s", Shape::series}}} {}
+        : expected{{"1.0", "abc", "feed", "avx2", "its processor", "its host"},
+                   {{"y", Shape::scalar}, {"s", Shape::series}}} {}
 
     WorkerState::Meaning say(const ToBoss& message, double now = 0) { return state.receive(encode(message), now); }
     std::string complaint(const ToBoss& message) {
@@ -51,7 +52,7 @@ TEST_F(Worker, TakesCasesOnceItIsReadyAndSaysWhatItIs) {
     get_ready();
     EXPECT_EQ(state.phase(), Phase::serving);
     EXPECT_EQ(state.computer()->host, "node");
-    EXPECT_EQ(state.computer()->instruction_path, "baseline") << "its own, not the boss's";
+    EXPECT_EQ(state.computer()->instruction_path, "baseline") << "its own, not that of the main program";
     EXPECT_NE(complaint(Ready{protocol_number, expected.program}), "") << "twice";
 }
 
@@ -174,7 +175,8 @@ TEST_F(Worker, BannersAndHeartbeatsHaveAnEnd) {
     get_ready();
     state.give(first, 0);
     say(Begun{first});
-    for (int second_number = 0; second_number < 10; ++second_number) {  // what a pipe held while the boss was stopped
+    // What a pipe held while the main program was stopped.
+    for (int second_number = 0; second_number < 10; ++second_number) {
         for (int k = 0; k < 800; ++k)
             ASSERT_TRUE(std::holds_alternative<Heartbeat>(say(Alive{first, 0.1}, 2 * second_number)));
     }
