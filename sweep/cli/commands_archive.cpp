@@ -1,14 +1,13 @@
 // status, explain, replay, query, dump: what is in the archive.
 #include "sweep/campaign/wrong_question.hpp"
-#include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/path_option.hpp"
 #include "sweep/cli/pictures.hpp"
+#include "sweep/cli/replay.hpp"
 #include "sweep/cli/status_text.hpp"
 #include "sweep/cli/stored_case.hpp"
 #include "sweep/report/history.hpp"
 #include "sweep/store/store.hpp"
-#include "sweep/workers/compute.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -27,12 +26,6 @@ using campaign::Outcome;
 using report::Format;
 using store::Store;
 using store::Table;
-
-campaign::Case require_case(const Store& archive, const std::string& id) {
-    auto found = archive.find_case(id);
-    if (!found) throw campaign::wrong_question("CASE", id, "is no case of this database, nor the beginning of one");
-    return *std::move(found);
-}
 
 // ---- status -------------------------------------------------------------------------------------------------
 
@@ -169,13 +162,6 @@ Table attempts_table(const std::vector<store::LoggedAttempt>& attempts) {
     return table;
 }
 
-/// The case and the points it answers, so that an id that begins like a point's number is not mistaken for it.
-std::string heading_of(const Store& archive, const campaign::CaseId& id) {
-    std::string line = fmt::format("case {}", id);
-    for (const auto& place : archive.places(id)) line += fmt::format(", point {} of {}", place.point, place.campaign);
-    return line;
-}
-
 int explain(const std::string& database, const std::string& id, Format format) {
     const Store archive(database, Store::Mode::read);
     const campaign::Case question = require_case(archive, id);
@@ -211,110 +197,6 @@ int explain(const std::string& database, const std::string& id, Format format) {
     report::write(std::cout, table, format);
     std::cout << '\n' << reason << '\n';
     return 0;
-}
-
-/// Same sources and instruction path; where the sources have changes of their own or are unknown, the same executable.
-bool gives_the_same_bits(const campaign::Computer& a, const campaign::Computer& b) {
-    const bool known = a.commit != "unknown" && !a.commit.ends_with("-modified");
-    return a.version == b.version && a.commit == b.commit && a.instruction_path == b.instruction_path &&
-           (known || (!a.build.empty() && a.build == b.build));
-}
-
-// ---- replay -------------------------------------------------------------------------------------------------
-
-// Within one build and instruction path a case repeats bit for bit. Elsewhere rounding differs, and a
-// granular flow forgets its rounding within a fraction of a second: only its statistics can be compared.
-constexpr double tolerance_across_paths = 0.1;
-
-double relative_difference(double a, double b) {
-    if (a == b || (std::isnan(a) && std::isnan(b))) return 0;
-    return std::abs(a - b) / std::max(std::abs(a), std::abs(b));
-}
-
-double at(const std::map<std::string, double, std::less<>>& scalars, const std::string& name) {
-    const auto found = scalars.find(name);
-    return found == scalars.end() ? std::nan("") : found->second;
-}
-
-/// Equal to the last bit; an empty series is as good as none.
-bool same_samples(const auto& a, const auto& b, const std::string& name) {
-    static const std::vector<Sample> none;
-    const auto of = [&](const auto& series) -> const std::vector<Sample>& {
-        const auto found = series.find(name);
-        return found == series.end() ? none : found->second;
-    };
-    return std::ranges::equal(of(a), of(b), [](const Sample& x, const Sample& y) {
-        return relative_difference(x.time, y.time) == 0 && relative_difference(x.bin, y.bin) == 0 &&
-               relative_difference(x.value, y.value) == 0;
-    });
-}
-
-int replay(const std::string& database, const std::string& id, const PictureRequest& wanted, const std::string& path,
-           Format format) {
-    const Store archive(database, Store::Mode::read);
-    const campaign::Case question = as_asked_today(require_case(archive, id));
-    const auto stored = archive.result(question.id);
-    if (!stored) throw campaign::wrong_question("CASE", id, "has no result to compare with yet");
-    if (stored->outcome == Outcome::abandoned)
-        throw campaign::wrong_question("CASE", id, "was given back unfinished: there is no answer to compare with yet");
-    if (stored->outcome == Outcome::crashed || stored->outcome == Outcome::timed_out)
-        std::cerr << fmt::format("grainsweep: this case {}; computed here it may do the same\n",
-                                 stored->outcome == Outcome::crashed ? "crashed its worker" : "ran out of time");
-    const auto attempts = archive.attempts(question.id);
-    const auto then = std::ranges::find(attempts, stored->attempt.number, &store::LoggedAttempt::number);
-    if (!path.empty())
-        use_path(path);
-    else if (then != attempts.end())
-        use_path_of_old(then->computer.instruction_path);
-    const bool same_path = then != attempts.end() && gives_the_same_bits(then->computer, this_computer());
-
-    NoArtefacts artefacts;
-    Pictures pictures(wanted, question);
-    const auto now = workers::compute(
-        question, stored->attempt.number, artefacts, std::nullopt, [](const Scene&) { return true; },
-        pictures.camera());
-    pictures.finish(now.value());  // nothing gave it up
-    Table table{{"observable", "archive", "replay", "relative_difference"}, {}};
-    double worst = 0;
-    const auto compare = [&](const std::string& name, double a, double b) {
-        const double difference = relative_difference(a, b);
-        worst = std::isnan(difference) ? 1 : std::max(worst, difference);
-        table.rows.push_back({name, report::to_cell(a), report::to_cell(b), report::to_cell(difference)});
-    };
-    auto names = stored->observations.scalars;
-    if (same_path) names.insert(now->observations.scalars.begin(), now->observations.scalars.end());
-    for (const auto& [name, ignored] : names) {  // another build may measure more than the archive knows
-        compare(name, at(stored->observations.scalars, name), at(now->observations.scalars, name));
-    }
-    bool same_series = true;
-    auto series = stored->observations.series;
-    series.insert(now->observations.series.begin(), now->observations.series.end());
-    for (const auto& [name, ignored] : series) {
-        same_series = same_series && same_samples(stored->observations.series, now->observations.series, name);
-    }
-    const bool same_outcome = stored->outcome == now->outcome;
-    const bool agrees = same_outcome && (same_path ? worst == 0 && same_series : worst <= tolerance_across_paths);
-    const std::string verdict =
-        !same_outcome ? fmt::format("the archive says {}, the replay {}: {}", to_string(stored->outcome),
-                                    to_string(now->outcome), now->message)
-        : same_path ? (agrees ? "equal to the last bit" : "DIFFERENT although build and instruction path are the same")
-                    : fmt::format(
-                          "largest relative difference {:.3g} (another build or instruction path: up to {} is "
-                          "taken as agreement)",
-                          worst, tolerance_across_paths);
-    if (format == Format::json) {
-        report::write(std::cout, nlohmann::ordered_json{{"case_id", question.id},
-                                                        {"same_path", same_path},
-                                                        {"agrees", agrees},
-                                                        {"verdict", verdict},
-                                                        {"scalars", report::to_json(table)}});
-    } else {
-        if (format == Format::text) std::cout << heading_of(archive, question.id) << "\n\n";
-        if (!table.rows.empty()) report::write(std::cout, table, format);
-        if (format == Format::text) std::cout << '\n' << verdict << '\n';
-    }
-    pictures.say(format == Format::text);
-    return agrees ? 0 : 1;
 }
 
 // ---- the table ----------------------------------------------------------------------------------------------

@@ -7,6 +7,18 @@
 
 namespace grainsweep::cli {
 
+campaign::Case require_case(const store::Store& archive, const std::string& id) {
+    auto found = archive.find_case(id);
+    if (!found) throw campaign::wrong_question("CASE", id, "is no case of this database, nor the beginning of one");
+    return *std::move(found);
+}
+
+std::string heading_of(const store::Store& archive, const campaign::CaseId& id) {
+    std::string line = fmt::format("case {}", id);
+    for (const auto& place : archive.places(id)) line += fmt::format(", point {} of {}", place.point, place.campaign);
+    return line;
+}
+
 std::string why_not_again(const campaign::Case& question) {
     const SceneInfo* scene = find_scene(question.scene);
     if (scene == nullptr) return "is of a scene this build does not have: " + question.scene;

@@ -198,7 +198,7 @@ void add_given_data(Influence& influence, const Responses& responses, const Resp
     const auto values = responses.judged(response);
     const std::int64_t points = influence.split.points;  // replicates add nothing to how well a sample covers the range
     const auto labels = sample_parts(responses).labels;
-    std::size_t most_bins = 0;
+    std::size_t bins_at_most = 0;
     for (std::size_t j = 0; j < responses.factors.size(); ++j) {
         const auto& factor = responses.factors[j];
         auto& found = influence.factors[j];
@@ -211,7 +211,7 @@ void add_given_data(Influence& influence, const Responses& responses, const Resp
         if (lattice && influence.split.pure.freedom > 0) take_out_scatter(found, influence.split, values);
         influence.used = indices.count;
         influence.excluded = indices.excluded;
-        most_bins = std::max(most_bins, found.bins);
+        bins_at_most = std::max(bins_at_most, found.bins);
     }
     if (lattice && influence.split.pure.freedom > 0) {
         influence.notes.push_back(fmt::format(
@@ -222,10 +222,10 @@ void add_given_data(Influence& influence, const Responses& responses, const Resp
         influence.notes.emplace_back(
             "a lattice of single runs gives its indices without errors: compare campaigns of growing levels");
     } else if (influence.used > 0) {
-        const double floor = static_cast<double>(most_bins - 1) / static_cast<double>(points);
+        const double floor = static_cast<double>(bins_at_most - 1) / static_cast<double>(points);
         influence.notes.push_back(
             fmt::format("with {} points in {} bins an index below about {:.2g} is indistinguishable from zero", points,
-                        most_bins, floor));
+                        bins_at_most, floor));
     }
 }
 

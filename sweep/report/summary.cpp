@@ -40,6 +40,11 @@ void add_extreme(store::Table& table, const Responses& responses, const Response
     table.rows.push_back(std::move(cells));
 }
 
+/// "gap (m)"; a pure number and a word have no unit.
+std::string with_unit(const std::string& name, const std::string& unit) {
+    return unit.empty() || unit == "1" ? name : fmt::format("{} ({})", name, unit);
+}
+
 std::string moments_heading(const Responses& responses, const History& history) {
     if (!history.provisional) return fmt::format("moments over {} points, 95 % errors", responses.counted_points());
     return fmt::format(
@@ -110,8 +115,8 @@ store::Table extremes_table(const Responses& responses, const ResponseColumn& re
     store::Table table;
     table.columns = {"", "point"};
     if (responses.campaign.replicates > 1) table.columns.emplace_back("replicate");
-    for (const auto& factor : responses.factors) table.columns.push_back(factor.name);
-    table.columns.push_back(response.name);
+    for (const auto& factor : responses.factors) table.columns.push_back(with_unit(factor.name, factor.unit));
+    table.columns.push_back(with_unit(response.name, response.unit));
     if (!responses.case_ids.empty()) table.columns.emplace_back("case_id");
     const auto values = responses.known(response);
     const auto finite =

@@ -1,14 +1,13 @@
 #include "sweep/store/database.hpp"
 
+#include "sweep/store/database_errors.hpp"
+
 #include <fmt/format.h>
 #include <sqlite3.h>
 
-#include <array>
 #include <cctype>
-#include <chrono>
 #include <cmath>
 #include <cstring>
-#include <ctime>
 #include <limits>
 #include <new>
 #include <stdexcept>
@@ -18,65 +17,11 @@ namespace grainsweep::store {
 
 namespace {
 
-/// How long a statement waits for another process to let go of the file.
-constexpr std::chrono::milliseconds patience = std::chrono::seconds(30);
-
-std::string file_of(sqlite3* database) {
-    const char* file = database == nullptr ? nullptr : sqlite3_db_filename(database, "main");
-    return file == nullptr || *file == '\0' ? "the database" : fmt::format("database '{}'", file);
-}
-
-/// Turns SQLite's result code into the exception and the sentence it deserves.
-[[noreturn]] void fail(sqlite3* database, int code) {
-    const std::string words = database == nullptr ? sqlite3_errstr(code) : sqlite3_errmsg(database);
-    const std::string file = file_of(database);
-    const auto cause = [&] {
-        const int number = database == nullptr ? 0 : sqlite3_system_errno(database);
-        return number == 0 ? words : fmt::format("{} ({})", words, std::strerror(number));
-    };
-    switch (code & 0xff) {
-        case SQLITE_FULL:
-            throw BrokenWorld(fmt::format("{}: the disk is full; free some space and run again to resume", file));
-        case SQLITE_BUSY:
-        case SQLITE_LOCKED:
-        case SQLITE_PROTOCOL:
-            throw BrokenWorld(fmt::format("{}: locked by another process for more than {} s", file,
-                                          std::chrono::duration_cast<std::chrono::seconds>(patience).count()));
-        case SQLITE_CORRUPT:
-        case SQLITE_NOTADB:
-        case SQLITE_FORMAT:
-            throw BrokenWorld(
-                fmt::format("{}: damaged ({}); what is readable can be copied out with "
-                            "`sqlite3 FILE .recover`",
-                            file, words));
-        case SQLITE_IOERR:
-            throw BrokenWorld(fmt::format("{}: reading or writing failed: {}", file, cause()));
-        case SQLITE_CANTOPEN:
-        case SQLITE_PERM:
-            throw BrokenWorld(fmt::format("{}: cannot be opened: {}", file, cause()));
-        case SQLITE_READONLY:
-            throw BrokenWorld(fmt::format("{}: is not writable: {}", file, cause()));
-        case SQLITE_NOMEM:
-            if (sqlite3_hard_heap_limit64(-1) > 0)
-                throw StatementLimit(
-                    fmt::format("it needs more than {} MiB of memory", sqlite3_hard_heap_limit64(-1) >> 20), file);
-            throw std::bad_alloc();
-        case SQLITE_INTERRUPT:
-            throw StatementLimit("it takes too long", file);
-        default:
-            throw RefusedSql(words, file);
-    }
-}
-
-void check(sqlite3* database, int code) {
-    if (code != SQLITE_OK) fail(database, code);
-}
-
 sqlite3* owner(sqlite3_stmt* statement) {
     return sqlite3_db_handle(statement);
 }
 
-sqlite3* open(const char* name, int flags) {
+sqlite3* open_handle(const char* name, int flags) {
     sqlite3* handle = nullptr;
     const int code = sqlite3_open_v2(name, &handle, flags | SQLITE_OPEN_NOMUTEX, nullptr);
     if (code == SQLITE_OK) return handle;
@@ -219,14 +164,14 @@ Connection::Connection(sqlite3* handle) : handle_(handle) {
 
 Connection::Connection(const std::filesystem::path& file, Access access) {
     if (access == Access::write) {
-        handle_.reset(open(file.c_str(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE));
+        handle_.reset(open_handle(file.c_str(), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE));
         configure();
         execute("PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON; PRAGMA cache_size = -65536");
         return;
     }
     // SQLite opens to read only what the system lets it only read. Where it may write, the last reader to close removes
     // the write-ahead log and its shared memory, also those of a writer that died.
-    handle_.reset(open(file.c_str(), SQLITE_OPEN_READWRITE));
+    handle_.reset(open_handle(file.c_str(), SQLITE_OPEN_READWRITE));
     configure();
     execute("PRAGMA query_only = ON");
     const auto waits = [&](const char* ending) {
@@ -243,13 +188,13 @@ Connection::Connection(const std::filesystem::path& file, Access access) {
         // is waiting, there is no writer either.
         const bool closed_folder = (code & 0xff) == SQLITE_CANTOPEN || (code & 0xff) == SQLITE_READONLY;
         if (!closed_folder || waits("-wal") || waits("-journal")) throw;
-        handle_.reset(open(uri(file, "immutable=1").c_str(), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI));
+        handle_.reset(open_handle(uri(file, "immutable=1").c_str(), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI));
         configure();
     }
 }
 
 Connection Connection::in_memory() {
-    return Connection(open(":memory:", SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE));
+    return Connection(open_handle(":memory:", SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE));
 }
 
 void Connection::probe() const {
@@ -334,127 +279,6 @@ void Connection::read_file(std::int64_t offset, std::span<std::byte> into) const
 
 bool Connection::in_transaction() const {
     return sqlite3_get_autocommit(handle_.get()) == 0;
-}
-
-namespace {
-
-int call_authorizer(void* user, int action, const char* first, const char* second, const char*, const char*) {
-    const auto& authorizer = *static_cast<const Authorizer*>(user);
-    const auto text = [](const char* words) { return words == nullptr ? std::string_view{} : std::string_view(words); };
-    const auto ask = [&](SqlAction kind, const char* a, const char* b) {
-        return authorizer(kind, text(a), text(b)) ? SQLITE_OK : SQLITE_DENY;
-    };
-    switch (action) {
-        case SQLITE_SELECT:
-            return ask(SqlAction::select, nullptr, nullptr);
-        case SQLITE_RECURSIVE:
-            return ask(SqlAction::recursive, nullptr, nullptr);
-        case SQLITE_READ:
-            return ask(SqlAction::read, first, second);
-        case SQLITE_FUNCTION:
-            return ask(SqlAction::function, second, nullptr);
-        case SQLITE_PRAGMA:
-            return ask(SqlAction::pragma, first, second);
-        case SQLITE_ATTACH:
-        case SQLITE_DETACH:
-        case SQLITE_TRANSACTION:
-        case SQLITE_SAVEPOINT:
-            return ask(SqlAction::control, first, second);
-        default:
-            return ask(SqlAction::other, first, second);
-    }
-}
-
-using Statistic = std::optional<double> (*)(std::span<double>);
-
-struct Group {
-    std::vector<double>* numbers = nullptr;  // made at the first row
-};
-
-void add_to_group(sqlite3_context* context, int count, sqlite3_value** arguments) {
-    auto* group = static_cast<Group*>(sqlite3_aggregate_context(context, sizeof(Group)));
-    if (group == nullptr) return sqlite3_result_error_nomem(context);
-    const std::span row(arguments, static_cast<std::size_t>(count));
-    for (auto* value : row) {
-        const int type = sqlite3_value_type(value);
-        if (type == SQLITE_NULL) return;
-        if (type != SQLITE_INTEGER && type != SQLITE_FLOAT)
-            return sqlite3_result_error(context, "a statistic is asked of numbers, this is a word", -1);
-    }
-    try {
-        if (group->numbers == nullptr) group->numbers = new std::vector<double>();
-        for (auto* value : row) group->numbers->push_back(sqlite3_value_double(value));
-    } catch (const std::bad_alloc&) {
-        sqlite3_result_error_nomem(context);
-    }
-}
-
-void finish_group(sqlite3_context* context) {
-    auto* group = static_cast<Group*>(sqlite3_aggregate_context(context, 0));
-    if (group == nullptr || group->numbers == nullptr) return sqlite3_result_null(context);
-    const std::unique_ptr<std::vector<double>> numbers(std::exchange(group->numbers, nullptr));
-    const auto statistic = reinterpret_cast<Statistic>(sqlite3_user_data(context));
-    try {
-        const auto answer = numbers->empty() ? std::nullopt : statistic(*numbers);
-        answer ? sqlite3_result_double(context, *answer) : sqlite3_result_null(context);
-    } catch (const std::bad_alloc&) {
-        sqlite3_result_error_nomem(context);
-    } catch (const std::invalid_argument& refused) {
-        sqlite3_result_error(context, refused.what(), -1);
-    }
-}
-
-}  // namespace
-
-void Connection::authorize(Authorizer authorizer) const {
-    authorizer_ = authorizer ? std::make_unique<Authorizer>(std::move(authorizer)) : nullptr;
-    sqlite3_set_authorizer(handle_.get(), authorizer_ ? call_authorizer : nullptr, authorizer_.get());
-}
-
-void limit_memory(std::int64_t bytes) {
-    sqlite3_hard_heap_limit64(bytes);
-}
-
-void Connection::limit_lengths(int value) const {
-    sqlite3_limit(handle_.get(), SQLITE_LIMIT_LENGTH, value);
-    sqlite3_limit(handle_.get(), SQLITE_LIMIT_LIKE_PATTERN_LENGTH, 1000);
-}
-
-/// Called every so many of SQLite's own instructions: a statement that is over before costs no look at a clock.
-int Connection::look_at_time(void* allowance) {
-    auto& allowed = *static_cast<Allowance*>(allowance);
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    const double seconds = static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-    if (allowed.since < 0) allowed.since = seconds;
-    return seconds - allowed.since > allowed.seconds ? 1 : 0;
-}
-
-void Connection::stop_after(double seconds) const {
-    constexpr int instructions = 1000;
-    if (!(seconds > 0)) {
-        sqlite3_progress_handler(handle_.get(), 0, nullptr, nullptr);
-        allowance_.reset();
-        return;
-    }
-    if (!allowance_) {
-        allowance_ = std::make_unique<Allowance>();
-        sqlite3_progress_handler(handle_.get(), instructions, look_at_time, allowance_.get());
-    }
-    *allowance_ = {seconds, -1};
-}
-
-void Connection::add_aggregate(const char* name, int arguments, Statistic statistic) {
-    check(handle_.get(), sqlite3_create_function_v2(
-                             handle_.get(), name, arguments, SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_INNOCUOUS,
-                             reinterpret_cast<void*>(statistic), nullptr, add_to_group, finish_group, nullptr));
-}
-
-std::vector<std::string> Connection::functions() const {
-    std::vector<std::string> names;
-    auto rows = prepare("SELECT DISTINCT name FROM pragma_function_list ORDER BY name");
-    while (rows.step()) names.push_back(rows.get<std::string>(0));
-    return names;
 }
 
 // --- Transaction

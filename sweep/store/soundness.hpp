@@ -59,6 +59,7 @@ void renew_descriptions(Connection& db);
 void renew_attempt(Connection& db, std::int64_t key, std::int64_t number);
 void renew_answer(Connection& db, std::int64_t key);
 void renew_case(Connection& db, std::int64_t key);
+void renew_all_cases(Connection& db);
 /// Of everything: once, when a file gets its first checksums.
 void renew_everything(Connection& db);
 

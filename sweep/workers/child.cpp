@@ -51,6 +51,15 @@ boost::filesystem::path program_of(const std::string& word) {
     return there ? boost::filesystem::path(word) : boost::filesystem::path();
 }
 
+/// In the new process, whose program could not be executed: to its log. Calls what is allowed after fork(2) only.
+void say_why_not(int number) {
+    constexpr std::string_view begin = "it cannot be executed: ";
+    const char* reason = ::strerrordesc_np(number);
+    const std::string_view end = reason == nullptr ? "unknown error" : reason;
+    if (::write(STDERR_FILENO, begin.data(), begin.size()) < 0 || ::write(STDERR_FILENO, end.data(), end.size()) < 0)
+        return;
+}
+
 }  // namespace
 
 std::shared_ptr<Child> Child::start(asio::io_context& io, const std::vector<std::string>& argv,
@@ -66,11 +75,15 @@ std::shared_ptr<Child> Child::start(asio::io_context& io, const std::vector<std:
         for (auto* pipe : {&child->in_, &child->out_, &child->err_}) close_on_exec(*pipe);
         child->process_ = bp::child(
             executable, bp::args(std::vector<std::string>(argv.begin() + 1, argv.end())),
-            bp::std_in<child->in_, bp::std_out> child->out_, bp::std_err > child->err_, error,
+            bp::std_in<child->in_, bp::std_out> child->out_, bp::std_err > child->err_,
+            bp::ignore_error,  // else it is waited for until its program is loaded, from a dead file server for ever
             // a kill reaches all of the group, the terminal's Ctrl-C only the main program
-            bp::extend::on_exec_setup = [](auto&) { ::setpgid(0, 0); });
+            bp::extend::on_exec_setup = [](auto&) { ::setpgid(0, 0); },
+            bp::extend::on_exec_error = [](auto&, const std::error_code& refused) { say_why_not(refused.value()); });
         child->id_ = child->process_.id();
-        return error ? nullptr : child;
+        if (child->process_.valid()) return child;
+        error = std::make_error_code(std::errc::resource_unavailable_try_again);
+        return nullptr;
     } catch (const std::system_error& failure) {  // no descriptors left, say
         error = failure.code();
         return nullptr;

@@ -29,7 +29,8 @@ public:
     };
 
     /// nullptr, and why in `error`, where there is no program of that name, or no descriptor, memory or process to be
-    /// had. The process is the head of a group of its own: the terminal's Ctrl-C does not reach it.
+    /// had. Does not wait until the program is loaded: one that cannot be executed ends at once and says so in its log.
+    /// The process is the head of a group of its own: the terminal's Ctrl-C does not reach it.
     [[nodiscard]] static std::shared_ptr<Child> start(boost::asio::io_context& io, const std::vector<std::string>& argv,
                                                       std::error_code& error);
     /// Whether there is such a program, on the search path where the word is no path.

@@ -2,6 +2,8 @@
 
 #include "sweep/workers/awake_clock.hpp"
 #include "sweep/workers/child.hpp"
+#include "sweep/workers/departures.hpp"
+#include "sweep/workers/fruitless_launches.hpp"
 #include "sweep/workers/line_buffer.hpp"
 #include "sweep/workers/message.hpp"
 
@@ -26,24 +28,18 @@ constexpr double short_case_seconds = 0.05;
 constexpr std::size_t queue_of_short_cases = 4;
 // Seconds.
 constexpr double lease_every = 10;
-constexpr double grace_before_kill = 2;
-constexpr double place_kept_by_the_dying = 5;
 constexpr double look_every = 0.05;  // at the clock
 constexpr double heartbeat_every = 0.5;
 constexpr double time_to_leave = 1;  // of a worker that gave back its case, before its place is taken
 constexpr double remark_on_start = 30;
-constexpr double shortest_pause = 1, longest_pause = 60;  // between attempts to start a worker where it fails
-constexpr auto time_to_end = 5s;  // of a worker that has nothing left to do, and of what launched it
 constexpr int launches_at_once = 16;
 constexpr int events_at_once = 64;
-// So many workers in a row that end before they begin a case: the launcher is wrong, not the case. One that was killed
-// says less about the launcher.
-constexpr int fruitless_limit = 3;
-constexpr int killed_fruitless_limit = 10;
-std::string joined(const std::vector<std::string>& words) {
-    std::string text;
-    for (const auto& word : words) text += (text.empty() ? "" : " ") + word;
-    return text;
+constexpr int most_remarks_on_banners = 3;
+
+std::vector<std::string> command_of(const PoolOptions& options) {
+    auto argv = options.launcher;
+    argv.insert(argv.end(), options.command.begin(), options.command.end());
+    return argv;
 }
 
 bool was_killed(int status) {
@@ -67,17 +63,8 @@ struct Pool::Impl {
             return by ? fmt::format("worker {} on {}", child->id(), by->host) : fmt::format("worker {}", child->id());
         }
     };
-    /// A process that no longer counts, until it is gone.
-    struct Dying {
-        std::shared_ptr<Child> child;
-        double since = 0;
-        double ask_at = 0, kill_at = 0;  // when it is sent TERM and KILL
-        bool asked = false, killed = false;
-    };
-
-    explicit Impl(PoolOptions o) : options(std::move(o)), signals(io, SIGINT, SIGTERM, SIGUSR1) {
-        argv = options.launcher;
-        argv.insert(argv.end(), options.command.begin(), options.command.end());
+    explicit Impl(PoolOptions o)
+        : options(std::move(o)), argv(command_of(options)), signals(io, SIGINT, SIGTERM, SIGUSR1), fruitless(argv) {
         await_signal();
     }
 
@@ -105,8 +92,7 @@ struct Pool::Impl {
         const bool fruitful = worker->state.has_begun_any();
         auto meaning = worker->state.receive(line, clock.now());
         if (!fruitful && worker->state.has_begun_any()) {
-            fruitless_in_a_row = 0;
-            pause = shortest_pause;
+            fruitless.fruitful();
         }
         if (auto* finished = std::get_if<Finished>(&meaning)) {
             events.emplace_back(std::move(*finished));
@@ -132,7 +118,7 @@ struct Pool::Impl {
     void remark_on_banner(const std::string& banner) {
         if (banner.empty() || banner == last_banner) return;
         last_banner = banner;
-        if (++remarks_on_banners > fruitless_limit) return;
+        if (++remarks_on_banners > most_remarks_on_banners) return;
         events.emplace_back(Remark{
             fmt::format("what starts the workers wrote to standard output, where only they should: '{}'", banner)});
     }
@@ -174,23 +160,12 @@ struct Pool::Impl {
     void report(const Worker& worker, Lost lost, bool killed) {
         const bool owed = lost.running || !lost.queued.empty();
         if (!worker.state.has_begun_any() && (owed || !worker.state.was_ready() || worker.stop_sent) && !retired)
-            note_fruitless(lost.reason, killed ? killed_fruitless_limit : fruitless_limit);
+            say(fruitless.ended(lost.reason, killed, workers.size(), clock.now()));
         if (owed) events.emplace_back(std::move(lost));
     }
 
-    /// A worker that never began a case, or could not be launched.
-    void note_fruitless(const std::string& reason, int limit) {
-        if (++fruitless_in_a_row < limit) return;
-        if (workers.empty()) {
-            broken = fmt::format("cannot start workers with '{}': {}", joined(argv), reason);
-            return;
-        }
-        not_before = clock.now() + pause;
-        if (pause == shortest_pause)
-            events.emplace_back(Remark{fmt::format(
-                "cannot start another worker with '{}': {}; going on with {}, and trying again now and then",
-                joined(argv), reason, workers.size())});
-        pause = std::min(2 * pause, longest_pause);
+    void say(std::optional<std::string> remark) {
+        if (remark) events.emplace_back(Remark{std::move(*remark)});
     }
 
     /// Nothing it wrote or will write counts; its process is on its way out.
@@ -199,11 +174,7 @@ struct Pool::Impl {
         worker->child->close();
         std::erase(workers, worker);
         if (!worker->child->runs()) return;
-        // A launcher is asked first, so that it ends what it launched.
-        const double now = clock.now();
-        const bool launched = !options.launcher.empty();
-        dying.push_back({worker->child, now, now, launched ? now + grace_before_kill : now});
-        escalate(dying.back(), now);
+        leaving.hurry(worker->child, !options.launcher.empty(), clock.now());
     }
 
     /// It gave back its case and is to end by itself; its place is free.
@@ -213,13 +184,7 @@ struct Pool::Impl {
         worker->child->close();
         std::erase(workers, worker);
         report(*worker, std::move(rest), false);
-        const double now = clock.now();
-        dying.push_back({worker->child, now, now + grace_before_kill, now + 2 * grace_before_kill});
-    }
-
-    static void escalate(Dying& one, double now) {
-        if (now >= one.kill_at && !std::exchange(one.killed, true)) return one.child->signal(SIGKILL);
-        if (now >= one.ask_at && !std::exchange(one.asked, true)) one.child->signal(SIGTERM);
+        leaving.let_go(worker->child, clock.now());
     }
 
     // ---- doing -------------------------------------------------------------------------------------------
@@ -229,8 +194,7 @@ struct Pool::Impl {
         std::error_code error;
         auto child = Child::start(io, argv, error);
         if (child == nullptr) {
-            fruitless_in_a_row = fruitless_limit;  // another try at once would end the same way
-            note_fruitless(error.message(), fruitless_limit);
+            say(fruitless.not_launched(error.message(), workers.size(), clock.now()));
             return false;
         }
         auto worker = std::make_shared<Worker>(std::move(child), options.expected, clock.now());
@@ -273,11 +237,7 @@ struct Pool::Impl {
             remark(*worker, now);
             check(worker, worker->state.overdue(options.limits, now), now);
         }
-        std::erase_if(dying, [&](Dying& one) {
-            if (!one.child->runs()) return true;
-            escalate(one, now);
-            return false;
-        });
+        leaving.keep_time(now);
     }
 
     void check(const std::shared_ptr<Worker>& worker, WorkerState::Overdue overdue, double now) {
@@ -311,7 +271,7 @@ struct Pool::Impl {
             if (worker.remarked || now - worker.state.launched() < limit) return;
             worker.remarked = true;
             events.emplace_back(Remark{fmt::format("waiting for {} to be ready, {:.0f} s so far: started with '{}'",
-                                                   worker.name(), now - worker.state.launched(), joined(argv))});
+                                                   worker.name(), now - worker.state.launched(), fruitless.command())});
             return;
         }
         const double silence = worker.state.silence(now);
@@ -332,30 +292,21 @@ struct Pool::Impl {
         }));
     }
 
-    /// Processes that are ending still use the machine, but one that cannot be ended must not keep its place.
-    [[nodiscard]] std::size_t places_taken(double now) const {
-        return workers.size() + static_cast<std::size_t>(std::ranges::count_if(dying, [&](const Dying& one) {
-                   return now - one.since < place_kept_by_the_dying;
-               }));
-    }
-
     PoolOptions options;
     std::vector<std::string> argv;  // of a worker, with its launcher
     asio::io_context io;
     asio::signal_set signals;
     std::vector<std::shared_ptr<Worker>> workers;
-    std::vector<Dying> dying;
+    Departures leaving;
     std::deque<PoolEvent> events;
     AwakeClock clock;
+    FruitlessLaunches fruitless;
     int events_before_reading = 0;
     double leased = 0, looked = 0;
     int interruptions = 0;
     bool retired = false;
-    int fruitless_in_a_row = 0;  // workers lost before they began a case
-    double not_before = 0, pause = shortest_pause;
     std::string last_banner;  // remarked on
     int remarks_on_banners = 0;
-    std::string broken;  // why no worker can be had at all
 };
 
 Pool::Pool(PoolOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {
@@ -369,9 +320,10 @@ Pool::~Pool() {
 void Pool::expect(std::size_t cases) {
     auto& pool = *impl_;
     for (int launched = 0; launched < launches_at_once; ++launched) {
-        if (pool.retired || !pool.broken.empty() || pool.workers.size() >= pool.options.workers) return;
+        if (pool.retired || !pool.fruitless.why().empty() || pool.workers.size() >= pool.options.workers) return;
         const double now = pool.clock.now();
-        if (now < pool.not_before || pool.places_taken(now) >= pool.options.workers || pool.free_workers() >= cases)
+        if (pool.fruitless.waits(now) || pool.workers.size() + pool.leaving.places_taken(now) >= pool.options.workers ||
+            pool.free_workers() >= cases)
             return;
         if (!pool.launch()) return;
     }
@@ -409,7 +361,7 @@ std::optional<PoolEvent> Pool::wait(std::chrono::milliseconds at_most) {
         impl_->keep_time();
     }
     while (impl_->events.empty()) {
-        if (!impl_->broken.empty()) throw std::runtime_error(impl_->broken);
+        if (const auto& why = impl_->fruitless.why(); !why.empty()) throw std::runtime_error(why);
         const auto left = until - Clock::now();
         if (left <= 0s) return std::nullopt;
         impl_->io.restart();
@@ -430,9 +382,7 @@ bool Pool::can_start(const std::string& program) {
     return Child::can_start(program);
 }
 
-// A launcher has things to do after its worker has ended (srun gives its part of the machine back), so both are
-// asked by a message, then by a signal, and killed last. Workers that were retired and have nothing left to do end by
-// themselves. What cannot even be killed (it waits for a dead file server) is left behind.
+// Workers that were retired and have nothing left to do end by themselves.
 void Pool::dismiss() {
     std::vector<std::shared_ptr<Child>> all;
     for (const auto& worker : impl_->workers) {
@@ -441,21 +391,8 @@ void Pool::dismiss() {
         if (!ends_by_itself) worker->child->signal(SIGTERM);
         all.push_back(worker->child);
     }
-    for (const auto& one : impl_->dying) all.push_back(one.child);
-    const auto running = [&] { return std::ranges::any_of(all, [](const auto& child) { return child->runs(); }); };
-    const auto signal_all = [&](int number) {
-        for (const auto& child : all)
-            if (child->runs()) child->signal(number);
-    };
-    constexpr auto grace = std::chrono::milliseconds(static_cast<int>(1000 * grace_before_kill));
-    wait_while(running, time_to_end);
-    signal_all(SIGTERM);
-    wait_while(running, grace);
-    for (const auto& child : all) child->signal(SIGKILL);  // and whatever is left of its process group
-    wait_while(running, grace);
-    for (const auto& child : all) child->close();
+    impl_->leaving.end_all(std::move(all));
     impl_->workers.clear();
-    impl_->dying.clear();
 }
 
 }  // namespace grainsweep::workers

@@ -56,7 +56,7 @@ TEST(Checkpoints, AKilledWorkersCaseIsContinued) {
     EXPECT_EQ(files_in(folder / "hit.artefacts"), 0U);
 }
 
-TEST(Checkpoints, AKilledBosssCaseIsContinued) {
+TEST(Checkpoints, ACaseOfAKilledMainProgramIsContinued) {
     const Folder folder;
     folder.write("c.json", config);
     run_program({"run", "c.json", "--db", "calm.db", "--quiet"}, folder.path());

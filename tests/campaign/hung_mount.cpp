@@ -32,12 +32,23 @@ TEST(HungMount, AWorkerThatWaitsForItsDiskIsReplaced) {
     EXPECT_EQ(trial.complaint, "");
 }
 
-TEST(HungMount, ABossThatWaitsForItsDiskGoesOnWithIt) {
+TEST(HungMount, AMainProgramThatWaitsForItsDiskGoesOnWithIt) {
     const SmallCampaign campaign;
     const auto trial = campaign.attempt({"main", "sync", "d.db-wal", "before", 5, "2"});
     EXPECT_TRUE(trial.happened);
     EXPECT_EQ(trial.disturbed.code, 0) << trial.disturbed.err;
     EXPECT_EQ(trial.disturbed.err, "");
+    EXPECT_EQ(trial.complaint, "");
+}
+
+// Its program itself lies on such a server: the main program does not wait with it.
+TEST(HungMount, AWorkerWhoseProgramIsNotLoadedIsReplaced) {
+    const SmallCampaign campaign(R"("workers": 1, "start_seconds": 2,
+        "launcher": ["/bin/sh", "-c", "exec \"$@\" --checkpoint-seconds 0", "sh"])");
+    const auto trial = campaign.attempt({"main", "exec", "/bin/sh", "before", 1, "1000"});
+    EXPECT_TRUE(trial.happened);
+    EXPECT_EQ(trial.disturbed.code, 0) << trial.disturbed.err;
+    EXPECT_THAT(trial.disturbed.err, HasSubstr("was not ready within 2 s and is replaced"));
     EXPECT_EQ(trial.complaint, "");
 }
 

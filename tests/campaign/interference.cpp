@@ -134,7 +134,7 @@ TEST(Interference, WorkersThatAreNeverReadyEndTheRun) {
 
 // Limits are of the main program's own running time: silence, a case's wall time and the lease all pass while it is
 // stopped.
-TEST(Interference, ABossThatIsStoppedForAWhileCostsNothing) {
+TEST(Interference, AMainProgramThatIsStoppedForAWhileCostsNothing) {
     const ScriptedCampaign campaign("exec \"$@\" --lease-seconds 15", 8,
                                     {{"fixed", {{"wait_seconds", 0.5}}},
                                      {"limits", {{"attempts", 1}, {"wall_seconds", 3}}},
@@ -153,7 +153,7 @@ TEST(Interference, ABossThatIsStoppedForAWhileCostsNothing) {
 }
 
 // The main program is stopped for so long that its workers give it up: what they had is given back when it goes on.
-TEST(Interference, ABossThatIsStoppedForLongFindsItsCasesGivenBack) {
+TEST(Interference, AMainProgramThatIsStoppedForLongFindsItsCasesGivenBack) {
     const ScriptedCampaign campaign("exec \"$@\" --lease-seconds 2", 1,
                                     {{"fixed", {{"wait_seconds", 7}}}, {"limits", {{"attempts", 1}}}});
     Process run(campaign.command(), campaign.folder().path());

@@ -43,7 +43,7 @@ TEST(OneFile, AfterARunThatShowedItsTables) {
     }
 }
 
-TEST(OneFile, AfterTheBossWasKilledAndOneCommandReadIt) {
+TEST(OneFile, AfterTheMainProgramWasKilledAndOneCommandReadIt) {
     const Folder folder;
     folder.write("c.json", config);
     {

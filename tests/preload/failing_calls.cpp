@@ -3,12 +3,11 @@
 //
 //   GRAINSWEEP_FAILING_CALL="WHO CALL FILE NUMBER WHEN WHAT TOKEN"
 //     WHO     main (program) or worker
-//     CALL    open (to write), write, read, sync, truncate, rename or remove
-//     FILE    the end of the file's name, of a rename the old one; pipe: any pipe
-//     NUMBER  at the so-many-th such call of the process
-//     WHEN    before the call or after it; after: it has succeeded
-//     WHAT    kill, the seconds it takes, or the errno it fails with, as -28
-//     TOKEN   a file that goes when it happens, so that it happens once, in the process that comes first
+//     CALL    open (to write), write, read, sync, truncate, rename, remove or exec (in the process that main has
+//     forked) FILE    the end of the file's name, of a rename the old one; pipe: any pipe NUMBER  at the so-many-th
+//     such call of the process WHEN    before the call or after it; after: it has succeeded WHAT    kill, the seconds
+//     it takes, or the errno it fails with, as -28 TOKEN   a file that goes when it happens, so that it happens once,
+//     in the process that comes first
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/syscall.h>
@@ -160,6 +159,10 @@ int ftruncate64(int file, off64_t length) {
 }
 int rename(const char* from, const char* to) noexcept {
     return static_cast<int>(guarded("rename", std::string_view(from), [&] { return syscall(SYS_rename, from, to); }));
+}
+int execve(const char* path, char* const arguments[], char* const environment[]) noexcept {
+    return static_cast<int>(
+        guarded("exec", std::string_view(path), [&] { return syscall(SYS_execve, path, arguments, environment); }));
 }
 int unlink(const char* path) noexcept {
     return static_cast<int>(guarded("remove", std::string_view(path), [&] { return syscall(SYS_unlink, path); }));

@@ -12,7 +12,7 @@ namespace grainsweep::test {
 /// Which call of which process; the words are those of tests/preload/failing_calls.cpp.
 struct FailingCall {
     std::string who;   ///< "main" or "worker"
-    std::string call;  ///< "open", "write", "read", "sync", "truncate", "rename" or "remove"
+    std::string call;  ///< "open", "write", "read", "sync", "truncate", "rename", "remove" or "exec"
     std::string file;  ///< end of the file's name, or "pipe"
     std::string when = "before";
     int number = 1;             ///< the so-many-th of the process

@@ -402,6 +402,15 @@ TEST_F(Study, UnknownNamesGetTheNearestRightWord) {
     EXPECT_THROW((void)report::find_campaigns(empty, ""), campaign::WrongQuestion);
 }
 
+TEST_F(Study, ExtremesHaveUnits) {
+    answer_by(store, R"({"campaign": "c", "scene": "rehearsal", "factors": [{"name": "wait_seconds", "between": [0, 1]},
+        {"name": "x1", "between": [0, 1]}], "design": {"kind": "halton", "points": 8}})",
+              [](const Inputs& inputs) { return input(inputs, "x1"); });
+    const auto responses = ask("c");
+    EXPECT_THAT(extremes_table(responses, responses.observable("y"), 3).columns,
+                ElementsAre("", "point", "wait_seconds (s)", "x1", "y", "case_id"));
+}
+
 TEST_F(Study, TheRunEndsWithCountsMomentsExtremesAndThePlace) {
     answer_by(store, halton("c", 64), [](const Inputs& inputs) { return linear(inputs); });
     const auto text = report::closing_summary(store, "c", folder / "a.db");

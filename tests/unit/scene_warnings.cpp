@@ -37,7 +37,9 @@ TEST(SceneWarnings, DefaultsDrawNone) {
 TEST(SceneWarnings, OfSpreading) {
     const auto of = [](const Inputs& changed) { return kinds("powder_spreading", changed); };
     EXPECT_EQ(of({{"gap", 0.0009}}), Kinds{"gap below half a diameter"});
-    EXPECT_EQ(of({{"gap", 0.0011}}), Kinds{});
+    EXPECT_EQ(of({{"gap", 0.0011}}), Kinds{"gap below one diameter"});
+    EXPECT_EQ(of({{"gap", 0.0019}}), Kinds{"gap below one diameter"});
+    EXPECT_EQ(of({{"gap", 0.0021}}), Kinds{});
     EXPECT_EQ(of({{"gap", 0.04}}), Kinds{"gap above the layer"}) << "20 diameters";
     EXPECT_EQ(of({{"gap", 0.004}, {"diameter", 0.0002}}), Kinds{"gap above the width"});
     EXPECT_EQ(of({{"layer_area", 5e-5}, {"diameter", 0.004}}).count("layer below one diameter"), 1U);

@@ -313,7 +313,7 @@ TEST(CampaignName, AWordOfSqlIsRefused) {
         EXPECT_NO_THROW(store::check_campaign_name(name));
 }
 
-TEST_F(StoreEnrol, WhatADeadBossBeganIsAbandonedAndAnOldAnswerStands) {
+TEST_F(StoreEnrol, WhatADeadMainProgramBeganIsAbandonedAndAnOldAnswerStands) {
     const auto campaign = small_campaign("c");
     const auto cases = small_design(campaign, 3);
     store.enrol(campaign, cases, here());

@@ -40,6 +40,12 @@ void warn_of_gap(std::vector<Warning>& warnings, const Study& s, double layer) {
                             text("a gap of %.3g m is %.2g of the smallest diameter: the tool meets particles "
                                  "below their centre and pushes them ahead, so that next to nothing is spread",
                                  s.gap, s.gap / smallest)});
+    else if (s.gap < smallest)
+        warnings.push_back({"gap below one diameter",
+                            text("a gap of %.3g m is %.2g of the smallest diameter: a particle passes only where it is "
+                                 "squeezed, so that few or none do, about half of the base or more stays bare, and "
+                                 "the flux depends on youngs_modulus and speed",
+                                 s.gap, s.gap / smallest)});
     if (s.gap >= layer)
         warnings.push_back(
             {"gap above the layer",
