@@ -79,6 +79,9 @@ inline constexpr std::string_view identity_columns =
 inline constexpr int identity_column_count = 10;
 [[nodiscard]] campaign::Identity identity_at(const Rows& rows, int first);
 
+/// candidates, asked_candidates, asked_replicates of campaign g; of an older archive, which keeps none, what is placed.
+[[nodiscard]] std::string extent_columns(bool kept);
+
 /// A stored campaign; none of that name.
 struct KnownCampaign {
     std::int64_t key = 0;

@@ -217,8 +217,8 @@ void Connection::use(Journal journal) {
     auto statement = prepare(ahead ? "PRAGMA journal_mode = WAL" : "PRAGMA journal_mode = DELETE");
     const std::string got = statement.step() ? statement.get<std::string>(0) : "";
     if (got != (ahead ? "wal" : "delete")) {
-        throw BrokenWorld(fmt::format("{}: its journal could not be set to '{}' (it is '{}')", file_of(handle_.get()),
-                                      ahead ? "wal" : "delete", got));
+        throw BrokenWorld(fmt::format("{}: its journal could not be set to '{}' (it is '{}')",
+                                      shown_file(handle_.get()), ahead ? "wal" : "delete", got));
     }
 }
 
@@ -259,7 +259,7 @@ sqlite3_file* file_behind(sqlite3* database) {
 }
 
 [[noreturn]] void fail_reading(sqlite3* database, int code) {
-    throw BrokenWorld(fmt::format("{}: reading it failed ({})", file_of(database), sqlite3_errstr(code)));
+    throw BrokenWorld(fmt::format("{}: reading it failed ({})", shown_file(database), sqlite3_errstr(code)));
 }
 
 }  // namespace

@@ -10,14 +10,14 @@
 
 namespace grainsweep::store {
 
-std::string file_of(sqlite3* database) {
+std::string shown_file(sqlite3* database) {
     const char* file = database == nullptr ? nullptr : sqlite3_db_filename(database, "main");
     return file == nullptr || *file == '\0' ? "the database" : fmt::format("database '{}'", file);
 }
 
 void fail(sqlite3* database, int code) {
     const std::string words = database == nullptr ? sqlite3_errstr(code) : sqlite3_errmsg(database);
-    const std::string file = file_of(database);
+    const std::string file = shown_file(database);
     const auto cause = [&] {
         const int number = database == nullptr ? 0 : sqlite3_system_errno(database);
         return number == 0 ? words : fmt::format("{} ({})", words, std::strerror(number));

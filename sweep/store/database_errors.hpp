@@ -12,7 +12,7 @@ namespace grainsweep::store {
 inline constexpr std::chrono::milliseconds patience = std::chrono::seconds(30);
 
 /// "database 'a.db'", "the database" where it has no file.
-[[nodiscard]] std::string file_of(sqlite3* database);
+[[nodiscard]] std::string shown_file(sqlite3* database);
 /// Turns a result code into the exception and the sentence it deserves.
 [[noreturn]] void fail(sqlite3* database, int code);
 /// The same unless the code is SQLITE_OK.

@@ -229,6 +229,7 @@ std::vector<CaseState> Store::enrol(const Campaign& campaign, const campaign::Ca
     Transaction transaction(db);
     impl_->notes.clear();
     impl_->refuse_damage(damaged_descriptions(db), {});
+    if (!impl_->as_remembered) impl_->refuse_damage(tables_out_of_order(db), {});
     close_dead_attempts(*impl_);
     const std::int64_t key = store_campaign(*impl_, campaign, cases);
     const auto parameters = declare_scene(*impl_, campaign.scene());

@@ -1,4 +1,4 @@
-// The identity of a stored campaign: kept as campaign/identity wrote it, handed back as it is.
+// The identity of a stored campaign: kept as campaign/identity wrote it, handed back as it is. And its extent.
 #include "sweep/store/archive.hpp"
 
 #include <fmt/format.h>
@@ -18,6 +18,15 @@ campaign::Identity identity_at(const Rows& rows, int first) {
     identity.options = rows.get<std::string>(first + 8);
     identity.extent = rows.get<std::string>(first + 9);
     return identity;
+}
+
+std::string extent_columns(bool kept) {
+    constexpr std::string_view placed =
+        "(SELECT max(point) + 1 FROM campaign_case AS e WHERE e.campaign_id = g.campaign_id)";
+    if (!kept) return fmt::format("{0}, {0}, g.replicates", placed);
+    return fmt::format(
+        "coalesce(g.candidates, {0}), coalesce(g.asked_candidates, {0}), coalesce(g.asked_replicates, g.replicates)",
+        placed);
 }
 
 std::optional<KnownCampaign> known_campaign(const Connection& db, std::string_view name) {

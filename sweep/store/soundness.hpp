@@ -39,6 +39,9 @@ struct DamagedTable {
 
 /// Tables that describe cases and campaigns: campaign, parameter, observable, provenance and the schema itself.
 [[nodiscard]] std::vector<DamagedTable> damaged_descriptions(const Connection& db);
+/// Tables that are kept in the order of their keys and are not: their rows cannot be found, nor safely written.
+/// SQLite's quick check does not see it.
+[[nodiscard]] std::vector<DamagedTable> tables_out_of_order(const Connection& db);
 /// Designs and verdicts: campaign_case and convergence, campaign by campaign.
 [[nodiscard]] std::vector<DamagedTable> damaged_parts(const Connection& db);
 

@@ -154,6 +154,7 @@ void Store::Impl::require_order() const {
             refuse_damage({{table, 0, rows.get<std::string>(0)}}, {});
         }
     }
+    refuse_damage(tables_out_of_order(db), {});
 }
 
 void Store::Impl::require_sound(std::int64_t key) {

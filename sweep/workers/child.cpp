@@ -44,6 +44,33 @@ private:
     std::array<int, spare_descriptors> held_{};
 };
 
+/// No signal reaches this thread while it lives. A process that is forked then begins with all of them held, too, and
+/// must not answer one by a handler of ours, which would tell this process of it.
+class SignalsHeld {
+public:
+    SignalsHeld() {
+        sigset_t all;
+        ::sigfillset(&all);
+        ::pthread_sigmask(SIG_SETMASK, &all, &before_);
+    }
+    SignalsHeld(const SignalsHeld&) = delete;
+    SignalsHeld& operator=(const SignalsHeld&) = delete;
+    ~SignalsHeld() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+    /// In the new process: every signal does what the system does by itself, or stays ignored.
+    void give_up_handlers() const {
+        for (int number = 1; number < SIGRTMIN; ++number) {
+            struct sigaction action {};
+            if (::sigaction(number, nullptr, &action) != 0 || action.sa_handler == SIG_IGN) continue;
+            ::signal(number, SIG_DFL);
+        }
+        ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+    }
+
+private:
+    sigset_t before_{};
+};
+
 boost::filesystem::path program_of(const std::string& word) {
     if (word.find('/') == std::string::npos) return bp::search_path(word);
     boost::system::error_code error;
@@ -73,12 +100,17 @@ std::shared_ptr<Child> Child::start(asio::io_context& io, const std::vector<std:
         const SpareDescriptors spare;
         auto child = std::make_shared<Child>(io);
         for (auto* pipe : {&child->in_, &child->out_, &child->err_}) close_on_exec(*pipe);
+        const SignalsHeld held;
         child->process_ = bp::child(
             executable, bp::args(std::vector<std::string>(argv.begin() + 1, argv.end())),
             bp::std_in<child->in_, bp::std_out> child->out_, bp::std_err > child->err_,
             bp::ignore_error,  // else it is waited for until its program is loaded, from a dead file server for ever
             // a kill reaches all of the group, the terminal's Ctrl-C only the main program
-            bp::extend::on_exec_setup = [](auto&) { ::setpgid(0, 0); },
+            bp::extend::on_exec_setup =
+                [&held](auto&) {
+                    ::setpgid(0, 0);
+                    held.give_up_handlers();
+                },
             bp::extend::on_exec_error = [](auto&, const std::error_code& refused) { say_why_not(refused.value()); });
         child->id_ = child->process_.id();
         if (child->process_.valid()) return child;

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 
 #include <cmath>
 #include <string>
@@ -161,6 +162,41 @@ TEST_F(StoreChecksums, ADamagedCaseIsAskedAgainAndItsLogSaysSo) {
     }
     EXPECT_TRUE(verified().empty());
     EXPECT_EQ(dump_of(Store(file, Store::Mode::read)), whole);
+}
+
+/// The rows of `observation` as they are, by descending case: as a flipped bit of a key leaves one of them.
+void put_out_of_order(const std::filesystem::path& file) {
+    const auto execute = [&](const std::string& sql) {
+        sqlite3* db = nullptr;
+        ASSERT_EQ(sqlite3_open(file.c_str(), &db), SQLITE_OK);
+        EXPECT_EQ(sqlite3_exec(db, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK) << sqlite3_errmsg(db);
+        sqlite3_close(db);
+    };
+    const auto declare = [](const std::string& from, const std::string& to) {
+        return "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET sql = replace(sql, '" + from + "', '" + to +
+               "') WHERE name = 'observation'";
+    };
+    execute(declare("(case_key, observable_id", "(case_key DESC, observable_id"));
+    execute(
+        "CREATE TEMP TABLE kept AS SELECT * FROM observation; DELETE FROM observation; "
+        "INSERT INTO observation SELECT * FROM kept");
+    execute(declare("(case_key DESC, observable_id", "(case_key, observable_id"));
+}
+
+// What is written into such a table may not be found again, and SQLite's quick check sees nothing.
+TEST_F(StoreChecksums, RowsOutOfOrderAreNotWrittenTo) {
+    put_out_of_order(file);
+    const auto damaged = [&](auto&& use) {
+        try {
+            use();
+        } catch (const BrokenWorld& broken) {
+            return std::string(broken.what());
+        }
+        return std::string();
+    };
+    EXPECT_THAT(damaged([&] { Store(file, Store::Mode::create).enrol(asked, cases, here()); }),
+                HasSubstr("table observation: its rows are not in the order of their keys"));
+    EXPECT_THAT(damaged([&] { (void)dump_of(Store(file, Store::Mode::read)); }), HasSubstr("damaged"));
 }
 
 TEST_F(StoreChecksums, ALogThatChangedCostsNoAnswer) {
