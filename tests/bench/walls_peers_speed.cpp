@@ -109,7 +109,7 @@ void compare(const std::vector<std::pair<const char*, test::WallDeck>>& walls, c
 
 int main(int argc, char** argv) {
     std::string wanted;
-    std::vector<double> skins = {0.1, 0.2, 0.3};
+    std::vector<double> skins = {0.2, 0.3, 0.1};
     for (int i = 1; i + 1 < argc; i += 2) {
         if (std::string(argv[i]) == "--deck") wanted = argv[i + 1];
         if (std::string(argv[i]) == "--skins") skins.resize(std::clamp<std::size_t>(std::stoul(argv[i + 1]), 1, 3));
