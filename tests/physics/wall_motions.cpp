@@ -2,9 +2,11 @@
 // energy that walls give.
 #include "solver/dem/engine.hpp"
 #include "solver/dem/material.hpp"
+#include "solver/dem/walls/moving_wall.hpp"
 #include "solver/geometry/vector.hpp"
 #include "tests/support/moving_walls.hpp"
 #include "tests/support/spheres.hpp"
+#include "tests/support/surfaces.hpp"
 
 #include <gtest/gtest.h>
 
@@ -264,4 +266,22 @@ TEST(WallMotions, SlidesDownAConeWithItsFriction) {
     engine->run(20000);
     const double gained = norm(tests::state_of(*engine).velocity[0] - before);
     EXPECT_NEAR(gained / 0.02, gravity * (std::cos(a) - mu * std::sin(a)), 1e-6 * gravity);
+}
+
+// The seventh known defect of walls made of triangles (mesh_defects.cpp): poses are closed forms, and no step adds to
+// another.
+TEST(MeshDefects, AMeshDoesNotDrift) {
+    const dem::Mesh block(tests::surface_of(tests::box(0.004, 0.004)));
+    const Vec3 axis = (1 / norm(Vec3{1, 2, 3})) * Vec3{1, 2, 3}, point{0.001, 0, 0.002};
+    constexpr double step = 1e-5;
+    dem::MovingWall wall({block, {dem::Rotation{.point = point, .axis = axis, .speed = 37}}},
+                         {{-1, -1, -1}, {1, 1, 1}, {}}, radius);
+    for (std::int64_t k = 0; k <= 1000000; k += 50000) {
+        wall.place(static_cast<double>(k) * step);
+        for (const Vec3& corner : block.surface().corners) {
+            const Vec3 now = wall.pose().from_body(corner);
+            EXPECT_NEAR(norm(now - point) / norm(corner - point), 1, 1e-15 * 4);
+            EXPECT_NEAR(dot(now - point, axis), dot(corner - point, axis), 1e-17);
+        }
+    }
 }

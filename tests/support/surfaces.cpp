@@ -107,4 +107,56 @@ std::vector<PlainContact> plain_contacts(const Soup& soup, const Vec3& x, double
     return kept;
 }
 
+Vec3 draw(const stats::Stream& random, std::uint64_t& at, const Vec3& half) {
+    Vec3 x{};
+    for (std::size_t k = 0; k < 3; ++k) x[k] = half[k] * (2 * random.uniform(at++) - 1);
+    return x;
+}
+
+Soup random_soup(std::uint64_t seed, int n, double size) {
+    const stats::Stream random(seed, 5);
+    std::uint64_t at = 0;
+    Soup soup;
+    for (int k = 0; k < n; ++k) {
+        const Vec3 middle = draw(random, at, {1, 1, 1});
+        const double own = size * std::pow(10.0, -2 * random.uniform(at++));
+        soup.push_back({middle + own * draw(random, at, {1, 1, 1}), middle + own * draw(random, at, {1, 1, 1}),
+                        middle + own * draw(random, at, {1, 1, 1})});
+    }
+    return soup;
+}
+
+Soup random_fans(std::uint64_t seed) {
+    const stats::Stream random(seed, 6);
+    std::uint64_t at = 0;
+    Soup soup;
+    const Vec3 a = draw(random, at, {1, 1, 1}), b = draw(random, at, {1, 1, 1});
+    for (int k = 0; k < 5; ++k) soup.push_back({a, b, draw(random, at, {1, 1, 1})});
+    Vec3 rim = draw(random, at, {1, 1, 1});
+    for (int k = 0; k < 7; ++k) {
+        const Vec3 next = draw(random, at, {1, 1, 1});
+        soup.push_back({a, rim, next});
+        rim = next;
+    }
+    return soup;
+}
+
+Soup shattered_plate(std::uint64_t seed, int points) {
+    const stats::Stream random(seed, 7);
+    std::uint64_t at = 0;
+    Soup soup = plate(1, 1);
+    for (int k = 0; k < points; ++k) {
+        const Vec3 x = draw(random, at, {1, 1, 0});
+        for (std::size_t t = 0; t < soup.size(); ++t) {
+            if (norm(plain_nearest(soup[t], x) - x) > 1e-12) continue;
+            const auto [a, b, c] = soup[t];
+            soup[t] = {a, b, x};
+            soup.push_back({b, c, x});
+            soup.push_back({c, a, x});
+            break;
+        }
+    }
+    return soup;
+}
+
 }  // namespace grainsweep::tests

@@ -3,6 +3,7 @@
 
 #include "solver/geometry/mesh.hpp"
 #include "solver/geometry/triangle_surface.hpp"
+#include "stats/random.hpp"
 
 #include <array>
 #include <cstdint>
@@ -25,6 +26,15 @@ using Soup = std::vector<std::array<Vec3, 3>>;  ///< triangles that need not kno
 [[nodiscard]] Soup box(double a, double h);
 /// Closed ring of n flat facets around x, |x| <= half_length, corners on the radius.
 [[nodiscard]] Soup drum(int n, double radius, double half_length);
+
+/// A point in the box around the middle; `at` counts the draws.
+[[nodiscard]] Vec3 draw(const stats::Stream& random, std::uint64_t& at, const Vec3& half);
+/// n triangles of up to `size` in a box of half length 1.
+[[nodiscard]] Soup random_soup(std::uint64_t seed, int n, double size);
+/// Triangles around one edge, like the pages of a book, and around one vertex.
+[[nodiscard]] Soup random_fans(std::uint64_t seed);
+/// A flat square with corners at random places in it: obtuse triangles, slivers and needles.
+[[nodiscard]] Soup shattered_plate(std::uint64_t seed, int points);
 
 [[nodiscard]] Soup joined(Soup a, const Soup& b);
 /// Triangles in another order, their corners in another order each.

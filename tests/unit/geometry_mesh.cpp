@@ -10,6 +10,10 @@
 
 using namespace grainsweep;
 using namespace grainsweep::geometry;
+using tests::draw;
+using tests::random_fans;
+using tests::random_soup;
+using tests::shattered_plate;
 using tests::Soup;
 
 namespace {
@@ -22,61 +26,6 @@ std::vector<MeshContact> contacts(const Mesh& mesh, const Vec3& x, double reach)
     std::vector<MeshContact> found;
     mesh.contacts(x, reach, found);
     return found;
-}
-
-/// A point in the box around the middle.
-Vec3 draw(const stats::Stream& random, std::uint64_t& at, const Vec3& half) {
-    Vec3 x{};
-    for (std::size_t k = 0; k < 3; ++k) x[k] = half[k] * (2 * random.uniform(at++) - 1);
-    return x;
-}
-
-Soup random_soup(std::uint64_t seed, int n, double size) {
-    const stats::Stream random(seed, 5);
-    std::uint64_t at = 0;
-    Soup soup;
-    for (int k = 0; k < n; ++k) {
-        const Vec3 middle = draw(random, at, {1, 1, 1});
-        const double own = size * std::pow(10.0, -2 * random.uniform(at++));
-        soup.push_back({middle + own * draw(random, at, {1, 1, 1}), middle + own * draw(random, at, {1, 1, 1}),
-                        middle + own * draw(random, at, {1, 1, 1})});
-    }
-    return soup;
-}
-
-/// Triangles around one edge, like the pages of a book, and around one vertex.
-Soup random_fans(std::uint64_t seed) {
-    const stats::Stream random(seed, 6);
-    std::uint64_t at = 0;
-    Soup soup;
-    const Vec3 a = draw(random, at, {1, 1, 1}), b = draw(random, at, {1, 1, 1});
-    for (int k = 0; k < 5; ++k) soup.push_back({a, b, draw(random, at, {1, 1, 1})});
-    Vec3 rim = draw(random, at, {1, 1, 1});
-    for (int k = 0; k < 7; ++k) {
-        const Vec3 next = draw(random, at, {1, 1, 1});
-        soup.push_back({a, rim, next});
-        rim = next;
-    }
-    return soup;
-}
-
-/// A flat square with corners at random places in it: obtuse triangles, slivers and needles.
-Soup shattered_plate(std::uint64_t seed, int points) {
-    const stats::Stream random(seed, 7);
-    std::uint64_t at = 0;
-    Soup soup = tests::plate(1, 1);
-    for (int k = 0; k < points; ++k) {
-        const Vec3 x = draw(random, at, {1, 1, 0});
-        for (std::size_t t = 0; t < soup.size(); ++t) {
-            if (norm(tests::plain_nearest(soup[t], x) - x) > 1e-12) continue;
-            const auto [a, b, c] = soup[t];
-            soup[t] = {a, b, x};
-            soup.push_back({b, c, x});
-            soup.push_back({c, a, x});
-            break;
-        }
-    }
-    return soup;
 }
 
 void expect_as_plain(const Soup& soup, const Mesh& mesh, const Vec3& x, double reach) {
