@@ -9,6 +9,7 @@
 #include <numbers>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 namespace grainsweep::stats {
 namespace {
@@ -83,6 +84,35 @@ std::optional<double> effective_best(std::span<const Prediction> objective, std:
     return best;
 }
 
+/// Cases chosen so far as fantasies: each says what was predicted, so that means stay and variances shrink,
+/// var(x) <- var(x) - c(x)^2/(var(x*) + scatter(x*)^2), c(x) = cov(x, x*) given the fantasies before.
+class Fantasies {
+public:
+    explicit Fantasies(std::span<const ModelAt> models) : models_(models), effects_(models.size()) {}
+
+    void add(std::vector<std::vector<Prediction>>& predictions, std::size_t chosen) {
+        for (std::size_t k = 0; k < models_.size(); ++k) {
+            auto& row = predictions[k];
+            auto c = models_[k].model.covariances_with(models_[k].points, models_[k].points.row(chosen));
+            for (const Effect& before : effects_[k])
+                for (std::size_t i = 0; i < c.size(); ++i) c[i] -= before.c[i] * before.c[chosen] / before.variance;
+            const double variance = std::pow(row[chosen].run_error(), 2);
+            if (!(variance > 0)) continue;  // known already, without any noise
+            for (std::size_t i = 0; i < c.size(); ++i)
+                row[i].mean_error = std::sqrt(std::max(std::pow(row[i].mean_error, 2) - c[i] * c[i] / variance, 0.0));
+            effects_[k].push_back({std::move(c), variance});
+        }
+    }
+
+private:
+    struct Effect {
+        std::vector<double> c;
+        double variance;
+    };
+    std::span<const ModelAt> models_;
+    std::vector<std::vector<Effect>> effects_;
+};
+
 }  // namespace
 
 std::vector<double> probability_within(std::span<const ModelAt> models, std::span<const Bounds> bounds, Judged judged) {
@@ -153,10 +183,10 @@ std::vector<std::size_t> next_cases(std::span<const ModelAt> candidates, const C
         throw std::invalid_argument("process window: next cases need a model and a condition or an objective");
     if (objective && objective->model >= candidates.size())
         throw std::invalid_argument("process window: the objective names a model that is not there");
-    std::vector<ModelAt> models(candidates.begin(), candidates.end());
+    auto predictions = predict_all(candidates);
+    Fantasies fantasies(candidates);
     std::vector<std::size_t> chosen;
-    while (chosen.size() < std::min(count, models.front().points.size())) {
-        const auto predictions = predict_all(models);
+    while (chosen.size() < std::min(count, predictions.front().size())) {
         std::vector<double> probability(predictions.front().size(), 1);
         if (condition) probability = probability_of(predictions, condition, judged);
         std::vector<double> gain = probability;
@@ -168,11 +198,7 @@ std::vector<std::size_t> next_cases(std::span<const ModelAt> candidates, const C
         const auto best = static_cast<std::size_t>(std::ranges::max_element(gain) - gain.begin());
         if (!(gain[best] > 0)) break;
         chosen.push_back(best);
-        for (std::size_t k = 0; k < models.size(); ++k) {
-            const std::span<const double> features = models[k].points.row(best);
-            models[k].model =
-                models[k].model.with_cases({features, features.size()}, std::span(&predictions[k][best].mean, 1));
-        }
+        fantasies.add(predictions, best);
     }
     return chosen;
 }

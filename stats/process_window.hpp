@@ -18,8 +18,8 @@
 // m, s, g: mean, its error and scatter of one run of the objective (maximised); m*: mean at the effective best, the
 // setting of largest m - s among those where the condition is more likely met than not. Several at a time by
 // fantasies (the "kriging believer" of Ginsbourger, Le Riche & Carraro 2010): the chosen case is added to all models
-// with its predicted response, and the next is chosen. Without an objective: where the condition is least decided,
-// largest min(P, 1 - P).
+// with its predicted response, which leaves means and shrinks errors, and the next is chosen. Without an objective:
+// where the condition is least decided, largest min(P, 1 - P).
 #pragma once
 
 #include "stats/response_model.hpp"

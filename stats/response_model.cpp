@@ -161,6 +161,16 @@ JointPrediction ResponseModel::predict_jointly(Rows points) const {
     return joint;
 }
 
+std::vector<double> ResponseModel::covariances_with(Rows points, std::span<const double> features) const {
+    const State& s = *state_;
+    const Eigen::MatrixXd at = response::mapped(s.kriging.h, s.in_box(points));
+    const Eigen::MatrixXd with = response::mapped(s.kriging.h, s.in_box({features, features.size()}));
+    const Eigen::ArrayXd local = s.noise.factors(at).array() * s.noise.factors(with)(0);
+    const Eigen::ArrayXd covariances =
+        s.scale * s.scale * local.sqrt() * response::covariances_with(s.kriging, at, with).array();
+    return {covariances.begin(), covariances.end()};
+}
+
 ResponseModel ResponseModel::with_cases(Rows points, std::span<const double> values) const {
     check_sizes(points, values.size());
     if (!all_finite(points.values) || !all_finite(values))

@@ -109,6 +109,8 @@ public:
     /// Means only: cost n per point.
     [[nodiscard]] std::vector<double> means(Rows points) const;
     [[nodiscard]] JointPrediction predict_jointly(Rows points) const;
+    /// Covariance of the error of the mean at each point with that at one point. Cost n^2, and n per point.
+    [[nodiscard]] std::vector<double> covariances_with(Rows points, std::span<const double> features) const;
     /// The model with these cases added: hyperparameters, scale and local noise stay. Values may be fantasies.
     /// Throws std::invalid_argument where sizes differ or a number is not finite.
     [[nodiscard]] ResponseModel with_cases(Rows points, std::span<const double> values) const;

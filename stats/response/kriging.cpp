@@ -97,6 +97,21 @@ Eigen::VectorXd predict_means(const Kriging& model, const Eigen::MatrixXd& at) {
     return mean;
 }
 
+Eigen::VectorXd covariances_with(const Kriging& model, const Eigen::MatrixXd& at, const Eigen::MatrixXd& with) {
+    const Eigen::VectorXd k = cross_covariance(model.h, model.points, with);
+    const Eigen::VectorXd weights = solved(model.factor, k);
+    const double rest = 1 - model.precision * model.mean_weights.dot(k);
+    Eigen::VectorXd result = cross_covariance(model.h, at, with);
+    for (Eigen::Index first = 0; first < at.rows(); first += block) {
+        const Eigen::Index count = std::min(block, at.rows() - first);
+        const Eigen::MatrixXd across = cross_covariance(model.h, model.points, at.middleRows(first, count));
+        const Eigen::ArrayXd rests = 1 - model.precision * (across.transpose() * model.mean_weights).array();
+        result.segment(first, count) -= across.transpose() * weights;
+        result.segment(first, count).array() += rests * rest / model.precision;
+    }
+    return result;
+}
+
 Eigen::MatrixXd FoldWeights::predict(const Kriging& model, const Eigen::MatrixXd& at) const {
     Eigen::MatrixXd mean(at.rows(), weights.cols());
     for (Eigen::Index first = 0; first < at.rows(); first += block) {

@@ -51,6 +51,10 @@ struct KrigingPrediction {
 [[nodiscard]] KrigingPrediction predict(const Kriging& model, const Eigen::MatrixXd& at, bool jointly);
 [[nodiscard]] Eigen::VectorXd predict_means(const Kriging& model, const Eigen::MatrixXd& at);
 
+/// Covariances of the errors of the means at mapped points with that at one of them (1, d); n^2 + n m operations.
+[[nodiscard]] Eigen::VectorXd covariances_with(const Kriging& model, const Eigen::MatrixXd& at,
+                                               const Eigen::MatrixXd& with);
+
 struct LeftOut {
     Eigen::VectorXd residual;  ///< observed minus predicted
     Eigen::VectorXd variance;  ///< of the residual, noise included

@@ -26,7 +26,8 @@ struct KnownResponse {
     std::size_t grid;  ///< midpoints along a factor that give its moments to 1e-4 or better
 };
 
-/// Five kinds: the spreading response with its noise, a step, smooth with noise, waves no model follows, noise alone.
+/// The spreading response with its noise, a step, smooth with noise, waves no model follows, noise alone, and smooth
+/// without noise, where the error is that of the integral and of the models alone.
 inline std::vector<KnownResponse> known_responses() {
     using Point = std::span<const double>;
     return {
@@ -35,6 +36,7 @@ inline std::vector<KnownResponse> known_responses() {
         {"smooth", 3, [](Point u) { return std::sin(3 * u[0]) + u[1] * u[1] + u[1] * u[2]; }, 0.1, 100},
         {"waves", 3, [](Point u) { return std::sin(25 * u[0]) * std::cos(18 * u[1]) + 0.3 * u[2]; }, 0.1, 200},
         {"noise", 3, [](Point) { return 1.0; }, 0.2, 1},
+        {"exact", 3, [](Point u) { return std::sin(3 * u[0]) + u[1] * u[1] + u[1] * u[2]; }, 0, 400},
     };
 }
 
@@ -86,11 +88,12 @@ inline KnownCampaign ask_known(const KnownResponse& response, std::int64_t n, st
 }
 
 /// 8 independent scramblings of 2^power Sobol points, one after the other.
-inline std::vector<double> integration_points(std::size_t dimensions, unsigned power) {
+inline std::vector<double> integration_points(std::size_t dimensions, unsigned power, std::uint64_t seed = 1) {
     std::vector<double> points;
     for (std::uint64_t k = 0; k < 8; ++k) {
-        const auto set = ask_design(
-            "sobol", dimensions, {{"points", std::int64_t{1} << power}, {"scramble", std::string("random")}}, 1000 + k);
+        const auto set =
+            ask_design("sobol", dimensions, {{"points", std::int64_t{1} << power}, {"scramble", std::string("random")}},
+                       1000 * seed + k);
         points.insert(points.end(), set.coordinates.begin(), set.coordinates.end());
     }
     return points;

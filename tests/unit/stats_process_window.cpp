@@ -102,6 +102,20 @@ TEST(ProcessWindow, NextCasesGatherAtTheConstrainedOptimum) {
         EXPECT_NEAR(points[2 * chosen[a] + 1], 0.3, 0.25);
         for (std::size_t b = 0; b < a; ++b) EXPECT_NE(chosen[a], chosen[b]);
     }
+    // The same choice with the cases really added to the models.
+    auto grown = models;
+    std::vector<std::size_t> added;
+    for (std::size_t step = 0; step < 4; ++step) {
+        const std::vector<std::vector<Prediction>> now{grown[0].model.predict({points, 2}),
+                                                       grown[1].model.predict({points, 2})};
+        auto gain = expected_improvement(now[0], probability_of(now, allowed, Judged::mean), true);
+        for (const std::size_t i : added) gain[i] = 0;
+        added.push_back(static_cast<std::size_t>(std::ranges::max_element(gain) - gain.begin()));
+        for (std::size_t k = 0; k < 2; ++k)
+            grown[k].model = grown[k].model.with_cases({grown[k].points.row(added.back()), 2},
+                                                       std::span(&now[k][added.back()].mean, 1));
+    }
+    EXPECT_EQ(chosen, added);
     // Without an objective: along the boundary, spread over it.
     const auto boundary = next_cases(models, allowed, std::nullopt, Judged::mean, 3);
     for (const std::size_t i : boundary) EXPECT_NEAR(points[2 * i], 0.5, 0.05);

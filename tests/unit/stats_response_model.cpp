@@ -170,7 +170,11 @@ TEST(ResponseModel, FantasiesShrinkTheErrorWhereTheyAre) {
     EXPECT_LT(after.mean_error, before.mean_error);
     EXPECT_NEAR(after.mean, before.mean, 1e-6);  // a case that says what was predicted changes nothing else
     EXPECT_EQ(next.quality().rests_on, 41U);
-    const auto joint = model.predict_jointly({std::vector{0.9, 0.1, 0.2, 0.3}, 2});
+    const std::vector<double> two{0.9, 0.1, 0.2, 0.3};
+    const auto joint = model.predict_jointly({two, 2});
+    const auto with = model.covariances_with({two, 2}, there);
+    EXPECT_NEAR(with[0], joint.covariance[0], 1e-12);
+    EXPECT_NEAR(with[1], joint.covariance[2], 1e-12);
     EXPECT_NEAR(std::sqrt(joint.covariance[0]), before.mean_error, 1e-9);
     EXPECT_NEAR(joint.covariance[1], joint.covariance[2], 1e-15);
 }
