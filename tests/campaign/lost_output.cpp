@@ -77,9 +77,9 @@ TEST_F(LostOutput, AnAnswerThatDoesNotArriveIsNoSuccess) {
 TEST_F(LostOutput, AClosedTerminalIsSurvived) {
     const std::string program = grainsweep::tests::executable().string();
     int terminal = -1;
-    const pid_t program = ::forkpty(&terminal, nullptr, nullptr, nullptr);
-    ASSERT_GE(program, 0);
-    if (program == 0) {
+    const pid_t runs = ::forkpty(&terminal, nullptr, nullptr, nullptr);
+    ASSERT_GE(runs, 0);
+    if (runs == 0) {
         if (::chdir(folder.path().c_str()) != 0) ::_exit(126);
         ::execl(program.c_str(), program.c_str(), "run", "c.json", "-j", "1", nullptr);
         ::_exit(127);
@@ -88,7 +88,7 @@ TEST_F(LostOutput, AClosedTerminalIsSurvived) {
     EXPECT_GT(::read(terminal, seen.data(), seen.size()), 0) << "a bar, or a note";
     ::close(terminal);
     int status = 0;
-    ASSERT_EQ(::waitpid(program, &status, 0), program);
+    ASSERT_EQ(::waitpid(runs, &status, 0), runs);
     EXPECT_TRUE(WIFEXITED(status)) << "ended by signal " << WTERMSIG(status);
     EXPECT_EQ(WEXITSTATUS(status), some_failed);
     expect_whole();
