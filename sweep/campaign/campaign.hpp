@@ -94,6 +94,9 @@ struct Campaign {
     std::uint64_t seed = 1;
     std::optional<Convergence> convergence;
     std::string accuracy;  ///< empty: none asked
+    /// Of response models: expressions over the factors; empty: the factors, or their logarithms. No part of what the
+    /// campaign is.
+    std::vector<std::string> features;
     Limits limits;
     Execution execution;
     std::string text;  ///< the campaign file as read
@@ -123,8 +126,8 @@ using Filter = std::function<bool(const Inputs&)>;
 inline constexpr std::int64_t most_cases = 1'000'000;
 
 /// A case for every point and replicate that passes the filter, ordered by point, then replicate. Point numbers keep
-/// the gaps of what was filtered out. Later changes of `campaign` do not reach the cases. Throws WrongQuestion when the design's options are
-/// impossible together, when no point is left and when there are more than most_cases.
+/// the gaps of what was filtered out. Later changes of `campaign` do not reach the cases. Throws WrongQuestion when the
+/// design's options are impossible together, when no point is left and when there are more than most_cases.
 [[nodiscard]] Cases unfold(const Campaign& campaign, const Filter& filter);
 /// Throws WrongQuestion where unfold would for the design.
 void check_design(const Campaign& campaign);

@@ -76,6 +76,7 @@ std::span<const Key> campaign_keys() {
          {},
          {"fast", "balanced", "reference"},
          {}},
+        {"model", "how responses are learned from the cases; changes no result", Kind::object, false, {}, {}, {}},
         {"limits", "what one case may cost", Kind::object, false, {}, {}, {}},
         {"execution", "how the cases run; changes no result", Kind::object, false, {}, {}, {}},
     };
@@ -127,6 +128,21 @@ std::span<const Key> convergence_keys() {
          {},
          {}},
         {"stop", "whether a converged campaign starts no further case", Kind::flag, false, {}, {}, "true"},
+    };
+    return keys;
+}
+
+std::span<const Key> model_keys() {
+    static const std::vector<Key> keys = {
+        {"features",
+         "what a response model sees of a case: SQL expressions over factors, e.g. log(diameter), gap/diameter; "
+         "without "
+         "it every factor, its logarithm where the range spans a factor of 2.5 or more",
+         Kind::words,
+         true,
+         {},
+         {},
+         {}},
     };
     return keys;
 }

@@ -30,6 +30,7 @@ inline constexpr std::string_view notes_key = "notes";
 [[nodiscard]] std::span<const Key> campaign_keys();
 [[nodiscard]] std::span<const Key> factor_keys();
 [[nodiscard]] std::span<const Key> convergence_keys();
+[[nodiscard]] std::span<const Key> model_keys();
 [[nodiscard]] std::span<const Key> limits_keys();
 [[nodiscard]] std::span<const Key> execution_keys();
 /// "kind", the design's options and, where it takes rows, "file".
@@ -38,6 +39,9 @@ inline constexpr std::string_view notes_key = "notes";
 /// Limits of time below these would end every worker before it can answer, s.
 inline constexpr double shortest_limit = 0.1;
 inline constexpr double shortest_silence = 3;  ///< a few signs of life
+
+/// Features of a response model.
+inline constexpr std::size_t most_features = 30;
 
 /// Letters of a campaign's name: NAME.db must be a file name.
 inline constexpr std::size_t longest_campaign_name = 128;

@@ -122,6 +122,7 @@ Campaign parse_campaign(std::string_view text, const fs::path& folder) {
     if (const auto convergence = top.find("convergence")) {
         campaign.convergence = read_convergence(*convergence, campaign);
     }
+    if (const auto model = top.find("model")) campaign.features = read_features(*model);
     if (const auto limits = top.find("limits")) campaign.limits = read_limits(*limits);
     if (const auto execution = top.find("execution")) campaign.execution = read_execution(*execution);
     return campaign;

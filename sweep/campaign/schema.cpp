@@ -197,6 +197,8 @@ std::string campaign_schema() {
     properties["campaign"]["not"]["pattern"] = pattern_of_reserved_names();
     properties["factors"]["minItems"] = 1;
     properties["convergence"].update(section(convergence_keys()));
+    properties["model"].update(section(model_keys()));
+    properties["model"]["properties"]["features"].update({{"minItems", 1}, {"maxItems", most_features}});
     properties["limits"].update(section(limits_keys()));
     properties["execution"].update(section(execution_keys()));
     properties["design"]["oneOf"] = OrderedJson::array();

@@ -1,4 +1,4 @@
-// "convergence", "limits" and "execution".
+// "convergence", "model", "limits" and "execution".
 #include "sweep/campaign/sections.hpp"
 
 #include "sweep/campaign/wrong_question.hpp"
@@ -90,6 +90,20 @@ Convergence read_convergence(const Cursor& place, const Campaign& campaign) {
     check_rule(section, convergence, campaign);
     if (!section.find("block")) convergence.block = block_by_default(convergence, campaign);
     return convergence;
+}
+
+std::vector<std::string> read_features(const Cursor& place) {
+    const Section section(place, model_keys());
+    auto features = section.words("features", {});
+    const auto list = section.at("features");
+    if (features.empty()) list.refuse("a model needs at least one feature; leave it out for those by default");
+    if (features.size() > most_features) list.refuse(fmt::format("at most {} features are learned", most_features));
+    for (std::size_t k = 0; k < features.size(); ++k) {
+        if (features[k].find_first_not_of(" \t\r\n") == std::string::npos) list[k].refuse("an expression is expected");
+        if (std::ranges::find(std::span(features).first(k), features[k]) != std::span(features).first(k).end())
+            list[k].refuse("this feature is there twice");
+    }
+    return features;
 }
 
 Limits read_limits(const Cursor& place) {

@@ -33,6 +33,8 @@ void read_design(const Cursor& place, Campaign& campaign, const std::filesystem:
 void check_in_range(const Cursor& place, const Factor& factor, const Value& value);
 
 [[nodiscard]] Convergence read_convergence(const Cursor& place, const Campaign& campaign);
+/// "model": the features, as written; whether they can be evaluated is for report::check_features.
+[[nodiscard]] std::vector<std::string> read_features(const Cursor& place);
 [[nodiscard]] Limits read_limits(const Cursor& place);
 [[nodiscard]] Execution read_execution(const Cursor& place);
 

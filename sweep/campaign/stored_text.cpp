@@ -3,6 +3,8 @@
 #include "sweep/campaign/json_text.hpp"
 
 #include <cmath>
+#include <stdexcept>
+#include <variant>
 
 namespace grainsweep::campaign {
 
@@ -24,17 +26,47 @@ std::string notes_in(const Json& document) {
     return all;
 }
 
+std::vector<std::string> features_in(const Json& document) {
+    std::vector<std::string> features;
+    const auto model = document.find("model");
+    if (model == document.end() || !model->is_object()) return features;
+    const auto list = model->find("features");
+    if (list == model->end() || !list->is_array()) return features;
+    for (const auto& feature : *list)
+        if (feature.is_string()) features.push_back(feature.get<std::string>());
+    return features;
+}
+
 }  // namespace
 
 Remarks remarks_in(std::string_view campaign_file) {
     const Json document = document_in(campaign_file);
     if (!document.is_object()) return {};
-    Remarks remarks{notes_in(document), std::nullopt};
+    Remarks remarks{notes_in(document), std::nullopt, features_in(document)};
     const auto limits = document.find("limits");
     if (limits == document.end() || !limits->is_object()) return remarks;
     const auto attempts = limits->find("attempts");
     if (attempts != limits->end() && attempts->is_number()) remarks.attempts = attempts->get<std::int64_t>();
     return remarks;
+}
+
+std::string further_points(std::string_view campaign_file, std::string_view name, std::string_view notes,
+                           std::span<const std::vector<Value>> rows) {
+    const Json document = document_in(campaign_file);
+    if (!document.is_object()) throw std::invalid_argument("further points: the text is no campaign file");
+    Json list = Json::array();
+    for (const auto& row : rows) {
+        Json values = Json::array();
+        for (const auto& value : row) std::visit([&](const auto& plain) { values.push_back(plain); }, value);
+        list.push_back(std::move(values));
+    }
+    nlohmann::ordered_json text;
+    text["notes"] = notes;
+    text["campaign"] = name;
+    for (const char* key : {"scene", "factors", "fixed", "where", "accuracy", "seed", "model", "limits", "execution"})
+        if (const auto found = document.find(key); found != document.end()) text[key] = *found;
+    text["design"] = {{"kind", "list"}, {"rows", list}};
+    return text.dump(2) + '\n';
 }
 
 std::optional<std::string> phases_text(const PhaseSeconds& phases) {

@@ -6,8 +6,10 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace grainsweep::campaign {
 
@@ -15,9 +17,17 @@ namespace grainsweep::campaign {
 struct Remarks {
     std::string notes;                     ///< at its top level, one line for each text of a list
     std::optional<std::int64_t> attempts;  ///< limits.attempts, where it says so
+    std::vector<std::string> features;     ///< model.features; empty: it says nothing of them
 };
 /// Of a campaign file that was read and stored by this program or an older one; empty where it is none.
 [[nodiscard]] Remarks remarks_in(std::string_view campaign_file);
+
+/// A campaign file that asks further points of what another asks: its scene, factors, fixed values, condition,
+/// accuracy, seed, features, limits and execution, with a design of kind `list`. One row per point, one value per
+/// factor in the order of the file. Paths of files stay as they were written. Throws std::invalid_argument for a text
+/// that is no campaign file.
+[[nodiscard]] std::string further_points(std::string_view campaign_file, std::string_view name, std::string_view notes,
+                                         std::span<const std::vector<Value>> rows);
 
 using PhaseSeconds = decltype(Cost::phases);
 /// As a JSON object; phases whose time is no number are left out. None where there are no phases.

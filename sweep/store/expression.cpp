@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -30,23 +31,32 @@ constexpr std::array deterministic = {
     "substr",  "substring", "tan",     "tanh",   "trim",    "trunc",  "typeof", "unlikely", "upper",
 };
 
-campaign::WrongQuestion refusal(std::string_view expression, std::string_view why, std::string_view suggestion = {}) {
-    return campaign::wrong_question("$.where", expression, why, suggestion);
+/// What is compiled: where it stands in the campaign file, its text, and what it may not be asked for.
+struct Written {
+    std::string_view path, text, about;  ///< about: "a condition is asked of one case"
+};
+
+Written condition_of(std::string_view text) {
+    return {"$.where", text, "a condition is asked of one case"};
+}
+
+campaign::WrongQuestion refusal(const Written& written, std::string_view why, std::string_view suggestion = {}) {
+    return campaign::wrong_question(written.path, written.text, why, suggestion);
 }
 
 /// SQLite's words, and the nearest name where it did not know one.
-campaign::WrongQuestion refusal_by_sqlite(std::string_view expression, std::string_view words,
+campaign::WrongQuestion refusal_by_sqlite(const Written& written, std::string_view words,
                                           std::span<const std::string> names) {
     constexpr std::string_view unknown_column = "no such column: ";
     constexpr std::string_view unknown_function = "no such function: ";
     if (words.starts_with(unknown_column)) {
-        return refusal(expression, words, campaign::nearest_word(words.substr(unknown_column.size()), names));
+        return refusal(written, words, campaign::nearest_word(words.substr(unknown_column.size()), names));
     }
     if (words.starts_with(unknown_function)) {
         const std::vector<std::string> functions(deterministic.begin(), deterministic.end());
-        return refusal(expression, words, campaign::nearest_word(words.substr(unknown_function.size()), functions));
+        return refusal(written, words, campaign::nearest_word(words.substr(unknown_function.size()), functions));
     }
-    return refusal(expression, words);
+    return refusal(written, words);
 }
 
 std::string columns_of(std::span<const std::string> names) {
@@ -79,7 +89,9 @@ bool unbalanced(std::string_view expression) {
 
 /// Prepares the expression as the only output of one SELECT over one row of inputs, and reports which columns it
 /// reads. The authorizer sees everything the expression would do.
-std::set<std::string> check(Connection& db, std::string_view expression, std::span<const std::string> names) {
+std::set<std::string> check(Connection& db, const Written& written, std::span<const std::string> names) {
+    const std::string_view expression = written.text;
+    db.execute("DROP TABLE IF EXISTS inputs");
     db.execute(fmt::format("CREATE TABLE inputs ({})", columns_of(names)));
     std::set<std::string> read;
     int selects = 0;
@@ -111,14 +123,29 @@ std::set<std::string> check(Connection& db, std::string_view expression, std::sp
     } catch (const RefusedSql& refused) {
         finish();
         if (!forbidden.empty()) {
-            throw refusal(expression,
-                          fmt::format("'{}' is not among the deterministic functions of SQLite", forbidden));
+            throw refusal(written, fmt::format("'{}' is not among the deterministic functions of SQLite", forbidden));
         }
-        if (selects > 1) throw refusal(expression, "a condition is asked of one case: no SELECT inside");
-        throw refusal_by_sqlite(expression, refused.words(), names);
+        if (selects > 1) throw refusal(written, fmt::format("{}: no SELECT inside", written.about));
+        throw refusal_by_sqlite(written, refused.words(), names);
     }
     finish();
     return read;
+}
+
+/// "?1 AS "gap", ?2 AS "speed"": one row of inputs.
+std::string row_of(std::span<const std::string> columns) {
+    std::string row;
+    for (std::size_t k = 0; k < columns.size(); ++k)
+        row += fmt::format("{}?{} AS {}", k == 0 ? "" : ", ", k + 1, quoted_name(columns[k]));
+    return row.empty() ? "NULL" : row;
+}
+
+void require_sane(const Written& written) {
+    if (written.text.find('\0') != std::string_view::npos)
+        throw refusal({written.path, "an expression with a NUL byte", written.about}, "text is expected");
+    if (written.text.size() > longest_expression)
+        throw refusal({written.path, fmt::format("an expression of {} characters", written.text.size()), written.about},
+                      fmt::format("at most {} are read", longest_expression));
 }
 
 /// The compiled expression and the columns it reads, bound anew for every case.
@@ -127,14 +154,10 @@ public:
     Condition(std::string_view expression, std::span<const std::string> names)
         : text_(expression), db_(Connection::in_memory()) {
         db_.limit_lengths(longest_value);
-        const auto read = check(db_, expression, names);
+        const auto read = check(db_, condition_of(expression), names);
         columns_.assign(read.begin(), read.end());
-        std::string row;
-        for (std::size_t k = 0; k < columns_.size(); ++k) {
-            row += fmt::format("{}?{} AS {}", k == 0 ? "" : ", ", k + 1, quoted_name(columns_[k]));
-        }
         const std::string sql =
-            fmt::format("SELECT (({}\n)) IS TRUE FROM (SELECT {}) AS inputs", expression, row.empty() ? "NULL" : row);
+            fmt::format("SELECT (({}\n)) IS TRUE FROM (SELECT {}) AS inputs", expression, row_of(columns_));
         statement_ = db_.prepare(sql);
     }
 
@@ -150,7 +173,7 @@ public:
         try {
             return statement_.step() && statement_.get<std::int64_t>(0) != 0;
         } catch (const RefusedSql& refused) {
-            throw refusal(text_, refused.words());
+            throw refusal(condition_of(text_), refused.words());
         }
     }
 
@@ -161,20 +184,67 @@ private:
     Statement statement_;
 };
 
+/// Several expressions as the columns of one row, over all names.
+class NumberRow {
+public:
+    NumberRow(std::span<const std::string> expressions, std::span<const std::string> names, std::string_view path)
+        : path_(path), count_(names.size()), db_(Connection::in_memory()) {
+        db_.limit_lengths(longest_value);
+        std::string columns;
+        for (std::size_t k = 0; k < expressions.size(); ++k) {
+            const std::string place = fmt::format("{}[{}]", path, k);
+            const Written written{place, expressions[k], "a feature is a number of one case"};
+            require_sane(written);
+            if (check(db_, written, names).empty())
+                throw refusal(written, "depends on no factor: it would be the same everywhere");
+            columns += fmt::format("{0}iif(typeof(({1}\n)) IN ('integer', 'real'), ({1}\n), NULL)", k == 0 ? "" : ", ",
+                                   expressions[k]);
+        }
+        db_.execute("DROP TABLE inputs");
+        statement_ = db_.prepare(fmt::format("SELECT {} FROM (SELECT {}) AS inputs", columns, row_of(names)));
+    }
+
+    [[nodiscard]] std::vector<double> of(std::span<const Value> values) {
+        if (values.size() != count_) throw std::invalid_argument("expressions: one value is needed for each name");
+        int parameter = 0;
+        for (const auto& value : values) statement_.bind(++parameter, value);
+        const Rows rows(statement_);
+        db_.stop_after(longest_time);
+        std::vector<double> numbers(static_cast<std::size_t>(statement_.columns()), NAN);
+        try {
+            if (!statement_.step()) return numbers;
+        } catch (const RefusedSql& refused) {
+            throw campaign::wrong_question(path_, "", refused.words());
+        }
+        for (int k = 0; k < statement_.columns(); ++k)
+            if (!statement_.is_null(k)) numbers[static_cast<std::size_t>(k)] = statement_.get<double>(k);
+        return numbers;
+    }
+
+private:
+    std::string path_;
+    std::size_t count_;
+    Connection db_;
+    Statement statement_;
+};
+
 }  // namespace
 
 campaign::Filter make_filter(std::string_view expression, std::span<const std::string> names) {
     if (expression.find_first_not_of(" \t\r\n") == std::string_view::npos) {
         return [](const Inputs&) { return true; };
     }
-    if (expression.find('\0') != std::string_view::npos)
-        throw refusal("an expression with a NUL byte", "text is expected");
-    if (expression.size() > longest_expression)
-        throw refusal(fmt::format("an expression of {} characters", expression.size()),
-                      fmt::format("at most {} are read", longest_expression));
-    if (names.empty()) throw refusal(expression, "the campaign has no factor and no fixed value it could use");
+    require_sane(condition_of(expression));
+    if (names.empty())
+        throw refusal(condition_of(expression), "the campaign has no factor and no fixed value it could use");
     auto condition = std::make_shared<Condition>(expression, names);
     return [condition = std::move(condition)](const Inputs& inputs) { return condition->holds(inputs); };
+}
+
+Numbers make_numbers(std::span<const std::string> expressions, std::span<const std::string> names,
+                     std::string_view path) {
+    auto row = std::make_shared<NumberRow>(expressions, names, path);
+    return [row = std::move(row)](std::span<const Value> values) { return row->of(values); };
 }
 
 }  // namespace grainsweep::store
