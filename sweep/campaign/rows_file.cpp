@@ -1,4 +1,5 @@
 // Listed rows from CSV (RFC 4180): a header that names the factors in any order, then one point a line.
+#include "sweep/campaign/csv_record.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/sections.hpp"
 #include "sweep/campaign/wrong_question.hpp"
@@ -20,37 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t largest_rows_file = 256ULL << 20U;
 
-using Record = std::vector<std::string>;
-
-std::string_view trimmed(std::string_view cell) {
-    constexpr std::string_view blank = " \t";
-    const auto first = cell.find_first_not_of(blank);
-    return first == std::string_view::npos ? "" : cell.substr(first, cell.find_last_not_of(blank) - first + 1);
-}
-
-/// One record from `rest`, which advances behind its line end. Quoted cells may hold commas and line ends.
-Record take_record(std::string_view& rest) {
-    Record record(1);
-    bool quoted = false;
-    std::size_t k = 0;
-    for (; k < rest.size(); ++k) {
-        const char c = rest[k];
-        if (quoted && c == '"' && k + 1 < rest.size() && rest[k + 1] == '"') {
-            record.back() += rest[++k];
-        } else if (c == '"') {
-            quoted = !quoted;
-        } else if (!quoted && c == ',') {
-            record.emplace_back();
-        } else if (!quoted && c == '\n') {
-            break;
-        } else if (quoted || c != '\r') {
-            record.back() += c;
-        }
-    }
-    rest.remove_prefix(std::min(k + 1, rest.size()));
-    for (auto& cell : record) cell = trimmed(cell);
-    return record;
-}
+using Record = CsvRecord;
 
 std::string read_text(const Cursor& file, const fs::path& path) {
     std::error_code error;
@@ -104,11 +75,11 @@ designs::Rows read_rows_file(const Cursor& file, const ParameterSpace& space, co
     const std::string name = file.text();
     const std::string text = read_text(file, folder / name);
     std::string_view rest = text;
-    const Record header = take_record(rest);
+    const Record header = take_csv_record(rest);
     const auto columns = columns_of(file, header, space);
     designs::Rows rows;
     for (std::size_t number = 2; !rest.empty(); ++number) {
-        const Record record = take_record(rest);
+        const Record record = take_csv_record(rest);
         if (record == Record{""}) continue;
         if (record.size() != header.size()) {
             file.refuse(fmt::format("record {} has {} cells and the header {}", number, record.size(), header.size()));

@@ -30,6 +30,7 @@ struct Command {
 [[nodiscard]] std::vector<Command> archive_commands();    // status, explain, replay, query, dump
 [[nodiscard]] std::vector<Command> verify_commands();     // verify
 [[nodiscard]] std::vector<Command> study_commands();      // converge, sensitivity, report
+[[nodiscard]] std::vector<Command> decide_commands();     // predict, window
 [[nodiscard]] std::vector<Command> solve_commands();      // solve
 [[nodiscard]] std::vector<Command> catalogue_commands();  // scenes, designs, schema
 [[nodiscard]] std::vector<Command> manual_commands();     // completion, manual

@@ -11,6 +11,7 @@ std::vector<Command> all_commands() {
              archive_commands(),
              verify_commands(),
              study_commands(),
+             decide_commands(),
              solve_commands(),
              catalogue_commands(),
              manual_commands(),

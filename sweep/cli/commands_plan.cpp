@@ -4,6 +4,7 @@
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/progress.hpp"
+#include "sweep/report/features.hpp"
 #include "sweep/report/history.hpp"
 #include "sweep/store/campaign_name.hpp"
 #include "sweep/store/expression.hpp"
@@ -116,6 +117,7 @@ struct Outlook {
 /// they do in a run.
 Outlook outlook_of(Campaign& campaign, const store::Store* archive) {
     store::check_campaign_name(campaign.name);
+    report::check_features(campaign);
     if (archive != nullptr) campaign::reorder_factors(campaign, archive->factor_order(campaign.name));
     Outlook outlook;
     outlook.cases = campaign::unfold(campaign, store::make_filter(campaign.where, campaign::filter_names(campaign)));

@@ -5,6 +5,7 @@
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/path_option.hpp"
 #include "sweep/cli/pictures.hpp"
+#include "sweep/report/features.hpp"
 #include "sweep/store/expression.hpp"
 #include "sweep/workers/compute.hpp"
 
@@ -77,6 +78,7 @@ Inputs middle_of(const campaign::ParameterSpace& space) {
 campaign::Case question_of(const SolveRequest& request) {
     Campaign campaign = campaign::read_campaign(request.config);
     campaign::asked_in(request.config, [&] { campaign::check_design(campaign); });
+    campaign::asked_in(request.config, [&] { report::check_features(campaign); });
     apply(request.settings, campaign, std::filesystem::path(request.config).parent_path());
     const Inputs inputs = middle_of(campaign.space);
     const auto filter = campaign::asked_in(

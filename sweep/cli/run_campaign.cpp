@@ -5,6 +5,7 @@
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/progress.hpp"
+#include "sweep/report/features.hpp"
 #include "sweep/report/history.hpp"
 #include "sweep/schedule/growth.hpp"
 #include "sweep/schedule/judge.hpp"
@@ -304,6 +305,7 @@ private:
     void unfold() {
         placed_ = campaign::asked_in(request_.config, [&] {
             store::check_campaign_name(campaign_.name);
+            report::check_features(campaign_);
             const auto filter = store::make_filter(campaign_.where, campaign::filter_names(campaign_));
             auto cases = campaign::unfold(campaign_, filter);
             // Refuses impossible cases before anything is made.

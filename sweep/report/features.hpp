@@ -11,7 +11,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,10 +21,10 @@ namespace grainsweep::report {
 /// of the word.
 struct ModelFactor {
     std::string name, unit;
-    double low = 0, high = 0;         ///< of numbers: the range, or the smallest and largest level
-    bool log = false;                 ///< the range is divided logarithmically
-    std::vector<double> numbers;      ///< levels that are numbers, growing; empty: a range, or words
-    std::vector<std::string> words;   ///< levels that are words; empty: numbers
+    double low = 0, high = 0;        ///< of numbers: the range, or the smallest and largest level
+    bool log = false;                ///< the range is divided logarithmically
+    std::vector<double> numbers;     ///< levels that are numbers, growing; empty: a range, or words
+    std::vector<std::string> words;  ///< levels that are words; empty: numbers
 
     [[nodiscard]] bool is_word() const { return !words.empty(); }
     /// The value as the campaign file has it.
@@ -41,8 +40,7 @@ using Setting = std::vector<double>;
 [[nodiscard]] std::vector<ModelFactor> model_factors(const Responses& responses);
 [[nodiscard]] std::vector<Setting> settings_of(const Responses& responses, std::span<const ModelFactor> factors);
 
-class Features {
-public:
+struct Features {
     std::vector<std::string> names;  ///< as a reader would write them: "log(diameter)"
     std::function<std::vector<double>(std::span<const double> setting)> of;  ///< one number per name; NaN: undefined
 };
@@ -55,8 +53,7 @@ struct Ratio {
 [[nodiscard]] Features default_features(std::span<const ModelFactor> factors, std::span<const Ratio> ratios = {});
 /// Throws WrongQuestion at $.model.features[k] for what SQLite cannot evaluate over the factors.
 [[nodiscard]] Features written_features(std::span<const ModelFactor> factors, std::span<const std::string> expressions);
-/// Ratios worth a trial: of two factors of one unit that is not 1, both positive and varied, one less number than
-/// there are such factors of that unit for each of them.
+/// Ratios worth a trial: of two factors of one unit that is not 1, both positive and varied.
 [[nodiscard]] std::vector<Ratio> candidate_ratios(std::span<const ModelFactor> factors);
 
 /// Throws WrongQuestion where a feature of the campaign file cannot be evaluated.

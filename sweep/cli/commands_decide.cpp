@@ -1,0 +1,198 @@
+// predict, window: what the response models of a campaign say of settings that were not run.
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/cli/command.hpp"
+#include "sweep/cli/page_file.hpp"
+#include "sweep/cli/settings.hpp"
+#include "sweep/report/model_tables.hpp"
+#include "sweep/report/response_models.hpp"
+#include "sweep/report/window_tables.hpp"
+#include "sweep/store/campaign_name.hpp"
+#include "sweep/store/store.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+namespace grainsweep::cli {
+namespace {
+
+using report::Format;
+using report::Setting;
+using store::Store;
+
+struct PredictRequest {
+    std::string database, campaign, observable;
+    std::vector<std::string> at;
+    std::filesystem::path points;
+    bool extrapolate = false;
+};
+
+std::vector<Setting> settings_of(const PredictRequest& request, const report::ModelCases& cases) {
+    if (request.at.empty() == request.points.empty())
+        throw campaign::wrong_question("predict", "",
+                                       "give one setting by --at NAME=VALUE for every factor, or several "
+                                       "in a file by --points");
+    if (!request.at.empty()) return {read_setting(cases.factors, request.at)};
+    return read_settings_file(request.points, cases.factors);
+}
+
+/// Outside of the box, and where the campaign's own condition leaves points out, there are no cases to learn from.
+void refuse_extrapolation(const Store& store, const report::ModelCases& cases, const std::vector<Setting>& settings) {
+    const auto admits = report::admission(store, cases);
+    for (const auto& setting : settings) {
+        const auto outside = report::outside_text(cases.factors, setting);
+        if (!outside.empty())
+            throw campaign::wrong_question("", outside,
+                                           "the model would extrapolate; --extrapolate shows what it says");
+        if (admits && !admits(setting))
+            throw campaign::wrong_question("", report::setting_text(cases.factors, setting),
+                                           fmt::format("the campaign has no case where its condition is not met: {}; "
+                                                       "--extrapolate shows what the model says",
+                                                       cases.campaign.condition));
+    }
+}
+
+int predict(const PredictRequest& request, Format format) {
+    const Store store(request.database, Store::Mode::read);
+    const auto cases = report::read_model_cases(store, request.campaign);
+    const auto& observable = cases.observable(request.observable);
+    const auto settings = settings_of(request, cases);
+    if (!request.extrapolate) refuse_extrapolation(store, cases, settings);
+    const auto model = report::learn_or_refuse(cases, observable);
+    if (format == Format::json) {
+        report::write(std::cout, report::predictions_json(cases, model, settings));
+        return 0;
+    }
+    if (format == Format::text) {
+        const std::string unit = model.unit.empty() || model.unit == "1" ? "" : fmt::format(" ({})", model.unit);
+        std::cout << fmt::format("{}: {}{}\n\n", cases.campaign.name, model.observable, unit);
+    }
+    report::write(std::cout, report::predictions_table(cases, model, settings), format);
+    if (format == Format::text) std::cout << '\n' << report::model_lines(model);
+    return 0;
+}
+
+void declare_subject(Parser& parser, std::string& database, std::string& campaign) {
+    parser.add_option("DB", database, "the database")->required();
+    parser.add_option("--campaign", campaign,
+                      "one of its campaigns; default: the only one, or the first of those that differ in their points "
+                      "alone");
+}
+
+Command predict_command() {
+    return {"predict", "what a response is at settings that were not run, with its error, from the cases there are",
+            [](Parser& parser, const Format& format) -> Action {
+                const auto request = std::make_shared<PredictRequest>();
+                declare_subject(parser, request->database, request->campaign);
+                parser.add_option("--observable", request->observable,
+                                  "a scalar; default: the one the campaign converges on, else the scene's first");
+                parser.add_option("--at", request->at, "a factor of the setting; once for every factor")
+                    ->type_name("NAME=VALUE")
+                    ->allow_extra_args(false);
+                parser.add_option("--points", request->points,
+                                  "CSV file of settings: a header that names every factor, one setting a line");
+                parser.add_flag("--extrapolate", request->extrapolate,
+                                "answer outside of the ranges of the factors, too");
+                return [request, &format] { return predict(*request, format); };
+            },
+            false};
+}
+
+struct WindowArguments {
+    std::string database, campaign, maximise, minimise;
+    std::string next_file;
+    std::int64_t next = 0;
+    bool single = false;
+    report::WindowRequest request;
+};
+
+/// "wu2020_lds_next", or with the first number that no campaign of the database has.
+std::string name_of_next(const Store& store, const std::string& campaign) {
+    const auto records = store.campaigns();
+    for (int number = 1;; ++number) {
+        std::string name = campaign + "_next" + (number == 1 ? "" : std::to_string(number));
+        if (std::ranges::find(records, name, &store::CampaignRecord::name) == records.end()) return name;
+    }
+}
+
+/// The campaign file of the next cases, written where nothing is yet.
+std::string write_next(const Store& store, const report::ModelCases& cases, const report::Window& window,
+                       const std::string& file) {
+    if (window.next.empty()) throw campaign::wrong_question("--next-file", file, "there is no case to run next");
+    const auto name = name_of_next(store, cases.campaign.name);
+    store::check_campaign_name(name);
+    write_page_file(file, report::next_campaign(cases, window, name));
+    return name;
+}
+
+int window(const WindowArguments& arguments, Format format) {
+    if (!arguments.maximise.empty() && !arguments.minimise.empty())
+        throw campaign::wrong_question("--minimize", arguments.minimise, "one objective: --maximize or --minimize");
+    if (!arguments.next_file.empty() && arguments.next == 0)
+        throw campaign::wrong_question("--next-file", arguments.next_file, "needs --next N, the number of cases");
+    if (!arguments.next_file.empty()) check_page_file("--next-file", arguments.next_file, arguments.database);
+    const Store store(arguments.database, Store::Mode::read);
+    const auto cases = report::read_model_cases(store, arguments.campaign);
+    auto request = arguments.request;
+    request.objective = arguments.maximise.empty() ? arguments.minimise : arguments.maximise;
+    request.maximise = arguments.minimise.empty();
+    request.judged = arguments.single ? stats::Judged::single_run : stats::Judged::mean;
+    request.next = static_cast<std::size_t>(arguments.next);
+    const auto found = report::window_of(store, cases, request);
+    std::string written;
+    if (!arguments.next_file.empty()) written = write_next(store, cases, found, arguments.next_file);
+    if (format == Format::json) report::write(std::cout, report::window_json(cases, request, found));
+    if (format == Format::csv) report::write(std::cout, report::window_rows(cases, found), format);
+    if (format == Format::text) {
+        report::write_window(std::cout, cases, request, found);
+        if (!written.empty())
+            std::cout << fmt::format(
+                "{}: campaign {}; grainsweep run {} --db {} computes it, and its cases come into the same model\n",
+                arguments.next_file, written, arguments.next_file, arguments.database);
+    }
+    return 0;
+}
+
+Command window_command() {
+    return {"window", "the process window: where a condition holds, the best setting there, what to run next",
+            [](Parser& parser, const Format& format) -> Action {
+                const auto arguments = std::make_shared<WindowArguments>();
+                declare_subject(parser, arguments->database, arguments->campaign);
+                parser
+                    .add_option("--where", arguments->request.where,
+                                "the condition over observables and factors: \"mfr >= 0.35 and empty_share <= 0.1\"")
+                    ->type_name("CONDITION");
+                parser.add_option("--maximize", arguments->maximise, "the observable that shall be largest")
+                    ->type_name("NAME");
+                parser.add_option("--minimize", arguments->minimise, "the observable that shall be smallest")
+                    ->type_name("NAME");
+                parser
+                    .add_option("--risk", arguments->request.risk,
+                                "probability, at most, that the condition does not hold in the window")
+                    ->capture_default_str();
+                parser.add_flag("--single", arguments->single,
+                                "the condition is for every single run; default: for the mean of many");
+                parser.add_option("--next", arguments->next, "so many cases to run next")
+                    ->type_name("N")
+                    ->check(whole_number(0, 1000));
+                parser
+                    .add_option("--next-file", arguments->next_file,
+                                "a campaign file of the next cases, to be written; to be run into the same database")
+                    ->type_name("FILE.json");
+                return [arguments, &format] { return window(*arguments, format); };
+            },
+            false};
+}
+
+}  // namespace
+
+std::vector<Command> decide_commands() {
+    return {predict_command(), window_command()};
+}
+
+}  // namespace grainsweep::cli

@@ -1,0 +1,126 @@
+#include "sweep/cli/settings.hpp"
+
+#include "sweep/campaign/csv_record.hpp"
+#include "sweep/campaign/wrong_question.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string_view>
+
+namespace grainsweep::cli {
+namespace {
+
+using report::ModelFactor;
+using report::Setting;
+
+std::vector<std::string> names_of(std::span<const ModelFactor> factors) {
+    std::vector<std::string> names;
+    for (const auto& factor : factors) names.push_back(factor.name);
+    return names;
+}
+
+std::size_t factor_named(std::string_view name, std::span<const ModelFactor> factors, std::string_view where) {
+    const auto found = std::ranges::find(factors, name, &ModelFactor::name);
+    if (found != factors.end()) return static_cast<std::size_t>(found - factors.begin());
+    const auto names = names_of(factors);
+    throw campaign::wrong_question(where, fmt::format("'{}'", name),
+                                   fmt::format("is no factor of the campaign; it varies {}", campaign::listed(names)),
+                                   campaign::nearest_word(name, names));
+}
+
+double value_of(const ModelFactor& factor, const std::string& text, std::string_view where) {
+    if (factor.is_word()) {
+        const auto found = std::ranges::find(factor.words, text);
+        if (found != factor.words.end()) return static_cast<double>(found - factor.words.begin());
+        throw campaign::wrong_question(
+            where, fmt::format("'{}'", text),
+            fmt::format("the levels of {} are {}", factor.name, campaign::listed(factor.words)),
+            campaign::nearest_word(text, factor.words));
+    }
+    double number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error == std::errc() && end == text.data() + text.size() && std::isfinite(number)) return number;
+    throw campaign::wrong_question(where, fmt::format("'{}'", text), fmt::format("{} takes a number", factor.name));
+}
+
+void require_all(std::span<const ModelFactor> factors, const std::vector<std::optional<double>>& values,
+                 std::string_view where) {
+    std::vector<std::string> missing;
+    for (std::size_t j = 0; j < factors.size(); ++j)
+        if (!values[j]) missing.push_back(factors[j].name);
+    if (missing.empty()) return;
+    throw campaign::wrong_question(where, "",
+                                   fmt::format("a setting gives every factor; {} {} missing", campaign::listed(missing),
+                                               missing.size() == 1 ? "is" : "are"));
+}
+
+std::string text_of(const std::filesystem::path& file) {
+    std::error_code none;
+    if (!std::filesystem::is_regular_file(file, none))
+        throw campaign::wrong_question("--points", file.string(), "there is no such file");
+    std::ifstream stream(file, std::ios::binary);
+    std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+    if (stream.bad() || !stream.is_open())
+        throw campaign::wrong_question("--points", file.string(), "the file cannot be read");
+    constexpr std::string_view utf8_mark = "\xEF\xBB\xBF";
+    if (text.starts_with(utf8_mark)) text.erase(0, utf8_mark.size());
+    return text;
+}
+
+}  // namespace
+
+Setting read_setting(std::span<const ModelFactor> factors, std::span<const std::string> assignments) {
+    std::vector<std::optional<double>> values(factors.size());
+    for (const auto& assignment : assignments) {
+        const auto equals = assignment.find('=');
+        if (equals == std::string::npos) throw campaign::wrong_question("--at", assignment, "must be NAME=VALUE");
+        const std::string name = assignment.substr(0, equals), where = "--at " + name;
+        const auto j = factor_named(name, factors, "--at");
+        if (values[j]) throw campaign::wrong_question(where, "", "this factor is given twice");
+        values[j] = value_of(factors[j], assignment.substr(equals + 1), where);
+    }
+    require_all(factors, values, "--at");
+    Setting setting;
+    for (const auto& value : values) setting.push_back(*value);
+    return setting;
+}
+
+std::vector<Setting> read_settings_file(const std::filesystem::path& file, std::span<const ModelFactor> factors) {
+    const std::string text = text_of(file), where = "--points " + file.string();
+    std::string_view rest = text;
+    const auto header = campaign::take_csv_record(rest);
+    std::vector<std::size_t> columns;
+    std::vector<std::optional<double>> named(factors.size());
+    for (const auto& name : header) {
+        columns.push_back(factor_named(name, factors, where));
+        if (named[columns.back()])
+            throw campaign::wrong_question(where, "", fmt::format("its header names '{}' twice", name));
+        named[columns.back()] = 0;
+    }
+    require_all(factors, named, where);
+    std::vector<Setting> settings;
+    for (std::size_t number = 2; !rest.empty(); ++number) {
+        const auto record = campaign::take_csv_record(rest);
+        if (record == campaign::CsvRecord{""}) continue;
+        if (record.size() != header.size())
+            throw campaign::wrong_question(
+                where, "",
+                fmt::format("record {} has {} cells and the header {}", number, record.size(), header.size()));
+        auto& setting = settings.emplace_back(factors.size());
+        for (std::size_t k = 0; k < columns.size(); ++k) {
+            const auto& factor = factors[columns[k]];
+            setting[columns[k]] =
+                value_of(factor, record[k], fmt::format("{}, record {}, column '{}'", where, number, factor.name));
+        }
+    }
+    if (settings.empty()) throw campaign::wrong_question(where, "", "it has no row below its header");
+    return settings;
+}
+
+}  // namespace grainsweep::cli

@@ -1,0 +1,92 @@
+#include "sweep/report/model_tables.hpp"
+
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/report/table.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace grainsweep::report {
+
+using Json = nlohmann::ordered_json;
+
+std::string model_lines(const ObservableModel& model) {
+    const auto& quality = model.model.quality();
+    std::string text = fmt::format(
+        "model of {}: {} cases, leave-one-out error {:.3f} of the standard deviation; {:.0f} % of the cases lie in "
+        "their 50 % interval, {:.0f} % in their 95 % interval; {:.1f} % of the variance is scatter of single runs\n"
+        "features: {}{}\n",
+        model.observable, quality.rests_on, quality.leave_one_out_error, 100 * quality.coverage_50,
+        100 * quality.coverage_95, 100 * quality.noise_share, campaign::listed(model.features.names),
+        quality.learned_map ? ", and a linear map of them that is learned" : "");
+    for (const auto& note : model.notes) text += fmt::format("note: {}\n", note);
+    return text;
+}
+
+Json model_json(const ObservableModel& model) {
+    const auto& quality = model.model.quality();
+    return {{"observable", model.observable},
+            {"cases", quality.cases},
+            {"rests_on", quality.rests_on},
+            {"undefined", model.undefined},
+            {"leave_one_out_error", to_json(to_cell(quality.leave_one_out_error))},
+            {"coverage_50", to_json(to_cell(quality.coverage_50))},
+            {"coverage_95", to_json(to_cell(quality.coverage_95))},
+            {"noise_share", to_json(to_cell(quality.noise_share))},
+            {"features", model.features.names},
+            {"learned_map", quality.learned_map},
+            {"notes", model.notes}};
+}
+
+std::vector<store::Table::Cell> input_cells(std::span<const ModelFactor> factors, const Setting& setting) {
+    std::vector<store::Table::Cell> cells;
+    for (std::size_t j = 0; j < factors.size(); ++j) cells.push_back(to_cell(factors[j].value(setting[j])));
+    return cells;
+}
+
+Json inputs_json(std::span<const ModelFactor> factors, const Setting& setting) {
+    Json inputs = Json::object();
+    const auto cells = input_cells(factors, setting);
+    for (std::size_t j = 0; j < factors.size(); ++j) inputs[factors[j].name] = to_json(cells[j]);
+    return inputs;
+}
+
+store::Table predictions_table(const ModelCases& cases, const ObservableModel& model,
+                               std::span<const Setting> settings) {
+    store::Table table;
+    table.columns = cases.factor_names();
+    for (const char* name : {"mean", "mean_error", "scatter", "inside"}) table.columns.emplace_back(name);
+    if (model.undefined > 0) table.columns.emplace_back("defined");
+    const auto predictions = model.predict(settings);
+    const auto defined = model.defined(settings);
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+        auto row = input_cells(cases.factors, settings[i]);
+        const auto& p = predictions[i];
+        for (const double x : {p.mean, p.mean_error, p.scatter}) row.push_back(to_cell(x));
+        row.emplace_back(std::int64_t{outside_text(cases.factors, settings[i]).empty()});
+        if (model.undefined > 0) row.push_back(to_cell(defined[i]));
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+Json predictions_json(const ModelCases& cases, const ObservableModel& model, std::span<const Setting> settings) {
+    const auto predictions = model.predict(settings);
+    const auto defined = model.defined(settings);
+    Json points = Json::array();
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+        const auto& p = predictions[i];
+        points.push_back({{"inputs", inputs_json(cases.factors, settings[i])},
+                          {"mean", to_json(to_cell(p.mean))},
+                          {"mean_error", to_json(to_cell(p.mean_error))},
+                          {"scatter", to_json(to_cell(p.scatter))},
+                          {"inside", outside_text(cases.factors, settings[i]).empty()},
+                          {"defined", to_json(to_cell(defined[i]))}});
+    }
+    return {{"campaign", cases.campaign.name},
+            {"observable", model.observable},
+            {"points", points},
+            {"model", model_json(model)}};
+}
+
+}  // namespace grainsweep::report

@@ -1,0 +1,23 @@
+// A process window as text, rows and JSON.
+#pragma once
+
+#include "sweep/report/process_window.hpp"
+#include "sweep/store/store.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <iosfwd>
+
+namespace grainsweep::report {
+
+/// Share of the box, best setting, front, next cases, models and notes.
+void write_window(std::ostream& out, const ModelCases& cases, const WindowRequest& request, const Window& window);
+/// {"campaign", "where", "objective", "risk", "judged", "share_of_box", "share_error", "best": {"inputs", "mean",
+/// "mean_error", "scatter", "probability", "observables"}, "surest", "front", "next", "models", "notes"}
+[[nodiscard]] nlohmann::ordered_json window_json(const ModelCases& cases, const WindowRequest& request,
+                                                 const Window& window);
+/// One row per setting: part ("best", "surest", "front", "next"), factors, probability, and for each model NAME,
+/// NAME_error, NAME_scatter.
+[[nodiscard]] store::Table window_rows(const ModelCases& cases, const Window& window);
+
+}  // namespace grainsweep::report

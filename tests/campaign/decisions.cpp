@@ -1,0 +1,195 @@
+// predict and window on campaigns of known responses: figures within their stated errors, refusals, next cases.
+#include "tests/support/process.hpp"
+#include "tests/support/spreading_response.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+
+using namespace grainsweep::test;
+using nlohmann::json;
+
+namespace {
+
+std::string campaign_of(const std::string& response, int factors, int points) {
+    json campaign = {{"campaign", "c"}, {"scene", "rehearsal"}, {"seed", 3}};
+    campaign["factors"] = json::array();
+    for (int j = 1; j <= factors; ++j)
+        campaign["factors"].push_back({{"name", "x" + std::to_string(j)}, {"between", {0, 1}}});
+    campaign["fixed"] = {{"response", response}, {"noise", 0.02}};
+    campaign["design"] = {{"kind", "halton"}, {"sequences", 8}, {"points", points}};
+    return campaign.dump();
+}
+
+/// A folder with the campaign's database, c.db.
+struct Ran : Folder {
+    Ran(const std::string& response, int factors, int points) {
+        write("c.json", campaign_of(response, factors, points));
+        const auto ended = ask({"run", "c.json", "-j", "1", "--quiet"});
+        EXPECT_EQ(ended.code, 0) << ended.err;
+    }
+    [[nodiscard]] Ended ask(const std::vector<std::string>& arguments) const { return run_program(arguments, path()); }
+    [[nodiscard]] json answer(std::vector<std::string> arguments) const {
+        arguments.insert(arguments.end(), {"--format", "json"});
+        const auto ended = ask(arguments);
+        EXPECT_EQ(ended.code, 0) << ended.err;
+        return json::parse(ended.out, nullptr, false);
+    }
+    [[nodiscard]] std::string refusal(const std::vector<std::string>& arguments) const {
+        const auto ended = ask(arguments);
+        EXPECT_EQ(ended.code, 2) << ended.out;
+        EXPECT_EQ(ended.out, "");
+        return ended.err;
+    }
+};
+
+double ishigami(std::span<const double> u) {
+    const auto at = [&](std::size_t j) { return std::numbers::pi * (2 * u[j] - 1); };
+    return std::sin(at(0)) + 7 * std::pow(std::sin(at(1)), 2) + 0.1 * std::pow(at(2), 4) * std::sin(at(0));
+}
+
+double spreading(std::span<const double> u) {
+    return grainsweep::testing::spreading_response(u);
+}
+
+/// Share of points of an additive recurrence whose true response lies within 1.96 stated standard errors of the mean.
+template <class Truth>
+double coverage(const Ran& ran, std::size_t dimensions, const Truth& truth) {
+    constexpr std::array steps = {0.8191725134, 0.6710436067, 0.5497004779, 0.4502995221};
+    constexpr int points = 200;
+    std::string csv;
+    for (std::size_t j = 0; j < dimensions; ++j) csv += (j == 0 ? "x" : ",x") + std::to_string(j + 1);
+    std::vector<std::vector<double>> asked;
+    for (int i = 0; i < points; ++i) {
+        auto& u = asked.emplace_back();
+        for (std::size_t j = 0; j < dimensions; ++j) {
+            u.push_back(std::fmod(0.5 + (i + 1) * steps[j], 1.0));
+            csv += (j == 0 ? "\n" : ",") + json(u.back()).dump();
+        }
+    }
+    ran.write("points.csv", csv + "\n");
+    const auto said = ran.answer({"predict", "c.db", "--points", "points.csv"});
+    EXPECT_EQ(said["points"].size(), asked.size());
+    int covered = 0;
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+        const auto& point = said["points"][i];
+        const double error = std::abs(point["mean"].get<double>() - truth(asked[i]));
+        covered += error <= 1.96 * point["mean_error"].get<double>() ? 1 : 0;
+    }
+    return static_cast<double>(covered) / points;
+}
+
+TEST(Predict, LiesWithinItsErrorsOnASmoothResponse) {
+    const Ran ran("ishigami", 3, 240);
+    EXPECT_GE(coverage(ran, 3, ishigami), 0.85);
+}
+
+TEST(Predict, LiesWithinItsErrorsBesideACliff) {
+    const Ran ran("spreading_a", 4, 240);
+    EXPECT_GE(coverage(ran, 4, spreading), 0.85);
+}
+
+TEST(Predict, SaysWhatItRestsOnInEveryFormat) {
+    const Ran ran("spreading_a", 4, 160);
+    const std::vector<std::string> at = {"predict", "c.db", "--at",   "x1=0.5", "--at",
+                                         "x2=0.25", "--at", "x3=0.9", "--at",   "x4=0"};
+    const auto said = ran.answer(at);
+    EXPECT_EQ(said["points"][0]["inputs"]["x3"], 0.9);
+    EXPECT_NEAR(said["points"][0]["mean"].get<double>(), spreading(std::array{0.5, 0.25, 0.9, 0.0}), 0.03);
+    EXPECT_GT(said["points"][0]["scatter"].get<double>(), 0);
+    EXPECT_EQ(said["model"]["cases"], 160);
+    EXPECT_LT(said["model"]["leave_one_out_error"].get<double>(), 0.4);
+    const auto text = ran.ask(at).out;
+    for (const char* part : {"leave-one-out error", "50 % interval", "95 % interval", "scatter", "160 cases"})
+        EXPECT_NE(text.find(part), std::string::npos) << text;
+    auto csv = at;
+    csv.insert(csv.end(), {"--format", "csv"});
+    EXPECT_TRUE(ran.ask(csv).out.starts_with("x1,x2,x3,x4,mean,mean_error,scatter,inside\n0.5,0.25,0.9,0"));
+    EXPECT_EQ(ran.ask(at).out, text) << "the same again";
+}
+
+TEST(Predict, RefusesInOneSentence) {
+    const Ran ran("spreading_a", 4, 60);
+    const std::vector<std::string> inside = {"predict", "c.db", "--at", "x1=0.5", "--at", "x2=0.2", "--at", "x4=0"};
+    const auto with = [&](const std::vector<std::string>& more) {
+        auto all = inside;
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    };
+    EXPECT_NE(ran.refusal(inside).find("x3 is missing"), std::string::npos);
+    EXPECT_NE(ran.refusal(with({"--at", "x3=1.5"})).find("x3 = 1.5 is outside of 0 to 1"), std::string::npos);
+    EXPECT_EQ(ran.ask(with({"--at", "x3=1.5", "--extrapolate"})).code, 0);
+    EXPECT_NE(ran.refusal(with({"--at", "x33=1"})).find("Did you mean 'x3'"), std::string::npos);
+    EXPECT_NE(ran.refusal(with({"--at", "x3=high"})).find("x3 takes a number"), std::string::npos);
+    EXPECT_NE(ran.refusal(with({"--at", "x1=1"})).find("given twice"), std::string::npos);
+    EXPECT_NE(ran.refusal({"predict", "c.db"}).find("--points"), std::string::npos);
+    EXPECT_NE(ran.refusal({"predict", "c.db", "--points", "no.csv"}).find("no such file"), std::string::npos);
+    ran.write("short.csv", "x1,x2\n0,1\n");
+    EXPECT_NE(ran.refusal({"predict", "c.db", "--points", "short.csv"}).find("x3, x4 are missing"), std::string::npos);
+    EXPECT_NE(ran.refusal(with({"--at", "x3=1", "--observable", "z"})).find("'z'"), std::string::npos);
+}
+
+TEST(Window, FindsTheShareTheBestSettingAndWhatToRunNext) {
+    const Ran ran("spreading_a", 4, 240);
+    const std::vector<std::string> ask = {"window",      "c.db",     "--where", "y <= 0.4 and x3 <= 0.8",
+                                          "--maximize",  "y",        "--next",  "4",
+                                          "--next-file", "next.json"};
+    const auto found = ran.answer(ask);
+    // The true share, on a grid of cell centres.
+    constexpr int cells = 24;
+    int inside = 0;
+    std::array<double, 4> u{};
+    for (int k = 0; k < cells * cells * cells * cells; ++k) {
+        int rest = k;
+        for (double& x : u) {
+            x = (rest % cells + 0.5) / cells;
+            rest /= cells;
+        }
+        inside += spreading(u) <= 0.4 && u[2] <= 0.8 ? 1 : 0;
+    }
+    const double share = inside / std::pow(cells, 4);
+    EXPECT_LE(found["share_of_box"].get<double>(), share + 0.01) << "less than what is true: sure at 95 % only";
+    EXPECT_NEAR(found["share_of_box"].get<double>(), share, 0.12);
+    const auto& best = found["best"];
+    for (std::size_t j = 0; j < 4; ++j) u[j] = best["inputs"]["x" + std::to_string(j + 1)];
+    EXPECT_GE(best["probability"].get<double>(), 0.95);
+    EXPECT_LE(spreading(u), 0.4) << "the condition is met by the true response";
+    EXPECT_GT(spreading(u), 0.36) << "nearly as good as can be";
+    EXPECT_LE(u[2], 0.8);
+    EXPECT_NEAR(best["mean"].get<double>(), spreading(u), 3 * best["mean_error"].get<double>());
+
+    EXPECT_EQ(found["next"].size(), 4U);
+    const auto ended = ran.ask({"run", "next.json", "--db", "c.db", "-j", "1", "--quiet"});
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    const auto after = ran.answer({"window", "c.db", "--campaign", "c", "--where", "y <= 0.4"});
+    EXPECT_EQ(after["models"][0]["cases"], 244) << "they come into the same model";
+}
+
+TEST(Window, SaysWhereNothingMeetsTheCondition) {
+    const Ran ran("spreading_a", 4, 120);
+    const auto found = ran.answer({"window", "c.db", "--where", "y > 5", "--maximize", "y"});
+    EXPECT_TRUE(found["best"].is_null());
+    EXPECT_EQ(found["share_of_box"], 0);
+    EXPECT_FALSE(found["surest"].is_null());
+    EXPECT_NE(found["notes"][0].get<std::string>().find("holds nowhere"), std::string::npos);
+}
+
+TEST(Window, RefusesInOneSentence) {
+    const Ran ran("spreading_a", 4, 60);
+    EXPECT_NE(ran.refusal({"window", "c.db"}).find("--where"), std::string::npos);
+    EXPECT_NE(ran.refusal({"window", "c.db", "--where", "y * 2 > 1"}).find("is expected at '* 2 > 1'"),
+              std::string::npos);
+    EXPECT_NE(ran.refusal({"window", "c.db", "--maximize", "y", "--minimize", "y"}).find("one objective"),
+              std::string::npos);
+    EXPECT_NE(ran.refusal({"window", "c.db", "--maximize", "y", "--next-file", "n.json"}).find("--next N"),
+              std::string::npos);
+    EXPECT_NE(ran.refusal({"window", "c.db", "--maximize", "y", "--next", "2", "--next-file", "c.json"}).find("c.json"),
+              std::string::npos);
+}
+
+}  // namespace
