@@ -27,8 +27,8 @@
 namespace grainsweep::report {
 
 struct WindowRequest {
-    std::string where;      ///< empty: holds everywhere
-    std::string objective;  ///< an observable; empty: none, the setting where the condition is surest
+    std::string where{};      ///< empty: holds everywhere
+    std::string objective{};  ///< an observable; empty: none, the setting where the condition is surest
     bool maximise = true;
     double risk = 0.05;
     stats::Judged judged = stats::Judged::mean;

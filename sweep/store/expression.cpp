@@ -126,6 +126,8 @@ std::set<std::string> check(Connection& db, const Written& written, std::span<co
             throw refusal(written, fmt::format("'{}' is not among the deterministic functions of SQLite", forbidden));
         }
         if (selects > 1) throw refusal(written, fmt::format("{}: no SELECT inside", written.about));
+        if (std::string_view(refused.words()).find("row value misused") != std::string_view::npos)
+            throw refusal(written, "one expression is expected");
         throw refusal_by_sqlite(written, refused.words(), names);
     }
     finish();
