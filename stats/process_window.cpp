@@ -53,21 +53,10 @@ std::vector<std::vector<Prediction>> predict_all(std::span<const ModelAt> models
     return predictions;
 }
 
-/// Deviates of Sobol points, cells centred, by the distribution of each model's predictions: (integration_points, d).
-std::vector<double> deviates(std::span<const std::vector<Prediction>> predictions) {
-    const std::size_t d = predictions.size();
-    boost::random::sobol sequence(d);
-    const double cells = static_cast<double>(boost::random::sobol::max()) + 1;
-    std::vector<double> points(integration_points * d);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const double drawn = (static_cast<double>(sequence()) + 0.5 * cells / integration_points) / cells;
-        const double u = std::min(drawn, 1 - 0x1p-53);
-        const auto& row = predictions[i % d];
-        const double freedom = row.empty() ? std::numeric_limits<double>::infinity() : row.front().freedom;
-        points[i] = std::isfinite(freedom) ? boost::math::quantile(boost::math::students_t(freedom), u)
-                                           : -std::numbers::sqrt2 * boost::math::erfc_inv(2 * u);
-    }
-    return points;
+std::vector<double> freedom_of(std::span<const ModelAt> models) {
+    std::vector<double> freedom;
+    for (const ModelAt& m : models) freedom.push_back(m.model.freedom());
+    return freedom;
 }
 
 /// m* of the header; none where the condition is nowhere more likely than not.
@@ -126,26 +115,45 @@ std::vector<double> probability_within(std::span<const ModelAt> models, std::spa
     return probability;
 }
 
+/// By Sobol points, cells centred.
+SampledErrors::SampledErrors(std::span<const double> freedom) : models_(freedom.size()) {
+    if (freedom.empty()) throw std::invalid_argument("process window: no model");
+    boost::random::sobol sequence(models_);
+    const double cells = static_cast<double>(boost::random::sobol::max()) + 1;
+    for (std::size_t i = 0; i < integration_points * models_; ++i) {
+        const double drawn = (static_cast<double>(sequence()) + 0.5 * cells / integration_points) / cells;
+        const double u = std::min(drawn, 1 - 0x1p-53);
+        const double f = freedom[i % models_];
+        errors_.push_back(std::isfinite(f) ? boost::math::quantile(boost::math::students_t(f), u)
+                                           : -std::numbers::sqrt2 * boost::math::erfc_inv(2 * u));
+    }
+}
+
+std::size_t SampledErrors::points() const {
+    return integration_points;
+}
+
 std::vector<double> probability_of(std::span<const std::vector<Prediction>> predictions, const Condition& condition,
-                                   Judged judged) {
-    if (predictions.empty()) throw std::invalid_argument("process window: no model");
-    const std::size_t d = predictions.size(), n = predictions.front().size();
-    const std::vector<double> points = deviates(predictions);
+                                   Judged judged, const SampledErrors& errors) {
+    const std::size_t d = predictions.size();
+    if (d != errors.models()) throw std::invalid_argument("process window: errors of another number of models");
+    const std::size_t n = predictions.front().size();
     std::vector<double> probability(n), responses(d);
     for (std::size_t i = 0; i < n; ++i) {
         std::size_t held = 0;
-        for (std::size_t q = 0; q < integration_points; ++q) {
+        for (std::size_t q = 0; q < errors.points(); ++q) {
+            const auto error = errors.at(q);
             for (std::size_t k = 0; k < d; ++k)
-                responses[k] = predictions[k][i].mean + spread(predictions[k][i], judged) * points[q * d + k];
+                responses[k] = predictions[k][i].mean + spread(predictions[k][i], judged) * error[k];
             held += condition(responses) ? 1U : 0U;
         }
-        probability[i] = static_cast<double>(held) / integration_points;
+        probability[i] = static_cast<double>(held) / static_cast<double>(errors.points());
     }
     return probability;
 }
 
 std::vector<double> probability_of(std::span<const ModelAt> models, const Condition& condition, Judged judged) {
-    return probability_of(predict_all(models), condition, judged);
+    return probability_of(predict_all(models), condition, judged, SampledErrors(freedom_of(models)));
 }
 
 std::optional<std::size_t> best_setting(std::span<const Prediction> objective, std::span<const double> probability,
@@ -184,11 +192,12 @@ std::vector<std::size_t> next_cases(std::span<const ModelAt> candidates, const C
     if (objective && objective->model >= candidates.size())
         throw std::invalid_argument("process window: the objective names a model that is not there");
     auto predictions = predict_all(candidates);
+    const SampledErrors errors(freedom_of(candidates));
     Fantasies fantasies(candidates);
     std::vector<std::size_t> chosen;
     while (chosen.size() < std::min(count, predictions.front().size())) {
         std::vector<double> probability(predictions.front().size(), 1);
-        if (condition) probability = probability_of(predictions, condition, judged);
+        if (condition) probability = probability_of(predictions, condition, judged, errors);
         std::vector<double> gain = probability;
         if (objective)
             gain = expected_improvement(predictions[objective->model], probability, objective->maximise);

@@ -56,12 +56,33 @@ struct Bounds {
 /// One value per model, in their order -> whether the condition holds.
 using Condition = std::function<bool(std::span<const double> responses)>;
 
+/// Errors of the responses at the integration points, in standard errors: quantiles of each model's distribution. One
+/// serves all probabilities of models with these degrees of freedom; making it takes longer than a probability.
+class SampledErrors {
+public:
+    /// One number of degrees of freedom per model (ResponseModel::freedom), in their order.
+    explicit SampledErrors(std::span<const double> freedom);
+
+    [[nodiscard]] std::size_t models() const { return models_; }
+    [[nodiscard]] std::size_t points() const;
+    /// One error per model at an integration point.
+    [[nodiscard]] std::span<const double> at(std::size_t point) const {
+        return std::span(errors_).subspan(point * models_, models_);
+    }
+
+private:
+    std::size_t models_;
+    std::vector<double> errors_;  ///< (points, models)
+};
+
 /// Probability that any condition holds, at each point.
 [[nodiscard]] std::vector<double> probability_of(std::span<const ModelAt> models, const Condition& condition,
                                                  Judged judged);
-/// The same from predictions already made: predictions[k][i] of model k at point i.
+/// The same from predictions already made: predictions[k][i] of model k at point i. Throws std::invalid_argument where
+/// `errors` is of another number of models.
 [[nodiscard]] std::vector<double> probability_of(std::span<const std::vector<Prediction>> predictions,
-                                                 const Condition& condition, Judged judged);
+                                                 const Condition& condition, Judged judged,
+                                                 const SampledErrors& errors);
 
 struct Objective {
     std::size_t model = 0;  ///< index of the model that is maximised

@@ -134,8 +134,7 @@ std::vector<Prediction> ResponseModel::predict(Rows points) const {
     for (Eigen::Index i = 0; i < at.rows(); ++i) {
         const bool inside = x.row(i).minCoeff() >= -outside_by && x.row(i).maxCoeff() <= 1 + outside_by;
         result.push_back({s.offset + s.scale * p.mean(i), s.scale * std::sqrt(local(i) * p.variance(i)),
-                          s.scale * std::sqrt(local(i) * s.kriging.h.noise()), inside,
-                          static_cast<double>(s.noise.freedom())});
+                          s.scale * std::sqrt(local(i) * s.kriging.h.noise()), inside, freedom()});
     }
     return result;
 }
@@ -192,6 +191,10 @@ const ModelQuality& ResponseModel::quality() const {
 
 std::size_t ResponseModel::dimensions() const {
     return static_cast<std::size_t>(state_->low.size());
+}
+
+double ResponseModel::freedom() const {
+    return static_cast<double>(state_->noise.freedom());
 }
 
 std::variant<ResponseModel, Refusal> fit_response(Rows points, std::span<const double> values,

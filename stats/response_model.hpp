@@ -117,6 +117,8 @@ public:
 
     [[nodiscard]] const ModelQuality& quality() const;
     [[nodiscard]] std::size_t dimensions() const;
+    /// Prediction::freedom, the same at every point.
+    [[nodiscard]] double freedom() const;
     [[nodiscard]] const State& state() const { return *state_; }
 
 private:

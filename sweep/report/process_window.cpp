@@ -28,6 +28,10 @@ public:
         if (condition_)
             for (const auto name : condition_->compared())
                 if (name < cases.observables.size()) add_model(name);
+        if (models_.empty()) return;
+        std::vector<double> freedom;
+        for (const auto& model : models_) freedom.push_back(model.model.freedom());
+        errors_.emplace(freedom);
     }
 
     [[nodiscard]] std::vector<Judgement> judge(std::span<const Setting> settings) const {
@@ -93,7 +97,7 @@ private:
         if (models_.empty()) return holds({}) ? 1 : 0;  // over factors alone
         std::vector<std::vector<stats::Prediction>> here;
         for (const auto& prediction : one.predictions) here.push_back({prediction});
-        return stats::probability_of(here, holds, request_->judged).front();
+        return stats::probability_of(here, holds, request_->judged, *errors_).front();
     }
 
     [[nodiscard]] double probability(const Judgement& one) const {
@@ -114,6 +118,7 @@ private:
     std::optional<Condition> condition_;
     std::vector<ObservableModel> models_;
     std::vector<std::size_t> name_of_model_;
+    std::optional<stats::SampledErrors> errors_;  ///< none: there is no model
 };
 
 /// The best of the judged points, improved by points about it.

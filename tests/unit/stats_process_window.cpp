@@ -104,11 +104,12 @@ TEST(ProcessWindow, NextCasesGatherAtTheConstrainedOptimum) {
     }
     // The same choice with the cases really added to the models.
     auto grown = models;
+    const SampledErrors errors(std::vector{objective.freedom(), limited.freedom()});
     std::vector<std::size_t> added;
     for (std::size_t step = 0; step < 4; ++step) {
         const std::vector<std::vector<Prediction>> now{grown[0].model.predict({points, 2}),
                                                        grown[1].model.predict({points, 2})};
-        auto gain = expected_improvement(now[0], probability_of(now, allowed, Judged::mean), true);
+        auto gain = expected_improvement(now[0], probability_of(now, allowed, Judged::mean, errors), true);
         for (const std::size_t i : added) gain[i] = 0;
         added.push_back(static_cast<std::size_t>(std::ranges::max_element(gain) - gain.begin()));
         for (std::size_t k = 0; k < 2; ++k)
@@ -120,6 +121,8 @@ TEST(ProcessWindow, NextCasesGatherAtTheConstrainedOptimum) {
     const auto boundary = next_cases(models, allowed, std::nullopt, Judged::mean, 3);
     for (const std::size_t i : boundary) EXPECT_NEAR(points[2 * i], 0.5, 0.05);
     EXPECT_THROW((void)next_cases(models, {}, std::nullopt, Judged::mean, 3), std::invalid_argument);
+    const std::vector<std::vector<Prediction>> one{objective.predict({points, 2})};
+    EXPECT_THROW((void)probability_of(one, allowed, Judged::mean, errors), std::invalid_argument);
 }
 
 TEST(ProcessWindow, TradeOffFrontIsWhatNothingBeats) {
