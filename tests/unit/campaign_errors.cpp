@@ -69,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(
               "'my_sqlite_x'?"},
         Wrong{R"([{"op": "move", "from": "/design", "path": "/desing"}])",
               "$.desing: unknown key; $ has 'campaign', 'scene', 'factors', 'fixed', 'where', 'design', 'replicates', "
-              "'seed', 'convergence', 'accuracy', 'limits', 'execution' or 'notes'. Did you mean 'design'?"},
+              "'seed', 'convergence', 'accuracy', 'model', 'limits', 'execution' or 'notes'. Did you mean 'design'?"},
         Wrong{R"([{"op": "add", "path": "/notes", "value": 3}])",
               "$.notes: got 3; notes are a text or a list of texts."}));
 
