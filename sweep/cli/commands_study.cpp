@@ -3,9 +3,11 @@
 #include "sweep/cli/page_file.hpp"
 #include "sweep/cli/report_films.hpp"
 #include "sweep/report/brackets.hpp"
+#include "sweep/report/estimators.hpp"
 #include "sweep/report/file_size.hpp"
 #include "sweep/report/history.hpp"
 #include "sweep/report/influence.hpp"
+#include "sweep/report/model_influence.hpp"
 #include "sweep/report/page.hpp"
 #include "sweep/report/study_tables.hpp"
 #include "sweep/report/summary.hpp"
@@ -87,6 +89,25 @@ void print_history(const Responses& responses, const report::ResponseColumn& res
     print_notes(history.warnings);
 }
 
+/// Both estimates of the moments, where the design allows the second one.
+void print_estimators(const report::Estimators& estimators) {
+    std::cout << '\n';
+    if (estimators.assisted) {
+        std::cout << "moments with a response model beside the plain ones, which are the ones that are judged\n";
+        report::write(std::cout, report::estimators_table(estimators), Format::text);
+    }
+    for (const auto& line : report::estimator_lines(estimators)) std::cout << line << '\n';
+}
+
+void print_model_influence(const report::ModelInfluence& influence) {
+    if (influence.indices) {
+        std::cout << "\nby a response model:\n";
+        report::write(std::cout, report::model_influence_table(influence), Format::text);
+        std::cout << '\n';
+    }
+    for (const auto& line : report::model_influence_lines(influence)) std::cout << line << '\n';
+}
+
 /// Calls `with` for every campaign the subject names; those whose scene has not the observable are passed over where
 /// no campaign is named.
 template <class With>
@@ -133,6 +154,8 @@ int converge(const Subject& subject, Format format) {
                           const auto lattices = report::lattice_family(store, responses, response);
                           if (format == Format::json) {
                               all.push_back(report::to_json(responses, response, history, lattices));
+                              all.back()["estimators"] =
+                                  report::estimators_json(history, report::estimators_of(store, responses, response));
                           } else if (format == Format::csv) {
                               if (!rows.columns.empty() && rows.columns.back() == "state") return;
                               append(rows, report::checks_rows(responses, response, history));
@@ -140,6 +163,8 @@ int converge(const Subject& subject, Format format) {
                           } else {
                               if (!first) std::cout << '\n';
                               print_history(responses, response, history, lattices);
+                              if (report::repeats(responses))
+                                  print_estimators(report::estimators_of(store, responses, response));
                           }
                       });
     if (format == Format::json) report::write(std::cout, all);
@@ -151,23 +176,24 @@ int sensitivity(const Subject& subject, Format format) {
     const Store store(subject.database, Store::Mode::read);
     Json all = Json::array();
     store::Table rows;
-    for_each_campaign(store, subject,
-                      [&](const Responses& responses, const report::ResponseColumn& response, bool first) {
-                          const auto influence = report::influence_of(responses, response);
-                          if (format == Format::json) {
-                              all.push_back(report::to_json(responses, response, influence));
-                          } else if (format == Format::csv) {
-                              append(rows, report::influence_rows(responses, response, influence));
-                          } else {
-                              if (!first) std::cout << '\n';
-                              print_heading(responses, response);
-                              report::write(std::cout, report::influence_table(influence), Format::text);
-                              std::cout << '\n';
-                              if (const auto text = report::unexplained_text(influence); !text.empty())
-                                  std::cout << text << '\n';
-                              print_notes(influence.notes);
-                          }
-                      });
+    for_each_campaign(
+        store, subject, [&](const Responses& responses, const report::ResponseColumn& response, bool first) {
+            const auto influence = report::influence_of(responses, response);
+            if (format == Format::json) {
+                all.push_back(report::to_json(responses, response, influence));
+                all.back()["model"] = report::model_influence_json(report::model_influence_of(responses, response));
+            } else if (format == Format::csv) {
+                append(rows, report::influence_rows(responses, response, influence));
+            } else {
+                if (!first) std::cout << '\n';
+                print_heading(responses, response);
+                report::write(std::cout, report::influence_table(influence), Format::text);
+                std::cout << '\n';
+                if (const auto text = report::unexplained_text(influence); !text.empty()) std::cout << text << '\n';
+                print_notes(influence.notes);
+                print_model_influence(report::model_influence_of(responses, response));
+            }
+        });
     if (format == Format::json) report::write(std::cout, all);
     if (format == Format::csv) report::write(std::cout, rows, format);
     return 0;

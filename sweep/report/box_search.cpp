@@ -39,19 +39,22 @@ double rounded(double x, int exponent) {
     return std::strtod(fmt::format("{:.{}f}", x, -exponent).c_str(), nullptr);
 }
 
-double number_at(const ModelFactor& factor, double u) {
+double exact_number_at(const ModelFactor& factor, double u) {
+    return factor.log ? factor.low * std::pow(factor.high / factor.low, u)
+                      : factor.low + u * (factor.high - factor.low);
+}
+
+double rounded_number_at(const ModelFactor& factor, double u) {
     if (!(factor.high > factor.low)) return factor.low;
     constexpr int digits = 3;
-    const double exact =
-        factor.log ? factor.low * std::pow(factor.high / factor.low, u) : factor.low + u * (factor.high - factor.low);
+    const double exact = exact_number_at(factor, u);
     const double size = factor.log ? exact : factor.high - factor.low;
     const int exponent = static_cast<int>(std::floor(std::log10(size))) - digits;
     return std::clamp(rounded(exact, exponent), factor.low, factor.high);
 }
 
-}  // namespace
-
-Setting rounded_setting(std::span<const ModelFactor> factors, std::span<const double> u) {
+template <class NumberAt>
+Setting setting_at(std::span<const ModelFactor> factors, std::span<const double> u, NumberAt number_at) {
     Setting setting;
     for (std::size_t j = 0; j < factors.size(); ++j) {
         const auto& factor = factors[j];
@@ -63,6 +66,16 @@ Setting rounded_setting(std::span<const ModelFactor> factors, std::span<const do
             setting.push_back(number_at(factor, u[j]));
     }
     return setting;
+}
+
+}  // namespace
+
+Setting rounded_setting(std::span<const ModelFactor> factors, std::span<const double> u) {
+    return setting_at(factors, u, rounded_number_at);
+}
+
+Setting exact_setting(std::span<const ModelFactor> factors, std::span<const double> u) {
+    return setting_at(factors, u, exact_number_at);
 }
 
 std::vector<BoxPoint> spread_points(std::span<const ModelFactor> factors, const Admits& admits, std::size_t count) {

@@ -30,5 +30,7 @@ using Admits = std::function<bool(const Setting&)>;
 /// The setting at a point of the unit cube, rounded to a thousandth of the range's order of magnitude (of the value's,
 /// where the range is logarithmic), within the range.
 [[nodiscard]] Setting rounded_setting(std::span<const ModelFactor> factors, std::span<const double> u);
+/// The same without rounding, as a design asks it.
+[[nodiscard]] Setting exact_setting(std::span<const ModelFactor> factors, std::span<const double> u);
 
 }  // namespace grainsweep::report

@@ -27,6 +27,18 @@ bool answered(const std::optional<campaign::Outcome>& outcome) {
     return outcome == campaign::Outcome::completed || outcome == campaign::Outcome::skipped;
 }
 
+/// What is asked, and no case yet.
+ModelCases without_cases(const Responses& responses) {
+    ModelCases cases;
+    cases.campaign = responses.campaign;
+    cases.factors = model_factors(responses);
+    cases.features = campaign::remarks_in(responses.campaign.text).features;
+    cases.observables = responses.observables;
+    for (auto& column : cases.observables) column.values.clear();
+    if (const auto* main = responses.main_observable()) cases.main = main->name;
+    return cases;
+}
+
 /// The index of every word of `from` in `to`; none where `to` has it not.
 std::optional<double> same_word(const ModelFactor& from, const ModelFactor& to, double index) {
     const auto& word = from.words.at(static_cast<std::size_t>(index));
@@ -232,17 +244,27 @@ ModelCases read_model_cases(const store::Store& store, std::string_view name) {
     std::set<std::string> seen;
     for (const auto& record : records) {
         const auto responses = read_responses(store, record);
-        if (cases.campaign.name.empty()) {
-            cases.campaign = record;
-            cases.factors = model_factors(responses);
-            cases.features = campaign::remarks_in(record.text).features;
-            cases.observables = responses.observables;
-            for (auto& column : cases.observables) column.values.clear();
-            if (const auto* main = responses.main_observable()) cases.main = main->name;
-        }
+        if (cases.campaign.name.empty()) cases = without_cases(responses);
         const auto before = cases.settings.size();
         add_cases(cases, responses, seen);
         if (record.name != cases.campaign.name && cases.settings.size() > before) cases.further.push_back(record.name);
+    }
+    return cases;
+}
+
+ModelCases settled_cases(const Responses& responses, std::vector<std::size_t>* rows) {
+    ModelCases cases = without_cases(responses);
+    const auto settings = settings_of(responses, cases.factors);
+    for (std::size_t row = 0; row < responses.settled; ++row) {
+        if (!answered(responses.outcomes[row])) {
+            ++cases.failed;
+            continue;
+        }
+        if (cases.case_id.empty()) cases.case_id = responses.case_ids[row];
+        cases.settings.push_back(settings[row]);
+        for (std::size_t k = 0; k < cases.observables.size(); ++k)
+            cases.observables[k].values.push_back(responses.observables[k].values[row]);
+        if (rows != nullptr) rows->push_back(row);
     }
     return cases;
 }

@@ -52,6 +52,10 @@ struct ModelCases {
 /// WrongQuestion where that leaves a choice.
 [[nodiscard]] ModelCases read_model_cases(const store::Store& store, std::string_view campaign);
 
+/// The answered cases of a campaign's settled beginning alone, which its statistics are over. `rows`: where each case
+/// stands in `responses`.
+[[nodiscard]] ModelCases settled_cases(const Responses& responses, std::vector<std::size_t>* rows = nullptr);
+
 struct ObservableModel {
     std::string observable, unit;
     Features features;

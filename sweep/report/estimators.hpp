@@ -1,0 +1,46 @@
+// Moments of a campaign by two estimators: plain, and with a response model as control variate, which says the same
+// from fewer cases (stats/assisted_moments.hpp has the equations and how the errors are checked).
+//
+// The plain one stands wherever a campaign is judged; the other is shown beside it, with and without the scatter of
+// single runs. What it is over is what the plain one is over: the settled beginning of the design, as its independent
+// sequences, and the box less what the campaign's `where` leaves out (4 scramblings of 8,192 Sobol points).
+// Features: as the campaign file has them, else the factors, logarithms where the range is wide. Ratios of factors are
+// not tried here: which one lowers the error is a choice by the very cases that are corrected.
+//
+// The variance of single runs is that of replicates, where at least 100 cases repeat others of their point; else the
+// square of NAME_standard_error, where the scene states it (0 where it is undefined); else it is unknown.
+#pragma once
+
+#include "stats/assisted_moments.hpp"
+#include "sweep/report/history.hpp"
+#include "sweep/report/responses.hpp"
+#include "sweep/store/store.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace grainsweep::report {
+
+struct Estimators {
+    std::optional<stats::AssistedMoments> assisted;  ///< none: refused
+    std::string refused;                             ///< why: one sentence without a full stop
+    std::vector<std::string> features;
+    std::string scatter_from;  ///< "replicates" or the observable that states it; empty: unknown
+};
+
+/// Throws WrongQuestion where a feature of the campaign file cannot be evaluated.
+[[nodiscard]] Estimators estimators_of(const store::Store& store, const Responses& responses,
+                                       const ResponseColumn& response);
+
+/// One row per statistic that both give: plain, with the model, without scatter (where it is known).
+[[nodiscard]] store::Table estimators_table(const Estimators& estimators);
+/// What the model rests on, and what must be said of it, in a sentence each.
+[[nodiscard]] std::vector<std::string> estimator_lines(const Estimators& estimators);
+/// {"plain": {"mean": {"value", "error"}, ...}, "model_assisted": {..., "taken"} or null, "without_scatter": the same
+/// or null, "model_error", "scatter_from", "scatter_share": {"variance", "third_moment", "fourth_moment"}, "note"}
+[[nodiscard]] nlohmann::ordered_json estimators_json(const History& history, const Estimators& estimators);
+
+}  // namespace grainsweep::report
