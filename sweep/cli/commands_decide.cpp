@@ -5,6 +5,7 @@
 #include "sweep/cli/settings.hpp"
 #include "sweep/report/model_tables.hpp"
 #include "sweep/report/response_models.hpp"
+#include "sweep/report/window_page.hpp"
 #include "sweep/report/window_tables.hpp"
 #include "sweep/store/campaign_name.hpp"
 #include "sweep/store/store.hpp"
@@ -17,6 +18,8 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <sstream>
+#include <utility>
 
 namespace grainsweep::cli {
 namespace {
@@ -105,7 +108,7 @@ Command predict_command() {
 
 struct WindowArguments {
     std::string database, campaign, maximise, minimise;
-    std::string next_file;
+    std::string next_file, output;
     std::int64_t next = 0;
     bool single = false;
     report::WindowRequest request;
@@ -136,6 +139,7 @@ int window(const WindowArguments& arguments, Format format) {
     if (!arguments.next_file.empty() && arguments.next == 0)
         throw campaign::wrong_question("--next-file", arguments.next_file, "needs --next N, the number of cases");
     if (!arguments.next_file.empty()) check_page_file("--next-file", arguments.next_file, arguments.database);
+    if (!arguments.output.empty()) check_page_file("-o", arguments.output, arguments.database);
     const Store store(arguments.database, Store::Mode::read);
     const auto cases = report::read_model_cases(store, arguments.campaign);
     auto request = arguments.request;
@@ -146,6 +150,13 @@ int window(const WindowArguments& arguments, Format format) {
     const auto found = report::window_of(store, cases, request);
     std::string written;
     if (!arguments.next_file.empty()) written = write_next(store, cases, found, arguments.next_file);
+    if (!arguments.output.empty()) {
+        std::ostringstream page;
+        report::write_window_page(page,
+                                  report::window_page_data(cases, request, found, report::admission(store, cases)),
+                                  std::filesystem::path(arguments.database).filename().string());
+        write_page_file(arguments.output, std::move(page).str());
+    }
     if (format == Format::json) report::write(std::cout, report::window_json(cases, request, found));
     if (format == Format::csv) report::write(std::cout, report::window_rows(cases, found), format);
     if (format == Format::text) {
@@ -154,6 +165,8 @@ int window(const WindowArguments& arguments, Format format) {
             std::cout << fmt::format(
                 "{}: campaign {}; grainsweep run {} --db {} computes it, and its cases come into the same model\n",
                 arguments.next_file, written, arguments.next_file, arguments.database);
+        if (!arguments.output.empty())
+            std::cout << fmt::format("{}: the window as a page; open it in a browser, or print it\n", arguments.output);
     }
     return 0;
 }
@@ -184,6 +197,10 @@ Command window_command() {
                     .add_option("--next-file", arguments->next_file,
                                 "a campaign file of the next cases, to be written; to be run into the same database")
                     ->type_name("FILE.json");
+                parser
+                    .add_option("-o,--output", arguments->output,
+                                "a page with the window drawn: the best setting, maps and curves with their bands")
+                    ->type_name("FILE.html");
                 return [arguments, &format] { return window(*arguments, format); };
             },
             false};

@@ -20,7 +20,9 @@ constexpr double first_reach = 0.15;
 /// Condition, objective and models of one question; names are observables, then factors.
 class Question {
 public:
-    Question(const ModelCases& cases, const WindowRequest& request) : cases_(&cases), request_(&request) {
+    /// `learned`: models that are there already.
+    Question(const ModelCases& cases, const WindowRequest& request, std::span<const ObservableModel> learned = {})
+        : cases_(&cases), request_(&request), learned_(learned) {
         names_ = cases.observable_names();
         for (const auto& name : cases.factor_names()) names_.push_back(name);
         if (!request.where.empty()) condition_ = Condition::read(request.where, names_);
@@ -77,7 +79,9 @@ private:
 
     void add_model(std::size_t name) {
         if (std::ranges::find(name_of_model_, name) != name_of_model_.end()) return;
-        models_.push_back(learn_or_refuse(*cases_, cases_->observables[name]));
+        const auto& column = cases_->observables[name];
+        const auto known = std::ranges::find(learned_, column.name, &ObservableModel::observable);
+        models_.push_back(known != learned_.end() ? *known : learn_or_refuse(*cases_, column));
         name_of_model_.push_back(name);
     }
 
@@ -114,6 +118,7 @@ private:
 
     const ModelCases* cases_;
     const WindowRequest* request_;
+    std::span<const ObservableModel> learned_;
     std::vector<std::string> names_;
     std::optional<Condition> condition_;
     std::vector<ObservableModel> models_;
@@ -267,6 +272,11 @@ Window window_of(const store::Store& store, const ModelCases& cases, const Windo
     }
     say_what_was_found(window, request);
     return window;
+}
+
+std::vector<Judgement> judge_settings(const ModelCases& cases, const WindowRequest& request, const Window& window,
+                                      std::span<const Setting> settings) {
+    return Question(cases, request, window.models).judge(settings);
 }
 
 std::string next_campaign(const ModelCases& cases, const Window& window, std::string_view name) {

@@ -21,6 +21,7 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,10 @@ struct Window {
 
 /// Throws WrongQuestion for a condition that cannot be read, an unknown name, and models that are refused.
 [[nodiscard]] Window window_of(const store::Store& store, const ModelCases& cases, const WindowRequest& request);
+
+/// What the models of a window say of further settings.
+[[nodiscard]] std::vector<Judgement> judge_settings(const ModelCases& cases, const WindowRequest& request,
+                                                    const Window& window, std::span<const Setting> settings);
 
 /// A campaign file that runs the next cases: `name` its campaign, a list of the settings.
 [[nodiscard]] std::string next_campaign(const ModelCases& cases, const Window& window, std::string_view name);

@@ -125,6 +125,36 @@ constexpr std::string_view reader = R"(<script>
 })();
 </script>)";
 
+/// The same for the page of a process window: its figures and the numbers under its heads.
+constexpr std::string_view window_reader = R"(<script>
+(async () => {
+  const seen = { figures: [] };
+  const frame = async () => {
+    let came = false;
+    requestAnimationFrame(() => { came = true; });
+    for (let k = 0; k < 40000 && !came; ++k) await new Promise((go) => setTimeout(go, 5));
+  };
+  try {
+    for (const canvas of document.querySelectorAll("figure canvas")) {
+      canvas.scrollIntoView();
+      for (let k = 0; k < 40000 && !Chart.getChart(canvas); ++k) await new Promise((go) => setTimeout(go, 5));
+      await frame();
+      await frame();
+      const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+      let ink = 0;
+      for (let i = 3; i < data.length; i += 4) ink += data[i] > 0;
+      seen.figures.push([canvas.getAttribute("aria-label"), ink]);
+    }
+    seen.titles = [...document.querySelectorAll("section h2")].map((one) => one.textContent);
+    seen.set = document.querySelector("#setting table").innerText;
+  } catch (error) {
+    seen.failed = String(error.stack);
+  }
+  seen.complaints = complaints;
+  document.documentElement.dataset.seen = JSON.stringify(seen);
+})();
+</script>)";
+
 std::string contents(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
@@ -136,10 +166,10 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
 }
 
 /// What the reader saw on the page.
-Json read_in_browser(const Folder& folder, const std::string& page) {
+Json read_in_browser(const Folder& folder, const std::string& page, std::string_view script = reader) {
     std::string text = contents(folder / page);
     text.insert(text.find("<style>"), listener);
-    text.insert(text.rfind("</body>"), reader);
+    text.insert(text.rfind("</body>"), script);
     const auto file = folder.write("read.html", text);
     const auto ended =
         Process({browser, "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
@@ -180,6 +210,25 @@ struct ReportInABrowser : ::testing::Test {
         return ended.out.substr(ended.out.find('\n') + 1);
     }
 };
+
+TEST_F(ReportInABrowser, DrawsAProcessWindow) {
+    run(R"({"campaign": "first", "scene": "rehearsal", "fixed": {"noise": 0.05},
+            "factors": [{"name": "x1", "between": [0, 1]}, {"name": "x2", "between": [0.01, 1], "scale": "log"},
+                        {"name": "x3", "levels": [0, 0.5]}], "design": {"kind": "halton", "points": 100}})");
+    const auto ended = run_program(
+        {"window", "c.db", "--where", "x1 < 0.5 and y > 0.3", "--maximize", "y", "--next", "2", "-o", "w.html"},
+        folder.path());
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    const auto seen = read_in_browser(folder, "w.html", window_reader);
+    expect_quiet(seen);
+    if (seen.contains("failed")) return;
+    // Two maps; response and probability against each of three factors.
+    EXPECT_EQ(seen["figures"].size(), 8u);
+    for (const auto& [title, ink] : seen["figures"].get<std::vector<std::pair<std::string, int>>>())
+        EXPECT_GT(ink, 500) << title;
+    EXPECT_EQ(seen["titles"], Json({"Setting", "The window", "Along each factor", "To run next", "What it rests on"}));
+    EXPECT_NE(seen["set"].get<std::string>().find("x1"), std::string::npos);
+}
 
 TEST_F(ReportInABrowser, DrawsSavesFiltersAndSelects) {
     run(R"({"campaign": "first", "scene": "rehearsal", "fixed": {"noise": 0.2}, "replicates": 2,

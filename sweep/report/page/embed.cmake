@@ -14,11 +14,18 @@ set(PAGE_PROGRAM "${CMAKE_BINARY_DIR}/generated/page_program.js")
 add_custom_command(OUTPUT "${PAGE_PROGRAM}"
   COMMAND "${CMAKE_COMMAND}" -E cat ${PAGE_SCRIPTS} > "${PAGE_PROGRAM}"
   DEPENDS ${PAGE_SCRIPTS} VERBATIM)
-add_custom_target(page_program DEPENDS "${PAGE_PROGRAM}")
+# The page of a process window is drawn by the same figures.
+set(WINDOW_SCRIPTS data elements colours svg figure window)
+list(TRANSFORM WINDOW_SCRIPTS REPLACE "(.+)" "${PAGE_FOLDER}/\\1.js")
+set(WINDOW_PROGRAM "${CMAKE_BINARY_DIR}/generated/window_program.js")
+add_custom_command(OUTPUT "${WINDOW_PROGRAM}"
+  COMMAND "${CMAKE_COMMAND}" -E cat ${WINDOW_SCRIPTS} > "${WINDOW_PROGRAM}"
+  DEPENDS ${WINDOW_SCRIPTS} VERBATIM)
+add_custom_target(page_program DEPENDS "${PAGE_PROGRAM}" "${WINDOW_PROGRAM}")
 add_dependencies(sweep page_program)
 set_source_files_properties(sweep/report/page_files.cpp PROPERTIES
-  COMPILE_DEFINITIONS "CHART_JS=\"${CHART_JS}\";PAGE_FOLDER=\"${PAGE_FOLDER}\";PAGE_PROGRAM=\"${PAGE_PROGRAM}\""
-  OBJECT_DEPENDS "${CHART_JS};${PAGE_FOLDER}/page.html;${PAGE_FOLDER}/page.css;${PAGE_PROGRAM}")
+  COMPILE_DEFINITIONS "CHART_JS=\"${CHART_JS}\";PAGE_FOLDER=\"${PAGE_FOLDER}\";PAGE_PROGRAM=\"${PAGE_PROGRAM}\";WINDOW_PROGRAM=\"${WINDOW_PROGRAM}\""
+  OBJECT_DEPENDS "${CHART_JS};${PAGE_FOLDER}/page.html;${PAGE_FOLDER}/page.css;${PAGE_PROGRAM};${WINDOW_PROGRAM}")
 
 # The player of cases to watch, for a page of its own and for the report.
 set(WATCH_FOLDER "${PAGE_FOLDER}/watch")

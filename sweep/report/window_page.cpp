@@ -1,0 +1,242 @@
+#include "sweep/report/window_page.hpp"
+
+#include "sweep/report/model_tables.hpp"
+#include "sweep/report/page.hpp"
+#include "sweep/report/page_files.hpp"
+#include "sweep/report/page_template.hpp"
+#include "sweep/report/table.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <ostream>
+
+namespace grainsweep::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t points_of_curve = 41;
+
+Json number(double x) {
+    return to_json(to_cell(x));
+}
+
+std::size_t levels_of(const ModelFactor& factor) {
+    return factor.is_word() ? factor.words.size() : factor.numbers.size();
+}
+
+std::size_t cells_of(const ModelFactor& factor) {
+    const auto levels = levels_of(factor);
+    return levels > 0 ? levels : factor.high > factor.low ? points_of_curve : 1;
+}
+
+/// The number of a factor at share u of its range.
+double at_share(const ModelFactor& factor, double u) {
+    return exact_setting(std::span(&factor, 1), std::span(&u, 1)).front();
+}
+
+/// Numbers of a factor along its range: ends included (curves), or the centres of cells (map).
+std::vector<double> along(const ModelFactor& factor, bool centres) {
+    const auto cells = cells_of(factor);
+    std::vector<double> numbers;
+    for (std::size_t k = 0; k < cells; ++k) {
+        const bool middle = centres || levels_of(factor) > 0 || cells == 1;
+        const auto place = static_cast<double>(k) + (middle ? 0.5 : 0.0);
+        numbers.push_back(at_share(factor, place / static_cast<double>(middle ? cells : cells - 1)));
+    }
+    return numbers;
+}
+
+/// Where cells begin and end; levels have none.
+Json edges(const ModelFactor& factor) {
+    Json list = Json::array();
+    const auto cells = cells_of(factor);
+    for (std::size_t k = 0; levels_of(factor) == 0 && k <= cells; ++k)
+        list.push_back(at_share(factor, static_cast<double>(k) / static_cast<double>(cells)));
+    return list;
+}
+
+struct Curve {
+    std::vector<double> at;
+    std::vector<Judgement> judged;
+};
+
+Curve curve_through(const ModelCases& cases, const WindowRequest& request, const Window& window, const Setting& centre,
+                    std::size_t factor) {
+    Curve curve{along(cases.factors[factor], false), {}};
+    std::vector<Setting> settings(curve.at.size(), centre);
+    for (std::size_t i = 0; i < settings.size(); ++i) settings[i][factor] = curve.at[i];
+    curve.judged = judge_settings(cases, request, window, settings);
+    return curve;
+}
+
+double range_of(std::span<const Judgement> judged, double (*of)(const Judgement&)) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const auto& one : judged) {
+        low = std::min(low, of(one));
+        high = std::max(high, of(one));
+    }
+    return high > low ? high - low : 0;
+}
+
+double probability_of(const Judgement& one) {
+    return one.probability;
+}
+double objective_of(const Judgement& one) {
+    return one.predictions.front().mean;
+}
+
+/// Factors by how much they matter, see the header.
+std::vector<std::size_t> order_of(std::span<const Curve> curves, bool objective, double whole_range) {
+    std::vector<double> weights;
+    for (const auto& curve : curves) {
+        double weight = range_of(curve.judged, probability_of);
+        if (objective && whole_range > 0) weight += range_of(curve.judged, objective_of) / whole_range;
+        weights.push_back(weight);
+    }
+    std::vector<std::size_t> order(curves.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t j) { return weights[j]; });
+    return order;
+}
+
+Json responses_of(const Window& window, const Judgement& one) {
+    Json list = Json::array();
+    for (std::size_t k = 0; k < window.models.size(); ++k) {
+        const auto& p = one.predictions[k];
+        list.push_back({{"mean", number(p.mean)},
+                        {"mean_half_width", number(p.mean_half_width())},
+                        {"run_half_width", number(p.run_half_width())}});
+    }
+    return list;
+}
+
+Json json_of(const ModelCases& cases, const Window& window, const Judgement& one) {
+    Json value = {{"setting", Json::array()}, {"texts", Json::array()}};
+    for (std::size_t j = 0; j < cases.factors.size(); ++j) {
+        value["setting"].push_back(one.setting[j]);
+        value["texts"].push_back(cases.factors[j].text(one.setting[j]));
+    }
+    value["probability"] = number(one.probability);
+    value["responses"] = responses_of(window, one);
+    return value;
+}
+
+Json json_of(const Window& window, const Curve& curve) {
+    Json value = {{"at", curve.at}, {"probability", Json::array()}, {"responses", Json::array()}};
+    for (const auto& one : curve.judged) {
+        value["probability"].push_back(number(one.probability));
+        value["responses"].push_back(responses_of(window, one));
+    }
+    return value;
+}
+
+Json map_of(const ModelCases& cases, const WindowRequest& request, const Window& window, const Admits& admits,
+            const Setting& centre, std::size_t a, std::size_t b) {
+    const auto across = along(cases.factors[a], true), up = along(cases.factors[b], true);
+    std::vector<Setting> settings;
+    for (const double y : up)
+        for (const double x : across) {
+            settings.push_back(centre);
+            settings.back()[a] = x;
+            settings.back()[b] = y;
+        }
+    const auto judged = judge_settings(cases, request, window, settings);
+    Json value = {{"across", a},
+                  {"up", b},
+                  {"across_edges", edges(cases.factors[a])},
+                  {"up_edges", edges(cases.factors[b])},
+                  {"columns", across.size()},
+                  {"rows", up.size()},
+                  {"probability", Json::array()},
+                  {"objective", request.objective.empty() ? Json(nullptr) : Json::array()}};
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+        const bool there = !admits || admits(settings[i]);
+        value["probability"].push_back(there ? number(judged[i].probability) : Json(nullptr));
+        if (!request.objective.empty())
+            value["objective"].push_back(there ? number(judged[i].predictions.front().mean) : Json(nullptr));
+    }
+    return value;
+}
+
+Json factors_of(const ModelCases& cases) {
+    Json list = Json::array();
+    for (const auto& factor : cases.factors) {
+        Json levels = Json::array();
+        for (const auto& word : factor.words) levels.push_back(word);
+        for (const double x : factor.numbers) levels.push_back(factor.text(x));
+        list.push_back({{"name", factor.name},
+                        {"unit", factor.unit},
+                        {"levels", levels},
+                        {"numbers", factor.numbers},
+                        {"low", factor.low},
+                        {"high", factor.high},
+                        {"log", factor.log}});
+    }
+    return list;
+}
+
+}  // namespace
+
+Json window_page_data(const ModelCases& cases, const WindowRequest& request, const Window& window,
+                      const Admits& admits) {
+    const auto& centre = window.best ? *window.best : window.surest.value();
+    std::vector<Curve> curves;
+    for (std::size_t j = 0; j < cases.factors.size(); ++j)
+        curves.push_back(curve_through(cases, request, window, centre.setting, j));
+    const bool objective = !request.objective.empty();
+    double whole_range = 0;
+    if (objective) {
+        const auto& model = window.models.front();
+        const auto means = model.model.means({model.case_features, model.features.names.size()});
+        const auto [low, high] = std::ranges::minmax(means);
+        whole_range = high - low;
+    }
+    const auto order = order_of(curves, objective, whole_range);
+    Json value = {{"campaigns", {{{"name", cases.campaign.name}}}},
+                  {"campaign", cases.campaign.name},
+                  {"scene", cases.campaign.scene},
+                  {"where", request.where},
+                  {"objective", objective ? Json(request.objective) : Json(nullptr)},
+                  {"maximize", request.maximise},
+                  {"single_run", request.judged == stats::Judged::single_run},
+                  {"risk", request.risk},
+                  {"share", window.share_of_box},
+                  {"share_error", window.share_error},
+                  {"factors", factors_of(cases)},
+                  {"meets", window.best.has_value()},
+                  {"best", json_of(cases, window, centre)},
+                  {"order", order}};
+    value["responses"] = Json::array();
+    value["models"] = Json::array();
+    for (const auto& model : window.models) {
+        value["responses"].push_back({{"name", model.observable}, {"unit", model.unit}});
+        value["models"].push_back(model_lines(model));
+    }
+    value["curves"] = Json::array();
+    for (const auto& curve : curves) value["curves"].push_back(json_of(window, curve));
+    value["map"] =
+        order.size() < 2 ? Json(nullptr) : map_of(cases, request, window, admits, centre.setting, order[0], order[1]);
+    for (const auto& [name, list] : {std::pair{"front", &window.front}, std::pair{"next", &window.next}}) {
+        value[name] = Json::array();
+        for (const auto& one : *list) value[name].push_back(json_of(cases, window, one));
+    }
+    value["against"] = window.against ? Json(window.models[*window.against].observable) : Json(nullptr);
+    value["notes"] = window.notes;
+    return value;
+}
+
+void write_window_page(std::ostream& out, const Json& data, std::string_view database) {
+    const auto files = page_files();
+    Json all = data;
+    all["databases"] = {database};
+    const auto text = safe_in_script(all);
+    fill(
+        out, files.skeleton,
+        {{"style", files.style}, {"library", files.library}, {"films", ""}, {"data", text}, {"program", files.window}});
+}
+
+}  // namespace grainsweep::report

@@ -1,0 +1,30 @@
+// A process window as a page of its own, to be printed and to hang beside the machine: the best setting, what it gives
+// with its errors, the map of the two factors that matter most there, and every response against every factor.
+//
+// Map and curves go through the best setting (where there is none, the one where the condition is likeliest): the other
+// factors stay there. A factor matters by how much it changes things along its curve through that setting: range of the
+// probability that the condition holds, and range of the objective's mean over that of its means at the cases.
+// Curves have 41 points, the map 41 x 41 cells, evenly over the ranges (logarithmic ones over their logarithms); a
+// factor with levels has one each. Bands are 95 %: of the mean, and of a single run about it.
+#pragma once
+
+#include "sweep/report/box_search.hpp"
+#include "sweep/report/process_window.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <iosfwd>
+#include <string_view>
+
+namespace grainsweep::report {
+
+/// As the page's program reads it: {"campaign", "where", "objective", "risk", "share", "factors", "best", "meets",
+/// "order": factors by how much they matter, "curves": one per factor, "map": of the first two of `order` or null,
+/// "front", "next", "models", "notes"}. `admits`: settings that the campaign's `where` leaves out are drawn as empty.
+[[nodiscard]] nlohmann::ordered_json window_page_data(const ModelCases& cases, const WindowRequest& request,
+                                                      const Window& window, const Admits& admits);
+
+/// Asks nothing of any network. `database`: what the page calls it.
+void write_window_page(std::ostream& out, const nlohmann::ordered_json& data, std::string_view database);
+
+}  // namespace grainsweep::report

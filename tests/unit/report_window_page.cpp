@@ -1,0 +1,106 @@
+// What the page of a process window holds, and that nothing in it asks a network.
+#include "sweep/report/process_window.hpp"
+#include "sweep/report/response_models.hpp"
+#include "sweep/report/window_page.hpp"
+#include "tests/support/answered.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <sstream>
+
+namespace grainsweep::tests {
+using namespace report;
+
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// y = x1 - x2/2 + x3/100 over x1, x2 in [0, 1] and two levels of x3; x1 <= 0.5 is asked for. Best: x1 = 0.5, x2 = 0.
+struct WindowPage : testing::Test {
+    Folder folder;
+    store::Store store{folder / "a.db", store::Store::Mode::create};
+    WindowRequest request{.where = "x1 <= 0.5 and y >= -0.2", .objective = "y", .next = 2};
+
+    ModelCases cases(const std::string& more = "") {
+        answer_by(store,
+                  R"({"campaign": "c", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]},
+                      {"name": "x2", "between": [0, 1]}, {"name": "x3", "levels": [0, 1]}],
+                      "design": {"kind": "halton", "points": 80})" +
+                      more + "}",
+                  [](const Inputs& inputs) {
+                      return input(inputs, "x1") - 0.5 * input(inputs, "x2") + 0.01 * input(inputs, "x3");
+                  });
+        return read_model_cases(store, "c");
+    }
+};
+
+TEST_F(WindowPage, MapsTheTwoFactorsThatMatterMostThroughTheBestSetting) {
+    const auto known = cases();
+    const auto window = window_of(store, known, request);
+    const auto data = window_page_data(known, request, window, {});
+    EXPECT_EQ(data["meets"], true);
+    EXPECT_NEAR(data["best"]["setting"][0], 0.5, 0.01);
+    EXPECT_NEAR(data["best"]["setting"][1], 0.0, 0.01);
+    EXPECT_EQ(data["order"], nlohmann::ordered_json({0, 1, 2}));
+    const auto& map = data["map"];
+    ASSERT_EQ(map["columns"], 41);
+    ASSERT_EQ(map["rows"], 41);
+    ASSERT_EQ(map["probability"].size(), 41U * 41U);
+    for (std::size_t j = 0; j < 41; ++j)
+        for (std::size_t i = 0; i < 41; ++i) {
+            const double x1 = (static_cast<double>(i) + 0.5) / 41, x2 = (static_cast<double>(j) + 0.5) / 41;
+            const double y = x1 - x2 / 2;
+            if (std::abs(x1 - 0.5) < 0.02 || std::abs(y + 0.2) < 0.05) continue;
+            EXPECT_NEAR(map["probability"][j * 41 + i], x1 <= 0.5 && y >= -0.2 ? 1 : 0, 0.02) << x1 << ' ' << x2;
+            EXPECT_NEAR(map["objective"][j * 41 + i], y, 0.03);
+        }
+}
+
+TEST_F(WindowPage, CurvesHoldBandsOfTheMeanAndOfARun) {
+    const auto known = cases();
+    const auto window = window_of(store, known, request);
+    const auto data = window_page_data(known, request, window, {});
+    const auto& curve = data["curves"][1];
+    ASSERT_EQ(curve["at"].size(), 41U);
+    EXPECT_EQ(curve["at"][0], 0);
+    EXPECT_EQ(curve["at"][40], 1);
+    for (std::size_t i = 0; i < 41; ++i) {
+        const auto& y = curve["responses"][i][0];
+        const double truth = 0.5 - curve["at"][i].get<double>() / 2 + 0.01 * data["best"]["setting"][2].get<double>();
+        EXPECT_NEAR(y["mean"], truth, 0.03);
+        EXPECT_GE(y["run_half_width"], y["mean_half_width"]);
+    }
+    EXPECT_EQ(data["curves"][2]["at"], nlohmann::ordered_json({0.0, 1.0})) << "a level each";
+    EXPECT_EQ(data["next"].size(), 2U);
+    EXPECT_THAT(data["models"][0].get<std::string>(), HasSubstr("leave-one-out error"));
+}
+
+TEST_F(WindowPage, CellsThatTheCampaignLeavesOutAreEmpty) {
+    const auto known = cases(R"(, "where": "x2 < 0.5")");
+    const auto window = window_of(store, known, request);
+    const auto data = window_page_data(known, request, window, admission(store, known));
+    const auto& map = data["map"];
+    EXPECT_EQ(map["up"], 1);
+    EXPECT_TRUE(map["probability"][40 * 41].is_null());
+    EXPECT_TRUE(map["probability"][0].is_number());
+}
+
+TEST_F(WindowPage, IsDrawnWhereNothingMeetsTheConditionToo) {
+    const auto known = cases();
+    request.where = "y > 5";
+    const auto window = window_of(store, known, request);
+    const auto data = window_page_data(known, request, window, {});
+    EXPECT_EQ(data["meets"], false);
+    std::ostringstream page;
+    write_window_page(page, data, "a.db");
+    EXPECT_THAT(page.str(), HasSubstr("<!doctype html>"));
+    EXPECT_THAT(page.str(), Not(HasSubstr("src=")));
+    EXPECT_THAT(page.str(), Not(HasSubstr("{{")));
+}
+
+}  // namespace
+}  // namespace grainsweep::tests
