@@ -21,11 +21,12 @@ program_packages=(
     libboost-filesystem-dev=/usr/include/boost/filesystem.hpp:libboost_filesystem.so libsqlite3-dev=/usr/include/sqlite3.h
     nlohmann-json3-dev=/usr/include/nlohmann/json.hpp libfmt-dev=/usr/include/fmt/format.h
     libcli11-dev=/usr/include/CLI/CLI.hpp libxxhash-dev=/usr/include/xxhash.h
-    libnlopt-dev=/usr/include/nlopt.h libjs-chart.js=/usr/share/javascript/chart.js/chart.min.js
+    libnlopt-dev=/usr/include/nlopt.h libhwy-dev=/usr/include/hwy/highway.h
+    libjs-chart.js=/usr/share/javascript/chart.js/chart.min.js
 )
 test_packages=(
     libgtest-dev=/usr/include/gtest/gtest.h libgmock-dev=/usr/include/gmock/gmock.h
-    sqlite3=/usr/bin/sqlite3 chromium=/usr/bin/chromium
+    sqlite3=/usr/bin/sqlite3 chromium=/usr/bin/chromium g++-aarch64-linux-gnu=/usr/bin/aarch64-linux-gnu-g++
 )
 
 present() {  # PACKAGE=FILE[:LIBRARY]

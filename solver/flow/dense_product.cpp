@@ -13,8 +13,10 @@ void dense_product_baseline(std::ptrdiff_t rows, std::ptrdiff_t columns, std::pt
 
 // A fact of the processor, and none of the answer's.
 DenseProduct* widest() {
+#if defined(__x86_64__)
     if (__builtin_cpu_supports("x86-64-v4") != 0) return dense_product_avx512;
     if (__builtin_cpu_supports("x86-64-v3") != 0) return dense_product_avx2;
+#endif
     return dense_product_baseline;
 }
 

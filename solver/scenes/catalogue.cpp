@@ -71,7 +71,11 @@ std::string_view instruction_path() {
         case dem::Method::Path::avx2:
             return "avx2";
         default:
+#if defined(__x86_64__)
             return "x86-64-v2";
+#else
+            return "baseline";
+#endif
     }
 }
 

@@ -114,9 +114,9 @@ struct SceneInfo {
 /// nullptr when there is none of that name.
 [[nodiscard]] const SceneInfo* find_scene(std::string_view name);
 
-/// The instruction set the solver's inner loops run with in this process: "x86-64-v2", "avx2", "avx512".
+/// Instruction set of the solver's inner loops in this process: "x86-64-v2", "avx2", "avx512"; elsewhere "baseline".
 [[nodiscard]] std::string_view instruction_path();
-/// Words that choose_instruction_path knows: "baseline" (x86-64-v2), "avx2", "avx512".
+/// Words that choose_instruction_path knows: "baseline" (x86-64-v2, NEON), "avx2", "avx512".
 [[nodiscard]] std::span<const std::string_view> instruction_path_words();
 /// Makes the particle loops of this process run with a narrower instruction set than the widest there is, for tests
 /// and benchmarks; to be called before a scene is made. False, and nothing changes: this processor lacks it.

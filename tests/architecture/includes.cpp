@@ -112,6 +112,8 @@ const std::vector<Library>& libraries() {
         {"CLI/", {"sweep/cli/parser.cpp"}},
         {"Eigen/", {"solver/", "stats/"}},
         {"nlopt", {"stats/response/fit.cpp"}},
+        {"hwy/", {"solver/dem/fast/lanes.hpp"}},
+        {"immintrin.h", {}},  // vector instructions by Highway and by vector types of the compiler
         {"boost/", {"sweep/workers/pool.", "sweep/workers/child.", "sweep/designs/", "solver/", "stats/"}},
         {"fmt/", {"sweep/"}},
         {"chrono", {"sweep/"}},

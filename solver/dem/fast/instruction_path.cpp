@@ -6,14 +6,16 @@ namespace grainsweep::dem::fast {
 
 bool supports(Method::Path path) {
     switch (path) {
+#if defined(__x86_64__)
         case Method::Path::avx512:
             return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512bw") != 0 &&
                    __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vl") != 0 &&
                    supports(Method::Path::avx2);
         case Method::Path::avx2:
             return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
+#endif
         default:
-            return true;
+            return path == Method::Path::best || path == Method::Path::baseline;
     }
 }
 
@@ -44,10 +46,12 @@ void prefer(Method::Path path) {
 
 const Kernels& kernels_of(Method::Path path, const Needs& needs) {
     switch (path) {
+#if defined(__x86_64__)
         case Method::Path::avx512:
             return avx512_kernels(needs);
         case Method::Path::avx2:
             return avx2_kernels(needs);
+#endif
         default:
             return baseline_kernels(needs);
     }

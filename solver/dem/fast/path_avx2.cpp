@@ -1,6 +1,6 @@
 // The kernels compiled for AVX2 and FMA.
 // Nothing with external linkage but the one function at the end may come into being here.
-#include "solver/dem/fast/lanes_avx2.hpp"
+#include "solver/dem/fast/pair_lanes.hpp"
 
 #include "solver/dem/fast/compiled_laws.hpp"
 

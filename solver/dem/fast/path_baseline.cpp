@@ -1,6 +1,6 @@
-// The kernels compiled for x86-64-v2: what every processor this program runs on has.
+// The kernels compiled for what every processor this program runs on has: x86-64-v2, or NEON of AArch64.
 // Nothing with external linkage but the one function at the end may come into being here.
-#include "solver/dem/fast/lanes_baseline.hpp"
+#include "solver/dem/fast/pair_lanes.hpp"
 
 #include "solver/dem/fast/compiled_laws.hpp"
 

@@ -62,7 +62,7 @@ inline void following(const Field& f, std::int32_t x, std::int32_t y, std::int32
 
 template <bool unequal>
 std::int64_t search(const Field& f, float skin) {
-    const unsigned denormals = flush_denormals();
+    const auto denormals = flush_denormals();
     const Constants& c = f.constants;
     std::int64_t n = 0;
     Runs runs;
@@ -118,7 +118,7 @@ std::int64_t search(const Field& f, float skin) {
 
 template <bool unequal>
 std::int32_t refresh(const Field& f, float skin) {
-    const unsigned denormals = flush_denormals();
+    const auto denormals = flush_denormals();
     const Constants& c = f.constants;
     std::int64_t n = 0;
     const float cut = 2 * c.radius + skin;

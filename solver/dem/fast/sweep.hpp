@@ -292,7 +292,7 @@ GRAINSWEEP_PHASE void advance_range(const Field& f, std::int32_t from, std::int3
 
 template <class Kernel>
 void advance(const Field& f, Tally& t) {
-    const unsigned denormals = flush_denormals();
+    const auto denormals = flush_denormals();
     advance_range<Kernel>(f, 0, f.count, t);
     restore_denormals(denormals);
 }
@@ -315,7 +315,7 @@ GRAINSWEEP_LANES void keep_rest(Packed& p, int from) {
 
 template <class Kernel>
 void sweep(const Field& f, bool advancing, Tally& t) {
-    const unsigned denormals = flush_denormals();
+    const auto denormals = flush_denormals();
     Packed p;
     Progress at{};
     const typename Kernel::Laws laws(f.constants.laws);

@@ -145,7 +145,7 @@ GRAINSWEEP_LANES void return_touches(const Field& f, std::int32_t from, int coun
 
 template <class Kernel>
 void walls(const Field& f, Tally& tally) {
-    const unsigned denormals = flush_denormals();
+    const auto denormals = flush_denormals();
     WallTile t;
     WallProgress p;
     for (std::int32_t w = 0; w < f.wall_count; ++w) {
