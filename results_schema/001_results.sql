@@ -42,7 +42,7 @@ CREATE TABLE campaign (
     sequences     INTEGER NOT NULL,  -- point p belongs to sequence p mod sequences
     replicates    INTEGER NOT NULL,  -- repeats of each point with other seeds
     convergence_observable TEXT,     -- NULL: no rule was given
-    convergence_rule       TEXT,     -- replicates | any_change | all_change
+    convergence_rule       TEXT,     -- replicates | assisted | any_change | all_change
     convergence_gates      TEXT,     -- statistics judged, separated by spaces
     convergence_tolerance  REAL,
     convergence_block      INTEGER,  -- points between two checks

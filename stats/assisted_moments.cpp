@@ -18,6 +18,8 @@ namespace {
 
 constexpr std::size_t least_sequences = 4, least_rare = 30, least_scramblings = 4;
 constexpr double contradiction = 2;  // in joint half-widths
+constexpr double normal_95 = 1.959963984540054;
+constexpr std::int64_t least_freedom = 2;
 using Moment4 = std::array<double, 4>;
 
 std::string shown(double x) {
@@ -122,6 +124,7 @@ struct Parts {
     std::vector<std::vector<Moment4>> integrals;  ///< [sequence][scrambling]: mean of g_p
     std::vector<Moment4> residuals;               ///< of each case: z^p - g_p
     std::vector<double> predicted;                ///< m_s(x_i)
+    double error = 0;                             ///< rms of z_i - m_s(x_i)
 };
 
 /// Everything for the sequences of one parity, with hyperparameters of the others.
@@ -188,20 +191,38 @@ RawMoments averaged(const std::vector<Moment4>& all) {
     return mean;
 }
 
-/// (a), (b) and the error of Q of the header, for one gradient.
-double half_width(const RawMoments& gradient, const std::vector<Moment4>& sequences, const Parts& parts) {
-    std::vector<double> values;
-    for (const Moment4& m : sequences) values.push_back(dot(gradient, m));
-    double squares = 0, fourths = 0;
-    for (const Moment4& r : parts.residuals) {
-        const double square = std::pow(dot(gradient, r), 2);
+/// Var[sum_p gradient_p (m + s e)^p] for a standard normal e, from the moments 1, 3, 15, 105 of e^2, e^4, e^6, e^8.
+double normal_variance(const RawMoments& gradient, double m, double s) {
+    const double m2 = m * m;
+    const double c1 = s * (gradient[0] + 2 * gradient[1] * m + 3 * gradient[2] * m2 + 4 * gradient[3] * m2 * m);
+    const double c2 = s * s * (gradient[1] + 3 * gradient[2] * m + 6 * gradient[3] * m2);
+    const double c3 = s * s * s * (gradient[2] + 4 * gradient[3] * m);
+    const double c4 = s * s * s * s * gradient[3];
+    return c1 * c1 + 2 * c2 * c2 + 15 * c3 * c3 + 96 * c4 * c4 + 6 * c1 * c3 + 24 * c2 * c4;
+}
+
+/// (b) and (c) of the header.
+double half_width_by_cases(const RawMoments& gradient, const Parts& parts) {
+    double squares = 0, fourths = 0, expected = 0;
+    const double s =
+        std::min(parts.error, 1.0);  // a model that says less than the mean is no noisier than the responses
+    for (std::size_t i = 0; i < parts.residuals.size(); ++i) {
+        const double square = std::pow(dot(gradient, parts.residuals[i]), 2);
         squares += square;
         fourths += square * square;
+        expected += normal_variance(gradient, parts.predicted[i], s);
     }
     const auto n = static_cast<double>(parts.residuals.size());
     const double effective = fourths > 0 ? squares * squares / fourths : n;
-    const auto freedom = std::max<std::int64_t>(static_cast<std::int64_t>(effective) - 1, 1);
-    const double by_cases = student_factor(freedom) * std::sqrt(squares / (n * (n - 1)));
+    const auto freedom = std::max<std::int64_t>(static_cast<std::int64_t>(effective) - 1, least_freedom);
+    return std::max(student_factor(freedom) * std::sqrt(squares / (n * (n - 1))), normal_95 * std::sqrt(expected) / n);
+}
+
+/// (a), (b), (c) and the error of Q of the header, for one gradient.
+double half_width(const RawMoments& gradient, const std::vector<Moment4>& sequences, const Parts& parts) {
+    std::vector<double> values;
+    for (const Moment4& m : sequences) values.push_back(dot(gradient, m));
+    const double by_cases = half_width_by_cases(gradient, parts);
 
     const std::size_t scramblings = parts.integrals.front().size();
     std::vector<double> integrals(scramblings, 0);
@@ -281,7 +302,7 @@ void add_assisted(AssistedMoments& result, const Cases& c, const Parts& parts, d
         s.shorter = s.assisted.half_width < s.plain.half_width;
         if (c.noise.empty()) continue;
         const RawMoments gradient = scatter.through(without[k].gradient);
-        const double by_noise = 1.959963984540054 * noise_error * std::abs(dot(without[k].gradient, scatter.added));
+        const double by_noise = normal_95 * noise_error * std::abs(dot(without[k].gradient, scatter.added));
         const double error = std::hypot(half_width(gradient, sequences, parts), by_noise);
         s.without_scatter = in_unit(c, k, without[k].value, error);
     }
@@ -328,7 +349,7 @@ std::variant<AssistedMoments, Refusal> estimate(const AssistedInput& input, cons
     double squares = 0;
     for (std::size_t i = 0; i < result.cases; ++i)
         squares += std::pow(c.z(static_cast<Eigen::Index>(i)) - parts.predicted[i], 2);
-    result.model_error = std::sqrt(squares / static_cast<double>(result.cases));
+    result.model_error = parts.error = std::sqrt(squares / static_cast<double>(result.cases));
     add_assisted(result, c, parts, input.noise_variance_error);
     return result;
 }

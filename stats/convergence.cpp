@@ -12,21 +12,9 @@
 namespace grainsweep::stats {
 namespace {
 
-constexpr std::array<std::string_view, 3> rule_names = {"replicates", "any_change", "all_change"};
+constexpr std::array<std::string_view, 4> rule_names = {"replicates", "any_change", "all_change", "assisted"};
 constexpr std::int64_t fewest_sequences = 4;
 constexpr std::int64_t fewest_values = 4;  // of each sequence, for an error of anything but the mean
-
-/// An error in the unit of the statistic -> what the tolerance is compared with.
-double scaled(Statistic statistic, double error, double value) {
-    switch (statistic) {
-        case Statistic::skewness:
-            return error / 3;
-        case Statistic::g1:
-            return error / std::max(1.0, std::abs(value));
-        default:
-            return error / std::abs(value);
-    }
-}
 
 /// log(measure) = a + slope log(points) over the checks of the last three quarters, and its value now.
 struct Decay {
@@ -72,6 +60,53 @@ bool median_is_unsound(double zero_share) {
     return std::abs(zero_share - 0.5) <= 0.05;
 }
 
+double measure_of(Statistic statistic, double error, double value) {
+    switch (statistic) {
+        case Statistic::skewness:
+            return error / 3;
+        case Statistic::g1:
+            return error / std::max(1.0, std::abs(value));
+        default:
+            return error / std::abs(value);
+    }
+}
+
+void compare_with_tolerance(Checkpoint& now, const ConvergenceSettings& settings) {
+    const bool any = settings.rule == ConvergenceRule::any_change;
+    const auto passes = [&](Statistic gate) { return now.of(gate).measure < settings.tolerance; };
+    now.passes = any ? std::ranges::any_of(settings.gates, passes) : std::ranges::all_of(settings.gates, passes);
+    if (now.passes) return;
+    // One gate is enough for any_change: there the nearest decides.
+    const auto distance = [&](Statistic gate) {
+        const double measure = now.of(gate).measure;
+        return std::isnan(measure) ? std::numeric_limits<double>::infinity() : measure;
+    };
+    now.held_back = any ? *std::ranges::min_element(settings.gates, {}, distance)
+                        : *std::ranges::max_element(settings.gates, {}, distance);
+}
+
+double points_for_tolerance(const ConvergenceSettings& settings, std::span<const Checkpoint> before,
+                            const Checkpoint& now) {
+    const bool any = settings.rule == ConvergenceRule::any_change;
+    double needed = any ? std::numeric_limits<double>::infinity() : 0;
+    for (const Statistic gate : settings.gates) {
+        std::vector<std::pair<double, double>> history;
+        for (const auto& check : before) history.emplace_back(check.points, check.of(gate).measure);
+        history.emplace_back(now.points, now.of(gate).measure);
+        if (std::isnan(history.back().second)) {
+            if (any) continue;
+            return std::numeric_limits<double>::infinity();
+        }
+        if (history.back().second < settings.tolerance) continue;
+        const Decay decay = fit_decay(history);
+        const double growth = std::pow(settings.tolerance / decay.measure_now, 1 / decay.slope);
+        const double points = static_cast<double>(now.points) * growth;
+        needed = any ? std::min(needed, points) : std::max(needed, points);
+    }
+    constexpr double most = 1e15;
+    return needed < most ? needed : std::numeric_limits<double>::infinity();
+}
+
 Middle SortedSample::middle() {
     std::ranges::sort(fresh_);
     const auto old = static_cast<std::ptrdiff_t>(sorted_.size());
@@ -83,6 +118,8 @@ Middle SortedSample::middle() {
 }
 
 Convergence::Convergence(ConvergenceSettings settings) : settings_(std::move(settings)) {
+    if (settings_.rule == ConvergenceRule::assisted)
+        throw std::invalid_argument("the rule 'assisted' is judged with a model of the response");
     if (settings_.rule == ConvergenceRule::replicates && settings_.sequences < fewest_sequences)
         throw std::invalid_argument("the rule 'replicates' needs at least 4 random sequences, not " +
                                     std::to_string(settings_.sequences));
@@ -156,52 +193,25 @@ void Convergence::find_measures(Checkpoint& now) const {
         if (settings_.rule != ConvergenceRule::replicates)
             error = checkpoints_.empty() ? std::numeric_limits<double>::quiet_NaN()
                                          : std::abs(estimate.value - checkpoints_.back().of(statistic).value);
-        estimate.measure = scaled(statistic, error, estimate.value);
+        estimate.measure = measure_of(statistic, error, estimate.value);
         if (statistic == Statistic::skewness && median_is_unsound(now.zero_share))
             estimate.measure = std::numeric_limits<double>::quiet_NaN();
     }
 }
 
 void Convergence::judge(Checkpoint& now) const {
-    const bool any = settings_.rule == ConvergenceRule::any_change;
-    const auto passes = [&](Statistic gate) { return now.of(gate).measure < settings_.tolerance; };
-    now.passes = any ? std::ranges::any_of(settings_.gates, passes) : std::ranges::all_of(settings_.gates, passes);
+    compare_with_tolerance(now, settings_);
     now.converged = now.passes;
     if (settings_.rule == ConvergenceRule::replicates)
         now.converged = now.passes && !checkpoints_.empty() && checkpoints_.back().passes;
-    if (!now.passes) {
-        // Undefined counts as infinitely far. One gate is enough for any_change: there the nearest decides.
-        const auto distance = [&](Statistic gate) {
-            const double measure = now.of(gate).measure;
-            return std::isnan(measure) ? std::numeric_limits<double>::infinity() : measure;
-        };
-        now.held_back = any ? *std::ranges::min_element(settings_.gates, {}, distance)
-                            : *std::ranges::max_element(settings_.gates, {}, distance);
-    }
     now.points_needed = predict(now);
 }
 
 std::optional<std::int64_t> Convergence::predict(const Checkpoint& now) const {
     if (now.converged) return now.points;
     const std::int64_t block = settings_.block;
-    const bool any = settings_.rule == ConvergenceRule::any_change;
-    double needed = any ? std::numeric_limits<double>::infinity() : 0;
-    for (const Statistic gate : settings_.gates) {
-        std::vector<std::pair<double, double>> history;
-        for (const auto& check : checkpoints_) history.emplace_back(check.points, check.of(gate).measure);
-        history.emplace_back(now.points, now.of(gate).measure);
-        if (std::isnan(history.back().second)) {
-            if (any) continue;
-            return std::nullopt;
-        }
-        if (history.back().second < settings_.tolerance) continue;
-        const Decay decay = fit_decay(history);
-        const double growth = std::pow(settings_.tolerance / decay.measure_now, 1 / decay.slope);
-        const double points = static_cast<double>(now.points) * growth;
-        needed = any ? std::min(needed, points) : std::max(needed, points);
-    }
-    constexpr double most = 1e15;
-    if (!(needed < most)) return std::nullopt;
+    const double needed = points_for_tolerance(settings_, checkpoints_, now);
+    if (std::isinf(needed)) return std::nullopt;
     // The first check not yet made that reaches `needed`; `replicates` wants the one after it, too.
     const auto reached = static_cast<std::int64_t>(std::ceil(needed / static_cast<double>(block))) * block;
     const std::int64_t first = now.passes ? now.points : std::max(reached, now.points + block);

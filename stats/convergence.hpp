@@ -10,6 +10,7 @@
 //   any_change  e = change since the check before; any one gate below the tolerance. The rule of the thesis this
 //               program began with; it stops too early in about half of all sweeps.
 //   all_change  the same, every gate below the tolerance.
+//   assisted    e = 95 % half-width with a model of the response as control variate: assisted_convergence.hpp.
 // The errors shown beside the values are the Student-t half-width where there are at least 4 sequences (of all but the
 // mean once each has 4 values); else a delete-a-group jackknife over 8 consecutive stretches of the points (see
 // confidence.hpp).
@@ -26,12 +27,13 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
 namespace grainsweep::stats {
 
-enum class ConvergenceRule { replicates, any_change, all_change };
+enum class ConvergenceRule { replicates, any_change, all_change, assisted };
 
 [[nodiscard]] std::string_view to_string(ConvergenceRule rule);
 [[nodiscard]] std::optional<ConvergenceRule> convergence_rule_named(std::string_view word);
@@ -62,6 +64,8 @@ struct Checkpoint {
     /// Points at which it will probably have converged, from the observed decay of the measures; none where
     /// a gate is undefined.
     std::optional<std::int64_t> points_needed;
+    /// Under the rule assisted: why a model was refused, withdrawn or not taken; else empty.
+    std::string remark;
 
     [[nodiscard]] const Estimate& of(Statistic statistic) const {
         return estimates[static_cast<std::size_t>(statistic)];
@@ -70,6 +74,16 @@ struct Checkpoint {
 
 /// True where so many values are zero that the median jumps: Pearson's skewness cannot be judged.
 [[nodiscard]] bool median_is_unsound(double zero_share);
+
+/// An error in the unit of the statistic -> what the tolerance is compared with.
+[[nodiscard]] double measure_of(Statistic statistic, double error, double value);
+/// Whether every gate (any_change: one) is below the tolerance; else which gate holds it back, undefined ones counting
+/// as infinitely far.
+void compare_with_tolerance(Checkpoint& now, const ConvergenceSettings& settings);
+/// Points at which the measures will probably be below the tolerance, from their decay over the checks `before` and
+/// now; infinite where a gate is undefined.
+[[nodiscard]] double points_for_tolerance(const ConvergenceSettings& settings, std::span<const Checkpoint> before,
+                                          const Checkpoint& now);
 
 /// Values that arrive in order and stay sorted: the middle is at hand at every check.
 class SortedSample {
@@ -85,8 +99,8 @@ private:
 /// Follows one response through a growing design. Same values, same verdict, however they were computed.
 class Convergence {
 public:
-    /// Throws std::invalid_argument: `replicates` with fewer than 4 sequences, no gate, a block below 1, a
-    /// tolerance that is not positive.
+    /// Throws std::invalid_argument: the rule `assisted`, `replicates` with fewer than 4 sequences, no gate, a block
+    /// below 1, a tolerance that is not positive.
     explicit Convergence(ConvergenceSettings settings);
 
     /// The next value (NaN: the case failed), by growing point number; numbers may be missing (filtered out)

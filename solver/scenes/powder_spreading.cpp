@@ -56,7 +56,12 @@ SceneInfo powder_spreading_scene() {
     const auto numerics = [](double fraction, double width, const char* precision) {
         return Inputs{{"time_step_fraction", fraction}, {"width", width}, {"precision", std::string(precision)}};
     };
-    info.accuracy = {{"fast", numerics(0.3, 5, "mixed")},
+    // Survey: moments of the mean response over a whole range, from cases of a sixth of the cost whose scatter is
+    // larger and whose bias is below what 2,400 cases show: tests/bench/accuracy_levels, figures in docs/cost.md.
+    Inputs survey = numerics(0.4, 5, "mixed");
+    survey["settle_time"] = 0.08;
+    info.accuracy = {{"survey", survey},
+                     {"fast", numerics(0.3, 5, "mixed")},
                      {"balanced", numerics(0.2, 10, "mixed")},
                      {"reference", numerics(0.05, 20, "double")}};
     info.parameters = spreading::question::parameters();

@@ -56,7 +56,7 @@ struct ParameterSpace {
 
 struct Convergence {
     std::string observable;
-    std::string rule = "replicates";  ///< replicates | any_change | all_change
+    std::string rule = "replicates";  ///< replicates | assisted | any_change | all_change
     std::vector<std::string> gates = {"mean", "sd", "kurtosis", "g1"};
     double tolerance = 0.01;
     std::int64_t block = 400;  ///< points between two checks
@@ -69,8 +69,11 @@ inline constexpr std::int64_t checks_by_default = 8, longest_default_block = 400
 /// Points between two checks where a campaign does not say: an eighth of its design at most, a multiple of its
 /// independent sequences, 400 at most and no less than `least`.
 [[nodiscard]] std::int64_t default_block(std::int64_t points, std::int64_t sequences, std::int64_t least);
-/// Fewest points of a block: 4 for each sequence under the rule 'replicates', else 4.
+/// Fewest points of a block: 4 for each sequence under the rules 'replicates' and 'assisted', else 4.
 [[nodiscard]] std::int64_t least_block(std::string_view rule, std::int64_t sequences);
+
+/// The rule 'assisted' checks 104 points or more first, and always a fifth more or more next: each check fits models.
+inline constexpr std::int64_t fewest_assisted_points = 104, assisted_growth = 5;
 
 struct Limits {
     double wall_seconds = 0;  ///< per attempt; 0: none

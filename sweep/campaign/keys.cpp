@@ -74,7 +74,7 @@ std::span<const Key> campaign_keys() {
          Kind::word,
          false,
          {},
-         {"fast", "balanced", "reference"},
+         {"survey", "fast", "balanced", "reference"},
          {}},
         {"model", "how responses are learned from the cases; changes no result", Kind::object, false, {}, {}, {}},
         {"limits", "what one case may cost", Kind::object, false, {}, {}, {}},
@@ -105,11 +105,12 @@ std::span<const Key> convergence_keys() {
         {"observable", "a scalar observable of the scene", Kind::word, true, {}, {}, {}},
         {"rule",
          "replicates: 95 % half-widths over the random sequences below the tolerance at two consecutive checks; "
+         "assisted: the same with a model of the response as control variate, which needs fewer points; "
          "any_change, all_change: any or all statistics changed by less than the tolerance between two blocks",
          Kind::word,
          false,
          {},
-         {"replicates", "any_change", "all_change"},
+         {"replicates", "assisted", "any_change", "all_change"},
          json_word(standard.rule)},
         {"gates",
          "the statistics that are judged",

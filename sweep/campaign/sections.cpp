@@ -31,7 +31,8 @@ void check_rule(const Section& section, const Convergence& convergence, const Ca
     const std::string path = path_of(section.place().path(), "rule");
     const std::string got = fmt::format("\"{}\"{}", convergence.rule, section.find("rule") ? "" : " by default");
     const std::int64_t sequences = designs::independent_sequences(campaign.design, campaign.request);
-    if (convergence.rule != "replicates") {
+    const bool over_sequences = convergence.rule == "replicates" || convergence.rule == "assisted";
+    if (!over_sequences) {
         if (designs::design_named(campaign.design).beginning != designs::Beginning::corner) return;
         throw wrong_question(path, got,
                              fmt::format("the points of a {0} come in no useful order, so blocks of them mean nothing; "
@@ -88,6 +89,12 @@ Convergence read_convergence(const Cursor& place, const Campaign& campaign) {
         }
     }
     check_rule(section, convergence, campaign);
+    for (std::size_t k = 0; k < convergence.gates.size(); ++k) {
+        if (convergence.rule == "assisted" && convergence.gates[k] == "skewness")
+            section.at("gates")[k].refuse(
+                "Pearson's skewness is made of a median, which has no model-assisted estimate: take g1, or the rule "
+                "\"replicates\"");
+    }
     if (!section.find("block")) convergence.block = block_by_default(convergence, campaign);
     return convergence;
 }

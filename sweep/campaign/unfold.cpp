@@ -148,7 +148,7 @@ std::int64_t candidates_of(const Campaign& campaign) {
 
 std::int64_t least_block(std::string_view rule, std::int64_t sequences) {
     constexpr std::int64_t fewest = 4;
-    return rule == "replicates" ? fewest * sequences : fewest;
+    return rule == "replicates" || rule == "assisted" ? fewest * sequences : fewest;
 }
 
 std::int64_t default_block(std::int64_t points, std::int64_t sequences, std::int64_t least) {
@@ -156,10 +156,30 @@ std::int64_t default_block(std::int64_t points, std::int64_t sequences, std::int
     return std::max(least, part - part % sequences);
 }
 
+namespace {
+
+/// Checks of the rule `assisted` are fewer, see stats/assisted_convergence.hpp (features are not known here: four at
+/// most ask for no later first check).
+std::string never_converges_assisted(const Campaign& campaign, std::int64_t points) {
+    const std::int64_t block = campaign.convergence->block;
+    const auto next = [&](std::int64_t least) { return (least + block - 1) / block * block; };
+    const std::int64_t first = next(fewest_assisted_points);
+    const std::int64_t second = next(first + std::max<std::int64_t>(1, first / assisted_growth));
+    if (second <= points) return {};
+    return fmt::format(
+        "convergence can never be found: the rule 'assisted' needs two checks, the first at {} points and the second "
+        "at "
+        "{} or more with a block of {}, and the design has {}",
+        first, second, block, points);
+}
+
+}  // namespace
+
 std::string never_converges(const Campaign& campaign) {
     if (!campaign.convergence) return {};
     const std::int64_t points = candidates_of(campaign);
     const auto& [observable, rule, gates, tolerance, block, stop] = *campaign.convergence;
+    if (rule == "assisted") return never_converges_assisted(campaign, points);
     if (block > points)
         return fmt::format("convergence can never be checked: a block is {} points, and the design has {}", block,
                            points);

@@ -93,7 +93,7 @@ void print_history(const Responses& responses, const report::ResponseColumn& res
 void print_estimators(const report::Estimators& estimators) {
     std::cout << '\n';
     if (estimators.assisted) {
-        std::cout << "moments with a response model beside the plain ones, which are the ones that are judged\n";
+        std::cout << "moments with a response model beside the plain ones\n";
         report::write(std::cout, report::estimators_table(estimators), Format::text);
     }
     for (const auto& line : report::estimator_lines(estimators)) std::cout << line << '\n';

@@ -7,6 +7,7 @@
 #include "sweep/cli/progress.hpp"
 #include "sweep/report/features.hpp"
 #include "sweep/report/history.hpp"
+#include "sweep/report/model_view.hpp"
 #include "sweep/schedule/growth.hpp"
 #include "sweep/schedule/judge.hpp"
 #include "sweep/schedule/plan.hpp"
@@ -157,8 +158,12 @@ std::unique_ptr<schedule::Judge> make_judge(const campaign::Campaign& campaign, 
         if (next->outcome) known[i] = next->value;
     }
     const auto sequences = designs::independent_sequences(campaign.design, campaign.request);
+    std::optional<schedule::ModelView> view;
+    if (campaign.convergence->rule == "assisted")
+        view = report::model_view(campaign, placement.candidates,
+                                  store::make_filter(campaign.where, campaign::filter_names(campaign)));
     return std::make_unique<schedule::Judge>(*campaign.convergence, placed, static_cast<std::size_t>(sequences),
-                                             std::move(known), placement.candidates);
+                                             std::move(known), placement.candidates, std::move(view));
 }
 
 std::vector<std::string> worker_command(const fs::path& artefacts, const std::string& path) {
@@ -324,7 +329,7 @@ private:
         const auto record = store_->stored(campaign_).value();
         if (first) say_first(*line_, campaign_, forecast_, record);
         const auto placement = placement_of(*store_, record, placed_, std::move(states_), std::move(forecast_.seconds));
-        judge_ = make_judge(campaign_, *store_, placement);
+        judge_ = campaign::asked_in(request_.config, [&] { return make_judge(campaign_, *store_, placement); });
         questions_ = questions_of(campaign_, placement);
     }
     void compute() {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -25,11 +26,43 @@ stats::ConvergenceSettings settings_for_looking(const Responses& responses) {
     return settings;
 }
 
-stats::ConvergenceSettings settings_for(const Responses& responses) {
+stats::ConvergenceSettings settings_for(const Responses& responses, const ResponseColumn& response) {
     const auto& record = responses.campaign;
     if (!record.convergence) return settings_for_looking(responses);
-    return schedule::settings_of(*record.convergence, schedule::independent_sequences(
-                                                          record.design, static_cast<std::size_t>(record.sequences)));
+    auto settings = schedule::settings_of(
+        *record.convergence,
+        schedule::independent_sequences(record.design, static_cast<std::size_t>(record.sequences)));
+    // Other observables than the judged one have no model: their plain errors are shown.
+    if (settings.rule == ConvergenceRule::assisted && response.name != record.convergence->observable)
+        settings.rule = ConvergenceRule::replicates;
+    return settings;
+}
+
+/// What a rule with models is shown with beside them.
+stats::ConvergenceSettings plain(stats::ConvergenceSettings settings) {
+    if (settings.rule == ConvergenceRule::assisted) settings.rule = ConvergenceRule::replicates;
+    return settings;
+}
+
+/// The checks of a run under the rule `assisted`, from what it stored of them.
+std::vector<stats::Checkpoint> judged_in_the_run(const Responses& responses,
+                                                 const stats::ConvergenceSettings& settings) {
+    std::vector<stats::Checkpoint> checks;
+    for (const auto& row : responses.judged_checks) {
+        if (row.points > responses.settled_points) break;
+        stats::Checkpoint check;
+        check.points = row.points;
+        check.excluded = row.excluded;
+        check.zero_share = row.zero_share;
+        const std::array values = {row.mean, row.sd, row.skewness, row.g1, row.kurtosis};
+        const std::array errors = {row.mean_error, row.sd_error, row.skewness_error, row.g1_error, row.kurtosis_error};
+        for (std::size_t s = 0; s < stats::statistics.size(); ++s)
+            check.estimates[s] = {values[s], errors[s], stats::measure_of(stats::statistics[s], errors[s], values[s])};
+        stats::compare_with_tolerance(check, settings);
+        check.converged = row.converged;
+        checks.push_back(std::move(check));
+    }
+    return checks;
 }
 
 std::span<const std::int64_t> judged_points(const Responses& responses) {
@@ -39,6 +72,7 @@ std::span<const std::int64_t> judged_points(const Responses& responses) {
 /// Moments of all settled values, with errors where the design is a sample.
 stats::Checkpoint check_of_all(const Responses& responses, const ResponseColumn& response,
                                stats::ConvergenceSettings settings) {
+    settings = plain(std::move(settings));
     settings.block = std::max<std::int64_t>(1, responses.settled_points);
     const auto checks = stats::judge_convergence(settings, judged_points(responses), responses.judged(response),
                                                  responses.settled_points);
@@ -63,6 +97,7 @@ std::optional<stats::Checkpoint> check_of_finished(const Responses& responses, c
         points.push_back(responses.points[row]);
         values.push_back(response.values[row]);
     }
+    settings = plain(std::move(settings));
     settings.block = points.back() + 1;
     auto found = stats::judge_convergence(settings, points, values, settings.block);
     if (found.empty()) return std::nullopt;
@@ -76,6 +111,12 @@ void warn(History& history, const Responses& responses, const ResponseColumn& re
     if (history.has_rule && history.settings.rule == ConvergenceRule::any_change) {
         history.warnings.emplace_back(
             "the rule any_change stops too early in about half of all sweeps: quote the errors, not the verdict");
+    }
+    if (history.has_rule && history.settings.rule == ConvergenceRule::assisted) {
+        history.warnings.emplace_back(
+            "the checks, and the measures, are of estimates with a model of the response, as the run judged them; "
+            "value "
+            "and error over all points are plain");
     }
     if (record.convergence && record.convergence->observable != response.name) {
         history.warnings.push_back(
@@ -120,6 +161,11 @@ void warn(History& history, const Responses& responses, const ResponseColumn& re
     if (auto note = extent_note(record); !note.empty()) history.warnings.push_back(std::move(note));
 }
 
+std::int64_t first_check(const stats::ConvergenceSettings& settings) {
+    if (settings.rule != ConvergenceRule::assisted) return settings.block;
+    return (campaign::fewest_assisted_points + settings.block - 1) / settings.block * settings.block;
+}
+
 std::string verdict_of(const History& history, const Responses& responses) {
     if (!responses.ordered_sample()) return "not judged: no sample of growing size";
     if (!history.has_rule && responses.design().purpose != designs::Purpose::statistics)
@@ -127,7 +173,7 @@ std::string verdict_of(const History& history, const Responses& responses) {
                            responses.campaign.design);
     if (history.checks.empty())
         return fmt::format("{}first check at {} points, {} are settled", history.has_rule ? "not converged: " : "",
-                           history.settings.block, responses.settled_points);
+                           first_check(history.settings), responses.settled_points);
     // The first converged check is where the campaign might have stopped; without one, the last says what is missing.
     const auto converged = std::ranges::find(history.checks, true, &stats::Checkpoint::converged);
     const auto& check = converged == history.checks.end() ? history.checks.back() : *converged;
@@ -162,7 +208,7 @@ std::string points_line(const Responses& responses) {
 
 History figures_of(const Responses& responses, const ResponseColumn& response) {
     History history;
-    history.settings = settings_for(responses);
+    history.settings = settings_for(responses, response);
     history.has_rule = responses.campaign.convergence.has_value();
     history.all = check_of_all(responses, response, history.settings);
     history.provisional = check_of_finished(responses, response, history.settings);
@@ -172,7 +218,9 @@ History figures_of(const Responses& responses, const ResponseColumn& response) {
 
 History history_of(const Responses& responses, const ResponseColumn& response) {
     History history = figures_of(responses, response);
-    if (responses.ordered_sample()) {
+    if (history.settings.rule == ConvergenceRule::assisted) {
+        history.checks = judged_in_the_run(responses, history.settings);
+    } else if (responses.ordered_sample()) {
         history.checks = stats::judge_convergence(history.settings, judged_points(responses),
                                                   responses.judged(response), responses.settled_points);
     }

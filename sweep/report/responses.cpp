@@ -240,9 +240,19 @@ bool repeats(const Responses& responses) {
     return schedule::independent_sequences(responses.campaign.design, sequences) > 1;
 }
 
+namespace {
+
+std::vector<store::ConvergenceRow> judged_checks(const store::Store& store, const store::CampaignRecord& record) {
+    if (!record.convergence || record.convergence->rule != "assisted") return {};
+    return store.convergence(record.name, record.convergence->observable);
+}
+
+}  // namespace
+
 Responses read_responses(const store::Store& store, const store::CampaignRecord& record) {
     Responses responses;
     responses.campaign = record;
+    responses.judged_checks = judged_checks(store, record);
     const SceneInfo* scene = find_scene(record.scene);
     std::vector<FactorReader> factors;
     for (auto& stated : campaign::factors_of(record)) factors.emplace_back(std::move(stated), scene);
@@ -280,6 +290,7 @@ Responses read_responses(const store::Store& store, const store::CampaignRecord&
 Responses read_response(const store::Store& store, const store::CampaignRecord& record, const std::string& observable) {
     Responses responses;
     responses.campaign = record;
+    responses.judged_checks = judged_checks(store, record);
     responses.candidates = record.stored.candidates;
     ResponseColumn response;
     response.name = observable;

@@ -42,6 +42,9 @@ struct Responses {
     std::vector<std::optional<campaign::Outcome>> outcomes;
     std::vector<FactorColumn> factors;
     std::vector<ResponseColumn> observables;
+    /// Of a campaign under the rule `assisted`: its checks, as they were judged in the run. Their models are not fitted
+    /// again to be shown.
+    std::vector<store::ConvergenceRow> judged_checks;
     std::int64_t candidates = 0;  ///< points the design numbers, those filtered out by `where` included
     /// Rows of the gapless beginning (a lattice, a list: all those) with a final outcome, cut where the campaign
     /// converged and stopped: what statistics are over. A case given up after crashes has one.

@@ -12,6 +12,13 @@ namespace grainsweep::schedule {
 namespace {
 
 using stats::ConvergenceRule;
+static_assert(campaign::fewest_assisted_points == stats::fewest_assisted_points &&
+              campaign::assisted_growth == stats::assisted_growth);
+
+/// Whether the rule compares what changed since the check before.
+bool of_changes(const stats::ConvergenceSettings& settings) {
+    return settings.rule == ConvergenceRule::any_change || settings.rule == ConvergenceRule::all_change;
+}
 
 std::string percent(double share) {
     return share < 1 ? fmt::format("{:.2g} %", 100 * share) : fmt::format("{:.0f} %", 100 * share);
@@ -20,7 +27,7 @@ std::string percent(double share) {
 /// What the rule compares, by its name: "kurtosis" or "change of kurtosis".
 std::string measure_name(stats::Statistic statistic, const stats::ConvergenceSettings& settings) {
     const auto name = stats::to_string(statistic);
-    return settings.rule == ConvergenceRule::replicates ? std::string(name) : fmt::format("change of {}", name);
+    return of_changes(settings) ? fmt::format("change of {}", name) : std::string(name);
 }
 
 std::string points_left(const stats::Checkpoint& check, std::int64_t candidates) {
@@ -84,16 +91,20 @@ std::string verdict_of(const stats::Checkpoint& check, const stats::ConvergenceS
         }
         return fmt::format("{} < {}", text, percent(settings.tolerance));
     }
+    if (settings.rule == ConvergenceRule::assisted && std::isnan(check.of(settings.gates.front()).measure))
+        return fmt::format("nothing is decided at {} points: {}", check.points,
+                           check.remark.empty() ? "the model of the response was refused" : check.remark);
     if (check.passes || !check.held_back) {
         return fmt::format("every gate within {} for the first time, the next check may confirm it{}",
                            percent(settings.tolerance), points_left(check, candidates));
     }
     const double measure = check.of(*check.held_back).measure;
     if (!std::isnan(measure)) {
-        return fmt::format("{} {} > {}{}", measure_name(*check.held_back, settings), percent(measure),
-                           percent(settings.tolerance), points_left(check, candidates));
+        return fmt::format("{} {} > {}{}{}", measure_name(*check.held_back, settings), percent(measure),
+                           percent(settings.tolerance), points_left(check, candidates),
+                           check.remark.empty() ? "" : "; " + check.remark);
     }
-    const bool first_of_changes = settings.rule != ConvergenceRule::replicates && check.points <= settings.block;
+    const bool first_of_changes = of_changes(settings) && check.points <= settings.block;
     if (first_of_changes) return fmt::format("{} points, nothing to compare with yet", check.points);
     if (*check.held_back == stats::Statistic::skewness && stats::median_is_unsound(check.zero_share)) {
         return fmt::format("skewness cannot be judged: {} of the values are zero, so the median jumps",
@@ -104,16 +115,23 @@ std::string verdict_of(const stats::Checkpoint& check, const stats::ConvergenceS
 }
 
 Judge::Judge(const campaign::Convergence& wanted, campaign::Cases placed, std::size_t sequences,
-             std::vector<double> known, std::optional<std::int64_t> candidates)
+             std::vector<double> known, std::optional<std::int64_t> candidates, std::optional<ModelView> view)
     : wanted_(wanted),
       settings_(settings_of(wanted, sequences)),
-      convergence_(settings_),
       candidates_(placed.empty() ? 0 : std::int64_t{placed.place(placed.size() - 1).point} + 1),
       placed_(std::move(placed)),
-      values_(std::move(known)),
-      verdict_(fmt::format("first check of {} at {} points", wanted.observable, wanted.block)) {
+      values_(std::move(known)) {
     assert(values_.size() == placed_.size());
     if (candidates) candidates_ = std::max(candidates_, *candidates);
+    std::int64_t first = wanted.block;
+    if (settings_.rule == ConvergenceRule::assisted) {
+        if (!view) throw std::invalid_argument("the rule 'assisted' needs what a model sees of a case");
+        assisted_ = std::make_unique<AssistedJudge>(settings_, std::move(*view), placed_, wanted.stop);
+        first = assisted_->first_check();
+    } else {
+        plain_ = std::make_unique<stats::Convergence>(settings_);
+    }
+    verdict_ = fmt::format("first check of {} at {} points", wanted.observable, first);
 }
 
 void Judge::learn(const campaign::CaseId& id, const Observations& observations) {
@@ -126,19 +144,36 @@ void Judge::learn(const campaign::CaseId& id, const Observations& observations) 
 }
 
 std::optional<std::int64_t> Judge::converged_at() const {
-    const auto* check = convergence_.converged();
+    const auto* check = plain_ ? plain_->converged() : assisted_->converged();
     return check == nullptr ? std::nullopt : std::optional(check->points);
 }
 
-std::vector<store::ConvergenceRow> Judge::judge(std::size_t settled) {
+std::span<const stats::Checkpoint> Judge::checkpoints() const {
+    return plain_ ? plain_->checkpoints() : assisted_->checkpoints();
+}
+
+void Judge::feed(std::size_t settled) {
+    for (; fed_ < settled; ++fed_) {
+        if (plain_)
+            plain_->add(placed_.place(fed_).point, values_[fed_]);
+        else
+            assisted_->add(values_[fed_]);
+    }
+    if (fed_ != settled) return;
+    const std::int64_t points = settled == placed_.size() ? candidates_ : std::int64_t{placed_.place(settled).point};
+    if (plain_)
+        plain_->settle(points);
+    else
+        assisted_->settle(points);
+}
+
+std::vector<store::ConvergenceRow> Judge::judge(std::size_t settled, Models models) {
     assert(settled <= placed_.size());
-    const bool over = stops() && converged_at();
-    for (; !over && fed_ < settled; ++fed_) convergence_.add(placed_.place(fed_).point, values_[fed_]);
-    if (!over && fed_ == settled)
-        convergence_.settle(settled == placed_.size() ? candidates_ : placed_.place(settled).point);
+    if (!(stops() && converged_at())) feed(settled);
+    if (assisted_) assisted_->advance(models == Models::awaited);
 
     std::vector<store::ConvergenceRow> rows;
-    const auto checks = convergence_.checkpoints();
+    const auto checks = checkpoints();
     while (judged_ < checks.size()) {
         const auto& check = checks[judged_++];
         rows.push_back(row_of(check, wanted_.observable));

@@ -3,16 +3,20 @@
 // Only gapless beginnings of the design are judged, block by block, so the verdict does not depend on the
 // number of workers or on the order of finishing. A block is `block` design points; those that the `where` clause
 // filtered out contribute nothing. A case without an answer (unstable, rejected, given up) is left out and
-// counted. The rules and their errors: stats/convergence.hpp.
+// counted. The rules and their errors: stats/convergence.hpp; of `assisted`, whose checks are fewer and take time:
+// stats/assisted_convergence.hpp and assisted_judge.hpp.
 #pragma once
 
 #include "stats/convergence.hpp"
 #include "sweep/campaign/campaign.hpp"
+#include "sweep/schedule/assisted_judge.hpp"
 #include "sweep/store/store.hpp"
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,15 +29,21 @@ public:
     /// (NaN: none). `sequences` that repeat one another independently, see independent_sequences().
     /// `candidates`: how many points the design numbers, before `where` filters them; where it is not given,
     /// a last block whose last points were filtered out is not judged.
-    /// Throws std::invalid_argument for settings that cannot be judged (`replicates` with fewer than 4 sequences).
+    /// `view`: what the rule `assisted` needs, and no other.
+    /// Throws std::invalid_argument for settings that cannot be judged (`replicates` with fewer than 4 sequences,
+    /// `assisted` without a view).
     Judge(const campaign::Convergence& wanted, campaign::Cases placed, std::size_t sequences, std::vector<double> known,
-          std::optional<std::int64_t> candidates = {});
+          std::optional<std::int64_t> candidates = {}, std::optional<ModelView> view = {});
 
     /// The answer to a question, at every place where it is asked. No such scalar: no answer.
     void learn(const campaign::CaseId& id, const Observations& observations);
     /// Judges every block that lies within the first `settled` placed cases and was not judged before. Where
-    /// convergence stops the campaign, nothing after the block that converged.
-    [[nodiscard]] std::vector<store::ConvergenceRow> judge(std::size_t settled);
+    /// convergence stops the campaign, nothing after the block that converged. Checks that fit models are waited for,
+    /// or made beside: then a later call brings what they say.
+    enum class Models { awaited, beside };
+    [[nodiscard]] std::vector<store::ConvergenceRow> judge(std::size_t settled, Models models = Models::awaited);
+    /// A check is under way.
+    [[nodiscard]] bool busy() const { return assisted_ && assisted_->busy(); }
     /// Points of the prefix at which the statistics converged.
     [[nodiscard]] std::optional<std::int64_t> converged_at() const;
     [[nodiscard]] bool stops() const { return wanted_.stop; }
@@ -41,9 +51,13 @@ public:
     [[nodiscard]] const std::string& verdict() const { return verdict_; }
 
 private:
+    void feed(std::size_t settled);
+    [[nodiscard]] std::span<const stats::Checkpoint> checkpoints() const;
+
     campaign::Convergence wanted_;
     stats::ConvergenceSettings settings_;
-    stats::Convergence convergence_;
+    std::unique_ptr<stats::Convergence> plain_;  ///< one of the two
+    std::unique_ptr<AssistedJudge> assisted_;
     std::int64_t candidates_;
     campaign::Cases placed_;
     std::vector<double> values_;  ///< of each place

@@ -41,13 +41,15 @@ Scheduler::Scheduler(std::string campaign, Plan& plan, workers::Crew& crew, stor
       watchers_(std::move(watchers)) {}
 
 Ending Scheduler::run() {
-    judge_prefix();  // what the archive already has may be enough
+    judge_prefix(Judge::Models::awaited);  // what the archive already has may be enough
     while (!at_once_) {
         hand_out();
         if (in_flight_ == 0 && !plan_.next_predicted()) break;
         if (auto event = crew_.wait(200ms)) handle(std::move(*event));
+        if (judge_ != nullptr && judge_->busy()) judge_prefix();
         show();
     }
+    if (!at_once_) judge_prefix(Judge::Models::awaited);
     if (at_once_) {
         crew_.dismiss();
     } else {
@@ -164,9 +166,10 @@ void Scheduler::handle_given_back(const campaign::Attempt& attempt, std::string 
     if (gave_up) judge_prefix();
 }
 
-void Scheduler::judge_prefix() {
+void Scheduler::judge_prefix(Judge::Models models) {
     if (judge_ == nullptr || (judge_->converged_at() && judge_->stops())) return;
-    for (auto& row : judge_->judge(plan_.settled_prefix())) recorder_.write(store::Recorder::Checked{campaign_, row});
+    for (auto& row : judge_->judge(plan_.settled_prefix(), models))
+        recorder_.write(store::Recorder::Checked{campaign_, row});
     progress_.judgement = judge_->verdict();
     // Also when interrupted: where the campaign stops must not depend on the time of the check.
     if (judge_->converged_at() && judge_->stops()) {

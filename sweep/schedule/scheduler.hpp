@@ -53,7 +53,7 @@ private:
                         double seconds);
     void take_back(const std::vector<campaign::Attempt>& attempts);
     void handle_given_back(const campaign::Attempt& attempt, std::string reason, double seconds, bool noted);
-    void judge_prefix();
+    void judge_prefix(Judge::Models models = Judge::Models::beside);
     void show();
 
     std::string campaign_;

@@ -212,7 +212,8 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{R"([{"op": "replace", "path": "/convergence/observable", "value": "y_series"}])",
               "$.convergence.observable: got \"y_series\"; is a series; statistics need a scalar observable: 'y'."},
         Wrong{R"([{"op": "add", "path": "/convergence/rule", "value": "replicate"}])",
-              "$.convergence.rule: got \"replicate\"; must be 'replicates', 'any_change' or 'all_change'. Did you mean "
+              "$.convergence.rule: got \"replicate\"; must be 'replicates', 'assisted', 'any_change' or 'all_change'. "
+              "Did you mean "
               "'replicates'?"},
         Wrong{R"([{"op": "add", "path": "/convergence/gates", "value": ["mean", "sdd"]}])",
               "$.convergence.gates[1]: got \"sdd\"; must be 'mean', 'sd', 'skewness', 'g1' or 'kurtosis'. Did you mean "

@@ -260,4 +260,95 @@ TEST(Judge, RefusesRulesTheDesignCannotCarry) {
     EXPECT_EQ(independent_sequences("morris", 5), 1U);
 }
 
+/// Two factors of a smooth response with a little scatter, in shifted lattice sequences.
+struct Hill {
+    explicit Hill(std::int64_t points) : placed(place(points)) {
+        for (std::size_t p = 0; p < placed.size(); ++p) {
+            const auto s = static_cast<double>(p % sequences), i = static_cast<double>(p / sequences);
+            const double a = std::fmod(0.7548776662466927 * i + 0.137 * (s + 1) * (s + 1), 1.0);
+            const double b = std::fmod(0.5698402909980532 * i + 0.311 * (s + 1) * (s + 1), 1.0);
+            features.push_back({a, b});
+            values.push_back(1 + std::sin(3 * a) * (0.5 + b) + 0.01 * std::sin(1000.0 * static_cast<double>(p)));
+        }
+    }
+    [[nodiscard]] Judge judge(std::vector<double> there, bool stop = true) const {
+        auto rule = wanted(8, 0.03);
+        rule.rule = "assisted";
+        rule.gates = {"mean", "sd"};
+        rule.stop = stop;
+        return {rule, placed, sequences, std::move(there), {}, view()};
+    }
+    [[nodiscard]] ModelView view() const {
+        std::vector<double> integration;
+        for (int k = 0; k < 2048; ++k) {
+            integration.push_back(std::fmod(0.7548776662466927 * k + 0.5, 1.0));
+            integration.push_back(std::fmod(0.5698402909980532 * k + 0.5, 1.0));
+        }
+        return {{.dimensions = 2, .low = {}, .high = {}, .integration = integration, .scramblings = 8},
+                [all = features](std::size_t point) { return all[point]; }};
+    }
+    [[nodiscard]] std::vector<double> nothing() const { return std::vector<double>(placed.size(), none); }
+
+    std::vector<campaign::PlacedCase> placed;
+    std::vector<double> values;
+    std::vector<std::vector<double>> features;
+};
+
+TEST(Judge, WithModelsItSaysTheSameWheneverAndInWhateverOrderItIsAsked) {
+    const Hill hill(160);
+    Judge calm = hill.judge(hill.values);
+    const auto expected = calm.judge(hill.placed.size());
+    ASSERT_TRUE(calm.converged_at());
+    EXPECT_LT(*calm.converged_at(), 160);
+
+    Judge judge = hill.judge(hill.nothing());
+    EXPECT_EQ(judge.verdict(), "first check of y at 104 points");
+    std::vector<bool> there(hill.placed.size());
+    std::size_t prefix = 0;
+    std::vector<store::ConvergenceRow> rows;
+    const auto keep = [&](std::vector<store::ConvergenceRow> more) {
+        rows.insert(rows.end(), more.begin(), more.end());
+    };
+    for (const auto i : stats::permutation(160, stats::Generator(3))) {
+        judge.learn(hill.placed[i].question.id, answer(hill.values[i]));
+        there[i] = true;
+        while (prefix < there.size() && there[prefix]) ++prefix;
+        keep(judge.judge(prefix, Judge::Models::beside));
+    }
+    keep(judge.judge(prefix));
+    EXPECT_FALSE(judge.busy());
+    EXPECT_EQ(judge.converged_at(), calm.converged_at());
+    EXPECT_EQ(judge.verdict(), calm.verdict());
+    ASSERT_EQ(rows.size(), expected.size());
+    for (std::size_t k = 0; k < rows.size(); ++k) EXPECT_TRUE(same(rows[k], expected[k])) << k;
+}
+
+TEST(Judge, WithModelsAPartIsJudgedAsPartAndWhereItShallNotStopItGoesOn) {
+    const Hill hill(160);
+    Judge part = hill.judge(hill.values);
+    const auto first = part.judge(104);
+    ASSERT_EQ(first.size(), 1U);
+    EXPECT_EQ(first.front().points, 104);
+    EXPECT_FALSE(part.converged_at());
+    EXPECT_THAT(part.judge(127), testing::IsEmpty());  // the next check is at 128
+    Judge watching = hill.judge(hill.values, false);
+    std::vector<std::int64_t> points;
+    for (const auto& row : watching.judge(hill.placed.size())) points.push_back(row.points);
+    EXPECT_THAT(points, testing::ElementsAre(104, 128, 160));
+    EXPECT_THAT(watching.verdict(), HasSubstr("< 3 %"));
+}
+
+TEST(Judge, WithARefusedModelNothingIsDecidedAndItSaysWhy) {
+    const Hill hill(128);
+    Judge judge = hill.judge(std::vector<double>(hill.placed.size(), 2.0));
+    for (const auto& row : judge.judge(hill.placed.size())) {
+        EXPECT_FALSE(row.converged);
+        EXPECT_TRUE(std::isnan(row.mean_error));
+    }
+    EXPECT_EQ(judge.verdict(), "nothing is decided at 128 points: no model-assisted moments: the response is constant");
+    auto rule = wanted(8);
+    rule.rule = "assisted";
+    EXPECT_THROW(Judge(rule, hill.placed, sequences, hill.values), std::invalid_argument);  // no view
+}
+
 }  // namespace

@@ -1,0 +1,65 @@
+// The rule `assisted`: when enough points have been asked for moments that take a model of the response as control
+// variate (assisted_moments.hpp).
+//
+// Checks are at growing sizes, because each fits models: the first multiple of `block` that has 104 points or more
+// (fewer are not known to give intervals that hold) and 8 (d + 1), then always the first multiple of `block` that is a
+// fifth larger. N points are checked at most 1 + log(N/104)/log(1.2) times. At a check each gate is measured as under
+// the rule `replicates` (convergence.hpp) by the half-width of the estimate its statistic takes: the assisted one where
+// that was decided beforehand, at the check before; else the plain one. It converges where every gate is below the
+// tolerance at two consecutive checks. A model that is refused decides nothing: that check does not pass, and its
+// errors are NaN.
+#pragma once
+
+#include "stats/assisted_moments.hpp"
+#include "stats/convergence.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace grainsweep::stats {
+
+/// What the models see of a case: features, and points that fill the factors' ranges as the design does.
+struct ModelSpace {
+    std::size_t dimensions = 0;
+    std::vector<double> low, high;    ///< box of the features
+    std::vector<double> integration;  ///< features of independent scramblings of one size, row-major
+    std::size_t scramblings = 8;
+};
+
+/// Fewest points of a check, and the share by which the next one is larger at least: 1 in 5.
+inline constexpr std::int64_t fewest_assisted_points = 104, assisted_growth = 5;
+
+class AssistedConvergence {
+public:
+    /// Throws std::invalid_argument: another rule than `assisted`, a design of fewer than 4 sequences, no gate,
+    /// Pearson's skewness as a gate (a median has no such estimate), a block below 1, a tolerance that is not positive,
+    /// a space without dimensions.
+    AssistedConvergence(ConvergenceSettings settings, ModelSpace space);
+
+    /// Points of the next check; after one of so many points.
+    [[nodiscard]] std::int64_t next_check() const;
+    [[nodiscard]] std::int64_t next_check(std::int64_t after) const;
+    [[nodiscard]] std::size_t dimensions() const { return space_.dimensions; }
+    /// Makes it: `points`, `values` (NaN: the case failed) and features of every case below next_check() points, in the
+    /// order of the design. The time is that of up to 2 (at the first check 4) fits of at most 300 cases and of models
+    /// of at most 1,500; beyond that it grows with the number of cases.
+    void check(std::span<const std::int64_t> points, std::span<const double> values, std::span<const double> features);
+
+    [[nodiscard]] std::span<const Checkpoint> checkpoints() const { return checkpoints_; }
+    /// The first converged check, if any: where the campaign may stop.
+    [[nodiscard]] const Checkpoint* converged() const;
+
+private:
+    void take_estimates(Checkpoint& now, std::span<const std::int64_t> points, std::span<const double> values,
+                        std::span<const double> features);
+
+    ConvergenceSettings settings_;
+    ModelSpace space_;
+    std::vector<Checkpoint> checkpoints_;
+    std::optional<AssistedMoments> before_;  ///< of the last check, unless its model was refused
+};
+
+}  // namespace grainsweep::stats
