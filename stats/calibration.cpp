@@ -20,10 +20,11 @@ double own_variance(const Target& target) {
     return square(target.measured_error) + square(target.discrepancy);
 }
 
-/// Of the model and of the runs behind the measurement.
+/// Of the model and of the runs behind the measurement: both rest on few cases, and are Student's.
 double predicted_variance(const Target& target, const Prediction& p) {
     const double runs = target.replicates > 0 ? square(p.scatter) / static_cast<double>(target.replicates) : 0;
-    return square(p.mean_error) + runs;
+    const double student = std::isfinite(p.freedom) ? p.freedom / std::max(p.freedom - 2, 1.0) : 1;
+    return student * (square(p.mean_error) + runs);
 }
 
 void check_sizes(std::span<const Target> targets, std::span<const std::vector<Prediction>> predictions) {

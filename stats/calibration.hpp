@@ -6,6 +6,9 @@
 // Comput. Biol. 11, e1003968.) What has I > 3 for some target is ruled out (Pukelsheim's three sigma rule); with more
 // than five targets the second largest decides, so that one bad model does not rule out the truth.
 //
+// Predictions of n degrees of freedom are Student's, of variance n/(n - 2) times that of their errors: both var_model and
+// var_run are multiplied by it (n = 8 for a model of some ten cases in reach: 1.33).
+//
 //   log p(z | x) = -1/2 r^T V^-1 r - 1/2 log|V|,   V = diag(var_model(x) + var_run(x)/replicates) + C,  r = z - mean(x)
 //
 // C: covariance of measurement and discrepancy together: diagonal from the targets, or whole where points of one curve
@@ -45,7 +48,7 @@ struct Target {
                                                  std::span<const double> covariance = {});
 
 /// A target that no case comes near: its distance from the range of the responses seen, in the standard deviations that
-/// separate it from them (measured, discrepancy, scatter); 0 inside the range.
+/// separate it from them (measurement and discrepancy); 0 inside the range.
 [[nodiscard]] double beyond_what_was_reached(const Target& target, std::span<const double> responses);
 
 }  // namespace grainsweep::stats

@@ -108,20 +108,6 @@ designs::FactorRange range_of(const Factor& factor) {
     return {factor.name, [factor](double u) { return std::get<double>(value_at(factor, u)); }};
 }
 
-/// A design that grows chooses what comes next itself: what would choose beside it is refused.
-void check_growing(const Cursor& place, const Campaign& campaign) {
-    if (campaign.replicates != 1) {
-        throw wrong_question("$.replicates", std::to_string(campaign.replicates),
-                             fmt::format("a {} design repeats its points itself: give \"replicates\" within \"design\"",
-                                         campaign.design));
-    }
-    try {
-        (void)designs::design_named(campaign.design).sample(campaign.request);
-    } catch (const std::invalid_argument& error) {
-        throw wrong_question(place.path(), "", error.what());
-    }
-}
-
 }  // namespace
 
 void check_in_range(const Cursor& place, const Factor& factor, const Value& value) {
@@ -138,11 +124,7 @@ void check_in_range(const Cursor& place, const Factor& factor, const Value& valu
     }
 }
 
-void read_design(const Cursor& place, Campaign& campaign, const std::filesystem::path& folder) {
-    const auto& design = read_kind(place);
-    const auto keys = design_keys(design);
-    const Section section(place, keys);
-    campaign.design = design.name;
+void set_factors(Campaign& campaign) {
     auto& request = campaign.request;
     request.seed = campaign.seed;
     for (const auto& factor : campaign.space.factors) {
@@ -150,6 +132,28 @@ void read_design(const Cursor& place, Campaign& campaign, const std::filesystem:
         request.levels.push_back(levels == nullptr ? 0 : levels->values.size());
         request.factors.push_back(range_of(factor));
     }
+}
+
+void check_growing(const Cursor& place, const Campaign& campaign) {
+    if (campaign.replicates != 1) {
+        throw wrong_question("$.replicates", std::to_string(campaign.replicates),
+                             fmt::format("a {} design repeats its points itself: give \"replicates\" within \"design\"",
+                                         campaign.design));
+    }
+    try {
+        (void)designs::design_named(campaign.design).sample(campaign.request);
+    } catch (const std::invalid_argument& error) {
+        throw wrong_question(place.path(), "", error.what());
+    }
+}
+
+void read_design(const Cursor& place, Campaign& campaign, const std::filesystem::path& folder) {
+    const auto& design = read_kind(place);
+    const auto keys = design_keys(design);
+    const Section section(place, keys);
+    campaign.design = design.name;
+    auto& request = campaign.request;
+    set_factors(campaign);
     for (const auto& option : design.options) {
         if (option.kind == OptionSpec::Kind::rows) {
             request.options[option.name] = read_rows(section, option, campaign.space, folder);

@@ -1,6 +1,7 @@
 #include "sweep/campaign/forecast.hpp"
 
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/designs/calibration.hpp"
 
 #include <fmt/format.h>
 
@@ -65,12 +66,32 @@ Forecast forecast(const SceneInfo& scene, const Cases& cases) {
     return total;
 }
 
+namespace {
+
+std::vector<std::string> calibration_warnings(const Campaign& campaign) {
+    std::vector<std::string> warnings;
+    if (campaign.design != "calibration") return warnings;
+    for (const auto& target : designs::targets_in(campaign.request.word("targets")))
+        if (target.discrepancy == 0)
+            warnings.push_back(fmt::format(
+                "the discrepancy of {0} is 0: where the simulation is not exactly the experiment, the posterior "
+                "will be too narrow, about a wrong setting",
+                target.observable));
+    std::ranges::sort(warnings);
+    const auto twice = std::ranges::unique(warnings);
+    warnings.erase(twice.begin(), twice.end());
+    return warnings;
+}
+
+}  // namespace
+
 std::vector<std::string> warnings_of(const Campaign& campaign, const Forecast& forecast) {
     std::vector<std::string> warnings;
     for (const auto& caution : forecast.cautions) {
         warnings.push_back(fmt::format("{}: {} of {} cases, first at point {}: {}", caution.kind, caution.questions,
                                        forecast.questions, caution.first_point, caution.sentence));
     }
+    for (auto& sentence : calibration_warnings(campaign)) warnings.push_back(std::move(sentence));
     if (auto never = never_converges(campaign); !never.empty()) warnings.push_back(std::move(never));
     return warnings;
 }

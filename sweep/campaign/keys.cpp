@@ -65,7 +65,20 @@ std::span<const Key> campaign_keys() {
          {},
          {},
          {}},
-        {"design", "which points of the factor space are asked", Kind::object, true, {}, {}, {}},
+        {"design",
+         "which points of the factor space are asked; needed unless there is a calibration",
+         Kind::object,
+         false,
+         {},
+         {},
+         {}},
+        {"calibration",
+         "in place of a design: measurements, and waves of points towards the settings that reproduce them",
+         Kind::object,
+         false,
+         {},
+         {},
+         {}},
         {"replicates", "repeats of each point with other seeds", Kind::whole, false, counts, {}, "1"},
         {"seed", "seed of the design's scrambling and of every case", Kind::whole, false, {0, largest_seed}, {}, "1"},
         {"convergence", "when the statistics are good enough", Kind::object, false, {}, {}, {}},
@@ -144,6 +157,74 @@ std::span<const Key> model_keys() {
          {},
          {},
          {}},
+    };
+    return keys;
+}
+
+std::span<const Key> calibration_keys() {
+    static const std::vector<Key> keys = {
+        {"targets", "what was measured, one entry each", Kind::array, true, {}, {}, {}},
+        {"discrepancy",
+         "of each observable measured: how far the simulation itself may be from the experiment, as a standard "
+         "deviation",
+         Kind::object,
+         true,
+         {},
+         {},
+         {}},
+        {"waves", "waves of points at most", Kind::whole, false, {1, 100}, {}, "4"},
+        {"points_per_wave",
+         "settings of a wave; each is run under every condition",
+         Kind::whole,
+         false,
+         {12, 10'000},
+         {},
+         "40"},
+        {"checks",
+         "settings drawn from the posterior that are run to check it",
+         Kind::whole,
+         false,
+         {1, 1000},
+         {},
+         "8"},
+        {"stop", "when the waves end early", Kind::object, false, {}, {}, {}},
+    };
+    return keys;
+}
+
+std::span<const Key> target_keys() {
+    static const std::vector<Key> keys = {
+        {"observable", "an observable of the scene", Kind::word, true, {}, {}, {}},
+        {"value", "of a scalar: what was measured, in its unit", Kind::number, false, {}, {}, {}},
+        {"file",
+         "of a series or profile: CSV file of a measured curve, a header and lines of where, value and, where it "
+         "differs from line to line, error",
+         Kind::text,
+         false,
+         {},
+         {},
+         {}},
+        {"error",
+         "standard error of the measurement; of a curve that of every line without one of its own",
+         Kind::number,
+         false,
+         not_negative,
+         {},
+         {}},
+        {"inputs", "the condition it was measured under: parameters of the scene", Kind::object, false, {}, {}, {}},
+    };
+    return keys;
+}
+
+std::span<const Key> stop_keys() {
+    static const std::vector<Key> keys = {
+        {"shrink",
+         "a wave that rules out less than this share of what was kept is the last",
+         Kind::number,
+         false,
+         {0, 1},
+         {},
+         "0.02"},
     };
     return keys;
 }

@@ -56,11 +56,12 @@ std::string read_accuracy(const Cursor& place, const SceneInfo& scene) {
 }
 
 /// A parameter that is given but can matter to no case is a misunderstanding.
-void check_relevance(const Section& top, const ParameterSpace& space, const Inputs& given) {
+void check_relevance(const Section& top, const ParameterSpace& space, std::size_t declared, const Inputs& given) {
     for (std::size_t j = 0; j < space.factors.size(); ++j) {
         const auto* parameter = space.scene->find_parameter(space.factors[j].name);
         if (const auto reason = no_effect(space, *parameter)) {
-            throw wrong_question(path_of(top.at("factors").path(), j), "", *reason);
+            throw wrong_question(j < declared ? path_of(top.at("factors").path(), j) : "$.calibration.targets", "",
+                                 *reason);
         }
     }
     for (const auto& [name, value] : given) {
@@ -113,12 +114,21 @@ Campaign parse_campaign(std::string_view text, const fs::path& folder) {
     auto& space = campaign.space;
     space.factors = read_factors(top.at("factors"), *space.scene, folder);
     if (const auto fixed = top.find("fixed")) space.fixed = read_fixed(*fixed, space, folder);
+    const std::size_t declared = space.factors.size();
+    const auto calibration = top.find("calibration");
+    if (calibration.has_value() == top.find("design").has_value()) {
+        throw wrong_question("$", calibration ? "both" : "",
+                             calibration ? "a campaign has either a \"design\" or a \"calibration\""
+                                         : "key 'design' is missing: which points of the factor space are asked (or "
+                                           "'calibration': what was measured)");
+    }
+    if (calibration) read_calibration(*calibration, campaign, folder);
     const Inputs given = space.fixed;
     if (const auto accuracy = top.find("accuracy")) campaign.accuracy = read_accuracy(*accuracy, *space.scene);
     resolve_accuracy(space, campaign.accuracy);
-    check_relevance(top, space, given);
+    check_relevance(top, space, declared, given);
 
-    read_design(top.at("design"), campaign, folder);
+    if (!calibration) read_design(top.at("design"), campaign, folder);
     if (const auto convergence = top.find("convergence")) {
         campaign.convergence = read_convergence(*convergence, campaign);
     }

@@ -191,6 +191,9 @@ std::string campaign_schema() {
         {"title", "grainsweep campaign"},
         {"description", "one scene, factors that vary, a design over them, and when to stop; SI units"}};
     schema.update(section(campaign_keys()));
+    // Members are kept in a vector: all of this level stand before one of them is referred to.
+    schema["oneOf"] = {{{"required", {"design"}}}, {{"required", {"calibration"}}}};
+    schema["allOf"] = OrderedJson::array();
     auto& properties = schema["properties"];
     properties["campaign"]["pattern"] = "^[A-Za-z_][A-Za-z0-9_]*$";
     properties["campaign"]["maxLength"] = longest_campaign_name;
@@ -199,13 +202,15 @@ std::string campaign_schema() {
     properties["convergence"].update(section(convergence_keys()));
     properties["model"].update(section(model_keys()));
     properties["model"]["properties"]["features"].update({{"minItems", 1}, {"maxItems", most_features}});
+    properties["calibration"].update(section(calibration_keys()));
+    properties["calibration"]["properties"]["targets"]["items"] = section(target_keys());
+    properties["calibration"]["properties"]["stop"].update(section(stop_keys()));
     properties["limits"].update(section(limits_keys()));
     properties["execution"].update(section(execution_keys()));
     properties["design"]["oneOf"] = OrderedJson::array();
     for (const auto& design : designs::design_catalogue())
         properties["design"]["oneOf"].push_back(design_schema(design));
     OrderedJson scenes = OrderedJson::array();
-    schema["allOf"] = OrderedJson::array();
     for (const auto& scene : scene_catalogue()) {
         scenes.push_back(scene.name);
         schema["allOf"].push_back(scene_rule(scene));

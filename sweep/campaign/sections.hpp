@@ -26,6 +26,12 @@ namespace grainsweep::campaign {
 
 /// The campaign's design: checks options against the design's OptionSpecs and fills in defaults.
 void read_design(const Cursor& place, Campaign& campaign, const std::filesystem::path& folder);
+/// "calibration" in the place of a design: adds the conditions of its targets to the factors, as levels.
+void read_calibration(const Cursor& place, Campaign& campaign, const std::filesystem::path& folder);
+/// Puts into the request what a design may know of the factors, and the seed.
+void set_factors(Campaign& campaign);
+/// A design that grows chooses what comes next itself: what would choose beside it is refused.
+void check_growing(const Cursor& place, const Campaign& campaign);
 /// Rows of factor values from a CSV file whose header names the factors, in any order.
 [[nodiscard]] designs::Rows read_rows_file(const Cursor& file, const ParameterSpace& space,
                                            const std::filesystem::path& folder);

@@ -78,10 +78,12 @@ void forgive_a_reader_that_is_gone() {
     std::cout.clear();
 }
 
-Command run_command() {
-    return {"run", "runs what is not settled yet; running again is resuming",
-            [](Parser& parser, const Format& format) -> Action {
+/// `run`, or `calibrate`, which asks that there is something to calibrate.
+Command running(std::string name, std::string summary, bool calibrates) {
+    return {std::move(name), std::move(summary),
+            [calibrates](Parser& parser, const Format& format) -> Action {
                 const auto request = std::make_shared<RunRequest>();
+                request->calibrates = calibrates;
                 const auto again = std::make_shared<std::string>();
                 parser.add_option("CONFIG", request->config, "campaign file")->required();
                 parser.add_option("--db", request->database, "database; default: NAME.db in the current folder");
@@ -132,7 +134,10 @@ Command worker_command() {
 }  // namespace
 
 std::vector<Command> run_commands() {
-    return {run_command(), worker_command()};
+    return {running("run", "runs what is not settled yet; running again is resuming", false),
+            running("calibrate",
+                    "runs waves of cases until the settings that reproduce measurements are known; resumes", true),
+            worker_command()};
 }
 
 }  // namespace grainsweep::cli

@@ -3,6 +3,7 @@
 #include "sweep/cli/page_file.hpp"
 #include "sweep/cli/report_films.hpp"
 #include "sweep/report/brackets.hpp"
+#include "sweep/report/calibration.hpp"
 #include "sweep/report/estimators.hpp"
 #include "sweep/report/file_size.hpp"
 #include "sweep/report/history.hpp"
@@ -141,6 +142,24 @@ bool show_brackets(const Store& store, const Responses& responses, Format format
     return true;
 }
 
+/// The same of a calibration.
+bool show_calibration(const Store& store, const Responses& responses, Format format, bool first, Json& all,
+                      store::Table& rows) {
+    const auto calibration = report::calibration_report(store, responses.campaign);
+    if (!calibration) return false;
+    if (format == Format::json) {
+        all.push_back({{"campaign", responses.campaign.name}});
+        all.back().update(report::to_json(*calibration));
+    } else if (format == Format::csv) {
+        if (first) rows = report::posterior_table(*calibration);
+    } else {
+        if (!first) std::cout << '\n';
+        std::cout << responses.campaign.name << ": " << report::outcome_line(responses) << '\n'
+                  << report::calibration_text(*calibration);
+    }
+    return true;
+}
+
 int converge(const Subject& subject, Format format) {
     const Store store(subject.database, Store::Mode::read);
     Json all = Json::array();
@@ -148,7 +167,9 @@ int converge(const Subject& subject, Format format) {
     bool converged = true;
     for_each_campaign(store, subject,
                       [&](const Responses& responses, const report::ResponseColumn& response, bool first) {
-                          if (show_brackets(store, responses, format, first, all, rows)) return;
+                          if (show_brackets(store, responses, format, first, all, rows) ||
+                              show_calibration(store, responses, format, first, all, rows))
+                              return;
                           const auto history = report::history_of(responses, response);
                           converged = converged && history.converged.value_or(false);
                           const auto lattices = report::lattice_family(store, responses, response);
@@ -157,7 +178,8 @@ int converge(const Subject& subject, Format format) {
                               all.back()["estimators"] =
                                   report::estimators_json(history, report::estimators_of(store, responses, response));
                           } else if (format == Format::csv) {
-                              if (!rows.columns.empty() && rows.columns.back() == "state") return;
+                              const bool other = !rows.columns.empty() && rows.columns.front() != "campaign";
+                              if (other || (!rows.columns.empty() && rows.columns.back() == "state")) return;
                               append(rows, report::checks_rows(responses, response, history));
                               append(rows, report::provisional_rows(responses, response, history));
                           } else {

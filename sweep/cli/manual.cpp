@@ -113,6 +113,8 @@ std::string keys_section() {
     add("The campaign", campaign::campaign_keys());
     add("A factor", campaign::factor_keys());
     add("Convergence", campaign::convergence_keys());
+    add("A calibration", campaign::calibration_keys());
+    add("A target of a calibration", campaign::target_keys());
     add("Limits", campaign::limits_keys());
     add("Execution", campaign::execution_keys());
     return text;

@@ -256,6 +256,10 @@ void say_first(ProgressLine& line, const campaign::Campaign& campaign, const cam
 namespace {
 
 void refuse_what_cannot_start(const campaign::Campaign& campaign, const RunRequest& request, const fs::path& database) {
+    if (request.calibrates && campaign.design != "calibration")
+        throw campaign::wrong_question(
+            request.config.string() + ": $", "",
+            "key 'calibration' is missing: what was measured; run takes campaigns with a design");
     const auto& launcher = campaign.execution.launcher;
     if (!launcher.empty() && !workers::Pool::can_start(launcher.front()))
         throw campaign::wrong_question(request.config.string() + ": $.execution.launcher[0]", launcher.front(),

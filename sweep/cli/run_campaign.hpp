@@ -18,6 +18,7 @@ struct RunRequest {
     std::optional<campaign::Outcome> again;  ///< ask again what ended like this
     std::int64_t max_cases = 0;              ///< 0: all
     bool quiet = false;
+    bool calibrates = false;  ///< the campaign file must give a calibration
     std::string path;  ///< instruction path for the workers; empty: each the widest it has
 };
 

@@ -5,11 +5,13 @@
 #pragma once
 
 #include "solver/scenes/values.hpp"
+#include "sweep/designs/curve_place.hpp"
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -50,14 +52,18 @@ struct FactorRange {
     std::function<double(double u)> value_at;
 };
 
+struct PointSet;
+
 struct DesignRequest {
     std::vector<std::size_t> levels;  ///< per factor: number of its levels, 0 where it is continuous
     std::map<std::string, OptionValue, std::less<>> options;  ///< complete: defaults filled in
     std::uint64_t seed = 1;                                   ///< the campaign's
     std::vector<FactorRange> factors = {};                    ///< looked at by designs that grow only
-    /// What is known of the points asked so far, by number: none where a point is not settled, NaN where it is without
-    /// an answer. Looked at by designs that grow only.
-    std::vector<std::optional<double>> answers = {};
+    /// What is known of the points asked so far, by observable and number: none where a point is not settled, NaN where
+    /// it is without an answer. Looked at by designs that grow only.
+    std::map<std::string, std::vector<std::optional<double>>, std::less<>> answers = {};
+    /// The points that follow from the answers, where they are known already: not formed again.
+    std::shared_ptr<const PointSet> grown = {};
 
     [[nodiscard]] std::size_t dimensions() const { return levels.size(); }
     [[nodiscard]] std::int64_t count(std::string_view option) const;
@@ -105,8 +111,10 @@ struct DesignInfo {
     bool independent_sequences = false;
     bool independent_points = false;  ///< each is drawn without regard to the others
     /// The points that come next depend on the answers to those before (request.answers): sample() gives all that
-    /// follow from what is known. The scalar whose answers these are stands in the option "observable".
+    /// follow from what is known.
     bool grows = false;
+    /// The observables whose answers these are, or places along their curves (curve_place.hpp).
+    std::function<std::vector<std::string>(const DesignRequest&)> rests_on = {};
     Beginning beginning = Beginning::sample;
     Purpose purpose = Purpose::statistics;
     /// How many points the request numbers, without forming them: the size of sample(request). Throws as that does.
@@ -117,7 +125,9 @@ struct DesignInfo {
     std::function<PointSet(const DesignRequest&)> sample;
 };
 
+/// Those that a campaign may name under "design".
 [[nodiscard]] std::span<const DesignInfo> design_catalogue();
+/// One of these, or a design that another section of the campaign file asks for.
 [[nodiscard]] const DesignInfo* find_design(std::string_view name);
 /// The same for a name that is known to exist. Throws std::logic_error for any other.
 [[nodiscard]] const DesignInfo& design_named(std::string_view name);

@@ -14,9 +14,11 @@ namespace grainsweep::designs {
 [[nodiscard]] DesignInfo saltelli_design();
 [[nodiscard]] DesignInfo morris_design();
 [[nodiscard]] DesignInfo refine_design();
+/// Asked for by the section "calibration", not by "design".
+[[nodiscard]] DesignInfo calibration_design();
 
 /// Streams that designs draw from, so that two kinds never share a draw of the campaign's seed.
-enum class DrawPurpose : std::uint64_t { random = 1, latin_hypercube = 2, sobol = 3, morris = 4 };
+enum class DrawPurpose : std::uint64_t { random = 1, latin_hypercube = 2, sobol = 3, morris = 4, calibration = 5 };
 
 /// A generator's initial state for a purpose and up to three whole numbers, chained through SplitMix64.
 [[nodiscard]] std::uint64_t draw_key(std::uint64_t seed, DrawPurpose purpose, std::uint64_t a, std::uint64_t b = 0,

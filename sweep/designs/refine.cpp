@@ -145,6 +145,9 @@ Course course_of(const DesignRequest& request) {
     Course course{question_of(request), {}, {}};
     const auto& question = course.question;
     auto& points = course.points;
+    const auto known = request.answers.find(request.word("observable"));
+    const std::vector<std::optional<double>> none;
+    const auto& answers = known == request.answers.end() ? none : known->second;
     const std::size_t d = request.dimensions();
     points.dimensions = d;
     for (std::size_t c = 0; c < question.combinations; ++c)
@@ -163,7 +166,7 @@ Course course_of(const DesignRequest& request) {
                 points.part.push_back(static_cast<std::uint32_t>(c));
                 points.repeat.push_back(static_cast<std::uint32_t>(level.asked));
                 const std::size_t point = points.repeat.size() - 1;
-                const auto answer = point < request.answers.size() ? request.answers[point] : std::nullopt;
+                const auto answer = point < answers.size() ? answers[point] : std::nullopt;
                 search.ask(number, answer);
                 if (!answer) answered = false;
             }
@@ -246,6 +249,7 @@ DesignInfo refine_design() {
         .extends = false,
         .independent_sequences = false,
         .grows = true,
+        .rests_on = [](const DesignRequest& request) { return std::vector{request.word("observable")}; },
         .beginning = Beginning::corner,
         .size =
             [](const DesignRequest& request) { return static_cast<std::int64_t>(course_of(request).points.size()); },

@@ -45,7 +45,7 @@ std::optional<Brackets> brackets_of(const store::Store& store, const store::Camp
         if (const auto* measured = scene->find_observable(brackets.observable))
             brackets.observable_unit = measured->unit;
     }
-    request.answers = schedule::known_answers(store, record, brackets.observable);
+    request.answers = schedule::known_answers(store, record, std::span(&brackets.observable, 1));
     brackets.found = designs::brackets(request);
     const auto factors = campaign::factors_of(record);
     for (const auto& factor : factors)

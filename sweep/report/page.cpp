@@ -4,6 +4,7 @@
 #include "sweep/campaign/identity.hpp"
 #include "sweep/campaign/stored_text.hpp"
 #include "sweep/report/brackets.hpp"
+#include "sweep/report/calibration.hpp"
 #include "sweep/report/curves.hpp"
 #include "sweep/report/effects.hpp"
 #include "sweep/report/history.hpp"
@@ -270,6 +271,8 @@ Json campaign_of(const store::Store& store, const store::CampaignRecord& record,
             value["brackets"]["rows"].push_back(std::move(cells));
         }
     }
+    const auto calibration = calibration_report(store, record);
+    value["calibration"] = calibration ? page_of(*calibration) : Json(nullptr);
     value["curves"] = json_of(read_curves(store, responses));
     value["failures"] = failures_of(store, responses);
     value["runs"] = runs_of(store, record.name);

@@ -1,6 +1,7 @@
 #include "sweep/report/summary.hpp"
 
 #include "sweep/report/brackets.hpp"
+#include "sweep/report/calibration.hpp"
 #include "sweep/report/file_size.hpp"
 #include "sweep/report/table.hpp"
 
@@ -144,6 +145,8 @@ std::string closing_summary(const store::Store& store, const std::string& campai
     if (const auto brackets = brackets_of(store, responses.campaign)) {
         text << brackets_line(*brackets) << "\n\n";
         write(text, brackets_table(*brackets), Format::text);
+    } else if (const auto calibration = calibration_report(store, responses.campaign)) {
+        text << calibration_text(*calibration);
     } else if (const auto* main = responses.main_observable()) {
         const bool has_rule = responses.campaign.convergence.has_value();
         const auto history = has_rule ? history_of(responses, *main) : figures_of(responses, *main);

@@ -1,18 +1,24 @@
 #include "sweep/schedule/growth.hpp"
 
 #include <limits>
+#include <memory>
 #include <optional>
 #include <vector>
 
 namespace grainsweep::schedule {
 
-std::vector<std::optional<double>> known_answers(const store::Store& store, const store::CampaignRecord& record,
-                                                 std::string_view observable) {
-    std::vector<std::optional<double>> answers(static_cast<std::size_t>(record.stored.candidates),
-                                               std::numeric_limits<double>::quiet_NaN());
-    for (const auto& it : store.values(record.name, observable)) {
-        const bool settled = it.outcome && *it.outcome != campaign::Outcome::abandoned;
-        answers[static_cast<std::size_t>(it.point)] = settled ? std::optional(it.value) : std::nullopt;
+Answers known_answers(const store::Store& store, const store::CampaignRecord& record,
+                      std::span<const std::string> observables) {
+    Answers answers;
+    for (const auto& observable : observables) {
+        auto& known = answers[observable];
+        known.assign(static_cast<std::size_t>(record.stored.candidates), std::numeric_limits<double>::quiet_NaN());
+        const auto [name, at] = designs::place_on_curve(observable);
+        const auto values = at ? store.values_along(record.name, name, *at) : store.values(record.name, name);
+        for (const auto& it : values) {
+            const bool settled = it.outcome && *it.outcome != campaign::Outcome::abandoned;
+            known[static_cast<std::size_t>(it.point)] = settled ? std::optional(it.value) : std::nullopt;
+        }
     }
     return answers;
 }
@@ -23,7 +29,9 @@ bool grow(campaign::Campaign& campaign, const store::Store& store) {
     const auto record = store.stored(campaign);
     if (!record) return false;
     const auto before = design.size(campaign.request);
-    campaign.request.answers = known_answers(store, *record, campaign.request.word("observable"));
+    campaign.request.grown.reset();
+    campaign.request.answers = known_answers(store, *record, design.rests_on(campaign.request));
+    campaign.request.grown = std::make_shared<const designs::PointSet>(design.sample(campaign.request));
     return design.size(campaign.request) > before;
 }
 

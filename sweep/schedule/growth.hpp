@@ -4,9 +4,8 @@
 #include "sweep/campaign/campaign.hpp"
 #include "sweep/store/store.hpp"
 
-#include <optional>
-#include <string_view>
-#include <vector>
+#include <span>
+#include <string>
 
 namespace grainsweep::schedule {
 
@@ -18,10 +17,9 @@ namespace grainsweep::schedule {
 /// where another campaign is stored under the name.
 bool grow(campaign::Campaign& campaign, const store::Store& store);
 
-/// What is known of the points of a stored campaign, by number, as DesignRequest::answers: of the scalar that its
-/// design asks for.
-[[nodiscard]] std::vector<std::optional<double>> known_answers(const store::Store& store,
-                                                               const store::CampaignRecord& record,
-                                                               std::string_view observable);
+using Answers = decltype(designs::DesignRequest::answers);
+/// What is known of the points of a stored campaign, of these scalars.
+[[nodiscard]] Answers known_answers(const store::Store& store, const store::CampaignRecord& record,
+                                    std::span<const std::string> observables);
 
 }  // namespace grainsweep::schedule

@@ -198,6 +198,10 @@ public:
     [[nodiscard]] std::optional<campaign::CaseResult> result(std::string_view case_id) const;
     /// One scalar over the campaign's design, ordered by (point, replicate).
     [[nodiscard]] std::vector<PlacedValue> values(std::string_view campaign, std::string_view observable) const;
+    /// The same of a series or profile, at one place along it: time, or bin at the last time. Between two samples on
+    /// the line through them; NaN outside of them all.
+    [[nodiscard]] std::vector<PlacedValue> values_along(std::string_view campaign, std::string_view observable,
+                                                        double at) const;
     [[nodiscard]] std::vector<ConvergenceRow> convergence(std::string_view campaign, std::string_view observable) const;
     /// One row per campaign: campaign, scene, cases, one count per outcome, waiting (no outcome yet), stopped_at,
     /// rate (answers per second of the last run), time_left (s, at that rate; NULL where none is known); then

@@ -89,7 +89,8 @@ const std::vector<Rule>& rules() {
          {"sweep/store/", "sweep/campaign/", "solver/scenes/values.hpp", "solver/scenes/scene.hpp", "stats/"}},
         {"sweep/report/",
          {"sweep/report/", "sweep/store/", "sweep/campaign/", "sweep/schedule/", "sweep/designs/design.hpp",
-          "sweep/designs/refine.hpp", "stats/", "solver/scenes/values.hpp", "solver/scenes/scene.hpp"}},
+          "sweep/designs/refine.hpp", "sweep/designs/calibration.hpp", "stats/", "solver/scenes/values.hpp",
+          "solver/scenes/scene.hpp"}},
         {"sweep/cli/", {"sweep/", "stats/", "solver/scenes/values.hpp", "solver/scenes/scene.hpp"}},
     };
     return table;

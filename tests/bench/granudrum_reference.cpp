@@ -8,7 +8,8 @@
 // (GPL 3.0) and no part of this one.
 //     short   frames from 1.5 to 1.7 s, as LIGGGHTS ran; the ten size classes in the numbers really inserted there
 //     steady  frames over one turn after two turns, which is what a photograph averages over
-//     thin    as many particles per length in a periodic drum 4.5 mm long, without end faces: the engine without the plates
+//     thin    as many particles per length in a periodic drum 4.5 mm long, without end faces: the engine without the
+//     plates
 // Prints, per speed and seed, the cost of the published comparison and the better-behaved one by the share of time in
 // which a pixel is hidden, beside those of the LIGGGHTS run; angles, area, energy and coordination; then mean and
 // standard deviation over the seeds. Draws drum_RPM_SEED.svg in the current folder: the grains of the last frame, and

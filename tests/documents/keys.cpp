@@ -23,7 +23,7 @@ Keys keys_of_schema() {
     const auto schema = json::parse(answer_of({"schema"}));
     Keys keys = {"notes"};
     add_properties(keys, "", schema);
-    for (const char* section : {"convergence", "model", "limits", "execution"})
+    for (const char* section : {"convergence", "calibration", "model", "limits", "execution"})
         add_properties(keys, section, schema["properties"][section]);
     for (const auto& design : schema["properties"]["design"]["oneOf"]) add_properties(keys, "design", design);
     for (const auto& rule : schema["allOf"])

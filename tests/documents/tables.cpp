@@ -121,7 +121,9 @@ std::string keys_table(const std::string& section) {
     const auto& object = section == "campaign" ? schema
                          : section == "factor"
                              ? schema["allOf"][0]["then"]["properties"]["factors"]["items"]["oneOf"][0]
-                             : schema["properties"][section];
+                         : section == "target" ? schema["properties"]["calibration"]["properties"]["targets"]["items"]
+                         : section == "stop"   ? schema["properties"]["calibration"]["properties"]["stop"]
+                                               : schema["properties"][section];
     std::string table = head({"key", "default", "meaning"});
     for (const auto& [name, key] : object["properties"].items()) {
         const bool required =

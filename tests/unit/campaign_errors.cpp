@@ -68,7 +68,8 @@ INSTANTIATE_TEST_SUITE_P(
               "$.campaign: got \"sqlite_x\"; the database has a table or view of this name; take another. Did you mean "
               "'my_sqlite_x'?"},
         Wrong{R"([{"op": "move", "from": "/design", "path": "/desing"}])",
-              "$.desing: unknown key; $ has 'campaign', 'scene', 'factors', 'fixed', 'where', 'design', 'replicates', "
+              "$.desing: unknown key; $ has 'campaign', 'scene', 'factors', 'fixed', 'where', 'design', 'calibration', "
+              "'replicates', "
               "'seed', 'convergence', 'accuracy', 'model', 'limits', 'execution' or 'notes'. Did you mean 'design'?"},
         Wrong{R"([{"op": "add", "path": "/notes", "value": 3}])",
               "$.notes: got 3; notes are a text or a list of texts."}));

@@ -39,6 +39,7 @@ TEST(Catalogue, TheSizeIsThatOfTheSample) {
                 request.options[option.name] = designs::Rows(5, std::vector<Value>(3, Value{0.5}));
             if (option.kind == designs::OptionSpec::Kind::number) request.options[option.name] = 0.5;
             if (option.kind == designs::OptionSpec::Kind::factor) request.options[option.name] = std::string("a");
+            if (option.name == "observable") request.options[option.name] = std::string("y");
         }
         const auto points = info.sample(request);
         EXPECT_EQ(info.size(request), static_cast<std::int64_t>(points.size())) << info.name;

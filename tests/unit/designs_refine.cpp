@@ -47,9 +47,10 @@ const designs::DesignInfo& refine() {
 int run(DesignRequest& asked, const std::function<double(std::span<const double>, std::uint32_t, std::uint32_t)>& y) {
     for (int rounds = 0;; ++rounds) {
         const auto points = refine().sample(asked);
-        if (points.size() == asked.answers.size()) return rounds;
-        for (std::size_t p = asked.answers.size(); p < points.size(); ++p)
-            asked.answers.emplace_back(y(points.point(p), points.part[p], points.repeat[p]));
+        auto& answers = asked.answers["y"];
+        if (points.size() == answers.size()) return rounds;
+        for (std::size_t p = answers.size(); p < points.size(); ++p)
+            answers.emplace_back(y(points.point(p), points.part[p], points.repeat[p]));
     }
 }
 
@@ -85,7 +86,7 @@ TEST(Refine, ALaterRoundLeavesThePointsOfTheEarlierOnesWhereTheyWere) {
         }
         if (points.size() == before.size()) break;
         for (std::size_t p = before.size(); p < points.size(); ++p)
-            asked.answers.emplace_back(points.point(p)[0] + 0.3 * uniform_at(1, 0, p) - 0.15);
+            asked.answers["y"].emplace_back(points.point(p)[0] + 0.3 * uniform_at(1, 0, p) - 0.15);
         before = points;
     }
     EXPECT_GT(before.size(), 30U);
@@ -95,9 +96,9 @@ TEST(Refine, ARoundIsTheSameHoweverManyOfItsAnswersAreKnown) {
     auto asked = request({0, 2}, 0.5, 5, 2);
     const auto first = refine().sample(asked);
     ASSERT_EQ(first.size(), 8U);  // both ends, twice, of two combinations
-    asked.answers = {0.0, 0.0, std::nullopt, 1.0, std::nullopt};
+    asked.answers["y"] = {0.0, 0.0, std::nullopt, 1.0, std::nullopt};
     EXPECT_EQ(refine().sample(asked).coordinates, first.coordinates);
-    asked.answers = {0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 1.0};
+    asked.answers["y"] = {0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 1.0};
     EXPECT_EQ(refine().sample(asked).size(), 12U);
 }
 

@@ -18,6 +18,9 @@ TEST(Calibration, ImplausibilityIsTheDistanceInStandardDeviations) {
     const auto i = implausibilities(targets, predictions);
     EXPECT_NEAR(i[0][0], 6 / std::sqrt(4 + 1 + 4 + 4.0 / 4), 1e-15);
     EXPECT_EQ(i[0][1], 0);
+    const auto student = implausibilities(
+        targets, std::vector<std::vector<Prediction>>{{{.mean = 4, .mean_error = 2, .scatter = 2, .freedom = 8}}});
+    EXPECT_NEAR(student[0][0], 6 / std::sqrt(1 + 4 + (4 + 4.0 / 4) * 8 / 6), 1e-15) << "variance of Student's t";
     const std::vector<std::vector<double>> five(5, {4.0}), six{{9.0}, {1.0}, {2.0}, {0.5}, {0.1}, {0.2}};
     EXPECT_EQ(deciding_implausibility(five)[0], 4);
     EXPECT_EQ(deciding_implausibility(six)[0], 2);

@@ -41,6 +41,42 @@ TEST_F(StoreResults, ACaseIsFoundCompleteByIdAndByPrefix) {
     EXPECT_THROW((void)store.find_case(""), campaign::WrongQuestion);
 }
 
+TEST_F(StoreResults, ACurveIsReadAtAnyPlaceBetweenItsEnds) {
+    auto given = answer(one, 1);
+    const double none = std::nan("");
+    given.observations.series["y_series"] = {{.time = 0.5, .bin = none, .value = 1},
+                                             {.time = 1, .bin = none, .value = 3},
+                                             {.time = 2, .bin = none, .value = none},
+                                             {.time = 3, .bin = none, .value = 7}};
+    auto other = answer(cases[4].question, 1);
+    other.observations.series["y_series"] = {{.time = 0, .bin = 1, .value = 50},
+                                             {.time = 0, .bin = 2, .value = 60},
+                                             {.time = 9, .bin = 1, .value = 5},
+                                             {.time = 9, .bin = 2, .value = 6}};
+    store.group([&] {
+        for (const auto* each : {&given, &other}) {
+            store.begin(each->attempt);
+            EXPECT_TRUE(store.finish(*each));
+        }
+    });
+    const auto at = [&](double x, std::size_t point) {
+        const auto values = store.values_along("first", "y_series", x);
+        EXPECT_EQ(values.size(), cases.size());
+        return values[point].value;
+    };
+    EXPECT_EQ(at(0.5, 3), 1);
+    EXPECT_EQ(at(0.75, 3), 2);
+    EXPECT_EQ(at(1, 3), 3);
+    EXPECT_TRUE(std::isnan(at(1.5, 3))) << "beside a value that is not known";
+    EXPECT_EQ(at(3, 3), 7);
+    EXPECT_TRUE(std::isnan(at(0.4, 3))) << "before its begin";
+    EXPECT_TRUE(std::isnan(at(3.1, 3)));
+    EXPECT_EQ(at(1.5, 4), 5.5) << "a profile: its last time";
+    EXPECT_TRUE(std::isnan(at(1, 5))) << "no answer yet";
+    EXPECT_FALSE(store.values_along("first", "y_series", 1)[5].outcome);
+    EXPECT_THROW((void)store.values_along("first", "y", 1), campaign::WrongQuestion) << "a scalar";
+}
+
 TEST_F(StoreResults, AnAnswerComesBackBitForBit) {
     auto given = answer(one, 1);
     given.observations.scalars = {{"y", 0.1 + 0.2}};

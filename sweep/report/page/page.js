@@ -187,12 +187,12 @@ function render() {
   if (response && response.history.count > 0) {
     if (!chosen.view.x) firstView(model, response);
     parts = explorerSections(model, response, other);
-    page.append(...[bracketsSection(campaign), distributionSection(response, campaign.sample, other), momentsSection(campaign, response, other), effectsSection(model, response, other),
+    page.append(...[bracketsSection(campaign), calibrationSection(campaign), distributionSection(response, campaign.sample, other), momentsSection(campaign, response, other), effectsSection(model, response, other),
       influenceSection(response), filmsSection(model), parts.explore, parts.maps, parts.listed, parts.small, curvesSection(model), extremesSection(campaign, response)].filter(Boolean));
   } else if (values.some(Number.isFinite)) {  // answers, but none of the gapless beginning
     if (!chosen.view.x) firstView(model, response);
     parts = explorerSections(model, response, other);
-    page.append(...[distributionSection(response, campaign.sample, other), filmsSection(model), parts.explore, parts.maps, parts.listed, curvesSection(model)].filter(Boolean));
+    page.append(...[calibrationSection(campaign), distributionSection(response, campaign.sample, other), filmsSection(model), parts.explore, parts.maps, parts.listed, curvesSection(model)].filter(Boolean));
   } else {
     page.append(el("p", {}, "No case has an answer yet."));
     const cases = caseTable(model, () => {});

@@ -1,0 +1,202 @@
+// "calibration": what was measured, under which conditions. Takes the place of "design": conditions become factors with
+// levels, and the waves are a design of their own.
+#include "sweep/campaign/csv_text.hpp"
+#include "sweep/campaign/sections.hpp"
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/designs/calibration.hpp"
+#include "sweep/designs/curve_place.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace grainsweep::campaign {
+namespace {
+
+constexpr std::size_t most_points = 100;  // of a curve, each with a response model of its own
+
+std::vector<std::string> names_of(const SceneInfo& scene) {
+    std::vector<std::string> names;
+    for (const auto& observable : scene.observables) names.push_back(observable.name);
+    return names;
+}
+
+/// The level of a condition's value; a value that is new becomes one.
+std::size_t level_of(ParameterSpace& space, const std::string& name, Value value) {
+    auto found = std::ranges::find(space.factors, name, &Factor::name);
+    if (found == space.factors.end()) {
+        space.factors.push_back({name, Levels{}});
+        found = space.factors.end() - 1;
+    }
+    auto& values = std::get<Levels>(found->range).values;
+    const auto level = std::ranges::find(values, value);
+    const auto number = static_cast<std::size_t>(level - values.begin());
+    if (level == values.end()) values.push_back(std::move(value));
+    return number;
+}
+
+std::map<std::string, std::size_t> read_condition(const Cursor& inputs, ParameterSpace& space, std::size_t calibrated,
+                                                  const std::filesystem::path& folder) {
+    if (!inputs.json().is_object()) inputs.refuse("must be an object of parameter names and values");
+    std::map<std::string, std::size_t> levels;
+    for (const auto& [name, json] : inputs.json().items()) {
+        const Cursor place(json, path_of(inputs.path(), name));
+        const Json word = name;
+        const auto& parameter = read_parameter(Cursor(word, place.path()), *space.scene);
+        const auto own = std::span(space.factors).first(calibrated);
+        if (std::ranges::find(own, name, &Factor::name) != own.end())
+            place.refuse(fmt::format("'{}' is calibrated; a condition states another parameter", name));
+        if (space.fixed.contains(name)) place.refuse(fmt::format("'{}' is fixed as well; give it in one place", name));
+        levels[name] = level_of(space, name, read_value(place, parameter, folder));
+    }
+    return levels;
+}
+
+double number_in(const Cursor& file, std::size_t record, const std::string& cell) {
+    double x = 0;
+    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), x);
+    if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(x))
+        file.refuse(fmt::format("record {} has {} where a number is expected", record, shown(cell)));
+    return x;
+}
+
+/// Lines "where,value[,error]" below a header; a target for each.
+std::vector<designs::MeasuredTarget> read_curve(const Cursor& file, const designs::MeasuredTarget& alike,
+                                                bool has_error, const std::filesystem::path& folder) {
+    const std::string text = read_csv_text(file, folder / file.text());
+    std::string_view rest = text;
+    const auto columns = take_csv_record(rest).size();
+    if (columns != 2 && columns != 3)
+        file.refuse(
+            fmt::format("its header has {} columns: where along the curve, the value and, if it differs from "
+                        "line to line, its error are expected",
+                        columns));
+    if ((columns == 3) == has_error)
+        file.refuse(columns == 3
+                        ? "it has a column of errors, and there is an \"error\" as well; give them in one place"
+                        : "its lines have no error, and there is no \"error\" for them all");
+    std::vector<designs::MeasuredTarget> targets;
+    double before = -std::numeric_limits<double>::infinity();
+    for (std::size_t number = 2; !rest.empty(); ++number) {
+        const auto record = take_csv_record(rest);
+        if (record == CsvRecord{""}) continue;
+        if (record.size() != columns)
+            file.refuse(fmt::format("record {} has {} cells and the header {}", number, record.size(), columns));
+        const double at = number_in(file, number, record[0]);
+        if (!(at > before)) file.refuse(fmt::format("record {}: places along the curve must grow", number));
+        before = at;
+        auto& target = targets.emplace_back(alike);
+        target.observable = designs::word_of({alike.observable, at});
+        target.value = number_in(file, number, record[1]);
+        if (columns == 3) target.error = number_in(file, number, record[2]);
+        if (target.error < 0) file.refuse(fmt::format("record {}: an error is at least 0", number));
+    }
+    if (targets.size() < 2 || targets.size() > most_points)
+        file.refuse(
+            fmt::format("it has {} lines; a curve of 2 to {} points is expected: some ten say what a smooth "
+                        "curve has to say",
+                        targets.size(), most_points));
+    return targets;
+}
+
+/// One, or as many as its curve has lines.
+std::vector<designs::MeasuredTarget> read_target(const Cursor& element, Campaign& campaign, std::size_t calibrated,
+                                                 const std::filesystem::path& folder, std::size_t curve) {
+    const Section section(element, target_keys());
+    const auto& scene = campaign.scene();
+    designs::MeasuredTarget target;
+    target.observable = section.at("observable").word(names_of(scene));
+    const bool scalar = scene.find_observable(target.observable)->shape == Shape::scalar;
+    const auto value = section.find("value"), file = section.find("file");
+    if (scalar && (file || !value))
+        throw wrong_question(element.path(), target.observable, "is a scalar: what was measured is its \"value\"");
+    if (!scalar && (value || !file))
+        throw wrong_question(element.path(), target.observable,
+                             "is a curve: what was measured stands in a \"file\" of lines where,value[,error]");
+    const auto error = section.find("error");
+    if (scalar && !error) throw wrong_question(element.path(), "", "'error' is missing: of what was measured");
+    target.value = section.number("value", 0);
+    target.error = section.number("error", 0);
+    if (const auto inputs = section.find("inputs"))
+        target.level = read_condition(*inputs, campaign.space, calibrated, folder);
+    if (scalar) return {target};
+    target.curve = curve;
+    return read_curve(*file, target, error.has_value(), folder);
+}
+
+/// How far the simulation may be from the experiment, per observable: to be stated, be it 0.
+void read_discrepancies(const Section& section, std::vector<designs::MeasuredTarget>& targets) {
+    const Cursor place = section.at("discrepancy");
+    if (!place.json().is_object()) place.refuse("must be an object of observables and standard deviations");
+    std::vector<std::string> measured;
+    for (const auto& target : targets) measured.push_back(designs::place_on_curve(target.observable).observable);
+    for (const auto& [name, json] : place.json().items()) {
+        const Cursor here(json, path_of(place.path(), name));
+        if (std::ranges::find(measured, name) == measured.end())
+            here.refuse("no target measures this observable", nearest_word(name, measured));
+        const double discrepancy = here.number({0, std::numeric_limits<double>::infinity(), false, true});
+        for (std::size_t k = 0; k < targets.size(); ++k)
+            if (measured[k] == name) targets[k].discrepancy = discrepancy;
+    }
+    for (std::size_t k = 0; k < targets.size(); ++k) {
+        if (!place.json().contains(measured[k])) {
+            throw wrong_question(
+                place.path(), "",
+                fmt::format("'{0}' is missing: how far the simulation itself may be from the experiment "
+                            "in {0}, as a standard deviation; 0 is allowed and warned of",
+                            measured[k]));
+        }
+        if (targets[k].error == 0 && targets[k].discrepancy == 0)
+            throw wrong_question(section.at("targets").path(), targets[k].observable,
+                                 "has neither an error nor a discrepancy: no simulation meets it exactly");
+    }
+}
+
+}  // namespace
+
+void read_calibration(const Cursor& place, Campaign& campaign, const std::filesystem::path& folder) {
+    const Section section(place, calibration_keys());
+    auto& space = campaign.space;
+    const std::size_t calibrated = space.factors.size();
+    for (const auto& factor : space.factors)
+        if (!std::holds_alternative<Between>(factor.range))
+            throw wrong_question("$.factors", factor.name,
+                                 "what is calibrated varies \"between\" two values; what differs from target to target "
+                                 "stands in its \"inputs\"");
+    std::vector<designs::MeasuredTarget> targets;
+    const auto elements = section.at("targets").elements();
+    std::vector<std::string> places;  // of each target
+    for (const auto& element : elements) {
+        const auto read = read_target(element, campaign, calibrated, folder, places.size() + 1);
+        targets.insert(targets.end(), read.begin(), read.end());
+        places.insert(places.end(), read.size(), element.path());
+    }
+    if (targets.empty()) section.at("targets").refuse("a calibration needs at least one target");
+    for (std::size_t k = 0; k < targets.size(); ++k) {
+        if (!std::ranges::equal(
+                targets[k].level, targets.front().level, {}, [](const auto& x) { return x.first; },
+                [](const auto& x) { return x.first; }))
+            throw wrong_question(places[k], "", "every target states the same \"inputs\", each with its values");
+        for (std::size_t j = 0; j < k; ++j)
+            if (targets[j].observable == targets[k].observable && targets[j].level == targets[k].level)
+                throw wrong_question(places[k], targets[k].observable, "is a target twice under the same condition");
+    }
+    read_discrepancies(section, targets);
+
+    campaign.design = "calibration";
+    auto& options = campaign.request.options;
+    options["targets"] = designs::text_of(targets);
+    options["waves"] = section.whole("waves", 4);
+    options["points_per_wave"] = section.whole("points_per_wave", 40);
+    options["checks"] = section.whole("checks", 8);
+    options["shrink"] = 0.02;
+    if (const auto stop = section.find("stop")) options["shrink"] = Section(*stop, stop_keys()).number("shrink", 0.02);
+    set_factors(campaign);
+    check_growing(place, campaign);
+}
+
+}  // namespace grainsweep::campaign

@@ -1,0 +1,420 @@
+#include "sweep/designs/calibration.hpp"
+
+#include "stats/calibration.hpp"
+#include "sweep/designs/curve_place.hpp"
+#include "sweep/designs/kinds.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+#include <sstream>
+#include <stdexcept>
+
+namespace grainsweep::designs {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr double ruled_out = 3;  // implausibility, standard deviations
+constexpr std::int64_t fewest_candidates = 1 << 13, most_candidates = 1 << 15;
+constexpr std::size_t enough_kept = 8;       // candidates for each setting of the next wave
+constexpr std::size_t most_compared = 4096;  // among which the next settings are spread
+constexpr std::size_t chains_begin_at = 64;  // settings of least implausibility
+
+std::string shortest_text(double x) {
+    std::array<char, 32> text{};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), x).ptr;
+    return {text.data(), end};
+}
+
+/// The factors that are calibrated, and those that state the conditions of targets.
+struct Layout {
+    std::vector<std::size_t> calibrated, stated;                 ///< numbers of factors
+    std::vector<std::map<std::string, std::size_t>> conditions;  ///< distinct, in the order of the targets
+    std::vector<std::size_t> condition_of;                       ///< each target's
+};
+
+Layout layout_of(const DesignRequest& request, const std::vector<MeasuredTarget>& targets) {
+    Layout layout;
+    for (std::size_t j = 0; j < request.dimensions(); ++j)
+        (request.levels[j] == 0 ? layout.calibrated : layout.stated).push_back(j);
+    if (layout.calibrated.empty())
+        throw std::invalid_argument("no factor varies between two values: nothing to calibrate");
+    if (targets.empty()) throw std::invalid_argument("a calibration needs at least one target");
+    for (const auto& target : targets) {
+        const auto found = std::ranges::find(layout.conditions, target.level);
+        layout.condition_of.push_back(static_cast<std::size_t>(found - layout.conditions.begin()));
+        if (found == layout.conditions.end()) layout.conditions.push_back(target.level);
+    }
+    return layout;
+}
+
+/// Sobol points of the calibrated factors, rows of d.
+std::vector<double> even_points(const DesignRequest& request, std::size_t d, std::int64_t count, std::uint64_t stream) {
+    const DesignRequest sobol{
+        .levels = std::vector<std::size_t>(d, 0),
+        .options = {{"points", count}, {"scramble", std::string("random")}, {"sequences", std::int64_t{1}}},
+        .seed = draw_key(request.seed, DrawPurpose::calibration, stream)};
+    return design_named("sobol").sample(sobol).coordinates;
+}
+
+/// The course of a calibration, wave by wave.
+class Course {
+public:
+    explicit Course(const DesignRequest& request) : request_(request) {
+        result_.targets = targets_in(request.word("targets"));
+        layout_ = layout_of(request, result_.targets);
+        d_ = layout_.calibrated.size();
+        for (const std::size_t j : layout_.calibrated) {
+            result_.factors.push_back(request.factors[j].name);
+            result_.ranges.push_back(request.factors[j]);
+        }
+        result_.points.dimensions = request.dimensions();
+        values_.resize(result_.targets.size());
+        const auto least = static_cast<std::int64_t>(std::max<std::size_t>(12, 4 * (d_ + 1)));
+        if (request.count("points_per_wave") < least)
+            throw std::invalid_argument("a response model of " + std::to_string(d_) +
+                                        " factors needs waves of at least " + std::to_string(least) + " points");
+    }
+
+    Calibration run() {
+        auto settings = even_points(request_, d_, request_.count("points_per_wave"), 0);
+        for (std::int64_t wave = 1;; ++wave) {
+            if (!ask(settings, static_cast<std::uint32_t>(wave - 1))) return std::move(result_);
+            learn(settings);
+            settings = next(wave);
+            if (result_.waves_end) break;
+        }
+        sample();
+        if (result_.posterior) check();
+        return std::move(result_);
+    }
+
+private:
+    /// Puts the settings under every condition; false where an answer is not known yet.
+    bool ask(const std::vector<double>& settings, std::uint32_t part) {
+        const std::size_t rows = settings.size() / d_;
+        first_ = result_.points.repeat.size();
+        bool known = true;
+        for (std::size_t i = 0; i < rows; ++i)
+            for (const auto& condition : layout_.conditions) {
+                std::size_t at = 0;
+                for (std::size_t j = 0; j < request_.dimensions(); ++j)
+                    result_.points.coordinates.push_back(request_.levels[j] == 0
+                                                             ? settings[i * d_ + at++]
+                                                             : (static_cast<double>(level_of(condition, j)) + 0.5) /
+                                                                   static_cast<double>(request_.levels[j]));
+                result_.points.part.push_back(part);
+                result_.points.repeat.push_back(0);
+            }
+        for (std::size_t t = 0; t < result_.targets.size(); ++t)
+            for (std::size_t i = 0; i < rows; ++i) known = known && answer(t, i).has_value();
+        return known;
+    }
+    [[nodiscard]] std::size_t level_of(const std::map<std::string, std::size_t>& condition, std::size_t j) const {
+        const auto found = condition.find(request_.factors[j].name);
+        return found == condition.end() ? 0 : found->second;
+    }
+    /// Of the settings asked last.
+    [[nodiscard]] std::optional<double> answer(std::size_t target, std::size_t row) const {
+        const auto known = request_.answers.find(result_.targets[target].observable);
+        const std::size_t point = first_ + row * layout_.conditions.size() + layout_.condition_of[target];
+        if (known == request_.answers.end() || point >= known->second.size()) return std::nullopt;
+        return known->second[point];
+    }
+    /// Models from all cases so far.
+    void learn(const std::vector<double>& settings) {
+        const std::size_t rows = settings.size() / d_;
+        result_.settings.insert(result_.settings.end(), settings.begin(), settings.end());
+        auto& wave = result_.waves.emplace_back();
+        wave.settings = rows;
+        wave.cases = (result_.settings.size() / d_) * layout_.conditions.size();
+        result_.models.clear();
+        result_.beyond.clear();
+        std::vector<bool> failed(result_.settings.size() / d_, false);
+        for (std::size_t t = 0; t < result_.targets.size(); ++t) {
+            for (std::size_t i = 0; i < rows; ++i) values_[t].push_back(*answer(t, i));
+            for (std::size_t i = 0; i < values_[t].size(); ++i) failed[i] = failed[i] || !std::isfinite(values_[t][i]);
+            auto fitted = stats::fit_response({result_.settings, d_}, values_[t]);
+            if (auto* model = std::get_if<stats::ResponseModel>(&fitted)) {
+                wave.model_error.push_back(model->quality().leave_one_out_error);
+                wave.refusals.emplace_back();
+                result_.models.emplace_back(std::move(*model));
+            } else {
+                wave.model_error.push_back(none);
+                wave.refusals.push_back(std::get<stats::Refusal>(fitted).sentence);
+                result_.models.emplace_back();
+            }
+            result_.beyond.push_back(stats::beyond_what_was_reached(measured(t), values_[t]));
+        }
+        wave.failed = static_cast<std::size_t>(std::ranges::count(failed, true));
+    }
+    [[nodiscard]] stats::Target measured(std::size_t t) const {
+        const auto& target = result_.targets[t];
+        return {target.value, target.error, target.discrepancy, 1};
+    }
+    /// Targets that have a model.
+    [[nodiscard]] std::vector<stats::Target> modelled() const {
+        std::vector<stats::Target> targets;
+        for (std::size_t t = 0; t < result_.targets.size(); ++t)
+            if (result_.models[t]) targets.push_back(measured(t));
+        return targets;
+    }
+    [[nodiscard]] std::vector<double> modelled_covariance() const {
+        std::vector<MeasuredTarget> targets;
+        for (std::size_t t = 0; t < result_.targets.size(); ++t)
+            if (result_.models[t]) targets.push_back(result_.targets[t]);
+        return covariance_of(targets);
+    }
+    [[nodiscard]] std::vector<std::vector<stats::Prediction>> predict(stats::Rows points) const {
+        std::vector<std::vector<stats::Prediction>> predictions;
+        for (const auto& model : result_.models)
+            if (model) predictions.push_back(model->predict(points));
+        return predictions;
+    }
+
+    /// Even points of the box and how implausible each is.
+    struct Candidates {
+        std::vector<double> points, implausibility;
+        bool sure = true;  ///< the models are surer than all else at every point kept
+        std::vector<std::size_t> kept;
+    };
+    [[nodiscard]] Candidates candidates(std::int64_t count, std::uint64_t stream) const {
+        Candidates all;
+        all.points = even_points(request_, d_, count, stream);
+        const auto predictions = predict({all.points, d_});
+        const auto targets = modelled();
+        all.implausibility = stats::deciding_implausibility(stats::implausibilities(targets, predictions));
+        for (std::size_t i = 0; i < all.implausibility.size(); ++i) {
+            if (!(all.implausibility[i] < ruled_out)) continue;
+            all.kept.push_back(i);
+            for (std::size_t k = 0; k < targets.size(); ++k) {
+                const auto& p = predictions[k][i];
+                const double others = targets[k].measured_error * targets[k].measured_error +
+                                      targets[k].discrepancy * targets[k].discrepancy + p.scatter * p.scatter;
+                all.sure = all.sure && p.mean_error * p.mean_error < others;
+            }
+        }
+        return all;
+    }
+
+    /// The next settings; none where the waves end.
+    std::vector<double> next(std::int64_t wave) {
+        auto& now = result_.waves.back();
+        if (modelled().empty()) {
+            now.kept = result_.waves.size() > 1 ? result_.waves[result_.waves.size() - 2].kept : 1;
+            if (wave == request_.count("waves")) return end("the waves asked for are done, and no target has a model");
+            return even_points(request_, d_, request_.count("points_per_wave"), static_cast<std::uint64_t>(2 * wave));
+        }
+        const auto wanted = static_cast<std::size_t>(request_.count("points_per_wave"));
+        Candidates all;
+        std::int64_t count = fewest_candidates;
+        do {
+            all = candidates(count, static_cast<std::uint64_t>(2 * wave + 1));
+            count *= 4;
+        } while (all.kept.size() < enough_kept * wanted && count <= most_candidates);
+        now.kept = static_cast<double>(all.kept.size()) / static_cast<double>(all.implausibility.size());
+        result_.least_implausibility = *std::ranges::min_element(all.implausibility);
+        best_.clear();
+        std::vector<std::size_t> order(all.implausibility.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        const auto last = order.begin() + static_cast<std::ptrdiff_t>(std::min(chains_begin_at, order.size()));
+        std::ranges::partial_sort(order, last, {}, [&](std::size_t i) { return std::pair(all.implausibility[i], i); });
+        for (auto i = order.begin(); i != last; ++i) append(best_, all.points, *i);
+
+        const bool complete = std::ranges::all_of(now.refusals, [](const auto& text) { return text.empty(); });
+        if (wave == request_.count("waves")) return end("the waves asked for are done");
+        if (complete && !all.kept.empty() && all.sure)
+            return end("the models are surer than measurement, discrepancy and scatter wherever a setting is kept");
+        if (result_.waves.size() > 1) {
+            const double before = result_.waves[result_.waves.size() - 2].kept;
+            if (complete && before - now.kept < request_.number("shrink") * before)
+                return end("the last wave ruled out less than the share asked for");
+        }
+        return spread(all, wanted, wave);
+    }
+    std::vector<double> end(std::string why) {
+        result_.waves_end = true;
+        result_.why_they_end = std::move(why);
+        return {};
+    }
+    void append(std::vector<double>& rows, const std::vector<double>& points, std::size_t i) const {
+        const auto from = points.begin() + static_cast<std::ptrdiff_t>(i * d_);
+        rows.insert(rows.end(), from, from + static_cast<std::ptrdiff_t>(d_));
+    }
+    /// Settings among those kept, each the farthest from all chosen and from every setting asked before (greedy
+    /// maximin). Where hardly any is kept, the posterior tells where to look.
+    [[nodiscard]] std::vector<double> spread(const Candidates& all, std::size_t wanted, std::int64_t wave) {
+        std::vector<double> pool;
+        const std::size_t step = std::max<std::size_t>(1, all.kept.size() / most_compared);
+        for (std::size_t k = 0; k < all.kept.size(); k += step) append(pool, all.points, all.kept[k]);
+        if (pool.size() / d_ < 2 * wanted) {
+            const auto drawn = posterior(static_cast<std::uint64_t>(wave));
+            pool.insert(pool.end(), drawn.points.begin(), drawn.points.end());
+        }
+        const std::size_t n = pool.size() / d_;
+        std::vector<double> distance(n, std::numeric_limits<double>::infinity());
+        const auto approach = [&](const double* from) {
+            for (std::size_t i = 0; i < n; ++i) {
+                double square = 0;
+                for (std::size_t j = 0; j < d_; ++j) square += std::pow(pool[i * d_ + j] - from[j], 2);
+                distance[i] = std::min(distance[i], square);
+            }
+        };
+        for (std::size_t i = 0; i < result_.settings.size(); i += d_) approach(&result_.settings[i]);
+        std::vector<double> chosen;
+        for (std::size_t k = 0; k < std::min(wanted, n); ++k) {
+            const auto i = static_cast<std::size_t>(std::ranges::max_element(distance) - distance.begin());
+            append(chosen, pool, i);
+            approach(&pool[i * d_]);
+        }
+        return chosen;
+    }
+    [[nodiscard]] stats::PosteriorSample posterior(std::uint64_t stream) const {
+        const auto targets = modelled();
+        const auto covariance = modelled_covariance();
+        stats::PosteriorSettings settings;
+        settings.seed = draw_key(request_.seed, DrawPurpose::calibration, stream, 1);
+        return stats::sample_posterior(
+            [&](stats::Rows points) { return stats::log_likelihood(targets, predict(points), covariance); },
+            {best_, d_}, settings);
+    }
+    void sample() {
+        if (modelled().empty()) return;
+        result_.posterior = posterior(0);
+        result_.shape = stats::posterior_shape(result_.posterior->rows());
+    }
+    /// Settings drawn from the posterior are run.
+    void check() {
+        const auto rows = result_.posterior->rows();
+        const auto checks = std::min(static_cast<std::size_t>(request_.count("checks")), rows.size());
+        for (std::size_t k = 0; k < checks; ++k)
+            append(result_.checked, result_.posterior->points, (2 * k + 1) * rows.size() / (2 * checks));
+        (void)ask(result_.checked, static_cast<std::uint32_t>(result_.waves.size()));
+        for (std::size_t t = 0; t < result_.targets.size(); ++t) {
+            auto& answers = result_.check.emplace_back();
+            for (std::size_t k = 0; k < checks; ++k) answers.push_back(answer(t, k).value_or(none));
+        }
+    }
+
+    const DesignRequest& request_;
+    Layout layout_;
+    std::size_t d_ = 0, first_ = 0;
+    std::vector<std::vector<double>> values_;  ///< of each target
+    std::vector<double> best_;                 ///< settings of least implausibility
+    Calibration result_;
+};
+
+}  // namespace
+
+std::vector<double> covariance_of(std::span<const MeasuredTarget> targets) {
+    const std::size_t m = targets.size();
+    std::vector<double> at(m, 0);
+    std::map<std::size_t, std::pair<double, double>> ends;  // of each curve
+    for (std::size_t k = 0; k < m; ++k) {
+        if (targets[k].curve == 0) continue;
+        at[k] = place_on_curve(targets[k].observable).at.value_or(0);
+        auto& [low, high] = ends.try_emplace(targets[k].curve, at[k], at[k]).first->second;
+        low = std::min(low, at[k]);
+        high = std::max(high, at[k]);
+    }
+    std::vector<double> covariance(m * m, 0);
+    for (std::size_t i = 0; i < m; ++i)
+        for (std::size_t j = 0; j < m; ++j) {
+            const bool together = i != j && targets[i].curve > 0 && targets[i].curve == targets[j].curve;
+            if (i == j) covariance[i * m + j] = std::pow(targets[i].error, 2) + std::pow(targets[i].discrepancy, 2);
+            if (!together) continue;
+            const auto& [low, high] = ends.at(targets[i].curve);
+            covariance[i * m + j] =
+                targets[i].discrepancy * targets[j].discrepancy * std::exp(-4 * std::abs(at[i] - at[j]) / (high - low));
+        }
+    return covariance;
+}
+
+std::string text_of(const std::vector<MeasuredTarget>& targets) {
+    std::string text;
+    for (const auto& target : targets) {
+        text += (text.empty() ? "" : "; ") + target.observable;
+        for (const double x : {target.value, target.error, target.discrepancy}) text += ' ' + shortest_text(x);
+        for (const auto& [name, level] : target.level) text += ' ' + name + ':' + std::to_string(level);
+        if (target.curve > 0) text += " #" + std::to_string(target.curve);
+    }
+    return text;
+}
+
+std::vector<MeasuredTarget> targets_in(std::string_view text) {
+    std::vector<MeasuredTarget> targets;
+    std::istringstream all{std::string(text)};
+    for (std::string one; std::getline(all, one, ';');) {
+        std::istringstream words(one);
+        auto& target = targets.emplace_back();
+        std::vector<std::string> numbers(3);
+        words >> target.observable >> numbers[0] >> numbers[1] >> numbers[2];
+        double* const fields[] = {&target.value, &target.error, &target.discrepancy};
+        for (std::size_t k = 0; k < numbers.size(); ++k) {
+            const auto& word = numbers[k];
+            const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), *fields[k]);
+            if (error != std::errc{} || end != word.data() + word.size())
+                throw std::invalid_argument("a target is no measurement: '" + one + "'");
+        }
+        for (std::string word; words >> word;) {
+            const bool curve = word.starts_with('#');
+            const auto mark = curve ? 0 : word.find(':');
+            auto& number = curve ? target.curve : target.level[word.substr(0, mark)];
+            const char* const last = word.data() + word.size();
+            if (mark == std::string::npos ||
+                std::from_chars(word.data() + mark + 1, last, number) != std::from_chars_result{last, std::errc{}})
+                throw std::invalid_argument("a target's condition has no level: '" + word + "'");
+        }
+    }
+    return targets;
+}
+
+Calibration calibration_of(const DesignRequest& request) {
+    return Course(request).run();
+}
+
+DesignInfo calibration_design() {
+    const auto count = [](std::string name, std::int64_t standard, std::int64_t most, std::string meaning) {
+        return OptionSpec{.name = std::move(name),
+                          .meaning = std::move(meaning),
+                          .default_value = standard,
+                          .maximum = most,
+                          .words = {}};
+    };
+    const auto points = [](const DesignRequest& request) {
+        return request.grown ? *request.grown : calibration_of(request).points;
+    };
+    return {
+        .name = "calibration",
+        .summary = "Waves of points that close in on the settings which reproduce what was measured: history matching.",
+        .options = {{.name = "targets",
+                     .meaning = "what was measured",
+                     .kind = OptionSpec::Kind::word,
+                     .default_value = std::nullopt,
+                     .words = {}},
+                    count("waves", 4, 100, "waves at most"),
+                    count("points_per_wave", 40, 10'000, "settings of a wave; each is run under every condition"),
+                    count("checks", 8, 1000, "settings drawn from the posterior that are run to check it"),
+                    {.name = "shrink",
+                     .meaning = "the waves end when one rules out less than this share of what was kept",
+                     .kind = OptionSpec::Kind::number,
+                     .default_value = 0.02,
+                     .words = {},
+                     .bounds = {0, 1}}},
+        .extends = false,
+        .independent_sequences = false,
+        .grows = true,
+        .rests_on =
+            [](const DesignRequest& request) {
+                std::vector<std::string> names;
+                for (const auto& target : targets_in(request.word("targets")))
+                    if (std::ranges::find(names, target.observable) == names.end()) names.push_back(target.observable);
+                return names;
+            },
+        .beginning = Beginning::corner,
+        .size = [points](const DesignRequest& request) { return static_cast<std::int64_t>(points(request).size()); },
+        .sample = points};
+}
+
+}  // namespace grainsweep::designs

@@ -1,0 +1,373 @@
+#include "sweep/report/calibration.hpp"
+
+#include "solver/scenes/scene.hpp"
+#include "stats/calibration.hpp"
+#include "sweep/campaign/stored_request.hpp"
+#include "sweep/report/responses.hpp"
+#include "sweep/report/summary.hpp"
+#include "sweep/report/table.hpp"
+#include "sweep/schedule/growth.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <sstream>
+
+namespace grainsweep::report {
+namespace {
+
+using Cell = store::Table::Cell;
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr double uniform_sd = 0.28867513459481287;  // of the uniform distribution over [0, 1]
+constexpr double not_determined = 0.8;              // share of the prior's sd
+constexpr double strongly_coupled = 0.8;            // correlation
+constexpr double out_of_reach = 3;                  // standard deviations beyond every case
+constexpr double settled_chains = 1.05;
+constexpr std::size_t drawn_on_page = 800;
+
+double mean_of(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double sd_of(const std::vector<double>& values) {
+    if (values.size() < 2) return none;
+    const double mean = mean_of(values);
+    double squares = 0;
+    for (const double x : values) squares += (x - mean) * (x - mean);
+    return std::sqrt(squares / static_cast<double>(values.size() - 1));
+}
+
+double quantile(std::vector<double> values, double share) {
+    std::ranges::sort(values);
+    const double at = share * static_cast<double>(values.size() - 1);
+    const auto below = static_cast<std::size_t>(at);
+    const auto above = std::min(below + 1, values.size() - 1);
+    return std::lerp(values[below], values[above], at - static_cast<double>(below));
+}
+
+FactorPosterior posterior_of(const designs::Calibration& found, std::size_t j) {
+    const auto rows = found.posterior->rows();
+    std::vector<double> values;
+    for (std::size_t i = 0; i < rows.size(); ++i) values.push_back(found.ranges[j].value_at(rows.row(i)[j]));
+    return {found.factors[j],
+            "",
+            mean_of(values),
+            sd_of(values),
+            quantile(values, 0.05),
+            quantile(values, 0.95),
+            found.shape->sd[j] / uniform_sd};
+}
+
+std::string condition_text(const designs::MeasuredTarget& target, const std::vector<campaign::StatedFactor>& factors) {
+    std::string text;
+    for (const auto& [name, level] : target.level) {
+        const auto stated = std::ranges::find(factors, name, &campaign::StatedFactor::name);
+        const std::string value = stated == factors.end() ? "?" : stated->levels.at(level);
+        text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", name, value);
+    }
+    return text;
+}
+
+TargetCheck check_of(const designs::Calibration& found, std::size_t t) {
+    const auto& target = found.targets[t];
+    TargetCheck check{
+        target.observable, "", "", target.value, target.error, target.discrepancy, none, none, none, none, 0, 0, {}};
+    if (!found.waves.empty()) {
+        check.refusal = found.waves.back().refusals[t];
+        check.beyond = found.beyond[t];
+    }
+    if (found.posterior && found.models[t]) {
+        const auto means = found.models[t]->means(found.posterior->rows());
+        check.predicted = mean_of(means);
+        check.predicted_error = sd_of(means);
+    }
+    if (t < found.check.size()) {
+        std::vector<double> answers;
+        std::ranges::copy_if(found.check[t], std::back_inserter(answers), [](double x) { return std::isfinite(x); });
+        check.runs = answers.size();
+        if (!answers.empty()) check.checked = mean_of(answers);
+        check.checked_sd = sd_of(answers);
+    }
+    return check;
+}
+
+std::string target_name(const TargetCheck& target) {
+    return target.condition.empty() ? target.observable : fmt::format("{} at {}", target.observable, target.condition);
+}
+
+/// How many of the points that follow from the answers are, from the first on, the settings that were run: all of them,
+/// unless another version of the program chose them.
+std::size_t followed_points(const designs::Calibration& found, const Responses& run) {
+    constexpr double rounding = 1e-9;  // of the range
+    const std::size_t d = found.points.dimensions;
+    std::size_t followed = found.points.size();
+    for (std::size_t row = 0; row < run.rows(); ++row) {
+        const auto point = static_cast<std::size_t>(run.points[row]);
+        if (point >= followed) continue;
+        for (std::size_t j = 0, k = 0; j < d && k < found.factors.size(); ++j) {
+            if (run.factors[j].name != found.factors[k]) continue;
+            const auto& range = found.ranges[k++];
+            const double value = range.value_at(found.points.point(point)[j]);
+            const double width = std::abs(range.value_at(1) - range.value_at(0));
+            if (std::abs(run.factors[j].values[row] - value) > rounding * width) followed = point;
+        }
+    }
+    return followed;
+}
+
+/// What a user must know before quoting the posterior.
+std::vector<std::string> notes_of(const CalibrationReport& report) {
+    std::vector<std::string> notes;
+    const auto& found = report.found;
+    for (const auto& target : report.targets) {
+        if (!target.refusal.empty())
+            notes.push_back(
+                fmt::format("{} has no response model and decides nothing: {}", target_name(target), target.refusal));
+        if (target.beyond > out_of_reach)
+            notes.push_back(
+                fmt::format("{}: no case came near the measured {:.5g}; it lies {:.1f} standard deviations beyond "
+                            "all of them: the ranges, or the model, do not reach what was measured",
+                            target_name(target), target.value, target.beyond));
+    }
+    if (!found.waves.empty()) {
+        const auto& last = found.waves.back();
+        if (last.failed > 0)
+            notes.push_back(fmt::format("{} settings have no answer to some target and are left out", last.failed));
+        if (last.kept == 0 && found.least_implausibility > 3)
+            notes.push_back(
+                fmt::format("the targets contradict each other: no setting is within 3 standard deviations of all "
+                            "of them, the nearest is {:.1f} off. A larger discrepancy, or another model, is needed",
+                            found.least_implausibility));
+    }
+    if (!found.posterior) return notes;
+    for (const auto& factor : report.factors)
+        if (factor.share_of_range > not_determined)
+            notes.push_back(
+                fmt::format("{} is not determined by these targets: its posterior is {:.0f} % as wide as its range",
+                            factor.name, 100 * factor.share_of_range));
+    const std::size_t d = report.factors.size();
+    for (std::size_t i = 0; i < d; ++i)
+        for (std::size_t j = i + 1; j < d; ++j) {
+            const double r = found.shape->correlation[i * d + j];
+            if (std::abs(r) < strongly_coupled) continue;
+            notes.push_back(
+                fmt::format("{} and {} are determined together, not each: along a ridge of equal fit one {} as the "
+                            "other rises (correlation {:.2f})",
+                            report.factors[i].name, report.factors[j].name, r < 0 ? "falls" : "rises", r));
+        }
+    if (!(found.posterior->scale_reduction < settled_chains))
+        notes.push_back(
+            fmt::format("the chains of the posterior have not settled (scale reduction {:.2f}): its widths are rough",
+                        found.posterior->scale_reduction));
+    for (const auto& target : report.targets)
+        if (std::abs(target.z()) > 2)
+            notes.push_back(
+                fmt::format("{}: fresh runs at settings drawn from the posterior miss the measurement by {:.1f} "
+                            "standard deviations",
+                            target_name(target), std::abs(target.z())));
+    return notes;
+}
+
+}  // namespace
+
+double TargetCheck::z() const {
+    if (runs < 2) return none;
+    const double scatter = std::isfinite(checked_sd) ? checked_sd : 0;
+    return (checked - value) / std::sqrt(error * error + discrepancy * discrepancy + scatter * scatter);
+}
+
+std::optional<CalibrationReport> calibration_report(const store::Store& store, const store::CampaignRecord& record) {
+    if (record.design != "calibration") return std::nullopt;
+    auto request = campaign::request_of(record);
+    const auto& design = designs::design_named(record.design);
+    request.answers = schedule::known_answers(store, record, design.rests_on(request));
+    CalibrationReport report{designs::calibration_of(request), {}, {}, {}};
+    const auto followed = followed_points(report.found, read_responses(store, record));
+    const bool by_another_program = followed < report.found.points.size();
+    if (by_another_program) {  // answers of other points say nothing of these
+        for (auto& [observable, answers] : request.answers) answers.resize(std::min(answers.size(), followed));
+        report.found = designs::calibration_of(request);
+    }
+    const auto* scene = find_scene(record.scene);
+    const auto stated = campaign::factors_of(record);
+    if (report.found.posterior)
+        for (std::size_t j = 0; j < report.found.factors.size(); ++j) {
+            report.factors.push_back(posterior_of(report.found, j));
+            const auto* parameter = scene == nullptr ? nullptr : scene->find_parameter(report.found.factors[j]);
+            if (parameter != nullptr) report.factors.back().unit = parameter->unit;
+        }
+    for (std::size_t t = 0; t < report.found.targets.size(); ++t) {
+        auto& check = report.targets.emplace_back(check_of(report.found, t));
+        check.condition = condition_text(report.found.targets[t], stated);
+        const auto* measured = scene == nullptr ? nullptr : scene->find_observable(check.observable);
+        if (measured != nullptr) check.unit = measured->unit;
+    }
+    report.notes = notes_of(report);
+    if (by_another_program)
+        report.notes.push_back(fmt::format(
+            "from point {} on its settings were chosen by another version of grainsweep, and this one would choose "
+            "others: only the waves before are shown. Under another name it is calibrated anew, with what is finished",
+            followed));
+    return report;
+}
+
+std::string calibration_line(const CalibrationReport& report) {
+    const auto& found = report.found;
+    if (found.waves.empty()) return "calibration: the first wave is not answered yet";
+    const auto& last = found.waves.back();
+    const auto done = fmt::format("calibration: {} wave{}, {} cases, {:.3g} % of the box kept", found.waves.size(),
+                                  found.waves.size() == 1 ? "" : "s", last.cases, 100 * last.kept);
+    if (!found.waves_end) return done + "; the next wave is not answered yet";
+    return fmt::format("{}; {}", done, found.why_they_end);
+}
+
+store::Table waves_table(const CalibrationReport& report) {
+    store::Table table{{"wave", "settings", "cases", "failed", "kept"}, {}};
+    for (const auto& target : report.targets)
+        table.columns.push_back(fmt::format("model error of {}", target_name(target)));
+    for (std::size_t w = 0; w < report.found.waves.size(); ++w) {
+        const auto& wave = report.found.waves[w];
+        std::vector<Cell> row = {static_cast<std::int64_t>(w + 1), static_cast<std::int64_t>(wave.settings),
+                                 static_cast<std::int64_t>(wave.cases), static_cast<std::int64_t>(wave.failed),
+                                 fmt::format("{:.3g} %", 100 * wave.kept)};
+        for (const double error : wave.model_error)
+            row.emplace_back(std::isfinite(error) ? fmt::format("{:.2g} sd", error) : std::string("no model"));
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+store::Table posterior_table(const CalibrationReport& report) {
+    store::Table table{{"factor", "unit", "mean", "sd", "5 %", "95 %", "width over range's"}, {}};
+    for (const auto& factor : report.factors)
+        table.rows.push_back({factor.name, factor.unit, fmt::format("{:.4g}", factor.mean),
+                              fmt::format("{:.2g}", factor.sd), fmt::format("{:.4g}", factor.low),
+                              fmt::format("{:.4g}", factor.high), fmt::format("{:.2f}", factor.share_of_range)});
+    return table;
+}
+
+store::Table targets_table(const CalibrationReport& report) {
+    store::Table table{{"target", "unit", "measured", "discrepancy", "model", "fresh runs", "runs", "z"}, {}};
+    const auto pair = [](double value, double error) {
+        return std::isfinite(value) ? with_error(value, error) : std::string("-");
+    };
+    for (const auto& target : report.targets)
+        table.rows.push_back({target_name(target), target.unit, with_error(target.value, target.error),
+                              fmt::format("{:.3g}", target.discrepancy), pair(target.predicted, target.predicted_error),
+                              pair(target.checked, target.checked_sd), static_cast<std::int64_t>(target.runs),
+                              std::isfinite(target.z()) ? fmt::format("{:+.1f}", target.z()) : std::string("-")});
+    return table;
+}
+
+std::string calibration_text(const CalibrationReport& report) {
+    std::ostringstream text;
+    text << calibration_line(report) << "\n";
+    if (!report.found.waves.empty()) {
+        text << '\n';
+        write(text, waves_table(report), Format::text);
+    }
+    if (!report.factors.empty()) {
+        text << "\nposterior\n";
+        write(text, posterior_table(report), Format::text);
+    }
+    text << "\ntargets (standard deviations: measurement, spread over the posterior, scatter of fresh runs)\n";
+    write(text, targets_table(report), Format::text);
+    for (const auto& note : report.notes) text << "note: " << note << '\n';
+    return text.str();
+}
+
+nlohmann::ordered_json page_of(const CalibrationReport& report) {
+    using Json = nlohmann::ordered_json;
+    const auto json_of = [](const store::Table& table) {
+        Json value = {{"columns", table.columns}, {"rows", Json::array()}};
+        for (const auto& row : table.rows) {
+            Json cells = Json::array();
+            for (const auto& cell : row) cells.push_back(to_json(cell));
+            value["rows"].push_back(std::move(cells));
+        }
+        return value;
+    };
+    const auto& found = report.found;
+    Json value = {{"says", calibration_line(report)},
+                  {"notes", report.notes},
+                  {"posterior", found.posterior ? json_of(posterior_table(report)) : Json(nullptr)},
+                  {"targets", json_of(targets_table(report))},
+                  {"waves", json_of(waves_table(report))},
+                  {"factors", Json::array()},
+                  {"draws", Json::array()},
+                  {"settings", Json::array()}};
+    for (std::size_t j = 0; j < found.factors.size(); ++j) {
+        const auto& range = found.ranges[j];
+        const double low = range.value_at(0), high = range.value_at(1);
+        const bool logarithmic = std::abs(range.value_at(0.5) - (low + high) / 2) > 1e-6 * (high - low);
+        const std::string unit = j < report.factors.size() ? report.factors[j].unit : "1";
+        value["factors"].push_back({{"name", found.factors[j]},
+                                    {"unit", unit},
+                                    {"levels", Json::array()},
+                                    {"low", low},
+                                    {"high", high},
+                                    {"log", logarithmic},
+                                    {"values", {low, high}}});
+    }
+    const auto add = [&](Json& rows, std::span<const double> coordinates) {
+        Json row = Json::array();
+        for (std::size_t j = 0; j < found.factors.size(); ++j) row.push_back(found.ranges[j].value_at(coordinates[j]));
+        rows.push_back(std::move(row));
+    };
+    if (found.posterior) {
+        const auto draws = found.posterior->rows();
+        const std::size_t step = std::max<std::size_t>(1, draws.size() / drawn_on_page);
+        for (std::size_t i = 0; i < draws.size(); i += step) add(value["draws"], draws.row(i));
+    }
+    for (std::size_t i = 0; i + found.factors.size() <= found.settings.size(); i += found.factors.size())
+        add(value["settings"], std::span(found.settings).subspan(i));
+    return value;
+}
+
+nlohmann::ordered_json to_json(const CalibrationReport& report) {
+    using Json = nlohmann::ordered_json;
+    const auto number = [](double x) { return to_json(to_cell(x)); };
+    Json value = {{"ended", report.found.waves_end},
+                  {"why", report.found.why_they_end},
+                  {"waves", Json::array()},
+                  {"posterior", Json::array()},
+                  {"correlation", Json::array()},
+                  {"targets", Json::array()},
+                  {"notes", report.notes}};
+    for (const auto& wave : report.found.waves) {
+        Json errors = Json::array();
+        for (const double error : wave.model_error) errors.push_back(number(error));
+        value["waves"].push_back({{"settings", wave.settings},
+                                  {"cases", wave.cases},
+                                  {"failed", wave.failed},
+                                  {"kept", wave.kept},
+                                  {"model_errors", errors}});
+    }
+    for (const auto& factor : report.factors)
+        value["posterior"].push_back({{"factor", factor.name},
+                                      {"mean", factor.mean},
+                                      {"sd", factor.sd},
+                                      {"q05", factor.low},
+                                      {"q95", factor.high},
+                                      {"share_of_range", factor.share_of_range}});
+    if (report.found.shape) value["correlation"] = report.found.shape->correlation;
+    for (const auto& target : report.targets)
+        value["targets"].push_back({{"observable", target.observable},
+                                    {"condition", target.condition},
+                                    {"value", target.value},
+                                    {"error", target.error},
+                                    {"discrepancy", target.discrepancy},
+                                    {"predicted", number(target.predicted)},
+                                    {"predicted_sd", number(target.predicted_error)},
+                                    {"checked", number(target.checked)},
+                                    {"checked_sd", number(target.checked_sd)},
+                                    {"runs", target.runs},
+                                    {"z", number(target.z())}});
+    return value;
+}
+
+}  // namespace grainsweep::report

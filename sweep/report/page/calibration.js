@@ -1,0 +1,49 @@
+// What a calibration has found: where its waves have come to, the posterior over each pair of factors, the targets.
+function cardOf(title, { columns, rows }) {
+  return el("div", { class: "card" }, el("h3", {}, title),
+    table(columns.map((name, j) => [name, rows.length > 0 && typeof rows[0][j] === "number" ? "number" : ""]), rows));
+}
+
+// Settings that were run, wave by wave fainter to stronger, and draws of the posterior.
+function posteriorFigure(calibration, i, j) {
+  const [a, b] = [calibration.factors[i], calibration.factors[j]];
+  const across = quantity(a), up = quantity(b);
+  const dots = (rows) => rows.map((row) => ({ x: across.of(row[i]), y: up.of(row[j]) }));
+  return figure(`${b.name} against ${a.name}`, "", () => ({
+    type: "scatter",
+    data: { datasets: [
+      { label: "posterior", data: dots(calibration.draws), backgroundColor: colour("two"), borderWidth: 0, pointRadius: 2, clip: 6 },
+      { label: "settings run", data: dots(calibration.settings), backgroundColor: colour("dot"), borderWidth: 0, pointRadius: 3, clip: 6 }] },
+    options: { scales: { x: variableAxis(a), y: variableAxis(b) },
+      plugins: { legend: { display: true, position: "bottom", labels: { color: colour("ink"), usePointStyle: true, boxWidth: 6, boxHeight: 6 } },
+        tooltip: { callbacks: { label: (item) => `${item.dataset.label}: ${show(item.raw.x)}, ${show(item.raw.y)}` } } } },
+  })).node;
+}
+
+// Of the only factor there is.
+function posteriorHistogram(calibration) {
+  const [factor] = calibration.factors, shown = quantity(factor), bins = 24;
+  const counts = new Array(bins).fill(0);
+  const place = (x) => (factor.log ? Math.log(x / factor.low) / Math.log(factor.high / factor.low) : (x - factor.low) / (factor.high - factor.low));
+  const edge = (u) => (factor.log ? factor.low * (factor.high / factor.low) ** u : factor.low + u * (factor.high - factor.low));
+  for (const [x] of calibration.draws) counts[Math.min(bins - 1, Math.max(0, Math.floor(bins * place(x))))] += 1;
+  return figure(`posterior of ${factor.name}`, "", () => ({
+    type: "bar",
+    data: { datasets: [{ data: counts.map((count, k) => ({ x: shown.of(edge((k + 0.5) / bins)), y: count / calibration.draws.length })), backgroundColor: colour("two"), barPercentage: 1, categoryPercentage: 1 }] },
+    options: { scales: { x: variableAxis(factor), y: axis("share of the draws") } },
+  })).node;
+}
+
+function calibrationSection(campaign) {
+  const { calibration } = campaign;
+  if (!calibration) return null;
+  const pairs = [];
+  for (let j = 1; j < calibration.factors.length; ++j) for (let i = 0; i < j; ++i) pairs.push([i, j]);
+  const figures = calibration.draws.length === 0 ? [] : calibration.factors.length === 1 ? [posteriorHistogram(calibration)]
+    : pairs.map(([i, j]) => posteriorFigure(calibration, i, j));
+  return section("calibration", "Calibration", calibration.says.replace(/^./, (c) => c.toUpperCase()) + ".",
+    calibration.notes.length === 0 ? null : el("div", { class: "verdict no" }, calibration.notes.map((note) => el("p", {}, note))),
+    el("div", { class: "grid wide" }, calibration.posterior ? cardOf("Posterior", calibration.posterior) : null,
+      cardOf("Targets", calibration.targets), cardOf("Waves", calibration.waves)),
+    el("div", { class: "grid" }, figures));
+}

@@ -1,0 +1,165 @@
+// A calibration through the real program: waves, posterior, predictive check, interruption, refusals.
+#include "tests/support/process.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+using namespace grainsweep::test;
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+namespace {
+
+/// What the spreading response is at x1 = 0.3, x2 = 0.6, "measured" under two conditions.
+json config() {
+    return json::parse(R"({"campaign": "fit", "scene": "rehearsal",
+  "factors": [{"name": "x1", "between": [0, 1]}, {"name": "x2", "between": [0, 1]}],
+  "fixed": {"response": "spreading_a", "x4": 0.5, "noise": 0.02},
+  "calibration": {"targets": [{"observable": "y", "value": 0.2555, "error": 0.003, "inputs": {"x3": 0.5}},
+                              {"observable": "y", "value": 0.5093, "error": 0.003, "inputs": {"x3": 0.95}}],
+                  "discrepancy": {"y": 0.001}, "waves": 3, "points_per_wave": 24}})");
+}
+
+std::string dump(const Folder& folder, const std::string& db) {
+    const auto ended = run_program({"dump", db}, folder.path());
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    return ended.out;
+}
+
+Ended calibrate(const Folder& folder, const std::string& db, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words = {"calibrate", "c.json", "--db", db};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(words, folder.path());
+}
+
+std::string refusal(const Folder& folder, const json& changed) {
+    folder.write("c.json", changed.dump());
+    const auto ended = calibrate(folder, "none.db");
+    EXPECT_EQ(ended.code, 2) << ended.out;
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "none.db"));
+    return ended.err;
+}
+
+}  // namespace
+
+TEST(CalibrateCampaign, FindsTheTruthAndNamesTheRidge) {
+    const Folder folder;
+    folder.write("c.json", config().dump());
+    const auto ended = calibrate(folder, "a.db", {"-j", "2"});
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    for (const char* part : {"posterior", "y at x3 = 0.95", "fresh runs", "x1 and x2 are determined together",
+                             "along a ridge of equal fit"})
+        EXPECT_THAT(ended.out, HasSubstr(part));
+    const auto said = run_program({"converge", "a.db", "--format", "json"}, folder.path());
+    ASSERT_EQ(said.code, 0) << said.err;
+    const auto found = json::parse(said.out)[0];
+    EXPECT_TRUE(found["ended"].get<bool>());
+    for (const auto& [factor, truth] : {std::pair(0, 0.3), std::pair(1, 0.6)}) {
+        EXPECT_LE(found["posterior"][factor]["q05"].get<double>(), truth);
+        EXPECT_GE(found["posterior"][factor]["q95"].get<double>(), truth);
+    }
+    EXPECT_LT(found["posterior"][1]["sd"].get<double>(), 0.05) << "x2 is determined, x1 hardly";
+    for (const auto& target : found["targets"]) {
+        EXPECT_EQ(target["runs"], 8);
+        EXPECT_LT(std::abs(target["z"].get<double>()), 3);
+    }
+}
+
+TEST(CalibrateCampaign, GivesTheSameInterruptedOrNotWithOneWorkerOrTwo) {
+    const Folder folder;
+    folder.write("c.json", config().dump());
+    ASSERT_EQ(calibrate(folder, "one.db", {"-j", "1", "--quiet"}).code, 0);
+    ASSERT_EQ(calibrate(folder, "two.db", {"-j", "2", "--quiet"}).code, 0);
+    int runs = 0;
+    while (calibrate(folder, "parts.db", {"-j", "2", "--quiet", "--max-cases", "17"}).code != 0) ASSERT_LT(++runs, 20);
+    EXPECT_GE(runs, 2);
+    EXPECT_EQ(dump(folder, "one.db"), dump(folder, "two.db"));
+    EXPECT_EQ(dump(folder, "one.db"), dump(folder, "parts.db"));
+    // run does the same as calibrate.
+    ASSERT_EQ(run_program({"run", "c.json", "--db", "run.db", "--quiet"}, folder.path()).code, 0);
+    EXPECT_EQ(dump(folder, "one.db"), dump(folder, "run.db"));
+}
+
+TEST(CalibrateCampaign, SaysWhatTheTargetsCannotGive) {
+    const Folder folder;
+    auto contradicting = config();
+    contradicting["calibration"]["targets"][0]["value"] = 0.1;
+    contradicting["calibration"]["targets"][1]["value"] = 0.7;
+    folder.write("c.json", contradicting.dump());
+    EXPECT_THAT(calibrate(folder, "a.db").out, HasSubstr("the targets contradict each other"));
+    auto far = config();
+    far["calibration"]["targets"][0]["value"] = 3;
+    folder.write("c.json", far.dump());
+    EXPECT_THAT(calibrate(folder, "b.db").out, HasSubstr("no case came near the measured 3"));
+}
+
+TEST(CalibrateCampaign, FollowsAMeasuredCurve) {
+    const Folder folder;
+    // y_series is y times the time, y = x1 + 15 halves.
+    folder.write("curve.csv", "time (s),y,sd\n0.25,1.95,0.02\n0.77772,6.066216,0.02\n");
+    auto asked = json::parse(R"({"campaign": "along", "scene": "rehearsal",
+      "factors": [{"name": "x1", "between": [0, 1]}], "fixed": {"behaviour": "huge"},
+      "calibration": {"targets": [{"observable": "y_series", "file": "curve.csv"}], "discrepancy": {"y_series": 0.01},
+                      "waves": 1, "points_per_wave": 12, "checks": 2}})");
+    folder.write("c.json", asked.dump());
+    const auto ended = calibrate(folder, "a.db", {"-j", "1"});
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    EXPECT_THAT(ended.out, HasSubstr("y_series@0.77772"));
+    const auto said = run_program({"converge", "a.db", "--format", "json"}, folder.path());
+    const auto found = json::parse(said.out)[0];
+    EXPECT_NEAR(found["posterior"][0]["mean"].get<double>(), 0.3, 0.01);
+
+    const auto refused = [&](const std::string& file) {
+        folder.write("curve.csv", file);
+        return refusal(folder, asked);
+    };
+    EXPECT_THAT(refused("time\n1\n"), HasSubstr("its header has 1 columns"));
+    EXPECT_THAT(refused("time,y\n0.1,1\n0.2,2\n"), HasSubstr("its lines have no error"));
+    EXPECT_THAT(refused("time,y,sd\n0.2,1,1\n0.1,2,1\n"), HasSubstr("record 3: places along the curve must grow"));
+    EXPECT_THAT(refused("time,y,sd\n0.2,1,1\n0.3,high,1\n"), HasSubstr("record 3 has \"high\" where a number"));
+    EXPECT_THAT(refused("time,y,sd\n0.2,1,1\n"), HasSubstr("it has 1 lines"));
+    asked["calibration"]["targets"][0]["file"] = "none.csv";
+    EXPECT_THAT(refusal(folder, asked), HasSubstr("there is no such file"));
+    asked["calibration"]["targets"][0] = {{"observable", "y_series"}, {"value", 1}, {"error", 1}};
+    EXPECT_THAT(refusal(folder, asked), HasSubstr("is a curve"));
+}
+
+TEST(CalibrateCampaign, RefusesInOneSentence) {
+    const Folder folder;
+    auto asked = config();
+    asked["design"] = {{"kind", "halton"}, {"points", 10}};
+    EXPECT_THAT(refusal(folder, asked), HasSubstr("either a \"design\" or a \"calibration\""));
+    asked = config();
+    asked["calibration"]["targets"][0]["observable"] = "yy";
+    EXPECT_THAT(refusal(folder, asked), HasSubstr("$.calibration.targets[0].observable"));
+    asked = config();
+    asked["calibration"]["discrepancy"] = json::object();
+    EXPECT_THAT(refusal(folder, asked), HasSubstr("'y' is missing: how far the simulation itself may be"));
+    asked = config();
+    asked["calibration"]["discrepancy"]["z"] = 1;
+    EXPECT_THAT(refusal(folder, asked), HasSubstr("no target measures this observable"));
+    asked = config();
+    asked["calibration"]["targets"][1]["inputs"]["x3"] = 0.5;
+    EXPECT_THAT(refusal(folder, asked), HasSubstr("is a target twice under the same condition"));
+    asked = config();
+    asked["calibration"]["targets"][1].erase("inputs");
+    EXPECT_THAT(refusal(folder, asked), HasSubstr("every target states the same \"inputs\""));
+    asked = config();
+    asked["calibration"]["targets"][0]["inputs"] = {{"x1", 0.5}};
+    EXPECT_THAT(refusal(folder, asked), HasSubstr("is calibrated"));
+    asked = config();
+    asked["calibration"]["points_per_wave"] = 11;
+    EXPECT_THAT(refusal(folder, asked), HasSubstr("$.calibration.points_per_wave"));
+    asked = config();
+    asked["factors"][0] = {{"name", "x1"}, {"levels", {0, 1}}};
+    EXPECT_THAT(refusal(folder, asked), HasSubstr("$.factors"));
+    asked = config();
+    asked.erase("calibration");
+    asked["design"] = {{"kind", "halton"}, {"points", 10}};
+    EXPECT_THAT(refusal(folder, asked), HasSubstr("calibrat"));
+}

@@ -1,0 +1,51 @@
+// A calibration as a campaign would run it: waves are answered by functions until nothing is asked any more.
+#pragma once
+
+#include "sweep/designs/calibration.hpp"
+#include "tests/support/ask_design.hpp"
+
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace grainsweep::testing {
+
+/// Of a point of the unit box; conditions are coordinates like the others.
+using Responses = std::map<std::string, std::function<double(std::span<const double>)>>;
+
+/// Factors f0, f1, ... over [0, 1].
+inline designs::DesignRequest calibration_request(std::size_t dimensions,
+                                                  const std::vector<designs::MeasuredTarget>& targets,
+                                                  Options options = {}, std::uint64_t seed = 1) {
+    options.insert_or_assign("targets", designs::text_of(targets));
+    for (const auto& option : designs::design_named("calibration").options)
+        if (option.default_value) options.try_emplace(option.name, *option.default_value);
+    designs::DesignRequest request{
+        .levels = std::vector<std::size_t>(dimensions, 0), .options = std::move(options), .seed = seed};
+    for (std::size_t j = 0; j < dimensions; ++j) {
+        auto& factor = request.factors.emplace_back();
+        factor.name = "f" + std::to_string(j);
+        factor.value_at = [](double u) { return u; };
+    }
+    return request;
+}
+
+inline void answer(designs::DesignRequest& request, const designs::PointSet& points, const Responses& responses) {
+    for (const auto& [observable, response] : responses) {
+        auto& answers = request.answers[observable];
+        for (std::size_t p = answers.size(); p < points.size(); ++p) answers.emplace_back(response(points.point(p)));
+    }
+}
+
+inline designs::Calibration answered(designs::DesignRequest& request, const Responses& responses) {
+    for (std::size_t asked = 0;;) {
+        auto found = designs::calibration_of(request);
+        if (found.points.size() == asked) return found;
+        asked = found.points.size();
+        answer(request, found.points, responses);
+    }
+}
+
+}  // namespace grainsweep::testing

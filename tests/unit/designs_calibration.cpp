@@ -1,0 +1,216 @@
+#include "sweep/designs/calibration.hpp"
+
+#include "stats/random.hpp"
+#include "tests/support/ask_calibration.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+using namespace grainsweep;
+using designs::MeasuredTarget;
+using grainsweep::testing::answer;
+using grainsweep::testing::answered;
+using grainsweep::testing::calibration_request;
+using ::testing::HasSubstr;
+
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+using Point = std::span<const double>;
+
+double noise(std::uint64_t stream, std::size_t point) {
+    return stats::to_unit(stats::bits_at(7, stream, point)) - 0.5;
+}
+
+}  // namespace
+
+// Two responses, both linear in two factors: the posterior is Gaussian, z = A u + e, covariance (A^T V^-1 A)^-1.
+TEST(CalibrationWaves, OfLinearResponsesHasTheGaussianPosterior) {
+    // A = ((1, 0.5), (-0.4, 1)), truth (0.45, 0.55), V = diag(0.03^2, 0.02^2)
+    const auto first = [](Point u) { return u[0] + 0.5 * u[1]; };
+    const auto second = [](Point u) { return -0.4 * u[0] + u[1]; };
+    auto asked = calibration_request(2, {{"a", 0.45 + 0.5 * 0.55, 0.03, 0, {}}, {"b", -0.4 * 0.45 + 0.55, 0, 0.02, {}}},
+                                     {{"waves", std::int64_t{2}}, {"points_per_wave", std::int64_t{16}}});
+    const auto found = answered(asked, {{"a", first}, {"b", second}});
+    ASSERT_TRUE(found.waves_end);
+    ASSERT_TRUE(found.shape);
+    const double determinant = 1 + 0.5 * 0.4;
+    const double sd_x = std::hypot(0.03, 0.5 * 0.02) / determinant;  // u = A^-1 z
+    const double sd_y = std::hypot(0.4 * 0.03, 0.02) / determinant;
+    const double covariance = (0.4 * 0.03 * 0.03 - 0.5 * 0.02 * 0.02) / (determinant * determinant);
+    EXPECT_NEAR(found.shape->mean[0], 0.45, 0.1 * sd_x);
+    EXPECT_NEAR(found.shape->mean[1], 0.55, 0.1 * sd_y);
+    EXPECT_NEAR(found.shape->sd[0], sd_x, 0.05 * sd_x);
+    EXPECT_NEAR(found.shape->sd[1], sd_y, 0.05 * sd_y);
+    EXPECT_NEAR(found.shape->correlation[1], covariance / (sd_x * sd_y), 0.06);
+    EXPECT_LT(found.posterior->scale_reduction, 1.05);
+    ASSERT_EQ(found.check.size(), 2U);
+    for (std::size_t k = 0; k < found.checked.size() / 2; ++k)
+        EXPECT_DOUBLE_EQ(found.check[0][k], first(Point(found.checked).subspan(2 * k, 2)));
+}
+
+TEST(CalibrationWaves, ClosesInWaveByWaveAndLeavesEarlierPointsWhereTheyWere) {
+    const auto bowl = [](Point u) { return std::pow(u[0] - 0.3, 2) + std::pow(u[1] - 0.8, 2) + u[0]; };
+    const auto wave = [](Point u) { return std::sin(4 * u[0]) + u[1] * u[1]; };
+    auto asked = calibration_request(2, {{"a", 0.35, 0.01, 0.005, {}}, {"b", 1.5, 0.01, 0.005, {}}},
+                                     {{"waves", std::int64_t{4}}, {"points_per_wave", std::int64_t{20}}});
+    designs::PointSet before;
+    std::vector<double> kept;
+    for (;;) {
+        const auto found = designs::calibration_of(asked);
+        ASSERT_GE(found.points.coordinates.size(), before.coordinates.size());
+        EXPECT_TRUE(std::ranges::equal(before.coordinates,
+                                       std::span(found.points.coordinates).first(before.coordinates.size())));
+        if (found.points.size() == before.size()) break;
+        before = found.points;
+        answer(asked, found.points, {{"a", bowl}, {"b", wave}});
+    }
+    const auto found = designs::calibration_of(asked);
+    for (std::size_t w = 1; w < found.waves.size(); ++w) EXPECT_LT(found.waves[w].kept, found.waves[w - 1].kept);
+    ASSERT_TRUE(found.shape);
+    // Settings of the predictive check meet both targets.
+    for (const auto& [target, answers] : {std::pair(0.35, found.check[0]), std::pair(1.5, found.check[1])})
+        for (const double answer : answers) EXPECT_NEAR(answer, target, 4 * std::hypot(0.01, 0.005));
+}
+
+TEST(CalibrationWaves, StartsTheNextWaveOnlyWhenEveryAnswerIsKnown) {
+    auto asked = calibration_request(1, {{"a", 0.5, 0.01, 0.01, {}}}, {{"points_per_wave", std::int64_t{12}}});
+    const auto first = designs::calibration_of(asked);
+    EXPECT_EQ(first.points.size(), 12U);
+    EXPECT_TRUE(first.waves.empty());
+    answer(asked, first.points, {{"a", [](Point u) { return u[0]; }}});
+    asked.answers["a"][3] = std::nullopt;
+    EXPECT_EQ(designs::calibration_of(asked).points.size(), 12U);
+    asked.answers["a"][3] = none;  // settled without an answer: left out, and counted
+    const auto next = designs::calibration_of(asked);
+    EXPECT_GT(next.points.size(), 12U);
+    ASSERT_EQ(next.waves.size(), 1U);
+    EXPECT_EQ(next.waves[0].failed, 1U);
+}
+
+TEST(CalibrationWaves, TwoFactorsThatTheTargetsCannotTellApartAreARidge) {
+    const auto sum = [](Point u) { return u[0] + u[1]; };
+    auto asked = calibration_request(2, {{"a", 1, 0.02, 0.01, {}}}, {{"points_per_wave", std::int64_t{16}}});
+    const auto found = answered(asked, {{"a", sum}});
+    ASSERT_TRUE(found.shape);
+    EXPECT_LT(found.shape->correlation[1], -0.98);
+    EXPECT_NEAR(found.shape->widths[0], std::sqrt(2.0 / 12), 0.03) << "along the diagonal of the box";
+    EXPECT_NEAR(found.shape->widths[1], std::hypot(0.02, 0.01) / std::sqrt(2.0), 0.002);
+}
+
+TEST(CalibrationWaves, TargetsThatContradictEachOtherOrLieOutOfReachAreKnown) {
+    const auto same = [](Point u) { return u[0]; };
+    auto asked = calibration_request(1, {{"a", 0.2, 0.01, 0.01, {}}, {"b", 0.8, 0.01, 0.01, {}}},
+                                     {{"points_per_wave", std::int64_t{12}}, {"waves", std::int64_t{2}}});
+    const auto against = answered(asked, {{"a", same}, {"b", same}});
+    EXPECT_EQ(against.waves.back().kept, 0);
+    EXPECT_GT(against.least_implausibility, 10);
+
+    auto far = calibration_request(1, {{"a", 1.5, 0.01, 0.01, {}}},
+                                   {{"points_per_wave", std::int64_t{12}}, {"waves", std::int64_t{2}}});
+    const auto beyond = answered(far, {{"a", same}});
+    EXPECT_GT(beyond.beyond[0], 20);
+}
+
+TEST(CalibrationWaves, AResponseThatNoModelFollowsDecidesNothing) {
+    const auto flat = [](Point u) { return 0 * u[0] + 2; };
+    const auto slope = [](Point u) { return u[0]; };
+    auto asked = calibration_request(1, {{"a", 2, 0.1, 0.1, {}}, {"b", 0.5, 0.01, 0.01, {}}},
+                                     {{"points_per_wave", std::int64_t{12}}, {"waves", std::int64_t{1}}});
+    const auto found = answered(asked, {{"a", flat}, {"b", slope}});
+    EXPECT_FALSE(found.models[0]);
+    EXPECT_FALSE(found.waves[0].refusals[0].empty());
+    ASSERT_TRUE(found.shape);
+    EXPECT_NEAR(found.shape->mean[0], 0.5, 0.01);
+}
+
+TEST(CalibrationWaves, EveryTargetIsAskedUnderItsOwnCondition) {
+    // Factor 1 states the condition, of three levels; targets stand at levels 0 and 2.
+    auto asked = calibration_request(2, {{"a", 0.5, 0.02, 0, {{"f1", 0}}}, {"a", 1.1, 0.02, 0, {{"f1", 2}}}},
+                                     {{"points_per_wave", std::int64_t{12}}, {"waves", std::int64_t{1}}});
+    asked.levels[1] = 3;
+    const auto response = [](Point u) { return u[0] + 0.6 * (std::floor(3 * u[1]) / 2); };
+    const auto found = answered(asked, {{"a", response}});
+    ASSERT_TRUE(found.shape);
+    EXPECT_EQ(found.factors, std::vector<std::string>{"f0"});
+    EXPECT_NEAR(found.shape->mean[0], 0.5, 0.01);
+    EXPECT_NEAR(found.shape->sd[0], 0.02 / std::sqrt(2.0), 0.002);
+    for (std::size_t p = 0; p < found.points.size(); ++p)
+        EXPECT_NE(std::floor(3 * found.points.point(p)[1]), 1) << "nothing is asked at the level of no target";
+}
+
+TEST(CalibrationWaves, ScatterOfRunsWidensThePosterior) {
+    const auto sloped = [](Point u) { return u[0]; };
+    const auto posterior_sd = [&](double amplitude) {
+        auto asked = calibration_request(1, {{"a", 0.5, 0.01, 0, {}}},
+                                         {{"points_per_wave", std::int64_t{40}}, {"waves", std::int64_t{2}}});
+        std::size_t count = 0;
+        const auto found = answered(
+            asked, {{"a", [&](Point u) { return sloped(u) + amplitude * std::sqrt(12.0) * noise(1, count++); }}});
+        return found.shape->sd[0];
+    };
+    EXPECT_NEAR(posterior_sd(0), 0.01, 0.001);
+    // Eight degrees of freedom of the model's errors: Student's variance is 8/6 of the normal one.
+    EXPECT_NEAR(posterior_sd(0.03), std::hypot(0.01, 0.03 * std::sqrt(8.0 / 6)), 0.006);
+}
+
+TEST(CalibrationWaves, TargetsSurviveBeingTextAndOtherTextIsRefused) {
+    const std::vector<MeasuredTarget> targets = {{"angle", 40.9, 0.5, 1, {{"rpm", 0}}},
+                                                 {"area", 2.861e-3, 1e-5, 0, {{"fill", 3}, {"rpm", 1}}}};
+    EXPECT_EQ(designs::targets_in(designs::text_of(targets)), targets);
+    const std::vector<MeasuredTarget> curve = {{"surface@-0.0042", 1, 0.1, 0, {{"rpm", 1}}, 7},
+                                               {"surface@0.1", 2, 0.1, 0, {{"rpm", 1}}, 7}};
+    EXPECT_EQ(designs::targets_in(designs::text_of(curve)), curve);
+    EXPECT_THROW((void)designs::targets_in("surface@1 1 2 3 #x"), std::invalid_argument);
+    EXPECT_THROW((void)designs::targets_in("angle 1 2"), std::invalid_argument);
+    EXPECT_THROW((void)designs::targets_in("angle 1 2 3 rpm"), std::invalid_argument);
+    EXPECT_THROW((void)designs::targets_in("angle 1 2 3 rpm:x"), std::invalid_argument);
+}
+
+TEST(CalibrationWaves, RefusesWavesThatNoModelCanBeMadeOf) {
+    auto asked = calibration_request(3, {{"a", 1, 0.1, 0, {}}}, {{"points_per_wave", std::int64_t{12}}});
+    try {
+        (void)designs::calibration_of(asked);
+        FAIL();
+    } catch (const std::invalid_argument& refused) {
+        EXPECT_THAT(refused.what(), HasSubstr("at least 16 points"));
+    }
+}
+
+TEST(CalibrationWaves, PointsOfOneCurveAreOffTogether) {
+    // Of a curve over [0, 1] and a scalar: correlation of the discrepancies exp(-4 |x - x'|).
+    const std::vector<MeasuredTarget> targets = {{"c@0", 1, 0.3, 0.5, {}, 1},
+                                                 {"y", 1, 0.1, 0.2, {}, 0},
+                                                 {"c@0.5", 1, 0.3, 0.5, {}, 1},
+                                                 {"c@1", 1, 0.3, 0.5, {}, 1}};
+    const auto c = designs::covariance_of(targets);
+    ASSERT_EQ(c.size(), 16U);
+    EXPECT_DOUBLE_EQ(c[0], 0.09 + 0.25);
+    EXPECT_DOUBLE_EQ(c[5], 0.01 + 0.04);
+    EXPECT_DOUBLE_EQ(c[2], 0.25 * std::exp(-2));
+    EXPECT_DOUBLE_EQ(c[3], 0.25 * std::exp(-4));
+    EXPECT_EQ(c[1], 0);
+    for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = 0; j < 4; ++j) EXPECT_EQ(c[4 * i + j], c[4 * j + i]);
+}
+
+TEST(CalibrationWaves, ACurveOfManyPointsIsNoMoreCertainThanWhatItLeavesOut) {
+    // The same shift along the whole curve: forty points determine it little better than the discrepancy of one.
+    const auto sd_of = [](std::size_t points) {
+        std::vector<MeasuredTarget> targets;
+        grainsweep::testing::Responses responses;
+        for (std::size_t k = 0; k < points; ++k) {
+            const auto name = "c@" + std::to_string(static_cast<double>(k) / static_cast<double>(points - 1));
+            targets.push_back({name, 0.5, 0.01, 0.05, {}, 1});
+            responses[name] = [](Point u) { return u[0]; };
+        }
+        auto asked =
+            calibration_request(1, targets, {{"points_per_wave", std::int64_t{12}}, {"waves", std::int64_t{1}}});
+        return answered(asked, responses).shape->sd[0];
+    };
+    EXPECT_GT(sd_of(20), 0.5 * 0.05);
+    EXPECT_NEAR(sd_of(20), sd_of(10), 0.005);
+}
