@@ -10,6 +10,8 @@ namespace grainsweep::campaign {
 
 namespace {
 
+constexpr std::uint64_t most_of_a_seed = std::uint64_t{1} << 53U;
+
 /// A document without a check of keys: a later reader may know other ones.
 Json document_in(std::string_view text) {
     return Json::parse(text, nullptr, false);
@@ -51,7 +53,7 @@ Remarks remarks_in(std::string_view campaign_file) {
 }
 
 std::string further_points(std::string_view campaign_file, std::string_view name, std::string_view notes,
-                           std::span<const std::vector<Value>> rows) {
+                           std::span<const std::vector<Value>> rows, std::uint64_t number) {
     const Json document = document_in(campaign_file);
     if (!document.is_object()) throw std::invalid_argument("further points: the text is no campaign file");
     Json list = Json::array();
@@ -63,8 +65,10 @@ std::string further_points(std::string_view campaign_file, std::string_view name
     nlohmann::ordered_json text;
     text["notes"] = notes;
     text["campaign"] = name;
-    for (const char* key : {"scene", "factors", "fixed", "where", "accuracy", "seed", "model", "limits", "execution"})
+    for (const char* key : {"scene", "factors", "fixed", "where", "accuracy", "model", "limits", "execution"})
         if (const auto found = document.find(key); found != document.end()) text[key] = *found;
+    const std::uint64_t seed = document.contains("seed") ? document["seed"].get<std::uint64_t>() : 1;
+    text["seed"] = seed > most_of_a_seed - number ? number : seed + number;
     text["design"] = {{"kind", "list"}, {"rows", list}};
     return text.dump(2) + '\n';
 }

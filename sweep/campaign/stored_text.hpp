@@ -23,11 +23,11 @@ struct Remarks {
 [[nodiscard]] Remarks remarks_in(std::string_view campaign_file);
 
 /// A campaign file that asks further points of what another asks: its scene, factors, fixed values, condition,
-/// accuracy, seed, features, limits and execution, with a design of kind `list`. One row per point, one value per
-/// factor in the order of the file. Paths of files stay as they were written. Throws std::invalid_argument for a text
-/// that is no campaign file.
+/// accuracy, features, limits and execution, with a design of kind `list`. One row per point, one value per factor in
+/// the order of the file. Its seed is that of the other plus `number`, so that a setting asked again is a new run.
+/// Paths of files stay as they were written. Throws std::invalid_argument for a text that is no campaign file.
 [[nodiscard]] std::string further_points(std::string_view campaign_file, std::string_view name, std::string_view notes,
-                                         std::span<const std::vector<Value>> rows);
+                                         std::span<const std::vector<Value>> rows, std::uint64_t number);
 
 using PhaseSeconds = decltype(Cost::phases);
 /// As a JSON object; phases whose time is no number are left out. None where there are no phases.

@@ -3,6 +3,7 @@
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/page_file.hpp"
 #include "sweep/cli/settings.hpp"
+#include "sweep/cli/window_run.hpp"
 #include "sweep/report/model_tables.hpp"
 #include "sweep/report/response_models.hpp"
 #include "sweep/report/window_page.hpp"
@@ -14,10 +15,12 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -110,27 +113,51 @@ struct WindowArguments {
     std::string database, campaign, maximise, minimise;
     std::string next_file, output;
     std::int64_t next = 0;
-    bool single = false;
+    bool single = false, run = false;
+    double width = 0;
+    std::optional<std::int64_t> max_cases, workers;
     report::WindowRequest request;
 };
-
-/// "wu2020_lds_next", or with the first number that no campaign of the database has.
-std::string name_of_next(const Store& store, const std::string& campaign) {
-    const auto records = store.campaigns();
-    for (int number = 1;; ++number) {
-        std::string name = campaign + "_next" + (number == 1 ? "" : std::to_string(number));
-        if (std::ranges::find(records, name, &store::CampaignRecord::name) == records.end()) return name;
-    }
-}
 
 /// The campaign file of the next cases, written where nothing is yet.
 std::string write_next(const Store& store, const report::ModelCases& cases, const report::Window& window,
                        const std::string& file) {
     if (window.next.empty()) throw campaign::wrong_question("--next-file", file, "there is no case to run next");
-    const auto name = name_of_next(store, cases.campaign.name);
+    const auto [name, number] = name_of_next(store, cases.campaign.name);
     store::check_campaign_name(name);
-    write_page_file(file, report::next_campaign(cases, window, name));
+    write_page_file(file, report::next_campaign(cases, window, name, number));
     return name;
+}
+
+void check_run(const WindowArguments& arguments, const report::WindowRequest& request) {
+    if (!arguments.run) {
+        for (const auto& [given, option] : {std::pair{arguments.width != 0, "--width"},
+                                            {arguments.max_cases.has_value(), "--max-cases"},
+                                            {arguments.workers.has_value(), "-j"}})
+            if (given) throw campaign::wrong_question(option, "", "needs --run");
+        return;
+    }
+    if (request.objective.empty())
+        throw campaign::wrong_question("--run", "", "needs --maximize or --minimize: the width is that of its mean");
+    if (arguments.width == 0)
+        throw campaign::wrong_question(
+            "--run", "", "needs --width, the 95 % half-width of the objective's mean at the best setting");
+    if (!(arguments.width > 0))
+        throw campaign::wrong_question("--width", fmt::format("{}", arguments.width), "must be positive");
+}
+
+/// Batches of next cases until the best setting is known; then the window is answered from all of them.
+std::optional<WindowRunEnd> run_first(const WindowArguments& arguments, const report::WindowRequest& request) {
+    if (!arguments.run) return std::nullopt;
+    std::signal(SIGPIPE, SIG_IGN);  // as run does: a campaign outlives the reader of its output
+    constexpr std::int64_t usual_batch = 8, usual_most = 100;
+    return run_towards_window({.database = arguments.database,
+                               .campaign = arguments.campaign,
+                               .width = arguments.width,
+                               .batch = arguments.next > 0 ? arguments.next : usual_batch,
+                               .max_cases = arguments.max_cases.value_or(usual_most),
+                               .workers = arguments.workers},
+                              request);
 }
 
 int window(const WindowArguments& arguments, Format format) {
@@ -140,13 +167,15 @@ int window(const WindowArguments& arguments, Format format) {
         throw campaign::wrong_question("--next-file", arguments.next_file, "needs --next N, the number of cases");
     if (!arguments.next_file.empty()) check_page_file("--next-file", arguments.next_file, arguments.database);
     if (!arguments.output.empty()) check_page_file("-o", arguments.output, arguments.database);
-    const Store store(arguments.database, Store::Mode::read);
-    const auto cases = report::read_model_cases(store, arguments.campaign);
     auto request = arguments.request;
     request.objective = arguments.maximise.empty() ? arguments.minimise : arguments.maximise;
     request.maximise = arguments.minimise.empty();
     request.judged = arguments.single ? stats::Judged::single_run : stats::Judged::mean;
-    request.next = static_cast<std::size_t>(arguments.next);
+    check_run(arguments, request);
+    const auto end = run_first(arguments, request);
+    request.next = arguments.run ? 0 : static_cast<std::size_t>(arguments.next);
+    const Store store(arguments.database, Store::Mode::read);
+    const auto cases = report::read_model_cases(store, arguments.campaign);
     const auto found = report::window_of(store, cases, request);
     std::string written;
     if (!arguments.next_file.empty()) written = write_next(store, cases, found, arguments.next_file);
@@ -157,7 +186,13 @@ int window(const WindowArguments& arguments, Format format) {
                                   std::filesystem::path(arguments.database).filename().string());
         write_page_file(arguments.output, std::move(page).str());
     }
-    if (format == Format::json) report::write(std::cout, report::window_json(cases, request, found));
+    if (format == Format::json) {
+        auto json = report::window_json(cases, request, found);
+        if (end)
+            json["run"] = {
+                {"cases", end->cases}, {"batches", end->batches}, {"reached", end->reached}, {"says", end->says}};
+        report::write(std::cout, json);
+    }
     if (format == Format::csv) report::write(std::cout, report::window_rows(cases, found), format);
     if (format == Format::text) {
         report::write_window(std::cout, cases, request, found);
@@ -167,8 +202,9 @@ int window(const WindowArguments& arguments, Format format) {
                 arguments.next_file, written, arguments.next_file, arguments.database);
         if (!arguments.output.empty())
             std::cout << fmt::format("{}: the window as a page; open it in a browser, or print it\n", arguments.output);
+        if (end) std::cout << fmt::format("{} cases run in {} batches: {}\n", end->cases, end->batches, end->says);
     }
-    return 0;
+    return end ? end->exit_code : 0;
 }
 
 Command window_command() {
@@ -197,6 +233,19 @@ Command window_command() {
                     .add_option("--next-file", arguments->next_file,
                                 "a campaign file of the next cases, to be written; to be run into the same database")
                     ->type_name("FILE.json");
+                parser.add_flag("--run", arguments->run,
+                                "run batches of next cases (--next N each, 8 without it) into the database until the "
+                                "best setting is known to --width; the same command again goes on");
+                parser
+                    .add_option(
+                        "--width", arguments->width,
+                        "of --run: the 95 % half-width that the objective's mean at the best setting shall have")
+                    ->type_name("WIDTH");
+                parser.add_option("--max-cases", arguments->max_cases, "of --run: run at most N cases; default: 100")
+                    ->type_name("N")
+                    ->check(whole_number(1));
+                parser.add_option("-j", arguments->workers, "of --run: workers; 0: all cores")
+                    ->check(whole_number(0, 4096));
                 parser
                     .add_option("-o,--output", arguments->output,
                                 "a page with the window drawn: the best setting, maps and curves with their bands")

@@ -62,8 +62,12 @@ public:
         const bool a_meets = meets(a), b_meets = meets(b);
         if (a_meets != b_meets) return a_meets;
         if (!a_meets || request_->objective.empty()) return a.probability > b.probability;
-        const double sign = request_->maximise ? 1 : -1;
-        return sign * a.predictions[0].mean > sign * b.predictions[0].mean;
+        return cautious(a) > cautious(b);
+    }
+    /// The objective less one standard error: the largest mean alone is as often an error as a peak.
+    [[nodiscard]] double cautious(const Judgement& one) const {
+        const auto& objective = one.predictions[0];
+        return (request_->maximise ? 1 : -1) * objective.mean - objective.mean_error;
     }
     [[nodiscard]] bool meets(const Judgement& one) const { return one.probability >= 1 - request_->risk; }
 
@@ -279,7 +283,7 @@ std::vector<Judgement> judge_settings(const ModelCases& cases, const WindowReque
     return Question(cases, request, window.models).judge(settings);
 }
 
-std::string next_campaign(const ModelCases& cases, const Window& window, std::string_view name) {
+std::string next_campaign(const ModelCases& cases, const Window& window, std::string_view name, std::uint64_t number) {
     std::vector<std::vector<Value>> rows;
     for (const auto& one : window.next) {
         auto& row = rows.emplace_back();
@@ -289,7 +293,7 @@ std::string next_campaign(const ModelCases& cases, const Window& window, std::st
         cases.campaign.text, name,
         fmt::format("The cases that the response models of {} promise most of, by grainsweep window --next {}.",
                     cases.campaign.name, rows.size()),
-        rows);
+        rows, number);
 }
 
 }  // namespace grainsweep::report

@@ -9,8 +9,10 @@
 // with d_k(x) the probability that observable k is defined there. A comparison with an undefined value is not true, and
 // the condition does not hold where the objective is undefined. The box is searched at 4,096 Sobol points (levels as
 // they are), less those that the campaign's `where` leaves out; the best is then improved by Sobol points in boxes
-// about it that shrink to a thousandth of the range. Settings are rounded to what an engineer can set: a two-thousandth
-// of the range or finer. Nothing is drawn: same cases in, same window out.
+// about it that shrink to a thousandth of the range. Best is the largest mean less one standard error, the effective
+// best of Huang et al. 2006 (stats/process_window.hpp), with which next cases are compared, too. Settings are rounded
+// to what an engineer can set: a two-thousandth of the range or finer. Nothing is drawn: same cases in, same window
+// out.
 #pragma once
 
 #include "stats/process_window.hpp"
@@ -19,6 +21,7 @@
 #include "sweep/report/response_models.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
@@ -66,7 +69,9 @@ struct Window {
 [[nodiscard]] std::vector<Judgement> judge_settings(const ModelCases& cases, const WindowRequest& request,
                                                     const Window& window, std::span<const Setting> settings);
 
-/// A campaign file that runs the next cases: `name` its campaign, a list of the settings.
-[[nodiscard]] std::string next_campaign(const ModelCases& cases, const Window& window, std::string_view name);
+/// A campaign file that runs the next cases: `name` its campaign, a list of the settings. Its seed is that of the
+/// campaign plus `number`, the batch's from 1: a setting that is asked again is a new run.
+[[nodiscard]] std::string next_campaign(const ModelCases& cases, const Window& window, std::string_view name,
+                                        std::uint64_t number);
 
 }  // namespace grainsweep::report

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
@@ -170,6 +171,49 @@ TEST(Window, FindsTheShareTheBestSettingAndWhatToRunNext) {
     EXPECT_EQ(after["models"][0]["cases"], 244) << "they come into the same model";
 }
 
+TEST(Window, RunsBatchesUntilTheBestSettingIsKnownAndGoesOnWhereItStopped) {
+    const Ran ran("spreading_a", 4, 100);
+    const auto run = [&](const std::string& most, const std::string& width) {
+        const auto ended =
+            ran.ask({"window", "c.db", "--campaign", "c", "--where", "y <= 0.4", "--maximize", "y", "--run", "--next",
+                     "6", "--max-cases", most, "--width", width, "-j", "1", "--format", "json"});
+        return std::pair{ended.code, json::parse(ended.out, nullptr, false)};
+    };
+    const auto count = [&](const std::string& of) {
+        const auto ended = ran.ask({"query", "c.db", "SELECT count(*) AS n FROM " + of, "--format", "json"});
+        return json::parse(ended.out, nullptr, false)[0]["n"];
+    };
+    const auto [code, first] = run("4", "1e-9");
+    EXPECT_EQ(code, 1) << "the width is not reached";
+    EXPECT_EQ(first["run"]["cases"], 4);
+    EXPECT_EQ(first["run"]["reached"], false);
+    EXPECT_EQ(first["models"][0]["cases"], 104);
+    EXPECT_EQ(count("c_next"), 4) << "only so many were promised";
+    const auto [again, second] = run("12", "1e-9");
+    EXPECT_EQ(again, 1);
+    EXPECT_EQ(second["run"]["cases"], 12);
+    EXPECT_EQ(second["models"][0]["cases"], 116);
+    EXPECT_EQ(count("campaign"), 4) << "c and three batches";
+    const double width = 1.05 * 2.5 * second["best"]["mean_error"].get<double>();
+    const auto [reached, third] = run("12", json(width).dump());
+    EXPECT_EQ(reached, 0);
+    EXPECT_EQ(third["run"]["cases"], 0);
+    EXPECT_EQ(third["run"]["reached"], true);
+    EXPECT_FALSE(std::filesystem::exists(ran / "c_next.json")) << "the batch's file is gone";
+}
+
+TEST(Window, ABatchThatWasInterruptedIsFinishedFirst) {
+    const Ran ran("spreading_a", 4, 100);
+    (void)ran.answer({"window", "c.db", "--maximize", "y", "--next", "5", "--next-file", "next.json"});
+    EXPECT_EQ(ran.ask({"run", "next.json", "--db", "c.db", "-j", "1", "--max-cases", "2", "--quiet"}).code, 1);
+    const auto ended = ran.ask({"window", "c.db", "--campaign", "c", "--maximize", "y", "--run", "--max-cases", "3",
+                                "--width", "1e-9", "-j", "1", "--format", "json"});
+    EXPECT_EQ(ended.code, 1) << ended.err;
+    const auto found = json::parse(ended.out, nullptr, false);
+    EXPECT_EQ(found["run"]["batches"], 1) << "the one that was begun";
+    EXPECT_EQ(found["models"][0]["cases"], 105);
+}
+
 TEST(Window, SaysWhereNothingMeetsTheCondition) {
     const Ran ran("spreading_a", 4, 120);
     const auto found = ran.answer({"window", "c.db", "--where", "y > 5", "--maximize", "y"});
@@ -185,6 +229,10 @@ TEST(Window, RefusesInOneSentence) {
     EXPECT_NE(ran.refusal({"window", "c.db", "--where", "y * 2 > 1"}).find("is expected at '* 2 > 1'"),
               std::string::npos);
     EXPECT_NE(ran.refusal({"window", "c.db", "--maximize", "y", "--minimize", "y"}).find("one objective"),
+              std::string::npos);
+    EXPECT_NE(ran.refusal({"window", "c.db", "--where", "y > 1", "--run"}).find("needs --maximize"), std::string::npos);
+    EXPECT_NE(ran.refusal({"window", "c.db", "--maximize", "y", "--run"}).find("needs --width"), std::string::npos);
+    EXPECT_NE(ran.refusal({"window", "c.db", "--maximize", "y", "--width", "1"}).find("needs --run"),
               std::string::npos);
     EXPECT_NE(ran.refusal({"window", "c.db", "--maximize", "y", "--next-file", "n.json"}).find("--next N"),
               std::string::npos);

@@ -162,11 +162,12 @@ TEST(ModelFeatures, OfACampaignFileAreReadAndNoPartOfWhatItIs) {
 
 TEST(FurtherPoints, AreAListOfTheSameCampaign) {
     const std::vector<std::vector<Value>> rows = {{0.5, 0.25}, {1.0, 0.1}};
-    const auto text = campaign::further_points(with_model, "c_next", "why", rows);
+    const auto text = campaign::further_points(with_model, "c_next", "why", rows, 2);
     const auto further = campaign::parse_campaign(text, ".");
     const auto first = campaign::parse_campaign(with_model, ".");
     EXPECT_EQ(further.name, "c_next");
     EXPECT_EQ(further.design, "list");
+    EXPECT_EQ(further.seed, first.seed + 2) << "the same setting again is a new run";
     EXPECT_EQ(further.space.factors, first.space.factors);
     EXPECT_EQ(further.features, first.features);
     EXPECT_EQ(campaign::candidates_of(further), 2);

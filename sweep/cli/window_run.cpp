@@ -1,0 +1,158 @@
+#include "sweep/cli/window_run.hpp"
+
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/cli/run_campaign.hpp"
+#include "sweep/store/campaign_name.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace grainsweep::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using store::Store;
+
+constexpr int interrupted = 130;
+
+/// A campaign file in the current folder, where the paths in it hold, until the batch is over.
+class BatchFile {
+public:
+    BatchFile(const std::string& name, const std::string& text) : path_(name + ".json") {
+        if (std::ifstream there(path_, std::ios::binary); there) {
+            const std::string found{std::istreambuf_iterator<char>(there), {}};
+            if (found != text)
+                throw campaign::wrong_question(
+                    "--run", path_.string(),
+                    "a file of this name is there; the batch's campaign file would replace it");
+            ours_ = false;
+            return;
+        }
+        std::ofstream file(path_, std::ios::binary);
+        file << text << std::flush;
+        if (!file) throw campaign::wrong_question("--run", path_.string(), "cannot be written in the current folder");
+    }
+    ~BatchFile() {
+        std::error_code ignored;
+        if (ours_) fs::remove(path_, ignored);
+    }
+    BatchFile(const BatchFile&) = delete;
+    BatchFile& operator=(const BatchFile&) = delete;
+
+    [[nodiscard]] const fs::path& path() const { return path_; }
+
+private:
+    fs::path path_;
+    bool ours_ = true;
+};
+
+struct Batch {
+    std::string name, text;
+    std::int64_t cases = 0;
+};
+
+/// A batch that was begun and has cases that are not settled.
+std::optional<Batch> unfinished_batch(const Store& store, const std::string& campaign) {
+    for (const auto& record : store.campaigns()) {
+        if (!record.name.starts_with(campaign + "_next")) continue;
+        const auto responses = report::read_responses(store, record);
+        const auto open = responses.rows() - responses.finished();
+        if (open > 0) return Batch{record.name, record.text, static_cast<std::int64_t>(open)};
+    }
+    return std::nullopt;
+}
+
+/// What the database says of the window now.
+struct Standing {
+    std::string campaign;  ///< the name of the campaign that is asked about
+    double half_width = std::numeric_limits<double>::infinity();
+    double mean = 0;
+    std::size_t cases = 0;  ///< in the objective's model
+    std::optional<Batch> next;
+};
+
+Standing standing_of(const WindowRun& run, report::WindowRequest request, std::int64_t most) {
+    const Store store(run.database, Store::Mode::read);
+    const auto cases = report::read_model_cases(store, run.campaign);
+    request.next = static_cast<std::size_t>(std::max<std::int64_t>(0, std::min(run.batch, most)));
+    const auto window = report::window_of(store, cases, request);
+    Standing standing;
+    standing.campaign = cases.campaign.name;
+    standing.cases = window.models.front().model.quality().cases;
+    if (window.best) {
+        standing.half_width = window.best->predictions.front().mean_half_width();
+        standing.mean = window.best->predictions.front().mean;
+    }
+    if (auto open = unfinished_batch(store, cases.campaign.name)) {
+        standing.next = std::move(open);
+    } else if (!window.next.empty()) {
+        const auto [name, number] = name_of_next(store, cases.campaign.name);
+        store::check_campaign_name(name);
+        standing.next = Batch{name, report::next_campaign(cases, window, name, number),
+                              static_cast<std::int64_t>(window.next.size())};
+    }
+    return standing;
+}
+
+std::string standing_text(const Standing& standing, const report::WindowRequest& request, double width) {
+    if (!std::isfinite(standing.half_width))
+        return fmt::format("no setting meets the condition with probability {} yet", 1 - request.risk);
+    return fmt::format("best {} {:.6g} +- {:.3g} (95 %), wanted +- {:.3g}", request.objective, standing.mean,
+                       standing.half_width, width);
+}
+
+}  // namespace
+
+BatchName name_of_next(const Store& store, const std::string& campaign) {
+    const auto records = store.campaigns();
+    for (std::uint64_t number = 1;; ++number) {
+        std::string name = campaign + "_next" + (number == 1 ? "" : std::to_string(number));
+        if (std::ranges::find(records, name, &store::CampaignRecord::name) == records.end()) return {name, number};
+    }
+}
+
+WindowRunEnd run_towards_window(const WindowRun& run, const report::WindowRequest& request) {
+    WindowRunEnd end;
+    while (true) {
+        const auto left = run.max_cases - end.cases;
+        const auto standing = standing_of(run, request, left);
+        const auto text = standing_text(standing, request, run.width);
+        if (!run.quiet) std::cerr << fmt::format("{} cases: {}\n", standing.cases, text);
+        end.reached = standing.half_width <= run.width;
+        end.exit_code = end.reached ? 0 : 1;
+        end.says = text;
+        if (end.reached) return end;
+        if (left <= 0) {
+            end.says = fmt::format("{}; --max-cases {} are run", text, run.max_cases);
+            return end;
+        }
+        if (!standing.next) {
+            end.says = fmt::format("{}; no further case promises anything", text);
+            return end;
+        }
+        const BatchFile file(standing.next->name, standing.next->text);
+        RunRequest batch;
+        batch.config = file.path();
+        batch.database = run.database;
+        batch.workers = run.workers;
+        batch.max_cases = left;
+        batch.quiet = true;
+        const auto report = run_campaign(batch);
+        end.cases += std::min(standing.next->cases, left);
+        ++end.batches;
+        if (report.exit_code == interrupted) {
+            end.exit_code = interrupted;
+            end.says = "interrupted; the same command goes on";
+            return end;
+        }
+    }
+}
+
+}  // namespace grainsweep::cli
