@@ -1,7 +1,7 @@
 // Moments of a campaign by two estimators: plain, and with a response model as control variate, which says the same
 // from fewer cases (stats/assisted_moments.hpp has the equations and how the errors are checked).
 //
-// The plain one stands wherever a campaign is judged; the other is shown beside it, with and without the scatter of
+// The rules but `assisted` judge the plain one; the other is shown beside it, with and without the scatter of
 // single runs. What it is over is what the plain one is over: the settled beginning of the design, as its independent
 // sequences, and the box less what the campaign's `where` leaves out (4 scramblings of 8,192 Sobol points).
 // Features: as the campaign file has them, else the factors, logarithms where the range is wide. Ratios of factors are
