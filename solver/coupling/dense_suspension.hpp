@@ -76,23 +76,23 @@ public:
 
     void save(std::vector<std::byte>& into) const {
         fluid_.save(into);
-        flow::append_bytes<Vec3>(into, cloud_.position);
-        flow::append_bytes<Vec3>(into, cloud_.velocity);
-        flow::append_bytes<Vec3>(into, transmitted_);
+        append_bytes<Vec3>(into, cloud_.position);
+        append_bytes<Vec3>(into, cloud_.velocity);
+        append_bytes<Vec3>(into, transmitted_);
         for (std::size_t d = 0; d < 3; ++d) {
-            flow::append_bytes<double>(into, solids_.flux()[d].values());
-            flow::append_bytes<double>(into, flux_before_[d].values());
+            append_bytes<double>(into, solids_.flux()[d].values());
+            append_bytes<double>(into, flux_before_[d].values());
         }
         interaction_.save(into);
     }
     void restore(std::span<const std::byte>& from) {
         fluid_.restore(from);
-        flow::take_bytes<Vec3>(from, cloud_.position);
-        flow::take_bytes<Vec3>(from, cloud_.velocity);
-        flow::take_bytes<Vec3>(from, transmitted_);
+        take_bytes<Vec3>(from, cloud_.position);
+        take_bytes<Vec3>(from, cloud_.velocity);
+        take_bytes<Vec3>(from, transmitted_);
         for (std::size_t d = 0; d < 3; ++d) {
-            flow::take_bytes<double>(from, solids_.flux()[d].values());
-            flow::take_bytes<double>(from, flux_before_[d].values());
+            take_bytes<double>(from, solids_.flux()[d].values());
+            take_bytes<double>(from, flux_before_[d].values());
         }
         interaction_.restore(from);
         solids_.start(cloud_.position);

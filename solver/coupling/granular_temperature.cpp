@@ -141,16 +141,16 @@ void TransportedTemperature::set(double theta) {
 }
 
 void TransportedTemperature::save(std::vector<std::byte>& into) const {
-    flow::append_bytes<double>(into, values_.values());
-    flow::append_bytes<double>(into, fraction_.values());
-    flow::append_bytes(into, static_cast<std::int64_t>(started_));
+    append_bytes<double>(into, values_.values());
+    append_bytes<double>(into, fraction_.values());
+    append_bytes(into, static_cast<std::int64_t>(started_));
 }
 
 void TransportedTemperature::restore(std::span<const std::byte>& from) {
-    flow::take_bytes<double>(from, values_.values());
-    flow::take_bytes<double>(from, fraction_.values());
+    take_bytes<double>(from, values_.values());
+    take_bytes<double>(from, fraction_.values());
     std::int64_t started = 0;
-    flow::take_bytes(from, started);
+    take_bytes(from, started);
     started_ = started != 0;
 }
 

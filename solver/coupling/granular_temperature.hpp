@@ -10,9 +10,9 @@
 // time. Cells thinner than `thinnest` have no collisions: Theta stays at its least value there.
 #pragma once
 
+#include "solver/bytes.hpp"
 #include "solver/coupling/granular.hpp"
 #include "solver/coupling/solids_volume.hpp"
-#include "solver/flow/state_bytes.hpp"
 
 #include <cstddef>
 #include <span>

@@ -17,9 +17,9 @@
 // Right for particles without body force; here it leaves out the reaction to the vibrational buoyancy.
 #pragma once
 
+#include "solver/bytes.hpp"
 #include "solver/coupling/cloud.hpp"
 #include "solver/coupling/motion.hpp"
-#include "solver/flow/state_bytes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -128,8 +128,8 @@ public:
     [[nodiscard]] const std::vector<Vec3>& rates() const { return rate_; }
     [[nodiscard]] const MomentumBudget& budget() const { return budget_; }
 
-    void save(std::vector<std::byte>& into) const { flow::append_bytes<Vec3>(into, rate_); }
-    void restore(std::span<const std::byte>& from) { flow::take_bytes<Vec3>(from, rate_); }
+    void save(std::vector<std::byte>& into) const { append_bytes<Vec3>(into, rate_); }
+    void restore(std::span<const std::byte>& from) { take_bytes<Vec3>(from, rate_); }
 
 private:
     Sphere sphere_;

@@ -7,10 +7,10 @@
 // single precision: an error of 6e-8 beside the percent of the grid's.
 #pragma once
 
+#include "solver/bytes.hpp"
 #include "solver/coupling/cloud.hpp"
 #include "solver/coupling/motion.hpp"
 #include "solver/flow/field.hpp"
-#include "solver/flow/state_bytes.hpp"
 
 #include <array>
 #include <cmath>
@@ -44,10 +44,10 @@ public:
     [[nodiscard]] const std::array<std::vector<Node>, 3>& amplitudes() const { return amplitudes_; }
 
     void save(std::vector<std::byte>& into) const {
-        for (const auto& nodes : amplitudes_) flow::append_bytes<Node>(into, nodes);
+        for (const auto& nodes : amplitudes_) append_bytes<Node>(into, nodes);
     }
     void restore(std::span<const std::byte>& from) {
-        for (auto& nodes : amplitudes_) flow::take_bytes<Node>(from, nodes);
+        for (auto& nodes : amplitudes_) take_bytes<Node>(from, nodes);
     }
 
 private:
@@ -108,10 +108,10 @@ public:
     }
 
     void save(std::vector<std::byte>& into) const {
-        for (const auto& nodes : amplitudes_) flow::append_bytes<Node>(into, nodes);
+        for (const auto& nodes : amplitudes_) append_bytes<Node>(into, nodes);
     }
     void restore(std::span<const std::byte>& from) {
-        for (auto& nodes : amplitudes_) flow::take_bytes<Node>(from, nodes);
+        for (auto& nodes : amplitudes_) take_bytes<Node>(from, nodes);
     }
 
 private:

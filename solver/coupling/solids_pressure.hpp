@@ -89,11 +89,11 @@ public:
 
     void save(std::vector<std::byte>& into) const {
         temperature_.save(into);
-        flow::append_bytes(into, limited_);
+        append_bytes(into, limited_);
     }
     void restore(std::span<const std::byte>& from) {
         temperature_.restore(from);
-        flow::take_bytes(from, limited_);
+        take_bytes(from, limited_);
     }
 
 private:

@@ -1,6 +1,6 @@
 #include "solver/coupling/spring_contacts.hpp"
 
-#include "solver/flow/state_bytes.hpp"
+#include "solver/bytes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -239,24 +239,20 @@ void SpringContacts::advance_active(Cloud& cloud, double time_step, std::vector<
 }
 
 void SpringContacts::save(std::vector<std::byte>& into) const {
-    flow::append_bytes<Vec3>(into, spin_);
-    flow::append_bytes<std::int64_t>(into, idle_);
-    flow::append_bytes(into, contacts_.size());
-    flow::append_bytes<Contact>(into, contacts_);
+    append_bytes<Vec3>(into, spin_);
+    append_bytes<std::int64_t>(into, idle_);
+    ByteWriter(into).put(contacts_);
 }
 
 void SpringContacts::restore(std::span<const std::byte>& from) {
-    flow::take_bytes<Vec3>(from, spin_);
-    flow::take_bytes<std::int64_t>(from, idle_);
-    std::size_t contacts = 0;
-    flow::take_bytes(from, contacts);
-    if (contacts > from.size() / sizeof(Contact)) throw std::invalid_argument("the saved state is of another shape");
-    contacts_.resize(contacts);
-    flow::take_bytes<Contact>(from, contacts_);
+    take_bytes<Vec3>(from, spin_);
+    take_bytes<std::int64_t>(from, idle_);
+    contacts_.resize(take_count(from, sizeof(Contact)));
+    take_bytes<Contact>(from, contacts_);
     const auto particles = spin_.size();
     for (const Contact& contact : contacts_) {
         const bool wall = contact.j >= wall_base && contact.j < wall_base + 6;
-        flow::require_possible(contact.i < particles && (wall || contact.j < particles));
+        require_possible(contact.i < particles && (wall || contact.j < particles));
     }
 }
 

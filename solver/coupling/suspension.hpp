@@ -80,14 +80,14 @@ public:
 
     void save(std::vector<std::byte>& into) const {
         fluid_.save(into);
-        flow::append_bytes<Vec3>(into, cloud_.position);
-        flow::append_bytes<Vec3>(into, cloud_.velocity);
+        append_bytes<Vec3>(into, cloud_.position);
+        append_bytes<Vec3>(into, cloud_.velocity);
         if constexpr (Level::acts_on_fluid) level_.save(into);
     }
     void restore(std::span<const std::byte>& from) {
         fluid_.restore(from);
-        flow::take_bytes<Vec3>(from, cloud_.position);
-        flow::take_bytes<Vec3>(from, cloud_.velocity);
+        take_bytes<Vec3>(from, cloud_.position);
+        take_bytes<Vec3>(from, cloud_.velocity);
         if constexpr (Level::acts_on_fluid) level_.restore(from);
     }
 

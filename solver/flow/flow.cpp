@@ -1,7 +1,7 @@
 #include "solver/flow/flow.hpp"
 
+#include "solver/bytes.hpp"
 #include "solver/flow/rows.hpp"
-#include "solver/flow/state_bytes.hpp"
 #include "solver/flow/vector_clones.hpp"
 
 #include <stdexcept>

@@ -1,11 +1,11 @@
 // How a packing travels: its key, its bytes, and the text a user brings.
+#include "solver/bytes.hpp"
 #include "solver/particles/near_pairs.hpp"
 #include "solver/particles/packing.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <optional>
 #include <stdexcept>
 
@@ -65,23 +65,22 @@ std::string packing_key(const PackingRequest& request) {
 std::vector<std::byte> encode(const Packing& packing) {
     const PackingHeader header{packing_mark, packing.edge, packing.largest_overlap, packing.iterations,
                                packing.positions.size()};
-    const std::size_t size = packing.positions.size() * sizeof packing.positions[0];
-    std::vector<std::byte> bytes(sizeof header + size);
-    std::memcpy(bytes.data(), &header, sizeof header);
-    if (size > 0) std::memcpy(bytes.data() + sizeof header, packing.positions.data(), size);
+    std::vector<std::byte> bytes;
+    append_bytes(bytes, header);
+    append_bytes<std::array<double, 3>>(bytes, packing.positions);
     return bytes;
 }
 
 Packing decode_packing(std::span<const std::byte> bytes) {
     PackingHeader header;
-    if (bytes.size() >= sizeof header) std::memcpy(&header, bytes.data(), sizeof header);
+    const bool whole = bytes.size() >= sizeof header;
+    if (whole) take_bytes(bytes, header);
     constexpr std::size_t record = sizeof(std::array<double, 3>);
-    if (bytes.size() < sizeof header || header.mark != packing_mark ||
-        header.count != (bytes.size() - sizeof header) / record || (bytes.size() - sizeof header) % record != 0)
+    if (!whole || header.mark != packing_mark || header.count != bytes.size() / record || bytes.size() % record != 0)
         throw std::invalid_argument("these bytes are no packing");
     Packing packing{header.edge, {}, header.largest_overlap, static_cast<int>(header.iterations)};
     packing.positions.resize(header.count);
-    if (header.count > 0) std::memcpy(packing.positions.data(), bytes.data() + sizeof header, header.count * record);
+    take_bytes<std::array<double, 3>>(bytes, packing.positions);
     for (const auto& x : packing.positions)
         for (const double c : x)
             if (!(c >= 0 && c <= packing.edge)) throw std::invalid_argument("these bytes are no packing");

@@ -10,6 +10,7 @@
 //                0.62 (1 - (mu - 0.2)/2)(1 - (v - 1.4)/4)(1 - exp(-(r - 1)/r0)), r0 = 0.8 (1 + 0.8 (mu - 0.2))
 //   spreading_b  the same, but zero for r <= 1.25 (a jump)
 // plus noise: y (1 + noise (2u - 1)), u addressed by the case's seed.
+#include "solver/bytes.hpp"
 #include "solver/scenes/catalogue.hpp"
 #include "stats/random.hpp"
 
@@ -114,13 +115,13 @@ public:
     }
 
     void save(Bytes& into) const override {
-        into.resize(sizeof time_);
-        std::memcpy(into.data(), &time_, sizeof time_);
+        into.clear();
+        append_bytes(into, time_);
     }
     void restore(std::span<const std::byte> from) override {
         if (from.size() != sizeof time_) throw std::invalid_argument("checkpoint of another scene");
         double saved = 0;
-        std::memcpy(&saved, from.data(), sizeof saved);
+        take_bytes(from, saved);
         if (!(saved >= 0 && saved <= wait_)) throw std::invalid_argument("checkpoint holds a time that no state has");
         time_ = saved;
     }

@@ -13,11 +13,11 @@
 // when no mobile sphere is left, and, under the rule "quiet", when the powder has come to rest: for 1.5 t* no more than
 // one sphere in a thousand of those left (or one) moved at a time, and the count changed by no more. Those few may
 // still leave; beyond them the rule presumes that what rests stays at rest.
+#include "solver/bytes.hpp"
 #include "solver/geometry/level_surface.hpp"
 #include "solver/geometry/tpms_outlet.hpp"
 #include "solver/geometry/vector.hpp"
 #include "solver/observables/beverloo.hpp"
-#include "solver/particles/bytes.hpp"
 #include "solver/particles/tpms_filling.hpp"
 #include "solver/scenes/catalogue.hpp"
 #include "solver/scenes/dem_picture.hpp"
@@ -244,7 +244,7 @@ void TpmsDischarge::observe(Observations& into) const {
 }
 
 void TpmsDischarge::save(Bytes& into) const {
-    particles::ByteWriter out(into);
+    ByteWriter out(into);
     out.put(step_);
     out.put(mobile_left_);
     out.put(max_overlap_);
@@ -256,7 +256,7 @@ void TpmsDischarge::save(Bytes& into) const {
 }
 
 void TpmsDischarge::restore(std::span<const std::byte> from) {
-    particles::ByteReader in(from);
+    ByteReader in(from);
     in.get(step_);
     in.get(mobile_left_);
     in.get(max_overlap_);

@@ -66,12 +66,14 @@ struct Rule {
 const std::vector<Rule>& rules() {
     static const std::vector<Rule> table = {
         {"stats/", {"stats/"}},
-        {"solver/particles/", {"solver/particles/", "solver/geometry/", "stats/"}},
+        {"solver/bytes.hpp", {}},
+        {"solver/particles/", {"solver/particles/", "solver/bytes.hpp", "solver/geometry/", "stats/"}},
         {"solver/geometry/", {"solver/geometry/", "stats/"}},
-        {"solver/dem/", {"solver/dem/", "solver/particles/", "solver/geometry/", "stats/"}},
-        {"solver/flow/", {"solver/flow/", "solver/geometry/", "stats/"}},
+        {"solver/dem/", {"solver/dem/", "solver/bytes.hpp", "solver/particles/", "solver/geometry/", "stats/"}},
+        {"solver/flow/", {"solver/flow/", "solver/bytes.hpp", "solver/geometry/", "stats/"}},
         {"solver/coupling/",
-         {"solver/coupling/", "solver/flow/", "solver/dem/", "solver/particles/", "solver/geometry/", "stats/"}},
+         {"solver/coupling/", "solver/bytes.hpp", "solver/flow/", "solver/dem/", "solver/particles/",
+          "solver/geometry/", "stats/"}},
         {"solver/observables/",
          {"solver/observables/", "solver/dem/engine.hpp", "solver/flow/", "solver/particles/", "solver/geometry/",
           "stats/"}},

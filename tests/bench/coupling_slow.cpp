@@ -104,7 +104,7 @@ void shelve_unsettled_flow(const Published& run, std::int64_t steps) {
         means.add(fluid, 24);
     }
     Bytes contents;
-    flow::append_bytes(contents, means);
+    append_bytes(contents, means);
     coupling::PeriodicFlow(fluid.grid(), sum).save(contents);
     shelf.put(replay.flow_key(), contents);
 }

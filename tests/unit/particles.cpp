@@ -1,6 +1,6 @@
 #include "solver/particles/particles.hpp"
 
-#include "solver/particles/bytes.hpp"
+#include "solver/bytes.hpp"
 #include "solver/particles/neighbour_list.hpp"
 #include "solver/particles/pair_memory.hpp"
 #include "stats/random.hpp"

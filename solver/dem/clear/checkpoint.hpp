@@ -66,7 +66,7 @@ void ClearEngine<Laws, case_needs>::visit_state(Self& self, Visit&& visit) {
 template <class Laws, Needs case_needs>
 void ClearEngine<Laws, case_needs>::save(std::vector<std::byte>& into) const {
     into.clear();
-    particles::ByteWriter out(into);
+    ByteWriter out(into);
     out.put(checkpoint_format);
     out.put(needs);
     out.put(Laws::values_of(material_));
@@ -101,7 +101,7 @@ void ClearEngine<Laws, case_needs>::save(std::vector<std::byte>& into) const {
 /// cells reach. What moves too fast or overlaps too much, the steps find out.
 template <class Laws, Needs case_needs>
 void ClearEngine<Laws, case_needs>::require_possible() const {
-    constexpr auto require = particles::ByteReader::require;
+    constexpr auto require = ByteReader::require;
     constexpr std::int64_t most_steps = std::int64_t{1} << 53U;
     const std::size_t n = p_.size();
     require(n <= spheres_at_start_);
@@ -137,7 +137,7 @@ void ClearEngine<Laws, case_needs>::require_possible() const {
 }
 
 template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::restore_walls(particles::ByteReader& in) {
+void ClearEngine<Laws, case_needs>::restore_walls(ByteReader& in) {
     std::uint64_t walls = 0;
     in.get(walls);
     walls_.clear();
@@ -167,7 +167,7 @@ void ClearEngine<Laws, case_needs>::restore_walls(particles::ByteReader& in) {
 
 template <class Laws, Needs case_needs>
 void ClearEngine<Laws, case_needs>::restore(std::span<const std::byte> from) {
-    particles::ByteReader in(from);
+    ByteReader in(from);
     const auto expect = [&in](const auto& mine) {
         auto theirs = mine;
         in.get(theirs);

@@ -9,11 +9,11 @@
 // has moved half the skin since: no contact is ever missed. Sums run in a fixed order: same input, same bits.
 #pragma once
 
+#include "solver/bytes.hpp"
 #include "solver/dem/engine.hpp"
 #include "solver/dem/laws/contact.hpp"
 #include "solver/dem/walls/moving_wall.hpp"
 #include "solver/geometry/domain.hpp"
-#include "solver/particles/bytes.hpp"
 #include "solver/particles/neighbour_list.hpp"
 #include "solver/particles/pair_memory.hpp"
 #include "solver/particles/particles.hpp"
@@ -164,7 +164,7 @@ private:
     template <class Self, class Visit>
     static void visit_state(Self& self, Visit&& visit);
     void require_possible() const;
-    void restore_walls(particles::ByteReader& in);
+    void restore_walls(ByteReader& in);
 
     Material material_;
     Laws laws_;

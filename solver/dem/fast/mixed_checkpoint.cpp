@@ -89,9 +89,7 @@ void MixedEngine::save(std::vector<std::byte>& into) const {
 /// Whatever the bytes were: every index leads to something, every count is that of its column. What moves too fast or
 /// overlaps too much, the steps find out.
 void MixedEngine::require_possible() const {
-    const auto require = [](bool possible) {
-        if (!possible) throw std::invalid_argument("the checkpoint holds values that no state has");
-    };
+    constexpr auto require = ByteReader::require;
     constexpr std::int64_t most_steps = std::int64_t{1} << 53U;
     const std::int32_t n = field_.count, width = kernels_->width;
     const Columns& c = columns_;
@@ -168,7 +166,7 @@ void MixedEngine::restore(std::span<const std::byte> from) {
     if (std::memcmp(&theirs, &own, sizeof own) != 0)
         throw std::invalid_argument("the checkpoint belongs to another setup, instruction path or version");
     pass(*this, reader);
-    if (!reader.finished()) throw std::invalid_argument("the checkpoint is longer than its state");
+    reader.finish();
     require_possible();
     columns_.hold_particles(size(), walls_.count());
     columns_.hold_pairs(static_cast<std::size_t>(std::max(field_.outer_count, field_.inner_count)) + spare);

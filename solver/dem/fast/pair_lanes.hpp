@@ -3,7 +3,7 @@
 // its lanes; internal linkage on purpose.
 #pragma once
 
-#include "solver/dem/fast/lanes.hpp"
+#include "solver/dem/fast/particle_lanes.hpp"
 
 namespace grainsweep::dem::fast {
 namespace {

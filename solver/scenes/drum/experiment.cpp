@@ -1,7 +1,7 @@
 #include "solver/scenes/drum/experiment.hpp"
 
+#include "solver/bytes.hpp"
 #include "solver/observables/layer.hpp"
-#include "solver/particles/bytes.hpp"
 #include "solver/scenes/dem_picture.hpp"
 #include "solver/scenes/drum/record.hpp"
 #include "solver/scenes/kit/slices.hpp"
@@ -160,7 +160,7 @@ void Experiment::save(Bytes& into) const {
     into.clear();
     Bytes engine;
     engine_->save(engine);
-    particles::ByteWriter out(into);
+    ByteWriter out(into);
     const auto put = [&out](const auto& value) { out.put(value); };
     put(checkpoint_format);
     put(step_);
@@ -178,7 +178,7 @@ void Experiment::save(Bytes& into) const {
 }
 
 void Experiment::restore(std::span<const std::byte> from) {
-    particles::ByteReader in(from);
+    ByteReader in(from);
     std::uint64_t format = 0;
     in.get(format);
     if (format != checkpoint_format) throw std::invalid_argument("checkpoint of another scene");

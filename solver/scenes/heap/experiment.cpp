@@ -1,6 +1,6 @@
 #include "solver/scenes/heap/experiment.hpp"
 
-#include "solver/particles/bytes.hpp"
+#include "solver/bytes.hpp"
 #include "solver/scenes/dem_picture.hpp"
 #include "solver/scenes/heap/record.hpp"
 #include "solver/scenes/kit/slices.hpp"
@@ -77,7 +77,7 @@ void Experiment::save(Bytes& into) const {
     into.clear();
     Bytes engine;
     engine_->save(engine);
-    particles::ByteWriter out(into);
+    ByteWriter out(into);
     out.put(checkpoint_format);
     out.put(step_);
     out.put(ended_);
@@ -85,7 +85,7 @@ void Experiment::save(Bytes& into) const {
 }
 
 void Experiment::restore(std::span<const std::byte> from) {
-    particles::ByteReader in(from);
+    ByteReader in(from);
     std::uint64_t format = 0;
     in.get(format);
     if (format != checkpoint_format) throw std::invalid_argument("checkpoint of another scene");

@@ -1,7 +1,7 @@
 #include "solver/scenes/hopper/experiment.hpp"
 
+#include "solver/bytes.hpp"
 #include "solver/observables/beverloo.hpp"
-#include "solver/particles/bytes.hpp"
 #include "solver/scenes/dem_picture.hpp"
 #include "solver/scenes/hopper/record.hpp"
 #include "solver/scenes/kit/filling.hpp"
@@ -128,7 +128,7 @@ void Experiment::save(Bytes& into) const {
     into.clear();
     Bytes engine;
     engine_->save(engine);
-    particles::ByteWriter out(into);
+    ByteWriter out(into);
     out.put(checkpoint_format);
     out.put(step_);
     out.put(ended_);
@@ -139,7 +139,7 @@ void Experiment::save(Bytes& into) const {
 }
 
 void Experiment::restore(std::span<const std::byte> from) {
-    particles::ByteReader in(from);
+    ByteReader in(from);
     std::uint64_t format = 0;
     in.get(format);
     if (format != checkpoint_format) throw std::invalid_argument("checkpoint of another scene");

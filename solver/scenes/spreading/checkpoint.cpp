@@ -1,4 +1,4 @@
-#include "solver/particles/bytes.hpp"
+#include "solver/bytes.hpp"
 #include "solver/scenes/spreading/experiment.hpp"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ void Experiment::save(Bytes& into) const {
     into.clear();
     Bytes engine;
     engine_->save(engine);
-    particles::ByteWriter out(into);
+    ByteWriter out(into);
     out.put(checkpoint_format);
     out.put(layer_);
     out.put(step_);
@@ -49,7 +49,7 @@ void Experiment::save(Bytes& into) const {
 }
 
 void Experiment::restore(std::span<const std::byte> from) {
-    particles::ByteReader in(from);
+    ByteReader in(from);
     std::uint64_t format = 0;
     in.get(format);
     if (format != checkpoint_format) throw std::invalid_argument("checkpoint of another scene");

@@ -1,6 +1,6 @@
 #include "solver/scenes/thermovibration/record.hpp"
 
-#include "solver/flow/state_bytes.hpp"
+#include "solver/bytes.hpp"
 #include "solver/observables/accumulation.hpp"
 #include "solver/observables/flow_state.hpp"
 
@@ -37,17 +37,13 @@ void add_profile(Observations& into, const char* name, std::span<const coupling:
 
 template <class T>
 void save_column(std::vector<std::byte>& into, const std::vector<T>& column) {
-    flow::append_bytes(into, column.size());
-    flow::append_bytes<T>(into, column);
+    ByteWriter(into).put(column);
 }
 
 template <class T>
 void restore_column(std::span<const std::byte>& from, std::vector<T>& column) {
-    std::size_t size = 0;
-    flow::take_bytes(from, size);
-    if (size > from.size() / sizeof(T)) throw std::invalid_argument("the saved state is of another shape");
-    column.resize(size);
-    flow::take_bytes<T>(from, column);
+    column.resize(take_count(from, sizeof(T)));
+    take_bytes<T>(from, column);
 }
 
 }  // namespace
@@ -113,30 +109,29 @@ void Record::observe(Observations& into) const {
 }
 
 void Record::save(std::vector<std::byte>& into) const {
-    flow::append_bytes(into, flow_);
-    flow::append_bytes(into, static_cast<std::int64_t>(has_flow_));
-    flow::append_bytes(into, budget_);
-    flow::append_bytes(into, static_cast<std::int64_t>(has_budget_));
-    flow::append_bytes(into, limited_share_);
+    append_bytes(into, flow_);
+    append_bytes(into, static_cast<std::int64_t>(has_flow_));
+    append_bytes(into, budget_);
+    append_bytes(into, static_cast<std::int64_t>(has_budget_));
+    append_bytes(into, limited_share_);
     for (const auto* column : {&times_, &k_, &k5_, &k20_, &k40_, &k_cells_}) save_column(into, *column);
     save_column(into, last_);
 }
 
 void Record::restore(std::span<const std::byte>& from) {
-    flow::take_bytes(from, flow_);
+    take_bytes(from, flow_);
     std::int64_t has_flow = 0;
-    flow::take_bytes(from, has_flow);
+    take_bytes(from, has_flow);
     has_flow_ = has_flow != 0;
-    flow::take_bytes(from, budget_);
+    take_bytes(from, budget_);
     std::int64_t has_budget = 0;
-    flow::take_bytes(from, has_budget);
+    take_bytes(from, has_budget);
     has_budget_ = has_budget != 0;
-    flow::take_bytes(from, limited_share_);
+    take_bytes(from, limited_share_);
     for (auto* column : {&times_, &k_, &k5_, &k20_, &k40_, &k_cells_}) restore_column(from, *column);
     restore_column(from, last_);
-    for (const auto* column : {&k_, &k5_, &k20_, &k40_, &k_cells_})
-        flow::require_possible(column->size() == times_.size());
-    flow::require_possible(last_.size() == (times_.empty() ? 0 : static_cast<std::size_t>(question_.particles)));
+    for (const auto* column : {&k_, &k5_, &k20_, &k40_, &k_cells_}) require_possible(column->size() == times_.size());
+    require_possible(last_.size() == (times_.empty() ? 0 : static_cast<std::size_t>(question_.particles)));
 }
 
 }  // namespace grainsweep::thermovibration

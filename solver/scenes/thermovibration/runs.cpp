@@ -140,28 +140,28 @@ void SpinUp::compare() {
 void SpinUp::save(std::vector<std::byte>& into) const {
     fluid_.save(into);
     for (std::size_t d = 0; d < 3; ++d) {
-        flow::append_bytes<double>(into, mean_[d].values());
-        flow::append_bytes<double>(into, previous_mean_[d].values());
+        append_bytes<double>(into, mean_[d].values());
+        append_bytes<double>(into, previous_mean_[d].values());
     }
-    flow::append_bytes(into, mean_square_);
-    flow::append_bytes(into, passes_);
-    flow::append_bytes(into, stage_);
-    flow::append_bytes(into, means_);
+    append_bytes(into, mean_square_);
+    append_bytes(into, passes_);
+    append_bytes(into, stage_);
+    append_bytes(into, means_);
     if (stage_ != Stage::settling) stored_.save(into);
 }
 
 void SpinUp::restore(std::span<const std::byte>& from) {
     fluid_.restore(from);
     for (std::size_t d = 0; d < 3; ++d) {
-        flow::take_bytes<double>(from, mean_[d].values());
-        flow::take_bytes<double>(from, previous_mean_[d].values());
+        take_bytes<double>(from, mean_[d].values());
+        take_bytes<double>(from, previous_mean_[d].values());
     }
-    flow::take_bytes(from, mean_square_);
-    flow::take_bytes(from, passes_);
-    flow::take_bytes(from, stage_);
-    flow::take_bytes(from, means_);
-    flow::require_possible(stage_ == Stage::settling || stage_ == Stage::storing || stage_ == Stage::stored);
-    flow::require_possible(passes_ >= 0 && passes_ <= 2 && thermovibration::fault(fluid_, time()).empty());
+    take_bytes(from, mean_square_);
+    take_bytes(from, passes_);
+    take_bytes(from, stage_);
+    take_bytes(from, means_);
+    require_possible(stage_ == Stage::settling || stage_ == Stage::storing || stage_ == Stage::stored);
+    require_possible(passes_ >= 0 && passes_ <= 2 && thermovibration::fault(fluid_, time()).empty());
     if (stage_ != Stage::settling) stored_.restore(from);
 }
 

@@ -55,20 +55,20 @@ public:
     void save(Bytes& into) const override {
         into.clear();
         suspension_.save(into);
-        flow::append_bytes(into, means_);
-        flow::append_bytes(into, budget_);
+        append_bytes(into, means_);
+        append_bytes(into, budget_);
         record_.save(into);
     }
     void restore(std::span<const std::byte> from) override {
         suspension_.restore(from);
-        flow::take_bytes(from, means_);
-        flow::take_bytes(from, budget_);
+        take_bytes(from, means_);
+        take_bytes(from, budget_);
         record_.restore(from);
-        flow::require_possible(from.empty() && steps() <= question_.total_steps());
-        flow::require_possible(fault(suspension_.fluid(), time()).empty());
-        flow::require_possible(fault(suspension_.cloud(), suspension_.fluid().time_step(),
-                                     1.0 / static_cast<double>(question_.cells), time())
-                                   .empty());
+        require_possible(from.empty() && steps() <= question_.total_steps());
+        require_possible(fault(suspension_.fluid(), time()).empty());
+        require_possible(fault(suspension_.cloud(), suspension_.fluid().time_step(),
+                               1.0 / static_cast<double>(question_.cells), time())
+                             .empty());
     }
     [[nodiscard]] Snapshot snapshot() const override {
         Snapshot now = picture(question_, suspension_.cloud());
@@ -195,11 +195,11 @@ public:
     }
     void save(Bytes& into) const override {
         into.clear();
-        flow::append_bytes(into, static_cast<std::int64_t>(spin_up_.has_value()));
-        flow::append_bytes(into, steps_);
-        flow::append_bytes(into, spun_);
-        flow::append_bytes<coupling::Vec3>(into, cloud_.position);
-        flow::append_bytes<coupling::Vec3>(into, cloud_.velocity);
+        append_bytes(into, static_cast<std::int64_t>(spin_up_.has_value()));
+        append_bytes(into, steps_);
+        append_bytes(into, spun_);
+        append_bytes<coupling::Vec3>(into, cloud_.position);
+        append_bytes<coupling::Vec3>(into, cloud_.velocity);
         record_.save(into);
         if (spin_up_)
             spin_up_->save(into);
@@ -208,11 +208,11 @@ public:
     }
     void restore(std::span<const std::byte> from) override {
         std::int64_t spinning = 0;
-        flow::take_bytes(from, spinning);
-        flow::take_bytes(from, steps_);
-        flow::take_bytes(from, spun_);
-        flow::take_bytes<coupling::Vec3>(from, cloud_.position);
-        flow::take_bytes<coupling::Vec3>(from, cloud_.velocity);
+        take_bytes(from, spinning);
+        take_bytes(from, steps_);
+        take_bytes(from, spun_);
+        take_bytes<coupling::Vec3>(from, cloud_.position);
+        take_bytes<coupling::Vec3>(from, cloud_.velocity);
         record_.restore(from);
         if (spinning != 0) {
             spin_up_.emplace(question_);
@@ -221,9 +221,8 @@ public:
             spin_up_.reset();
             flow_.restore(from);
         }
-        flow::require_possible(from.empty() && steps_ >= 0 && steps_ <= question_.total_steps());
-        flow::require_possible(
-            fault(cloud_, question_.step(), 1.0 / static_cast<double>(question_.cells), time()).empty());
+        require_possible(from.empty() && steps_ >= 0 && steps_ <= question_.total_steps());
+        require_possible(fault(cloud_, question_.step(), 1.0 / static_cast<double>(question_.cells), time()).empty());
     }
     /// Without temperature, which the stored flow has not.
     [[nodiscard]] Snapshot snapshot() const override {
@@ -246,7 +245,7 @@ private:
         fault_ = spin_up_->fault();
         if (!spin_up_->periodic()) return;
         Bytes contents;
-        flow::append_bytes(contents, spin_up_->means());
+        append_bytes(contents, spin_up_->means());
         spin_up_->stored().save(contents);
         artefacts_.put(question_.flow_key(), contents);
         spun_ = spin_up_->time();
@@ -266,9 +265,9 @@ private:
 
     void receive(std::span<const std::byte> contents) {
         FlowMeans means;
-        flow::take_bytes(contents, means);
+        take_bytes(contents, means);
         flow_.restore(contents);
-        flow::require_possible(contents.empty());
+        require_possible(contents.empty());
         record_.set_flow(means);
     }
 

@@ -101,7 +101,7 @@ void TpmsRecord::observe(Observations& into) const {
     tpms_record::max_force.record(into, max_force_);
 }
 
-void TpmsRecord::save(particles::ByteWriter& out) const {
+void TpmsRecord::save(ByteWriter& out) const {
     out.put(quiet_since_);
     out.put(quiet_count_);
     out.put(max_force_);
@@ -110,7 +110,7 @@ void TpmsRecord::save(particles::ByteWriter& out) const {
     out.put(forces_);
 }
 
-void TpmsRecord::restore(particles::ByteReader& in) {
+void TpmsRecord::restore(ByteReader& in) {
     in.get(quiet_since_);
     in.get(quiet_count_);
     in.get(max_force_);

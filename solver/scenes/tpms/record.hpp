@@ -2,8 +2,8 @@
 // come to rest.
 #pragma once
 
+#include "solver/bytes.hpp"
 #include "solver/dem/engine.hpp"
-#include "solver/particles/bytes.hpp"
 #include "solver/scenes/tpms/question.hpp"
 
 #include <cstdint>
@@ -43,8 +43,8 @@ public:
     [[nodiscard]] double time_to(double share) const;
     void observe(Observations& into) const;
 
-    void save(particles::ByteWriter& out) const;
-    void restore(particles::ByteReader& in);
+    void save(ByteWriter& out) const;
+    void restore(ByteReader& in);
 
 private:
     [[nodiscard]] double in_t_star(double step) const;
