@@ -13,7 +13,6 @@
 // when no mobile sphere is left, and, under the rule "quiet", when the powder has come to rest: for 1.5 t* no more than
 // one sphere in a thousand of those left (or one) moved at a time, and the count changed by no more. Those few may
 // still leave; beyond them the rule presumes that what rests stays at rest.
-#include "solver/bytes.hpp"
 #include "solver/geometry/level_surface.hpp"
 #include "solver/geometry/tpms_outlet.hpp"
 #include "solver/geometry/vector.hpp"
@@ -22,6 +21,7 @@
 #include "solver/scenes/catalogue.hpp"
 #include "solver/scenes/dem_picture.hpp"
 #include "solver/scenes/drawn_box.hpp"
+#include "solver/scenes/kit/checkpoint.hpp"
 #include "solver/scenes/tpms/observables.hpp"
 #include "solver/scenes/tpms/question.hpp"
 #include "solver/scenes/tpms/record.hpp"
@@ -262,9 +262,7 @@ void TpmsDischarge::restore(std::span<const std::byte> from) {
     in.get(max_overlap_);
     in.get(fault_);
     record_.restore(in);
-    std::vector<std::byte> engine;
-    in.get(engine);
-    in.finish();
+    const Bytes engine = kit::engine_at_end(in);
     in.require(step_ >= 0 && step_ <= last_step_ && mobile_left_ >= 0 && mobile_left_ <= start_count_);
     engine_->restore(engine);
     engine_->state(state_);

@@ -1,9 +1,9 @@
 #include "solver/scenes/drum/experiment.hpp"
 
-#include "solver/bytes.hpp"
 #include "solver/observables/layer.hpp"
 #include "solver/scenes/dem_picture.hpp"
 #include "solver/scenes/drum/record.hpp"
+#include "solver/scenes/kit/checkpoint.hpp"
 #include "solver/scenes/kit/slices.hpp"
 
 #include <algorithm>
@@ -25,10 +25,6 @@ constexpr std::array names = {"drum", "front_plate", "rear_plate"};
 
 double angle_of(const observables::Line& line) {
     return std::atan(-line.slope) / degree;
-}
-
-void record_known(const kit::Scalar& observable, Observations& into, double value) {
-    if (std::isfinite(value)) observable.record(into, value);
 }
 
 }  // namespace
@@ -95,9 +91,9 @@ void Experiment::observe_angles(Observations& into) const {
     double mean = 0, squares = 0;
     for (const double angle : angle_) mean += angle / n;
     for (const double angle : angle_) squares += (angle - mean) * (angle - mean) / n;
-    record_known(record::angle_cm, into, mean);
-    record_known(record::angle_cm_deviation, into, std::sqrt(squares));
-    record_known(record::angle_cm_error, into, observables::block_standard_error(angle_, blocks));
+    record::angle_cm.record_known(into, mean);
+    record::angle_cm_deviation.record_known(into, std::sqrt(squares));
+    record::angle_cm_error.record_known(into, observables::block_standard_error(angle_, blocks));
     auto& series = record::angle_series.in(into);
     for (std::size_t k = 0; k < angle_.size(); ++k)
         series.push_back({.time = study_.time_of_frame(static_cast<std::int64_t>(k)), .value = angle_[k]});
@@ -107,17 +103,17 @@ void Experiment::observe_flow(Observations& into) const {
     const auto n = static_cast<double>(angle_.size());
     const observables::Line surface = solid_.surface_line(study_.radius);
     const auto below = flow_.below(surface);
-    record_known(record::angle_surface, into, angle_of(surface));
-    record_known(record::surface_residual, into, surface.residual / study_.diameter);
-    record_known(record::surface_speed, into, below.surface_speed / study_.wall_speed());
-    record_known(record::layer_depth, into, below.depth);
+    record::angle_surface.record_known(into, angle_of(surface));
+    record::surface_residual.record_known(into, surface.residual / study_.diameter);
+    record::surface_speed.record_known(into, below.surface_speed / study_.wall_speed());
+    record::layer_depth.record_known(into, below.depth);
     if (wall_layer_frames_ > 0) {
         const double carried = study_.speed * (study_.radius - study_.diameter / 2);
         const double share = wall_layer_sum_ / static_cast<double>(wall_layer_frames_) / carried;
         record::wall_layer_speed.record(into, share);
         record::wall_slip.record(into, 1 - share);
     }
-    record_known(record::coordination, into, coordination_sum_ / n);
+    record::coordination.record_known(into, coordination_sum_ / n);
     record::kinetic_energy.record(into, energy_sum_ / n);
     const double turned = study_.speed * (time() - study_.time_of_frame(0));
     if (turned > 0) record::torque.record(into, (work_done() - first_work_) / turned + rolling_sum_ / n);
@@ -143,8 +139,8 @@ void Experiment::observe_cover(Observations& into) const {
         return angle_of(
             observables::fitted_line(observables::falling_through(grid, share, hidden, reach * study_.radius)));
     };
-    record_known(record::angle_cover, into, angle_within(middle_half));
-    record_known(record::angle_cover_middle, into, angle_within(middle_fifth));
+    record::angle_cover.record_known(into, angle_within(middle_half));
+    record::angle_cover_middle.record_known(into, angle_within(middle_fifth));
 }
 
 Snapshot Experiment::snapshot() const {
@@ -157,32 +153,24 @@ Snapshot Experiment::snapshot() const {
 }
 
 void Experiment::save(Bytes& into) const {
-    into.clear();
-    Bytes engine;
-    engine_->save(engine);
-    ByteWriter out(into);
-    const auto put = [&out](const auto& value) { out.put(value); };
-    put(checkpoint_format);
-    put(step_);
-    put(angle_);
-    decltype(solid_)::fields(solid_, put);
-    decltype(flow_)::fields(flow_, put);
-    decltype(cover_)::fields(cover_, put);
-    put(wall_layer_sum_);
-    put(wall_layer_frames_);
-    put(coordination_sum_);
-    put(energy_sum_);
-    put(rolling_sum_);
-    put(first_work_);
-    put(engine);
+    kit::write_checkpoint(into, checkpoint_format, *engine_, [this](ByteWriter& out) {
+        const auto put = [&out](const auto& value) { out.put(value); };
+        put(step_);
+        put(angle_);
+        decltype(solid_)::fields(solid_, put);
+        decltype(flow_)::fields(flow_, put);
+        decltype(cover_)::fields(cover_, put);
+        put(wall_layer_sum_);
+        put(wall_layer_frames_);
+        put(coordination_sum_);
+        put(energy_sum_);
+        put(rolling_sum_);
+        put(first_work_);
+    });
 }
 
 void Experiment::restore(std::span<const std::byte> from) {
-    ByteReader in(from);
-    std::uint64_t format = 0;
-    in.get(format);
-    if (format != checkpoint_format) throw std::invalid_argument("checkpoint of another scene");
-    Bytes engine;
+    ByteReader in = kit::open_checkpoint(from, checkpoint_format);
     // A column has as many entries as the experiment has cells.
     const auto get = [&in]<class T>(T& value) {
         if constexpr (requires { value.size(); }) {
@@ -205,8 +193,7 @@ void Experiment::restore(std::span<const std::byte> from) {
     get(energy_sum_);
     in.get(rolling_sum_);
     in.get(first_work_);
-    in.get(engine);
-    in.finish();
+    const Bytes engine = kit::engine_at_end(in);
     in.require(frames_taken() <= study_.frames && step_ >= 0 && step_ <= study_.last_step());
     in.require(frames_taken() == 0 || step_ >= study_.step_of_frame(frames_taken() - 1));
     in.require(frames_taken() == study_.frames || step_ < study_.step_of_frame(frames_taken()));

@@ -2,31 +2,23 @@
 
 #include "solver/scenes/drum/question.hpp"
 #include "solver/scenes/kit/filling.hpp"
+#include "solver/scenes/kit/sentence.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
-#include <stdexcept>
 #include <string>
 
 namespace grainsweep::drum {
 namespace {
 
+using kit::require;
+using kit::sentence;
+
 constexpr double most_steps = 1e10, most_frames = 1e5, most_cells = 1e6;
 constexpr double most_particles = 5e6;
 constexpr double narrowest_period = 3;  // largest diameters: two and the skin of the lists
 constexpr double narrowest_drum = 4;    // largest diameters
-
-std::string text(const char* format, double a, double b = 0, double c = 0) {
-    char buffer[240];
-    std::snprintf(buffer, sizeof buffer, format, a, b, c);
-    return buffer;
-}
-
-void require(bool holds, const std::string& sentence) {
-    if (!holds) throw std::invalid_argument(sentence);
-}
 
 double drum_volume(const Study& s) {
     return std::numbers::pi * s.radius * s.radius * s.length;
@@ -35,20 +27,21 @@ double drum_volume(const Study& s) {
 void check_size(const Study& s) {
     const double largest = s.sizes.largest() * s.diameter;
     require(2 * s.radius >= narrowest_drum * largest,
-            text("drum_diameter of %.4g m is less than %.0f of the largest particles, %.4g m wide", 2 * s.radius,
-                 narrowest_drum, largest));
+            sentence("drum_diameter of %.4g m is less than %.0f of the largest particles, %.4g m wide", 2 * s.radius,
+                     narrowest_drum, largest));
     if (s.has_plates)
-        require(s.length > largest, text("a length of %.4g m between plates does not hold the largest particles, %.4g "
-                                         "m wide",
-                                         s.length, largest));
+        require(s.length > largest,
+                sentence("a length of %.4g m between plates does not hold the largest particles, %.4g "
+                         "m wide",
+                         s.length, largest));
     else
         require(s.length >= narrowest_period * largest,
-                text("a period of %.4g m (length) is less than %.0f of the largest particles, %.4g m wide", s.length,
-                     narrowest_period, largest));
+                sentence("a period of %.4g m (length) is less than %.0f of the largest particles, %.4g m wide",
+                         s.length, narrowest_period, largest));
     const double columns = 2 * std::ceil(s.radius / s.occupancy_cell);
     require(columns * columns <= most_cells,
-            text("occupancy_cell of %.4g m makes %.4g cells across the drum; at most 1000 by 1000 are kept",
-                 s.occupancy_cell, columns));
+            sentence("occupancy_cell of %.4g m makes %.4g cells across the drum; at most 1000 by 1000 are kept",
+                     s.occupancy_cell, columns));
 }
 
 void count_particles(Study& s, const Inputs& inputs) {
@@ -56,16 +49,17 @@ void count_particles(Study& s, const Inputs& inputs) {
     s.particles = question::particles(inputs);
     if (s.particles == 0) {
         const double wanted = std::round(question::fill(inputs) * packed_fraction * drum_volume(s) / one);
-        require(wanted >= 1, text("fill asks for less than one particle of diameter %.4g m", s.diameter));
+        require(wanted >= 1, sentence("fill asks for less than one particle of diameter %.4g m", s.diameter));
         require(wanted <= most_particles,
-                text("fill asks for %.4g particles; at most %.4g can be simulated: make the drum smaller or the "
-                     "diameter larger",
-                     wanted, most_particles));
+                sentence("fill asks for %.4g particles; at most %.4g can be simulated: make the drum smaller or the "
+                         "diameter larger",
+                         wanted, most_particles));
         s.particles = std::llround(wanted);
     }
     const double fraction = static_cast<double>(s.particles) * one / drum_volume(s);
-    require(fraction <= kit::most_loose_fraction,
-            text("the drum is filled loosely, without contacts, before it turns: %.4g of its volume are spheres, and "
+    require(
+        fraction <= kit::most_loose_fraction,
+        sentence("the drum is filled loosely, without contacts, before it turns: %.4g of its volume are spheres, and "
                  "at most %.2f can be (a fill of %.2f)",
                  fraction, kit::most_loose_fraction, kit::most_loose_fraction / packed_fraction));
 }
@@ -104,16 +98,16 @@ Study study_of(const Inputs& inputs, const Files* files) {
     s.frame_interval = q::frame_interval(inputs);
     const double measured = q::measured_time(inputs);
     require(measured >= s.frame_interval,
-            text("measured_time of %.4g s is less than one frame_interval, %.4g s", measured, s.frame_interval));
+            sentence("measured_time of %.4g s is less than one frame_interval, %.4g s", measured, s.frame_interval));
     require(s.frame_interval >= s.time_step,
-            text("frame_interval of %.4g s is less than the time step, %.4g s", s.frame_interval, s.time_step));
+            sentence("frame_interval of %.4g s is less than the time step, %.4g s", s.frame_interval, s.time_step));
     const double frames = std::floor(measured / s.frame_interval + 1e-6) + 1;
     require(frames <= most_frames,
-            text("measured_time and frame_interval make %.4g frames; at most %.4g are taken", frames, most_frames));
+            sentence("measured_time and frame_interval make %.4g frames; at most %.4g are taken", frames, most_frames));
     s.frames = std::llround(frames);
     require((s.turning_time + measured) / s.time_step <= most_steps,
-            text("a time step of %.4g s makes %.4g steps; at most %.4g are computed", s.time_step,
-                 (s.turning_time + measured) / s.time_step, most_steps));
+            sentence("a time step of %.4g s makes %.4g steps; at most %.4g are computed", s.time_step,
+                     (s.turning_time + measured) / s.time_step, most_steps));
     return s;
 }
 

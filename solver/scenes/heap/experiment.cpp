@@ -1,8 +1,8 @@
 #include "solver/scenes/heap/experiment.hpp"
 
-#include "solver/bytes.hpp"
 #include "solver/scenes/dem_picture.hpp"
 #include "solver/scenes/heap/record.hpp"
+#include "solver/scenes/kit/checkpoint.hpp"
 #include "solver/scenes/kit/slices.hpp"
 
 #include <algorithm>
@@ -12,10 +12,6 @@ namespace grainsweep::heap {
 namespace {
 
 constexpr std::uint64_t checkpoint_format = 0x6772'6e73'6870'0001ULL;  // "grnshp", version 1
-
-void record_known(const kit::Scalar& observable, Observations& into, double value) {
-    if (std::isfinite(value)) observable.record(into, value);
-}
 
 }  // namespace
 
@@ -53,11 +49,11 @@ void Experiment::observe(Observations& into) const {
     dem::State state;
     engine_->state(state);
     const auto shape = observables::heap_shape(state, study_.diameter, study_.reach());
-    record_known(record::angle, into, shape.angle);
-    record_known(record::angle_residual, into, shape.residual / study_.diameter);
-    record_known(record::angle_moment, into, shape.angle_moment);
-    record_known(record::height, into, shape.height);
-    record_known(record::run_out, into, shape.run_out);
+    record::angle.record_known(into, shape.angle);
+    record::angle_residual.record_known(into, shape.residual / study_.diameter);
+    record::angle_moment.record_known(into, shape.angle_moment);
+    record::height.record_known(into, shape.height);
+    record::run_out.record_known(into, shape.run_out);
     const double speed = observables::rms_speed(state);
     record::rms_speed.record(into, speed);
     record::at_rest.record(into, speed < study_.rest_speed() ? 1 : 0);
@@ -74,26 +70,17 @@ Snapshot Experiment::snapshot() const {
 }
 
 void Experiment::save(Bytes& into) const {
-    into.clear();
-    Bytes engine;
-    engine_->save(engine);
-    ByteWriter out(into);
-    out.put(checkpoint_format);
-    out.put(step_);
-    out.put(ended_);
-    out.put(engine);
+    kit::write_checkpoint(into, checkpoint_format, *engine_, [this](ByteWriter& out) {
+        out.put(step_);
+        out.put(ended_);
+    });
 }
 
 void Experiment::restore(std::span<const std::byte> from) {
-    ByteReader in(from);
-    std::uint64_t format = 0;
-    in.get(format);
-    if (format != checkpoint_format) throw std::invalid_argument("checkpoint of another scene");
-    Bytes engine;
+    ByteReader in = kit::open_checkpoint(from, checkpoint_format);
     in.get(step_);
     in.get(ended_);
-    in.get(engine);
-    in.finish();
+    const Bytes engine = kit::engine_at_end(in);
     in.require(step_ >= 0 && step_ <= study_.last_step && (ended_ || step_ < study_.last_step));
     engine_->restore(engine);
 }

@@ -2,17 +2,19 @@
 
 #include "solver/scenes/heap/question.hpp"
 #include "solver/scenes/kit/filling.hpp"
+#include "solver/scenes/kit/sentence.hpp"
 #include "stats/random.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
-#include <stdexcept>
 #include <string>
 
 namespace grainsweep::heap {
 namespace {
+
+using kit::require;
+using kit::sentence;
 
 constexpr double loose_fraction = 0.22;             // of a random filling, where centres can be
 constexpr double start_speed = 0.2;                 // sqrt(g D), of the lattice
@@ -28,16 +30,6 @@ constexpr double rest = 3e-5;                       // sqrt(g D): one of a thous
 constexpr double time_between_looks = 0.05;
 constexpr double most_steps = 1e10, most_glued = 2e6;
 constexpr std::uint64_t glue_stream = 3;
-
-std::string text(const char* format, double a, double b = 0, double c = 0) {
-    char buffer[240];
-    std::snprintf(buffer, sizeof buffer, format, a, b, c);
-    return buffer;
-}
-
-void require(bool holds, const std::string& sentence) {
-    if (!holds) throw std::invalid_argument(sentence);
-}
 
 double solid_volume(const Study& s) {
     return static_cast<double>(s.particles) * kit::sphere_volume(s.diameter) * s.sizes.moment(3);
@@ -96,22 +88,22 @@ Study study_of(const Inputs& inputs, const Files* files) {
     s.rough = q::floor(inputs) == q::Floor::rough;
     s.particles = q::particles(inputs);
     require(2 * s.tube_radius >= narrowest * largest(s),
-            text("tube_diameter of %.4g m is less than %.0f of the largest particles, %.4g m wide", 2 * s.tube_radius,
-                 narrowest, largest(s)));
+            sentence("tube_diameter of %.4g m is less than %.0f of the largest particles, %.4g m wide",
+                     2 * s.tube_radius, narrowest, largest(s)));
     s.fill_height = std::min(random_height(s), lattice_of(s).height()) + largest(s) + tube_gap * s.diameter;
     require(s.fill_height < 1e3 * s.tube_radius,
-            text("the particles would fill the tube %.3g of its diameters high: make it wider",
-                 s.fill_height / (2 * s.tube_radius)));
+            sentence("the particles would fill the tube %.3g of its diameters high: make it wider",
+                     s.fill_height / (2 * s.tube_radius)));
     require(glued_spheres(s) <= most_glued,
-            text("the rough plate would need %.4g glued particles; at most %.4g can be simulated", glued_spheres(s),
-                 most_glued));
+            sentence("the rough plate would need %.4g glued particles; at most %.4g can be simulated", glued_spheres(s),
+                     most_glued));
 
     const double fastest = std::max(std::sqrt(2 * s.gravity * s.fill_height), s.lift_speed);
     s.time_step = q::powder.step(inputs, s.sizes.smallest() * s.diameter / 2, fastest);
     const double settle = q::settle_time(inputs), end = q::end_time(inputs);
     require((settle + end) / s.time_step <= most_steps,
-            text("a time step of %.4g s makes %.4g steps; at most %.4g are computed", s.time_step,
-                 (settle + end) / s.time_step, most_steps));
+            sentence("a time step of %.4g s makes %.4g steps; at most %.4g are computed", s.time_step,
+                     (settle + end) / s.time_step, most_steps));
     s.settle_steps = std::llround(std::ceil(settle / s.time_step - 1e-6));
     s.last_step = s.settle_steps + std::max<std::int64_t>(1, std::llround(std::ceil(end / s.time_step - 1e-6)));
     s.steps_per_look = std::max<std::int64_t>(1, std::llround(time_between_looks / s.time_step));

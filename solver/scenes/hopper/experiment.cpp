@@ -1,9 +1,9 @@
 #include "solver/scenes/hopper/experiment.hpp"
 
-#include "solver/bytes.hpp"
 #include "solver/observables/beverloo.hpp"
 #include "solver/scenes/dem_picture.hpp"
 #include "solver/scenes/hopper/record.hpp"
+#include "solver/scenes/kit/checkpoint.hpp"
 #include "solver/scenes/kit/filling.hpp"
 #include "solver/scenes/kit/slices.hpp"
 
@@ -87,7 +87,7 @@ void Experiment::observe(Observations& into) const {
     kit::record_bond_number(into, study_.material, study_.diameter, study_.gravity);
     if (!is_open()) return;
     record::max_overlap.record(into, engine_->peak_overlap());
-    if (std::isfinite(bulk_fraction_)) record::bulk_fraction.record(into, bulk_fraction_);
+    record::bulk_fraction.record_known(into, bulk_fraction_);
     observe_rate(into);
     auto& series = record::mass_series.in(into);
     for (const auto& frame : outflow_) series.push_back({.time = frame.time, .value = frame.mass});
@@ -105,7 +105,7 @@ void Experiment::observe_rate(Observations& into) const {
     const auto found = observables::rate_between(outflow_, mass_, rate_from, rate_to);
     if (!std::isfinite(found.rate)) return;
     record::rate.record(into, found.rate);
-    if (std::isfinite(found.standard_error)) record::rate_error.record(into, found.standard_error);
+    record::rate_error.record_known(into, found.standard_error);
     const double power = study_.slot ? d * std::sqrt(d) * study_.slot_length : d * d * std::sqrt(d);
     record::rate_scaled.record(into, found.rate / (density * std::sqrt(study_.gravity) * power));
     if (!study_.sizes.equal() && std::isfinite(found.mean_diameter))
@@ -125,32 +125,23 @@ Snapshot Experiment::snapshot() const {
 }
 
 void Experiment::save(Bytes& into) const {
-    into.clear();
-    Bytes engine;
-    engine_->save(engine);
-    ByteWriter out(into);
-    out.put(checkpoint_format);
-    out.put(step_);
-    out.put(ended_);
-    out.put(bulk_fraction_);
-    out.put(over_opening_);
-    out.put(outflow_);
-    out.put(engine);
+    kit::write_checkpoint(into, checkpoint_format, *engine_, [this](ByteWriter& out) {
+        out.put(step_);
+        out.put(ended_);
+        out.put(bulk_fraction_);
+        out.put(over_opening_);
+        out.put(outflow_);
+    });
 }
 
 void Experiment::restore(std::span<const std::byte> from) {
-    ByteReader in(from);
-    std::uint64_t format = 0;
-    in.get(format);
-    if (format != checkpoint_format) throw std::invalid_argument("checkpoint of another scene");
-    Bytes engine;
+    ByteReader in = kit::open_checkpoint(from, checkpoint_format);
     in.get(step_);
     in.get(ended_);
     in.get(bulk_fraction_);
     in.get(over_opening_);
     in.get(outflow_);
-    in.get(engine);
-    in.finish();
+    const Bytes engine = kit::engine_at_end(in);
     const auto frames = std::ssize(outflow_);
     in.require(step_ >= 0 && frames <= study_.frames && (!ended_ || frames > 0));
     in.require(step_ <= (frames > 0 ? study_.step_of_frame(frames) : study_.settle_steps));

@@ -2,16 +2,18 @@
 
 #include "solver/scenes/hopper/question.hpp"
 #include "solver/scenes/kit/filling.hpp"
+#include "solver/scenes/kit/sentence.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
-#include <stdexcept>
 #include <string>
 
 namespace grainsweep::hopper {
 namespace {
+
+using kit::require;
+using kit::sentence;
 
 constexpr double loose_fraction = 0.22;  // of the filling, where centres can be
 constexpr double floor_thickness = 0.1;  // D
@@ -20,30 +22,20 @@ constexpr double narrowest = 3;          // largest diameters, of the container 
 constexpr double quiet = 10;             // sqrt(opening/g)
 constexpr double most_steps = 1e10, most_frames = 1e6;
 
-std::string text(const char* format, double a, double b = 0, double c = 0) {
-    char buffer[240];
-    std::snprintf(buffer, sizeof buffer, format, a, b, c);
-    return buffer;
-}
-
-void require(bool holds, const std::string& sentence) {
-    if (!holds) throw std::invalid_argument(sentence);
-}
-
 double largest(const Study& s) {
     return s.sizes.largest() * s.diameter;
 }
 
 void check_size(const Study& s) {
     require(2 * s.half_width >= narrowest * largest(s),
-            text("container_diameter of %.4g m is less than %.0f of the largest particles, %.4g m wide",
-                 2 * s.half_width, narrowest, largest(s)));
-    require(s.opening < 2 * s.half_width,
-            text("opening_size of %.4g m is not less than container_diameter, %.4g m", s.opening, 2 * s.half_width));
+            sentence("container_diameter of %.4g m is less than %.0f of the largest particles, %.4g m wide",
+                     2 * s.half_width, narrowest, largest(s)));
+    require(s.opening < 2 * s.half_width, sentence("opening_size of %.4g m is not less than container_diameter, %.4g m",
+                                                   s.opening, 2 * s.half_width));
     require(!(s.conical && s.slot), "a conical hopper has a round opening: a slot needs the shape 'flat'");
     require(!s.slot || s.slot_length >= narrowest * largest(s),
-            text("a period of %.4g m (slot_length) is less than %.0f of the largest particles, %.4g m wide",
-                 s.slot_length, narrowest, largest(s)));
+            sentence("a period of %.4g m (slot_length) is less than %.0f of the largest particles, %.4g m wide",
+                     s.slot_length, narrowest, largest(s)));
 }
 
 void lay_out_times(Study& s, const Inputs& inputs) {
@@ -54,15 +46,16 @@ void lay_out_times(Study& s, const Inputs& inputs) {
     s.stop_share = q::stop_share(inputs);
     const double settle = q::settle_time(inputs), end = q::end_time(inputs);
     require(s.frame_interval >= s.time_step,
-            text("frame_interval of %.4g s is less than the time step, %.4g s", s.frame_interval, s.time_step));
+            sentence("frame_interval of %.4g s is less than the time step, %.4g s", s.frame_interval, s.time_step));
     require(end >= s.frame_interval,
-            text("end_time of %.4g s is less than one frame_interval, %.4g s", end, s.frame_interval));
-    require(end / s.frame_interval <= most_frames, text("end_time and frame_interval make %.4g frames; at most %.4g "
-                                                        "are taken",
-                                                        end / s.frame_interval, most_frames));
+            sentence("end_time of %.4g s is less than one frame_interval, %.4g s", end, s.frame_interval));
+    require(end / s.frame_interval <= most_frames,
+            sentence("end_time and frame_interval make %.4g frames; at most %.4g "
+                     "are taken",
+                     end / s.frame_interval, most_frames));
     require((settle + end) / s.time_step <= most_steps,
-            text("a time step of %.4g s makes %.4g steps; at most %.4g are computed", s.time_step,
-                 (settle + end) / s.time_step, most_steps));
+            sentence("a time step of %.4g s makes %.4g steps; at most %.4g are computed", s.time_step,
+                     (settle + end) / s.time_step, most_steps));
     s.settle_steps = std::llround(std::ceil(settle / s.time_step - 1e-6));
     s.frames = std::llround(std::floor(end / s.frame_interval + 1e-6)) + 1;
 }
@@ -116,8 +109,8 @@ Study study_of(const Inputs& inputs, const Files* files) {
     s.particles = q::particles(inputs);
     check_size(s);
     require(s.fill_height() < 1e3 * s.half_width,
-            text("the particles would fill the container %.3g of its widths high: make it wider",
-                 s.fill_height() / (2 * s.half_width)));
+            sentence("the particles would fill the container %.3g of its widths high: make it wider",
+                     s.fill_height() / (2 * s.half_width)));
     lay_out_times(s, inputs);
     return s;
 }

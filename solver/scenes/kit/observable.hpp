@@ -6,6 +6,7 @@
 
 #include "solver/scenes/values.hpp"
 
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,10 @@ struct Scalar {
     std::string_view name, unit, meaning;
 
     void record(Observations& into, double value) const { into.scalars.insert_or_assign(std::string(name), value); }
+    /// Where the value is finite; else it stays undefined.
+    void record_known(Observations& into, double value) const {
+        if (std::isfinite(value)) record(into, value);
+    }
     [[nodiscard]] ObservableSpec spec() const {
         return {std::string(name), std::string(unit), std::string(meaning), Shape::scalar, {}};
     }

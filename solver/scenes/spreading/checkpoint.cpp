@@ -1,4 +1,4 @@
-#include "solver/bytes.hpp"
+#include "solver/scenes/kit/checkpoint.hpp"
 #include "solver/scenes/spreading/experiment.hpp"
 
 #include <algorithm>
@@ -22,37 +22,30 @@ void columns(State& bed, Visit visit) {
 }  // namespace
 
 void Experiment::save(Bytes& into) const {
-    into.clear();
-    Bytes engine;
-    engine_->save(engine);
-    ByteWriter out(into);
-    out.put(checkpoint_format);
-    out.put(layer_);
-    out.put(step_);
-    out.put(sweeping_);
-    out.put(borrowed_particle_steps_);
-    out.put(earlier_particle_steps_);
-    out.put(earlier_overlap_);
-    out.put(end_sample_);
-    out.put(behind_);
-    out.put(under_);
-    out.put(solid_);
-    out.put(force_sum_);
-    out.put(lift_sum_);
-    out.put(place_);
-    out.put(left_behind_);
-    out.put(profile_.sum);
-    out.put(profile_.samples);
-    out.put(layers_);
-    columns(bed_, [&out](const auto& column) { out.put(column); });
-    out.put(engine);
+    kit::write_checkpoint(into, checkpoint_format, *engine_, [this](ByteWriter& out) {
+        out.put(layer_);
+        out.put(step_);
+        out.put(sweeping_);
+        out.put(borrowed_particle_steps_);
+        out.put(earlier_particle_steps_);
+        out.put(earlier_overlap_);
+        out.put(end_sample_);
+        out.put(behind_);
+        out.put(under_);
+        out.put(solid_);
+        out.put(force_sum_);
+        out.put(lift_sum_);
+        out.put(place_);
+        out.put(left_behind_);
+        out.put(profile_.sum);
+        out.put(profile_.samples);
+        out.put(layers_);
+        columns(bed_, [&out](const auto& column) { out.put(column); });
+    });
 }
 
 void Experiment::restore(std::span<const std::byte> from) {
-    ByteReader in(from);
-    std::uint64_t format = 0;
-    in.get(format);
-    if (format != checkpoint_format) throw std::invalid_argument("checkpoint of another scene");
+    ByteReader in = kit::open_checkpoint(from, checkpoint_format);
     std::int64_t layer = 0, step = 0, end_sample = 0;
     bool sweeping = false;
     double borrowed = 0, earlier = 0, overlap = 0, force = 0, lift = 0, left = 0;
@@ -61,7 +54,6 @@ void Experiment::restore(std::span<const std::byte> from) {
     observables::VelocityProfile profile(profile_layers);
     std::vector<LayerAnswer> layers;
     dem::State bed;
-    Bytes engine;
     in.get(layer);
     in.get(step);
     in.get(sweeping);
@@ -80,8 +72,7 @@ void Experiment::restore(std::span<const std::byte> from) {
     in.get(profile.samples);
     in.get(layers);
     columns(bed, [&in](auto& column) { in.get(column); });
-    in.get(engine);
-    in.finish();
+    const Bytes engine = kit::engine_at_end(in);
 
     in.require(layer >= 0 && layer < study_.layers && static_cast<std::int64_t>(layers.size()) == layer);
     const std::size_t lying = bed.position.size();

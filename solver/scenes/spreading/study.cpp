@@ -1,33 +1,25 @@
 #include "solver/scenes/spreading/study.hpp"
 
 #include "solver/dem/material.hpp"
+#include "solver/scenes/kit/sentence.hpp"
 #include "solver/scenes/scene.hpp"
 #include "solver/scenes/spreading/filling.hpp"
 #include "solver/scenes/spreading/question.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <set>
-#include <stdexcept>
 
 namespace grainsweep::spreading {
 namespace {
 
+using kit::require;
+using kit::sentence;
+
 constexpr double most_particles = 5e6;
 constexpr double most_steps = 1e10;
 constexpr double at_rest = 5;  // diameters behind a roller's axis or a surface's rear
-
-std::string text(const char* format, double a, double b = 0) {
-    char buffer[240];
-    std::snprintf(buffer, sizeof buffer, format, a, b);
-    return buffer;
-}
-
-void require(bool holds, const std::string& sentence) {
-    if (!holds) throw std::invalid_argument(sentence);
-}
 
 /// Largest expected impact speed: particles thrown ahead by the tool fall back on it; all fall once at the start.
 double fastest_impact(const Study& s) {
@@ -40,24 +32,27 @@ double fastest_impact(const Study& s) {
 void lay_out(Study& s) {
     const double volume = sphere_volume(s.diameter) * s.sizes.moment(3);
     const double wanted = std::round(s.layer_area * s.width / volume);
-    require(wanted >= 1, text("layer_area of %.4g m2 holds no particle of diameter %.4g m", s.layer_area, s.diameter));
-    require(wanted <= most_particles,
-            text("layer_area and width ask for %.4g particles; at most %.4g can be simulated: make the layer or the "
+    require(wanted >= 1,
+            sentence("layer_area of %.4g m2 holds no particle of diameter %.4g m", s.layer_area, s.diameter));
+    require(
+        wanted <= most_particles,
+        sentence("layer_area and width ask for %.4g particles; at most %.4g can be simulated: make the layer or the "
                  "width smaller or the diameter larger",
                  wanted, most_particles));
     s.particles = std::llround(wanted);
     s.lattice_x = static_cast<std::int64_t>((layer_length(s) - 2 * jitter * s.diameter) / (spacing * s.diameter));
     s.lattice_y = static_cast<std::int64_t>(s.width / (spacing * s.diameter));
     require(s.lattice_x >= 1 && layer_length(s) >= 2 * s.sizes.largest() * s.diameter,
-            text("a layer of %.4g m cannot hold particles of diameter %.4g m: make travel longer", layer_length(s),
-                 s.diameter));
-    require(2 * s.sizes.largest() * s.diameter <= s.width,
-            text("the largest particles, %.4g diameters, are wider than half the width of %.4g diameters: make width "
+            sentence("a layer of %.4g m cannot hold particles of diameter %.4g m: make travel longer", layer_length(s),
+                     s.diameter));
+    require(
+        2 * s.sizes.largest() * s.diameter <= s.width,
+        sentence("the largest particles, %.4g diameters, are wider than half the width of %.4g diameters: make width "
                  "larger",
                  s.sizes.largest(), s.width / s.diameter));
-    require(start_height(s) < domain_top, text("the layer would start %.4g m high, above the top of the domain at "
-                                               "%.4g m: make layer_area smaller",
-                                               start_height(s), domain_top));
+    require(start_height(s) < domain_top, sentence("the layer would start %.4g m high, above the top of the domain at "
+                                                   "%.4g m: make layer_area smaller",
+                                                   start_height(s), domain_top));
 }
 
 /// Where its planes are.
@@ -70,8 +65,8 @@ void set_up_tool(Study& s, const Inputs& in, const Files* files) {
             s.blade_edge_radius = ask::blade_edge_radius(in);
             s.behind = s.clearance = s.blade_thickness;
             require(2 * s.blade_edge_radius <= s.blade_thickness,
-                    text("blade_edge_radius of %.4g m exceeds half the blade_thickness of %.4g m", s.blade_edge_radius,
-                         s.blade_thickness));
+                    sentence("blade_edge_radius of %.4g m exceeds half the blade_thickness of %.4g m",
+                             s.blade_edge_radius, s.blade_thickness));
             break;
         case Tool::roller:
             s.roller_diameter = ask::roller_diameter(in);
@@ -98,11 +93,11 @@ void require_layers(const Study& s) {
             "several layers");
     const double platform = s.end_of_platform() - s.start_of_platform();
     require(platform >= 10 * s.sizes.largest() * s.diameter,
-            text("the tool spreads a platform of %.4g m only, less than ten of the largest particles: make travel "
-                 "longer than it by the %.4g m from the tool's foremost point to its edge",
-                 platform, s.ahead));
+            sentence("the tool spreads a platform of %.4g m only, less than ten of the largest particles: make travel "
+                     "longer than it by the %.4g m from the tool's foremost point to its edge",
+                     platform, s.ahead));
     require(s.level(s.layers) <= 1,
-            text("layers and gap pile up %.4g m; at most 1 m can be simulated", s.level(s.layers)));
+            sentence("layers and gap pile up %.4g m; at most 1 m can be simulated", s.level(s.layers)));
 }
 
 /// Every input but those without effect before the tool starts; the time step, which may follow from some of
@@ -125,7 +120,7 @@ std::string key_of_bed(const Inputs& inputs, const Study& s) {
                                                                       "standard_error"};
     std::string key = "powder_spreading: settled bed\nrevision=" + std::to_string(revision) +
                       "\npath=" + std::string(instruction_path()) +
-                      text("\ntime step=%.17g\nsteps=%.17g\n", s.time_step, static_cast<double>(s.settle_steps));
+                      sentence("\ntime step=%.17g\nsteps=%.17g\n", s.time_step, static_cast<double>(s.settle_steps));
     for (const auto& [name, value] : inputs) {
         if (without_effect.contains(name)) continue;
         if (name == question::base.name && s.base == Base::smooth) continue;
@@ -136,7 +131,7 @@ std::string key_of_bed(const Inputs& inputs, const Study& s) {
             key += file ? "file:" + std::string(file->hash) : *word;
         }
         if (const auto* count = std::get_if<std::int64_t>(&value)) key += std::to_string(*count);
-        if (const auto* real = std::get_if<double>(&value)) key += text("%.17g", *real + 0.0);
+        if (const auto* real = std::get_if<double>(&value)) key += sentence("%.17g", *real + 0.0);
         key += "\n";
     }
     return key;
@@ -187,19 +182,20 @@ Study study_of(const Inputs& in, const Files* files) {
     lay_out(s);
     set_up_tool(s, in, files);
     require(s.vibration_frequency == 0 || s.vibration_amplitude < s.gap,
-            text("a tool vibrating by %.4g m at a gap of %.4g m strikes the base: make vibration_amplitude smaller "
-                 "than gap",
-                 s.vibration_amplitude, s.gap));
+            sentence("a tool vibrating by %.4g m at a gap of %.4g m strikes the base: make vibration_amplitude smaller "
+                     "than gap",
+                     s.vibration_amplitude, s.gap));
 
     s.time_step = ask::powder.step(in, s.sizes.smallest() * s.diameter / 2, fastest_impact(s));
     const double settle = std::round(ask::settle_time(in) / s.time_step);
     const double sweep = std::round(s.travel / s.speed / s.time_step);
     require(settle + sweep <= most_steps,
-            text("%.4g time steps of %.4g s are more than can be counted on: soften the particles or speed up the "
-                 "tool",
-                 settle + sweep, s.time_step));
-    require(sweep >= static_cast<double>(sweep_samples),
-            text("a time step of %.4g s leaves %.4g steps for the sweep, too few to measure a flux: make it smaller or "
+            sentence("%.4g time steps of %.4g s are more than can be counted on: soften the particles or speed up the "
+                     "tool",
+                     settle + sweep, s.time_step));
+    require(
+        sweep >= static_cast<double>(sweep_samples),
+        sentence("a time step of %.4g s leaves %.4g steps for the sweep, too few to measure a flux: make it smaller or "
                  "travel longer",
                  s.time_step, sweep));
     s.settle_steps = std::llround(settle);

@@ -1,27 +1,23 @@
 #include "solver/scenes/spreading/warnings.hpp"
 
 #include "solver/dem/material.hpp"
+#include "solver/scenes/kit/sentence.hpp"
 #include "solver/scenes/spreading/study.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <string>
 
 namespace grainsweep::spreading {
 namespace {
 
+using kit::sentence;
+
 constexpr double narrowest = 5;           // largest diameters between a particle and its periodic image
 constexpr double fewest_particles = 200;  // of which a layer's statistics can be formed
 constexpr double largest_overlap = 0.1;   // of a diameter: beyond it contact laws of small overlaps say nothing
 constexpr double steps_per_vibration = 20;
-
-std::string text(const char* format, double a, double b = 0, double c = 0, double d = 0) {
-    char buffer[300];
-    std::snprintf(buffer, sizeof buffer, format, a, b, c, d);
-    return buffer;
-}
 
 /// Largest overlap of two equal spheres that meet at the speed, over their diameter (Hertz 1882):
 /// d = (15 m* v^2/(16 E* sqrt(R*)))^(2/5).
@@ -37,49 +33,51 @@ void warn_of_gap(std::vector<Warning>& warnings, const Study& s, double layer) {
     const double smallest = s.sizes.smallest() * s.diameter;
     if (s.gap < smallest / 2)
         warnings.push_back({"gap below half a diameter",
-                            text("a gap of %.3g m is %.2g of the smallest diameter: the tool meets particles "
-                                 "below their centre and pushes them ahead, so that next to nothing is spread",
-                                 s.gap, s.gap / smallest)});
+                            sentence("a gap of %.3g m is %.2g of the smallest diameter: the tool meets particles "
+                                     "below their centre and pushes them ahead, so that next to nothing is spread",
+                                     s.gap, s.gap / smallest)});
     else if (s.gap < smallest)
-        warnings.push_back({"gap below one diameter",
-                            text("a gap of %.3g m is %.2g of the smallest diameter: a particle passes only where it is "
-                                 "squeezed, so that few or none do, about half of the base or more stays bare, and "
-                                 "the flux depends on youngs_modulus and speed",
-                                 s.gap, s.gap / smallest)});
+        warnings.push_back(
+            {"gap below one diameter",
+             sentence("a gap of %.3g m is %.2g of the smallest diameter: a particle passes only where it is "
+                      "squeezed, so that few or none do, about half of the base or more stays bare, and "
+                      "the flux depends on youngs_modulus and speed",
+                      s.gap, s.gap / smallest)});
     if (s.gap >= layer)
         warnings.push_back(
             {"gap above the layer",
-             text("the gap of %.3g m (%.3g diameters) is above the settled layer, about %.3g m high: the "
-                  "tool hardly touches the powder",
-                  s.gap, s.gap / s.diameter, layer)});
+             sentence("the gap of %.3g m (%.3g diameters) is above the settled layer, about %.3g m high: the "
+                      "tool hardly touches the powder",
+                      s.gap, s.gap / s.diameter, layer)});
     else if (s.gap > s.width)
         warnings.push_back({"gap above the width",
-                            text("the gap of %.3g diameters is more than the period of the layer of %.3g diameters "
-                                 "(width): what is spread is higher than it is wide and feels its own images",
-                                 s.gap / s.diameter, s.width / s.diameter)});
+                            sentence("the gap of %.3g diameters is more than the period of the layer of %.3g diameters "
+                                     "(width): what is spread is higher than it is wide and feels its own images",
+                                     s.gap / s.diameter, s.width / s.diameter)});
 }
 
 void warn_of_layer(std::vector<Warning>& warnings, const Study& s, double layer) {
     const double largest = s.sizes.largest() * s.diameter;
     if (layer < largest)
         warnings.push_back({"layer below one diameter",
-                            text("layer_area and travel give a layer of %.3g diameters: single particles, no layer",
-                                 layer / s.diameter)});
+                            sentence("layer_area and travel give a layer of %.3g diameters: single particles, no layer",
+                                     layer / s.diameter)});
     if (static_cast<double>(s.particles) < fewest_particles)
         warnings.push_back(
-            {"few particles", text("%.0f particles are too few for a steady flux: make layer_area or width "
-                                   "larger or the diameter smaller",
-                                   static_cast<double>(s.particles))});
+            {"few particles", sentence("%.0f particles are too few for a steady flux: make layer_area or width "
+                                       "larger or the diameter smaller",
+                                       static_cast<double>(s.particles))});
     if (s.width < narrowest * largest)
         warnings.push_back(
-            {"narrow layer", text("the layer repeats itself after %.3g of the largest diameters: particles "
-                                  "feel their own images below about %.0f",
-                                  s.width / largest, narrowest)});
+            {"narrow layer", sentence("the layer repeats itself after %.3g of the largest diameters: particles "
+                                      "feel their own images below about %.0f",
+                                      s.width / largest, narrowest)});
     const double fall = std::sqrt(2 * layer / s.gravity), settling = static_cast<double>(s.settle_steps) * s.time_step;
     if (settling < fall)
-        warnings.push_back({"layer still falling", text("settle_time of %.3g s ends before a particle has fallen the "
-                                                        "height of the layer, in %.3g s",
-                                                        settling, fall)});
+        warnings.push_back(
+            {"layer still falling", sentence("settle_time of %.3g s ends before a particle has fallen the "
+                                             "height of the layer, in %.3g s",
+                                             settling, fall)});
 }
 
 void warn_of_tool(std::vector<Warning>& warnings, const Study& s) {
@@ -87,28 +85,28 @@ void warn_of_tool(std::vector<Warning>& warnings, const Study& s) {
     if (s.tool == Tool::blade && s.blade_thickness >= measured)
         warnings.push_back(
             {"blade thicker than the measured travel",
-             text("blade_thickness of %.3g m leaves no spread layer behind the blade within the measured "
-                  "travel of %.3g m: packing_fraction, layer_roughness and empty_share describe nothing",
-                  s.blade_thickness, measured)});
+             sentence("blade_thickness of %.3g m leaves no spread layer behind the blade within the measured "
+                      "travel of %.3g m: packing_fraction, layer_roughness and empty_share describe nothing",
+                      s.blade_thickness, measured)});
     if (s.travel < 10 * s.diameter)
         warnings.push_back(
-            {"short travel", text("a travel of %.3g m is %.2g diameters: the flux does not become steady", s.travel,
-                                  s.travel / s.diameter)});
+            {"short travel", sentence("a travel of %.3g m is %.2g diameters: the flux does not become steady", s.travel,
+                                      s.travel / s.diameter)});
     const double period = s.vibration_frequency > 0 ? 1 / s.vibration_frequency : 0;
     if (s.vibration_frequency > 0 && period < steps_per_vibration * s.time_step)
         warnings.push_back(
             {"vibration faster than the time step",
-             text("a vibration of %.4g Hz has %.2g time steps of %.3g s in a period: at least %.0f follow it",
-                  s.vibration_frequency, period / s.time_step, s.time_step, steps_per_vibration)});
+             sentence("a vibration of %.4g Hz has %.2g time steps of %.3g s in a period: at least %.0f follow it",
+                      s.vibration_frequency, period / s.time_step, s.time_step, steps_per_vibration)});
     const double shaking = 2 * std::numbers::pi * s.vibration_frequency * s.vibration_amplitude;
     const double fastest = std::hypot(s.speed * (1 + std::abs(s.roller_spin)), shaking);
     const double overlap = hertz_overlap(s, fastest);
     if (overlap > largest_overlap)
         warnings.push_back(
             {"particles too soft for the speed",
-             text("at %.3g m/s particles of this stiffness overlap by about %.2g of a diameter, and contact "
-                  "laws hold for small overlaps: raise youngs_modulus",
-                  fastest, overlap)});
+             sentence("at %.3g m/s particles of this stiffness overlap by about %.2g of a diameter, and contact "
+                      "laws hold for small overlaps: raise youngs_modulus",
+                      fastest, overlap)});
 }
 
 }  // namespace
