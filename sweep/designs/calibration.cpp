@@ -1,14 +1,11 @@
 #include "sweep/designs/calibration.hpp"
 
 #include "stats/calibration.hpp"
-#include "sweep/designs/curve_place.hpp"
 #include "sweep/designs/kinds.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <numeric>
-#include <sstream>
 #include <stdexcept>
 
 namespace grainsweep::designs {
@@ -20,12 +17,8 @@ constexpr std::int64_t fewest_candidates = 1 << 13, most_candidates = 1 << 15;
 constexpr std::size_t enough_kept = 8;       // candidates for each setting of the next wave
 constexpr std::size_t most_compared = 4096;  // among which the next settings are spread
 constexpr std::size_t chains_begin_at = 64;  // settings of least implausibility
-
-std::string shortest_text(double x) {
-    std::array<char, 32> text{};
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), x).ptr;
-    return {text.data(), end};
-}
+constexpr double failing_share = 0.05;       // of the settings, above which it is learned where they fail
+constexpr std::ptrdiff_t neighbours = 5;     // that say whether a case would answer
 
 /// The factors that are calibrated, and those that state the conditions of targets.
 struct Layout {
@@ -148,6 +141,9 @@ private:
             result_.beyond.push_back(stats::beyond_what_was_reached(measured(t), values_[t]));
         }
         wave.failed = static_cast<std::size_t>(std::ranges::count(failed, true));
+        failed_ = static_cast<double>(wave.failed) > failing_share * static_cast<double>(failed.size())
+                      ? failed
+                      : std::vector<bool>{};
     }
     [[nodiscard]] stats::Target measured(std::size_t t) const {
         const auto& target = result_.targets[t];
@@ -173,6 +169,21 @@ private:
         return predictions;
     }
 
+    /// Whether a case at this setting is expected to answer: most of the settings nearest to it did.
+    [[nodiscard]] bool feasible(std::span<const double> at) const {
+        if (failed_.empty()) return true;
+        std::vector<std::pair<double, std::size_t>> nearest;
+        for (std::size_t i = 0; i < failed_.size(); ++i) {
+            double square = 0;
+            for (std::size_t j = 0; j < d_; ++j) square += std::pow(result_.settings[i * d_ + j] - at[j], 2);
+            nearest.emplace_back(square, i);
+        }
+        const auto end = nearest.begin() + std::min<std::ptrdiff_t>(neighbours, std::ssize(nearest));
+        std::ranges::partial_sort(nearest, end);
+        const auto failing = std::count_if(nearest.begin(), end, [&](const auto& one) { return failed_[one.second]; });
+        return 2 * failing < end - nearest.begin();
+    }
+
     /// Even points of the box and how implausible each is.
     struct Candidates {
         std::vector<double> points, implausibility;
@@ -187,6 +198,7 @@ private:
         all.implausibility = stats::deciding_implausibility(stats::implausibilities(targets, predictions));
         for (std::size_t i = 0; i < all.implausibility.size(); ++i) {
             if (!(all.implausibility[i] < ruled_out)) continue;
+            if (!feasible(std::span(all.points).subspan(i * d_, d_))) continue;
             all.kept.push_back(i);
             for (std::size_t k = 0; k < targets.size(); ++k) {
                 const auto& p = predictions[k][i];
@@ -276,7 +288,12 @@ private:
         stats::PosteriorSettings settings;
         settings.seed = draw_key(request_.seed, DrawPurpose::calibration, stream, 1);
         return stats::sample_posterior(
-            [&](stats::Rows points) { return stats::log_likelihood(targets, predict(points), covariance); },
+            [&](stats::Rows points) {
+                auto density = stats::log_likelihood(targets, predict(points), covariance);
+                for (std::size_t i = 0; i < density.size(); ++i)
+                    if (!feasible(points.row(i))) density[i] = -std::numeric_limits<double>::infinity();
+                return density;
+            },
             {best_, d_}, settings);
     }
     void sample() {
@@ -301,74 +318,12 @@ private:
     Layout layout_;
     std::size_t d_ = 0, first_ = 0;
     std::vector<std::vector<double>> values_;  ///< of each target
+    std::vector<bool> failed_;                 ///< of each setting; empty: too few to matter
     std::vector<double> best_;                 ///< settings of least implausibility
     Calibration result_;
 };
 
 }  // namespace
-
-std::vector<double> covariance_of(std::span<const MeasuredTarget> targets) {
-    const std::size_t m = targets.size();
-    std::vector<double> at(m, 0);
-    std::map<std::size_t, std::pair<double, double>> ends;  // of each curve
-    for (std::size_t k = 0; k < m; ++k) {
-        if (targets[k].curve == 0) continue;
-        at[k] = place_on_curve(targets[k].observable).at.value_or(0);
-        auto& [low, high] = ends.try_emplace(targets[k].curve, at[k], at[k]).first->second;
-        low = std::min(low, at[k]);
-        high = std::max(high, at[k]);
-    }
-    std::vector<double> covariance(m * m, 0);
-    for (std::size_t i = 0; i < m; ++i)
-        for (std::size_t j = 0; j < m; ++j) {
-            const bool together = i != j && targets[i].curve > 0 && targets[i].curve == targets[j].curve;
-            if (i == j) covariance[i * m + j] = std::pow(targets[i].error, 2) + std::pow(targets[i].discrepancy, 2);
-            if (!together) continue;
-            const auto& [low, high] = ends.at(targets[i].curve);
-            covariance[i * m + j] =
-                targets[i].discrepancy * targets[j].discrepancy * std::exp(-4 * std::abs(at[i] - at[j]) / (high - low));
-        }
-    return covariance;
-}
-
-std::string text_of(const std::vector<MeasuredTarget>& targets) {
-    std::string text;
-    for (const auto& target : targets) {
-        text += (text.empty() ? "" : "; ") + target.observable;
-        for (const double x : {target.value, target.error, target.discrepancy}) text += ' ' + shortest_text(x);
-        for (const auto& [name, level] : target.level) text += ' ' + name + ':' + std::to_string(level);
-        if (target.curve > 0) text += " #" + std::to_string(target.curve);
-    }
-    return text;
-}
-
-std::vector<MeasuredTarget> targets_in(std::string_view text) {
-    std::vector<MeasuredTarget> targets;
-    std::istringstream all{std::string(text)};
-    for (std::string one; std::getline(all, one, ';');) {
-        std::istringstream words(one);
-        auto& target = targets.emplace_back();
-        std::vector<std::string> numbers(3);
-        words >> target.observable >> numbers[0] >> numbers[1] >> numbers[2];
-        double* const fields[] = {&target.value, &target.error, &target.discrepancy};
-        for (std::size_t k = 0; k < numbers.size(); ++k) {
-            const auto& word = numbers[k];
-            const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), *fields[k]);
-            if (error != std::errc{} || end != word.data() + word.size())
-                throw std::invalid_argument("a target is no measurement: '" + one + "'");
-        }
-        for (std::string word; words >> word;) {
-            const bool curve = word.starts_with('#');
-            const auto mark = curve ? 0 : word.find(':');
-            auto& number = curve ? target.curve : target.level[word.substr(0, mark)];
-            const char* const last = word.data() + word.size();
-            if (mark == std::string::npos ||
-                std::from_chars(word.data() + mark + 1, last, number) != std::from_chars_result{last, std::errc{}})
-                throw std::invalid_argument("a target's condition has no level: '" + word + "'");
-        }
-    }
-    return targets;
-}
 
 Calibration calibration_of(const DesignRequest& request) {
     return Course(request).run();

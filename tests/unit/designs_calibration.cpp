@@ -142,6 +142,18 @@ TEST(CalibrationWaves, EveryTargetIsAskedUnderItsOwnCondition) {
         EXPECT_NE(std::floor(3 * found.points.point(p)[1]), 1) << "nothing is asked at the level of no target";
 }
 
+TEST(CalibrationWaves, KeepsAwayFromWhereCasesFail) {
+    // The target is met at 0.3 and at 0.8; above 0.6 no case answers.
+    const auto half = [](Point u) { return u[0] > 0.6 ? none : std::abs(u[0] - 0.55); };
+    auto asked = calibration_request(1, {{"a", 0.25, 0.01, 0.01, {}}},
+                                     {{"points_per_wave", std::int64_t{16}}, {"waves", std::int64_t{3}}});
+    const auto found = answered(asked, {{"a", half}});
+    ASSERT_TRUE(found.shape);
+    EXPECT_NEAR(found.shape->mean[0], 0.3, 0.01);
+    EXPECT_LT(found.shape->sd[0], 0.03);
+    for (const double u : found.checked) EXPECT_LT(u, 0.6);
+}
+
 TEST(CalibrationWaves, ScatterOfRunsWidensThePosterior) {
     const auto sloped = [](Point u) { return u[0]; };
     const auto posterior_sd = [&](double amplitude) {

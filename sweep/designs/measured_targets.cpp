@@ -1,0 +1,87 @@
+#include "sweep/designs/measured_targets.hpp"
+
+#include "sweep/designs/curve_place.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+namespace grainsweep::designs {
+namespace {
+
+std::string shortest_text(double x) {
+    std::array<char, 32> text{};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), x).ptr;
+    return {text.data(), end};
+}
+
+}  // namespace
+
+std::vector<double> covariance_of(std::span<const MeasuredTarget> targets) {
+    const std::size_t m = targets.size();
+    std::vector<double> at(m, 0);
+    std::map<std::size_t, std::pair<double, double>> ends;  // of each curve
+    for (std::size_t k = 0; k < m; ++k) {
+        if (targets[k].curve == 0) continue;
+        at[k] = place_on_curve(targets[k].observable).at.value_or(0);
+        auto& [low, high] = ends.try_emplace(targets[k].curve, at[k], at[k]).first->second;
+        low = std::min(low, at[k]);
+        high = std::max(high, at[k]);
+    }
+    std::vector<double> covariance(m * m, 0);
+    for (std::size_t i = 0; i < m; ++i)
+        for (std::size_t j = 0; j < m; ++j) {
+            const bool together = i != j && targets[i].curve > 0 && targets[i].curve == targets[j].curve;
+            if (i == j) covariance[i * m + j] = std::pow(targets[i].error, 2) + std::pow(targets[i].discrepancy, 2);
+            if (!together) continue;
+            const auto& [low, high] = ends.at(targets[i].curve);
+            covariance[i * m + j] =
+                targets[i].discrepancy * targets[j].discrepancy * std::exp(-4 * std::abs(at[i] - at[j]) / (high - low));
+        }
+    return covariance;
+}
+
+std::string text_of(const std::vector<MeasuredTarget>& targets) {
+    std::string text;
+    for (const auto& target : targets) {
+        text += (text.empty() ? "" : "; ") + target.observable;
+        for (const double x : {target.value, target.error, target.discrepancy}) text += ' ' + shortest_text(x);
+        for (const auto& [name, level] : target.level) text += ' ' + name + ':' + std::to_string(level);
+        if (target.curve > 0) text += " #" + std::to_string(target.curve);
+    }
+    return text;
+}
+
+std::vector<MeasuredTarget> targets_in(std::string_view text) {
+    std::vector<MeasuredTarget> targets;
+    std::istringstream all{std::string(text)};
+    for (std::string one; std::getline(all, one, ';');) {
+        std::istringstream words(one);
+        auto& target = targets.emplace_back();
+        std::vector<std::string> numbers(3);
+        words >> target.observable >> numbers[0] >> numbers[1] >> numbers[2];
+        double* const fields[] = {&target.value, &target.error, &target.discrepancy};
+        for (std::size_t k = 0; k < numbers.size(); ++k) {
+            const auto& word = numbers[k];
+            const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), *fields[k]);
+            if (error != std::errc{} || end != word.data() + word.size())
+                throw std::invalid_argument("a target is no measurement: '" + one + "'");
+        }
+        for (std::string word; words >> word;) {
+            const bool curve = word.starts_with('#');
+            const auto mark = curve ? 0 : word.find(':');
+            auto& number = curve ? target.curve : target.level[word.substr(0, mark)];
+            const char* const last = word.data() + word.size();
+            if (mark == std::string::npos ||
+                std::from_chars(word.data() + mark + 1, last, number) != std::from_chars_result{last, std::errc{}})
+                throw std::invalid_argument("a target's condition has no level: '" + word + "'");
+        }
+    }
+    return targets;
+}
+
+}  // namespace grainsweep::designs
