@@ -14,8 +14,8 @@
 namespace grainsweep::report {
 namespace {
 
-constexpr std::size_t scramblings = 8;
-constexpr std::int64_t points_each = 4096, fewest_each = 64;
+constexpr std::size_t integration_sets = 8;
+constexpr std::int64_t points_of_set = 4096, fewest_of_set = 64;
 constexpr std::uint64_t first_seed = 1000;  // of the points to integrate over: the same for every campaign
 
 double as_number(const Value& value) {
@@ -67,7 +67,7 @@ private:
 designs::PointSet sobol_points(const campaign::Campaign& campaign, std::uint64_t seed) {
     const auto& sobol = designs::design_named("sobol");
     designs::DesignRequest request{.levels = campaign.request.levels, .options = {}, .seed = seed};
-    request.options["points"] = points_each;
+    request.options["points"] = points_of_set;
     request.options["scramble"] = std::string("random");
     for (const auto& option : sobol.options)
         if (option.default_value) request.options.try_emplace(option.name, *option.default_value);
@@ -85,9 +85,9 @@ void check_defined(const Mapped& mapped, const std::vector<double>& features) {
 /// Features of scramblings of one size: of each as many points as every one has within the `where` clause.
 std::vector<double> integration_points(const campaign::Campaign& campaign, const Mapped& mapped,
                                        const campaign::Filter& filter) {
-    std::array<std::vector<double>, scramblings> parts;
+    std::array<std::vector<double>, integration_sets> parts;
     std::size_t least = std::numeric_limits<std::size_t>::max();
-    for (std::size_t k = 0; k < scramblings; ++k) {
+    for (std::size_t k = 0; k < integration_sets; ++k) {
         const auto set = sobol_points(campaign, first_seed + k);
         for (std::size_t i = 0; i < set.size(); ++i) {
             if (!campaign.where.empty() && !filter(campaign.space.at(set.point(i)))) continue;
@@ -97,11 +97,11 @@ std::vector<double> integration_points(const campaign::Campaign& campaign, const
         }
         least = std::min(least, parts[k].size());
     }
-    if (least < fewest_each * mapped.dimensions())
+    if (least < fewest_of_set * mapped.dimensions())
         throw campaign::wrong_question("$.where", campaign.where,
                                        fmt::format("leaves less than {} % of the ranges, too little to integrate a "
                                                    "model over: give narrower ranges, or the rule \"replicates\"",
-                                                   100 * fewest_each / points_each));
+                                                   100 * fewest_of_set / points_of_set));
     std::vector<double> all;
     for (const auto& part : parts)
         all.insert(all.end(), part.begin(), part.begin() + static_cast<std::ptrdiff_t>(least));
@@ -133,7 +133,7 @@ schedule::ModelView model_view(const campaign::Campaign& campaign, std::int64_t 
     const std::size_t d = mapped->dimensions();
     schedule::ModelView view;
     view.space.dimensions = d;
-    view.space.scramblings = scramblings;
+    view.space.scramblings = integration_sets;
     view.space.integration = integration_points(campaign, *mapped, filter);
     view.space.low.assign(d, std::numeric_limits<double>::infinity());
     view.space.high.assign(d, -std::numeric_limits<double>::infinity());

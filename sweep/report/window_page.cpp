@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t points_of_curve = 41;
 
-Json number(double x) {
+Json number_or_null(double x) {
     return to_json(to_cell(x));
 }
 
@@ -59,14 +59,14 @@ Json edges(const ModelFactor& factor) {
     return list;
 }
 
-struct Curve {
+struct FactorCurve {
     std::vector<double> at;
     std::vector<Judgement> judged;
 };
 
-Curve curve_through(const ModelCases& cases, const WindowRequest& request, const Window& window, const Setting& centre,
-                    std::size_t factor) {
-    Curve curve{along(cases.factors[factor], false), {}};
+FactorCurve curve_through(const ModelCases& cases, const WindowRequest& request, const Window& window,
+                          const Setting& centre, std::size_t factor) {
+    FactorCurve curve{along(cases.factors[factor], false), {}};
     std::vector<Setting> settings(curve.at.size(), centre);
     for (std::size_t i = 0; i < settings.size(); ++i) settings[i][factor] = curve.at[i];
     curve.judged = judge_settings(cases, request, window, settings);
@@ -90,7 +90,7 @@ double objective_of(const Judgement& one) {
 }
 
 /// Factors by how much they matter, see the header.
-std::vector<std::size_t> order_of(std::span<const Curve> curves, bool objective, double whole_range) {
+std::vector<std::size_t> order_of(std::span<const FactorCurve> curves, bool objective, double whole_range) {
     std::vector<double> weights;
     for (const auto& curve : curves) {
         double weight = range_of(curve.judged, probability_of);
@@ -107,9 +107,9 @@ Json responses_of(const Window& window, const Judgement& one) {
     Json list = Json::array();
     for (std::size_t k = 0; k < window.models.size(); ++k) {
         const auto& p = one.predictions[k];
-        list.push_back({{"mean", number(p.mean)},
-                        {"mean_half_width", number(p.mean_half_width())},
-                        {"run_half_width", number(p.run_half_width())}});
+        list.push_back({{"mean", number_or_null(p.mean)},
+                        {"mean_half_width", number_or_null(p.mean_half_width())},
+                        {"run_half_width", number_or_null(p.run_half_width())}});
     }
     return list;
 }
@@ -120,15 +120,15 @@ Json json_of(const ModelCases& cases, const Window& window, const Judgement& one
         value["setting"].push_back(one.setting[j]);
         value["texts"].push_back(cases.factors[j].text(one.setting[j]));
     }
-    value["probability"] = number(one.probability);
+    value["probability"] = number_or_null(one.probability);
     value["responses"] = responses_of(window, one);
     return value;
 }
 
-Json json_of(const Window& window, const Curve& curve) {
+Json json_of(const Window& window, const FactorCurve& curve) {
     Json value = {{"at", curve.at}, {"probability", Json::array()}, {"responses", Json::array()}};
     for (const auto& one : curve.judged) {
-        value["probability"].push_back(number(one.probability));
+        value["probability"].push_back(number_or_null(one.probability));
         value["responses"].push_back(responses_of(window, one));
     }
     return value;
@@ -155,9 +155,9 @@ Json map_of(const ModelCases& cases, const WindowRequest& request, const Window&
                   {"objective", request.objective.empty() ? Json(nullptr) : Json::array()}};
     for (std::size_t i = 0; i < settings.size(); ++i) {
         const bool there = !admits || admits(settings[i]);
-        value["probability"].push_back(there ? number(judged[i].probability) : Json(nullptr));
+        value["probability"].push_back(there ? number_or_null(judged[i].probability) : Json(nullptr));
         if (!request.objective.empty())
-            value["objective"].push_back(there ? number(judged[i].predictions.front().mean) : Json(nullptr));
+            value["objective"].push_back(there ? number_or_null(judged[i].predictions.front().mean) : Json(nullptr));
     }
     return value;
 }
@@ -184,7 +184,7 @@ Json factors_of(const ModelCases& cases) {
 Json window_page_data(const ModelCases& cases, const WindowRequest& request, const Window& window,
                       const Admits& admits) {
     const auto& centre = window.best ? *window.best : window.surest.value();
-    std::vector<Curve> curves;
+    std::vector<FactorCurve> curves;
     for (std::size_t j = 0; j < cases.factors.size(); ++j)
         curves.push_back(curve_through(cases, request, window, centre.setting, j));
     const bool objective = !request.objective.empty();
