@@ -207,7 +207,8 @@ void TpmsDischarge::sample() {
 
 bool TpmsDischarge::finished() const {
     if (step_ >= last_step_ || mobile_left_ == 0) return true;
-    return question_.stop_when_quiet && record_.is_quiet(step_);
+    // As of the last sample: where slices of time end between samples must not decide when the case ends.
+    return question_.stop_when_quiet && record_.is_quiet(step_ / sample_interval_ * sample_interval_);
 }
 
 double TpmsDischarge::beverloo() const {

@@ -285,6 +285,20 @@ TEST(TpmsScene, AnArtefactIsMadeOnceAndChangesNothing) {
     EXPECT_EQ(artefacts.kept.size(), 3U);
 }
 
+TEST(TpmsScene, SlicesOfOneStepEndAtTheSameSample) {
+    // Quiet for long enough between two samples: a slice that ends there must not end the case.
+    Inputs inputs = small_cell(8);
+    inputs["cohesion"] = 35e3;
+    inputs["precision"] = std::string("mixed");
+    inputs["end_time"] = 6.0;
+    const auto whole = make(inputs), sliced = make(inputs);
+    whole->advance(1e9);
+    while (!sliced->finished() && sliced->health().stable()) sliced->advance(std::nextafter(sliced->time(), 1e9));
+    EXPECT_EQ(whole->health().reason, "");
+    EXPECT_EQ(sliced->time(), whole->time());
+    EXPECT_EQ(sliced->particle_steps(), whole->particle_steps());
+}
+
 TEST(TpmsScene, JammedPowderRestsAtItsEquilibriumOverlap) {
     // Strong cohesion jams a small cell. Two spheres held by SJKR alone rest where Hertz balances it: 0.51 % of the
     // diameter at 35 kJ/m3 (note of the reference data); the histogram of the jammed cell peaks there.
