@@ -17,7 +17,9 @@
 namespace grainsweep::campaign {
 namespace {
 
-constexpr std::size_t most_points = 100;  // of a curve, each with a response model of its own
+constexpr std::size_t most_points = 100;   // of a curve, each with a response model of its own
+constexpr std::size_t most_targets = 200;  // in all
+constexpr double largest = 1e100;          // whose square, and the sum of such squares, is a number
 
 std::vector<std::string> names_of(const SceneInfo& scene) {
     std::vector<std::string> names;
@@ -61,6 +63,8 @@ double number_in(const Cursor& file, std::size_t record, const std::string& cell
     const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), x);
     if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(x))
         file.refuse(fmt::format("record {} has {} where a number is expected", record, shown(cell)));
+    if (std::abs(x) > largest)
+        file.refuse(fmt::format("record {} has {}; a number of at most {} is expected", record, cell, largest));
     return x;
 }
 
@@ -138,7 +142,7 @@ void read_discrepancies(const Section& section, std::vector<designs::MeasuredTar
         const Cursor here(json, path_of(place.path(), name));
         if (std::ranges::find(measured, name) == measured.end())
             here.refuse("no target measures this observable", nearest_word(name, measured));
-        const double discrepancy = here.number({0, std::numeric_limits<double>::infinity(), false, true});
+        const double discrepancy = here.number({0, largest, false, false});
         for (std::size_t k = 0; k < targets.size(); ++k)
             if (measured[k] == name) targets[k].discrepancy = discrepancy;
     }
@@ -174,6 +178,9 @@ void read_calibration(const Cursor& place, Campaign& campaign, const std::filesy
         const auto read = read_target(element, campaign, calibrated, folder, places.size() + 1);
         targets.insert(targets.end(), read.begin(), read.end());
         places.insert(places.end(), read.size(), element.path());
+        if (targets.size() > most_targets)
+            element.refuse(
+                fmt::format("at most {} measurements, points of curves counted, can be calibrated to", most_targets));
     }
     if (targets.empty()) section.at("targets").refuse("a calibration needs at least one target");
     for (std::size_t k = 0; k < targets.size(); ++k) {

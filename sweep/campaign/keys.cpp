@@ -15,6 +15,7 @@ using Kind = Key::Kind;
 constexpr double largest_seed = 9223372036854774784.0;  // the last double below 2^63
 constexpr Interval not_negative{0, std::numeric_limits<double>::infinity(), false, true};
 constexpr Interval counts{1, 1e6};
+constexpr Interval measurable{-1e100, 1e100};  // squares of it, and sums of them, are numbers
 
 std::string json_word(std::string_view word) {
     return fmt::format("\"{}\"", word);
@@ -195,7 +196,7 @@ std::span<const Key> calibration_keys() {
 std::span<const Key> target_keys() {
     static const std::vector<Key> keys = {
         {"observable", "an observable of the scene", Kind::word, true, {}, {}, {}},
-        {"value", "of a scalar: what was measured, in its unit", Kind::number, false, {}, {}, {}},
+        {"value", "of a scalar: what was measured, in its unit", Kind::number, false, measurable, {}, {}},
         {"file",
          "of a series or profile: CSV file of a measured curve, a header and lines of where, value and, where it "
          "differs from line to line, error",
@@ -208,7 +209,7 @@ std::span<const Key> target_keys() {
          "standard error of the measurement; of a curve that of every line without one of its own",
          Kind::number,
          false,
-         not_negative,
+         Interval{0, measurable.high},
          {},
          {}},
         {"inputs", "the condition it was measured under: parameters of the scene", Kind::object, false, {}, {}, {}},

@@ -2,7 +2,9 @@
 
 #include "sweep/campaign/json_text.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <stdexcept>
 #include <variant>
 
@@ -39,6 +41,25 @@ std::vector<std::string> features_in(const Json& document) {
     return features;
 }
 
+/// A calibration's conditions as factors with levels, in the order in which its reader meets them.
+void append_conditions(Json& factors, const Json& calibration) {
+    const auto targets = calibration.find("targets");
+    if (!factors.is_array() || targets == calibration.end() || !targets->is_array()) return;
+    const std::size_t calibrated = factors.size();
+    for (const auto& target : *targets) {
+        const auto inputs = target.find("inputs");
+        if (inputs == target.end() || !inputs->is_object()) continue;
+        for (const auto& [name, value] : inputs->items()) {
+            auto factor = std::find_if(factors.begin() + static_cast<std::ptrdiff_t>(calibrated), factors.end(),
+                                       [&](const Json& other) { return other["name"] == name; });
+            if (factor == factors.end())
+                factor = factors.insert(factor, Json{{"name", name}, {"levels", Json::array()}});
+            auto& levels = (*factor)["levels"];
+            if (std::find(levels.begin(), levels.end(), value) == levels.end()) levels.push_back(value);
+        }
+    }
+}
+
 }  // namespace
 
 Remarks remarks_in(std::string_view campaign_file) {
@@ -67,6 +88,12 @@ std::string further_points(std::string_view campaign_file, std::string_view name
     text["campaign"] = name;
     for (const char* key : {"scene", "factors", "fixed", "where", "accuracy", "model", "limits", "execution"})
         if (const auto found = document.find(key); found != document.end()) text[key] = *found;
+    if (const auto calibration = document.find("calibration");
+        calibration != document.end() && calibration->is_object()) {
+        Json factors = document.value("factors", Json::array());
+        append_conditions(factors, *calibration);
+        text["factors"] = std::move(factors);
+    }
     const std::uint64_t seed = document.contains("seed") ? document["seed"].get<std::uint64_t>() : 1;
     text["seed"] = seed > most_of_a_seed - number ? number : seed + number;
     text["design"] = {{"kind", "list"}, {"rows", list}};

@@ -13,7 +13,8 @@ namespace grainsweep::campaign {
 
 namespace {
 
-constexpr std::size_t longest_word = 64;  // longer ones are no misspelling of a name of ours
+constexpr std::size_t longest_value = 400;  // bytes
+constexpr std::size_t longest_word = 64;    // longer ones are no misspelling of a name of ours
 
 char folded(char c) {
     return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -51,17 +52,42 @@ std::string named_by_a_part(std::string_view word, std::span<const std::string> 
     return only;
 }
 
+/// Cut between two characters of UTF-8: what was given may be a whole file.
+std::string_view beginning(std::string_view text) {
+    if (text.size() <= longest_value) return text;
+    std::size_t end = longest_value;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
+    return text.substr(0, end);
+}
+
+/// One line that moves no cursor of a terminal: white space as blanks, other control characters by their number.
+std::string on_one_line(std::string_view text) {
+    std::string line;
+    line.reserve(text.size());
+    for (const char c : text) {
+        const auto code = static_cast<unsigned char>(c);
+        if (std::isspace(code) != 0)
+            line += ' ';
+        else if (code < 0x20U || code == 0x7FU)
+            line += fmt::format("\\u{:04x}", static_cast<unsigned>(code));
+        else
+            line += c;
+    }
+    return line;
+}
+
 }  // namespace
 
 WrongQuestion wrong_question(std::string_view where, std::string_view value, std::string_view rule,
                              std::string_view suggestion) {
     std::string sentence(where);
     if (!sentence.empty()) sentence += ": ";
-    if (!value.empty()) sentence += fmt::format("got {}; ", value);
+    const auto start = beginning(value);
+    if (!value.empty()) sentence += fmt::format("got {}{}; ", start, start.size() < value.size() ? " ..." : "");
     sentence += rule;
     if (!sentence.ends_with('.')) sentence += '.';
     if (!suggestion.empty()) sentence += fmt::format(" Did you mean '{}'?", suggestion);
-    return WrongQuestion(sentence);
+    return WrongQuestion(on_one_line(sentence));
 }
 
 std::string listed(std::span<const std::string> names) {

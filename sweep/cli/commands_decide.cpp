@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <cstdint>
 #include <filesystem>
@@ -142,8 +143,10 @@ void check_run(const WindowArguments& arguments, const report::WindowRequest& re
     if (arguments.width == 0)
         throw campaign::wrong_question(
             "--run", "", "needs --width, the 95 % half-width of the objective's mean at the best setting");
-    if (!(arguments.width > 0))
-        throw campaign::wrong_question("--width", fmt::format("{}", arguments.width), "must be positive");
+    if (!arguments.next_file.empty())
+        throw campaign::wrong_question("--next-file", arguments.next_file, "--run runs the next cases itself");
+    if (!(arguments.width > 0) || !std::isfinite(arguments.width))
+        throw campaign::wrong_question("--width", fmt::format("{}", arguments.width), "must be a positive number");
 }
 
 /// Batches of next cases until the best setting is known; then the window is answered from all of them.

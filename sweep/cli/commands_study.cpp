@@ -144,9 +144,10 @@ bool show_brackets(const Store& store, const Responses& responses, Format format
 
 /// The same of a calibration.
 bool show_calibration(const Store& store, const Responses& responses, Format format, bool first, Json& all,
-                      store::Table& rows) {
+                      store::Table& rows, bool& converged) {
     const auto calibration = report::calibration_report(store, responses.campaign);
     if (!calibration) return false;
+    converged = converged && calibration->found.waves_end && calibration->found.posterior;
     if (format == Format::json) {
         all.push_back({{"campaign", responses.campaign.name}});
         all.back().update(report::to_json(*calibration));
@@ -168,7 +169,7 @@ int converge(const Subject& subject, Format format) {
     for_each_campaign(store, subject,
                       [&](const Responses& responses, const report::ResponseColumn& response, bool first) {
                           if (show_brackets(store, responses, format, first, all, rows) ||
-                              show_calibration(store, responses, format, first, all, rows))
+                              show_calibration(store, responses, format, first, all, rows, converged))
                               return;
                           const auto history = report::history_of(responses, response);
                           converged = converged && history.converged.value_or(false);

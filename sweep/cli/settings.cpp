@@ -60,10 +60,14 @@ void require_all(std::span<const ModelFactor> factors, const std::vector<std::op
                                                missing.size() == 1 ? "is" : "are"));
 }
 
+constexpr std::uintmax_t largest_file = 256ULL << 20U;
+
 std::string text_of(const std::filesystem::path& file) {
     std::error_code none;
     if (!std::filesystem::is_regular_file(file, none))
         throw campaign::wrong_question("--points", file.string(), "there is no such file");
+    if (std::filesystem::file_size(file, none) > largest_file)
+        throw campaign::wrong_question("--points", file.string(), "the file must have at most 256 MiB");
     std::ifstream stream(file, std::ios::binary);
     std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
     if (stream.bad() || !stream.is_open())

@@ -127,7 +127,9 @@ std::vector<std::string> notes_of(const CalibrationReport& report) {
         if (!target.refusal.empty())
             notes.push_back(
                 fmt::format("{} has no response model and decides nothing: {}", target_name(target), target.refusal));
-        if (target.beyond > out_of_reach)
+        if (std::isinf(target.beyond))
+            notes.push_back(fmt::format("{}: no case has an answer to it", target_name(target)));
+        else if (target.beyond > out_of_reach)
             notes.push_back(
                 fmt::format("{}: no case came near the measured {:.5g}; it lies {:.1f} standard deviations beyond "
                             "all of them: the ranges, or the model, do not reach what was measured",

@@ -26,7 +26,7 @@ public:
 private:
     using Kind = Condition::Kind;
     using Node = Condition::Node;
-    static constexpr int deepest = 200;
+    static constexpr int deepest = 200, most_comparisons = 100;
 
     [[noreturn]] void refuse(std::string_view expected, std::string_view suggestion = {}) const {
         const auto rest = text_.substr(at_, 30);
@@ -100,6 +100,7 @@ private:
     }
 
     std::size_t comparison() {
+        if (++comparisons_ > most_comparisons) refuse(fmt::format("no more than {} comparisons", most_comparisons));
         if (const auto number_first = number()) {
             const auto kind = sign();
             return add({.kind = mirrored(kind), .name = name(), .number = *number_first});
@@ -166,7 +167,7 @@ private:
     std::string_view text_;
     std::span<const std::string> names_;
     std::size_t at_ = 0;
-    int depth_ = 0;
+    int depth_ = 0, comparisons_ = 0;
     Condition condition_;
 };
 

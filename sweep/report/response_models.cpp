@@ -100,8 +100,10 @@ stats::ResponseModelOptions boxed(std::span<const double> rows, std::size_t widt
         options.low[i % width] = std::min(options.low[i % width], rows[i]);
         options.high[i % width] = std::max(options.high[i % width], rows[i]);
     }
-    for (std::size_t j = 0; j < width; ++j)
-        if (!(options.high[j] > options.low[j])) options.high[j] = options.low[j] + 1;  // it tells nothing
+    if (rows.empty()) std::ranges::fill(options.low, 0.0), std::ranges::fill(options.high, 1.0);
+    for (std::size_t j = 0; j < width; ++j)  // the same everywhere: it tells nothing
+        if (!(options.high[j] > options.low[j]))
+            options.high[j] = options.low[j] + std::max(1.0, 1e-9 * std::abs(options.low[j]));
     return options;
 }
 

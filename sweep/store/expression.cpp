@@ -160,7 +160,11 @@ public:
         columns_.assign(read.begin(), read.end());
         const std::string sql =
             fmt::format("SELECT (({}\n)) IS TRUE FROM (SELECT {}) AS inputs", expression, row_of(columns_));
-        statement_ = db_.prepare(sql);
+        try {
+            statement_ = db_.prepare(sql);
+        } catch (const RefusedSql& refused) {  // a collation is looked up where something compares by it
+            throw refusal(condition_of(expression), refused.words());
+        }
     }
 
     [[nodiscard]] bool holds(const Inputs& inputs) {
@@ -203,7 +207,11 @@ public:
                                    expressions[k]);
         }
         db_.execute("DROP TABLE inputs");
-        statement_ = db_.prepare(fmt::format("SELECT {} FROM (SELECT {}) AS inputs", columns, row_of(names)));
+        try {
+            statement_ = db_.prepare(fmt::format("SELECT {} FROM (SELECT {}) AS inputs", columns, row_of(names)));
+        } catch (const RefusedSql& refused) {  // a collation is looked up where something compares by it
+            throw campaign::wrong_question(path_, "", refused.words());
+        }
     }
 
     [[nodiscard]] std::vector<double> of(std::span<const Value> values) {

@@ -158,8 +158,56 @@ TEST(CalibrateCampaign, RefusesInOneSentence) {
     asked = config();
     asked["factors"][0] = {{"name", "x1"}, {"levels", {0, 1}}};
     EXPECT_THAT(refusal(folder, asked), HasSubstr("$.factors"));
+    for (const auto& [key, number] :
+         {std::pair("value", 1e308), std::pair("value", -1e101), std::pair("error", 1e101)}) {
+        asked = config();
+        asked["calibration"]["targets"][1][key] = number;
+        EXPECT_THAT(refusal(folder, asked), HasSubstr(std::string("$.calibration.targets[1].") + key));
+    }
+    asked = config();
+    asked["calibration"]["discrepancy"]["y"] = 1e200;
+    EXPECT_THAT(refusal(folder, asked), HasSubstr("$.calibration.discrepancy.y"));
+    asked = config();
+    for (int k = 0; k < 300; ++k) {
+        asked["calibration"]["targets"].push_back(asked["calibration"]["targets"][0]);
+        asked["calibration"]["targets"].back()["inputs"]["x3"] = k / 1000.;
+    }
+    EXPECT_THAT(refusal(folder, asked), HasSubstr("at most 200 measurements"));
     asked = config();
     asked.erase("calibration");
     asked["design"] = {{"kind", "halton"}, {"points", 10}};
     EXPECT_THAT(refusal(folder, asked), HasSubstr("calibrat"));
+}
+
+TEST(CalibrateCampaign, WithoutAnAnswerNothingConvergesAndEveryCommandSaysSo) {
+    const Folder folder;
+    auto asked = config();
+    asked["fixed"]["behaviour"] = "unstable";
+    asked["calibration"]["waves"] = 1;
+    folder.write("c.json", asked.dump());
+    EXPECT_EQ(calibrate(folder, "a.db", {"-j", "2", "--quiet"}).code, 1);
+    const auto said = run_program({"converge", "a.db", "--check"}, folder.path());
+    EXPECT_EQ(said.code, 1);
+    EXPECT_THAT(said.out, HasSubstr("no case has an answer to it"));
+    EXPECT_THAT(said.out, ::testing::Not(HasSubstr("inf standard deviations")));
+    const auto window = run_program({"window", "a.db", "--maximize", "y"}, folder.path());
+    EXPECT_EQ(window.code, 2) << window.err;
+    EXPECT_THAT(window.err, HasSubstr("too few cases, 0 with a value"));
+    const auto sensitivity = run_program({"sensitivity", "a.db"}, folder.path());
+    EXPECT_EQ(sensitivity.code, 0) << sensitivity.err;
+}
+
+TEST(CalibrateCampaign, GivesAWindowWhoseNextCasesRun) {
+    const Folder folder;
+    auto asked = config();
+    asked["calibration"]["waves"] = 1;
+    folder.write("c.json", asked.dump());
+    ASSERT_EQ(calibrate(folder, "a.db", {"-j", "2", "--quiet"}).code, 0);
+    ASSERT_EQ(
+        run_program({"window", "a.db", "--maximize", "y", "--next", "2", "--next-file", "n.json"}, folder.path()).code,
+        0);
+    const auto next = run_program({"run", "n.json", "--db", "a.db", "--quiet"}, folder.path());
+    EXPECT_EQ(next.code, 0) << next.err;
+    const auto after = run_program({"window", "a.db", "--maximize", "y", "--format", "json"}, folder.path());
+    EXPECT_EQ(after.code, 0) << "the next cases come into the same model: " << after.err;
 }

@@ -223,6 +223,17 @@ TEST(Window, SaysWhereNothingMeetsTheCondition) {
     EXPECT_NE(found["notes"][0].get<std::string>().find("holds nowhere"), std::string::npos);
 }
 
+TEST(Predict, RefusesACampaignWithoutAnAnswer) {
+    Ran ran("spreading_a", 2, 16);
+    auto failing = json::parse(campaign_of("spreading_a", 2, 16));
+    failing["fixed"]["behaviour"] = "unstable";
+    ran.write("f.json", failing.dump());
+    EXPECT_EQ(ran.ask({"run", "f.json", "--db", "f.db", "--quiet"}).code, 1);
+    EXPECT_NE(ran.refusal({"predict", "f.db", "--at", "x1=0.5", "--at", "x2=0.5"}).find("too few cases"),
+              std::string::npos);
+    EXPECT_NE(ran.refusal({"window", "f.db", "--maximize", "y"}).find("too few cases"), std::string::npos);
+}
+
 TEST(Window, RefusesInOneSentence) {
     const Ran ran("spreading_a", 4, 60);
     EXPECT_NE(ran.refusal({"window", "c.db"}).find("--where"), std::string::npos);
@@ -236,6 +247,18 @@ TEST(Window, RefusesInOneSentence) {
               std::string::npos);
     EXPECT_NE(ran.refusal({"window", "c.db", "--maximize", "y", "--next-file", "n.json"}).find("--next N"),
               std::string::npos);
+    EXPECT_NE(ran.refusal({"window", "c.db", "--maximize", "y", "--run", "--width", "1e-9", "--max-cases", "2",
+                           "--next", "2", "--next-file", "n.json"})
+                  .find("--run runs the next cases itself"),
+              std::string::npos);
+    EXPECT_NE(ran.refusal({"window", "c.db", "--maximize", "y", "--run", "--width", "inf"}).find("a positive number"),
+              std::string::npos);
+    std::string many = "y > 0.1";
+    for (int k = 0; k < 9000; ++k) many += " and y > 0.1";
+    const auto refused = ran.refusal({"window", "c.db", "--where", many});
+    EXPECT_NE(refused.find("no more than 100 comparisons"), std::string::npos);
+    EXPECT_LT(refused.size(), 1000u);
+    EXPECT_EQ(ran.refusal({"window", "c.db", "--where", "\x1b[2J > 1"}).find('\x1b'), std::string::npos);
     EXPECT_NE(ran.refusal({"window", "c.db", "--maximize", "y", "--next", "2", "--next-file", "c.json"}).find("c.json"),
               std::string::npos);
 }

@@ -254,6 +254,17 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{R"([{"op": "add", "path": "/execution", "value": {"launcher": [""]}}])",
               "$.execution.launcher[0]: got \"\"; must be a non-empty text."}));
 
+TEST(WrongQuestion, ShowsTheBeginningOfALongValueOnOneLineThatMovesNoCursor) {
+    const std::string words = wrong_question("$.where", "a\x1b[2J\nb" + std::string(100000, 'x'), "is wrong").what();
+    EXPECT_THAT(words, ::testing::HasSubstr("got a\\u001b[2J bxxx"));
+    EXPECT_THAT(words, ::testing::EndsWith(" ...; is wrong."));
+    EXPECT_LT(words.size(), 500u);
+    std::string umlauts;
+    for (int k = 0; k < 400; ++k) umlauts += "\xC3\xA4";
+    const std::string cut = wrong_question("", "a" + umlauts, "is wrong").what();
+    EXPECT_THAT(cut, ::testing::HasSubstr("\xC3\xA4 ...")) << "cut between two characters";
+}
+
 TEST(CampaignText, TheNearestSceneAndDesignAreNamed) {
     EXPECT_THAT(sentence_of(patched(R"([{"op": "replace", "path": "/scene", "value": "rehersal"}])")),
                 testing::AllOf(testing::StartsWith("$.scene: got \"rehersal\"; must be "),

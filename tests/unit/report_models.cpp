@@ -173,6 +173,18 @@ TEST(FurtherPoints, AreAListOfTheSameCampaign) {
     EXPECT_EQ(campaign::candidates_of(further), 2);
 }
 
+TEST(FurtherPoints, OfACalibrationHaveItsConditionsAsFactors) {
+    const std::string calibration = R"({"campaign": "c", "scene": "rehearsal",
+      "factors": [{"name": "x1", "between": [0, 1]}, {"name": "x2", "between": [0, 1]}],
+      "calibration": {"discrepancy": {"y": 0.01}, "targets": [
+        {"observable": "y", "value": 1, "error": 0.1, "inputs": {"x4": 0.9, "x3": 0.5}},
+        {"observable": "y", "value": 2, "error": 0.1, "inputs": {"x3": 0.25, "x4": 0.9}}]}})";
+    const std::vector<std::vector<Value>> rows = {{0.5, 0.25, 0.25, 0.9}};
+    const auto further = campaign::parse_campaign(campaign::further_points(calibration, "n", "why", rows, 2), ".");
+    EXPECT_EQ(further.space.factors, campaign::parse_campaign(calibration, ".").space.factors);
+    EXPECT_EQ(campaign::candidates_of(further), 1);
+}
+
 TEST(BoxSearch, SettingsAreRoundedAndStayInside) {
     const auto box = factors();
     for (const auto& point : spread_points(box, {}, 64)) {

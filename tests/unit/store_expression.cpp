@@ -113,6 +113,7 @@ TEST(StoreExpression, OnlyOneDeterministicExpressionOfTheCase) {
                                               "rowid = 1",
                                               "row_number() over ()",
                                               "sum(gap) > 0",
+                                              "gap = 1 collate nowhere",
                                               "-",
                                               ")",
                                               "("}) {
@@ -145,6 +146,11 @@ TEST(StoreExpression, TimeAndMemoryAreLimited) {
     EXPECT_THAT(evaluation("length(" + doubled + ") > 0"), HasSubstr("too big"));
     EXPECT_THAT(evaluation("gap > 0" + std::string(200'000, ' ')), HasSubstr("at most 100000 are read"));
     EXPECT_EQ(evaluation("gap > 0 AND cohesion_law LIKE 's%'"), "answered");
+}
+
+TEST(StoreExpression, AFeatureOfAnUnknownCollationIsAWrongQuestion) {
+    const std::vector<std::string> expressions = {"gap collate nowhere"};
+    EXPECT_THROW((void)store::make_numbers(expressions, names, "$.model.features"), campaign::WrongQuestion);
 }
 
 }  // namespace
