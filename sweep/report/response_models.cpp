@@ -337,7 +337,8 @@ ObservableModel learn_or_refuse(const ModelCases& cases, const ResponseColumn& o
     if (auto* refused = std::get_if<stats::Refusal>(&learned)) {
         throw campaign::wrong_question(
             fmt::format("campaign {}, observable '{}'", cases.campaign.name, observable.name), "",
-            fmt::format("no response model: {}", refused->sentence));
+            refused->sentence.starts_with("no response model") ? refused->sentence
+                                                               : "no response model: " + refused->sentence);
     }
     return std::get<ObservableModel>(std::move(learned));
 }

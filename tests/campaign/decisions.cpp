@@ -231,7 +231,8 @@ TEST(Predict, RefusesACampaignWithoutAnAnswer) {
     EXPECT_EQ(ran.ask({"run", "f.json", "--db", "f.db", "--quiet"}).code, 1);
     EXPECT_NE(ran.refusal({"predict", "f.db", "--at", "x1=0.5", "--at", "x2=0.5"}).find("too few cases"),
               std::string::npos);
-    EXPECT_NE(ran.refusal({"window", "f.db", "--maximize", "y"}).find("too few cases"), std::string::npos);
+    EXPECT_NE(ran.refusal({"window", "f.db", "--maximize", "y"}).find("'y': no response model: too few cases"),
+              std::string::npos);
 }
 
 TEST(Window, RefusesInOneSentence) {
