@@ -103,12 +103,14 @@ test)
     (cd "$here" && configure release -DGRAINSWEEP_TESTS=ON)
     cmake --build "$here/build" -j "$jobs"
     (cd "$here" && ctest --preset release -j "$jobs" -LE slow)
-    # The unit tests once more under the address and undefined-behaviour sanitizers.
+    # The unit tests once more under the address and undefined-behaviour sanitizers; two that fit hundreds of models, a
+    # minute each there, walk paths that others walk, too.
     (cd "$here" && configure sanitize -DGRAINSWEEP_TESTS=ON)
     cmake --build "$here/build-sanitize" -j "$jobs" --target test_unit
     shards=()
     for ((shard = 0; shard < jobs; ++shard)); do
-        GTEST_TOTAL_SHARDS=$jobs GTEST_SHARD_INDEX=$shard "$here/build-sanitize/tests/test_unit" --gtest_brief=1 &
+        GTEST_FILTER='-ResponseModel.LearnsKnownFunctions:ModelIndices.IshigamiFromFewerPointsThanADesignForIt' \
+            GTEST_TOTAL_SHARDS=$jobs GTEST_SHARD_INDEX=$shard "$here/build-sanitize/tests/test_unit" --gtest_brief=1 &
         shards+=($!)
     done
     for shard in "${shards[@]}"; do wait "$shard"; done
