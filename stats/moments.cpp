@@ -1,5 +1,7 @@
 #include "stats/moments.hpp"
 
+#include "stats/undefined.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -10,7 +12,6 @@ namespace grainsweep::stats {
 namespace {
 
 constexpr std::int64_t chunk_length = 1000;
-constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
 /// A positive sum of powers that has neither overflowed nor lost digits to underflow.
 bool sound(double sum) {

@@ -2,6 +2,7 @@
 
 #include "stats/confidence.hpp"
 #include "stats/moments.hpp"
+#include "stats/undefined.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -15,7 +16,6 @@ namespace {
 
 constexpr std::size_t stretches = 8;
 constexpr std::size_t no_index = std::numeric_limits<std::size_t>::max();
-constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
 double square(double x) {
     return x * x;

@@ -1,6 +1,7 @@
 #include "stats/trend.hpp"
 
 #include "stats/confidence.hpp"
+#include "stats/undefined.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -13,7 +14,6 @@
 namespace grainsweep::stats {
 namespace {
 
-constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t fewest_groups = 4;
 
 std::vector<double> ranks_of(const std::vector<double>& values) {

@@ -1,6 +1,7 @@
 #include "stats/variance_split.hpp"
 
 #include "stats/confidence.hpp"
+#include "stats/undefined.hpp"
 
 #include <Eigen/Dense>
 
@@ -18,7 +19,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t fewest_parts = 4;
 constexpr std::size_t most_columns = 240;
 

@@ -118,8 +118,8 @@ nlohmann::ordered_json to_json(const Brackets& brackets) {
                   {"brackets", Json::array()}};
     const auto level = [](const RefinedLevel& at) {
         return Json{{"value", at.value},
-                    {"mean", to_json(to_cell(at.mean()))},
-                    {"error", to_json(to_cell(at.half_width()))},
+                    {"mean", json_number(at.mean())},
+                    {"error", json_number(at.half_width())},
                     {"runs", at.answers.size()}};
     };
     for (std::size_t c = 0; c < brackets.found.size(); ++c) {

@@ -332,7 +332,6 @@ nlohmann::ordered_json page_of(const CalibrationReport& report) {
 
 nlohmann::ordered_json to_json(const CalibrationReport& report) {
     using Json = nlohmann::ordered_json;
-    const auto number = [](double x) { return to_json(to_cell(x)); };
     Json value = {{"ended", report.found.waves_end},
                   {"why", report.found.why_they_end},
                   {"waves", Json::array()},
@@ -342,7 +341,7 @@ nlohmann::ordered_json to_json(const CalibrationReport& report) {
                   {"notes", report.notes}};
     for (const auto& wave : report.found.waves) {
         Json errors = Json::array();
-        for (const double error : wave.model_error) errors.push_back(number(error));
+        for (const double error : wave.model_error) errors.push_back(json_number(error));
         value["waves"].push_back({{"settings", wave.settings},
                                   {"cases", wave.cases},
                                   {"failed", wave.failed},
@@ -363,12 +362,12 @@ nlohmann::ordered_json to_json(const CalibrationReport& report) {
                                     {"value", target.value},
                                     {"error", target.error},
                                     {"discrepancy", target.discrepancy},
-                                    {"predicted", number(target.predicted)},
-                                    {"predicted_sd", number(target.predicted_error)},
-                                    {"checked", number(target.checked)},
-                                    {"checked_sd", number(target.checked_sd)},
+                                    {"predicted", json_number(target.predicted)},
+                                    {"predicted_sd", json_number(target.predicted_error)},
+                                    {"checked", json_number(target.checked)},
+                                    {"checked_sd", json_number(target.checked_sd)},
                                     {"runs", target.runs},
-                                    {"z", number(target.z())}});
+                                    {"z", json_number(target.z())}});
     return value;
 }
 

@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <utility>
 
 namespace grainsweep::report {
@@ -74,31 +73,8 @@ Noise noise_of(const Responses& responses, const ResponseColumn& response, std::
     return any ? noise : Noise{};
 }
 
-std::vector<double> features_of(const Features& features, std::span<const Setting> settings) {
-    std::vector<double> rows;
-    for (const auto& setting : settings) {
-        const auto row = features.of(setting);
-        rows.insert(rows.end(), row.begin(), row.end());
-    }
-    return rows;
-}
-
-/// The range of each feature over the box.
-stats::AssistedSettings boxed(std::span<const double> rows, std::size_t width) {
-    stats::AssistedSettings settings;
-    settings.low.assign(width, std::numeric_limits<double>::infinity());
-    settings.high.assign(width, -std::numeric_limits<double>::infinity());
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        settings.low[i % width] = std::min(settings.low[i % width], rows[i]);
-        settings.high[i % width] = std::max(settings.high[i % width], rows[i]);
-    }
-    for (std::size_t j = 0; j < width; ++j)
-        if (!(settings.high[j] > settings.low[j])) settings.high[j] = settings.low[j] + 1;  // it tells nothing
-    return settings;
-}
-
 Json json_of(double value, double error) {
-    return {{"value", to_json(to_cell(value))}, {"error", to_json(to_cell(error))}};
+    return {{"value", json_number(value)}, {"error", json_number(error)}};
 }
 
 std::string key(stats::Statistic statistic) {
@@ -126,7 +102,7 @@ Estimators estimators_of(const store::Store& store, const Responses& responses, 
 
     const auto points = integration_points(cases, admission(store, cases));
     if (points.empty()) return refuse("the campaign's `where` leaves less than a thirtieth of the box");
-    const auto integration = features_of(features, points);
+    const auto integration = rows_of(features, points);
     if (!std::ranges::all_of(integration, [](double x) { return std::isfinite(x); }))
         return refuse("a feature has no number somewhere in the box");
     std::vector<double> values;
@@ -135,8 +111,12 @@ Estimators estimators_of(const store::Store& store, const Responses& responses, 
         values.push_back(response.values[row]);
         sequences.push_back(parts.labels[row]);
     }
-    const auto at_cases = features_of(features, cases.settings);
+    const auto at_cases = rows_of(features, cases.settings);
     const auto noise = noise_of(responses, response, rows);
+    auto box = box_of(integration, width);
+    stats::AssistedSettings settings;
+    settings.low = std::move(box.low);
+    settings.high = std::move(box.high);
     auto answer = stats::assisted_moments({.points = {at_cases, width},
                                            .values = values,
                                            .sequences = sequences,
@@ -144,7 +124,7 @@ Estimators estimators_of(const store::Store& store, const Responses& responses, 
                                            .scramblings = scramblings,
                                            .noise_variance = noise.variance,
                                            .noise_variance_error = noise.relative_error},
-                                          boxed(integration, width));
+                                          settings);
     if (const auto* refused = std::get_if<stats::Refusal>(&answer)) {
         found.refused = refused->sentence;
         return found;
@@ -205,13 +185,13 @@ Json estimators_json(const History& history, const Estimators& estimators) {
             value["without_scatter"][key(statistic)] =
                 json_of(one.without_scatter.value, one.without_scatter.half_width);
     }
-    value["model_error"] = to_json(to_cell(assisted.model_error));
+    value["model_error"] = json_number(assisted.model_error);
     value["note"] = assisted.remark;
     if (!scatter_known) return value;
     value["scatter_from"] = estimators.scatter_from;
     const auto share = [&](std::size_t p) {
         const auto& budget = assisted.budget[p];
-        return to_json(to_cell(budget.scatter / (budget.response + budget.scatter)));
+        return json_number(budget.scatter / (budget.response + budget.scatter));
     };
     value["scatter_share"] = {{"variance", share(0)}, {"third_moment", share(1)}, {"fourth_moment", share(2)}};
     return value;

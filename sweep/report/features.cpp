@@ -145,6 +145,28 @@ Features written_features(std::span<const ModelFactor> factors, std::span<const 
     return features;
 }
 
+std::vector<double> rows_of(const Features& features, std::span<const Setting> settings) {
+    std::vector<double> rows;
+    for (const auto& setting : settings) {
+        const auto row = features.of(setting);
+        rows.insert(rows.end(), row.begin(), row.end());
+    }
+    return rows;
+}
+
+FeatureBox box_of(std::span<const double> rows, std::size_t width) {
+    if (rows.empty()) return {std::vector<double>(width, 0), std::vector<double>(width, 1)};
+    FeatureBox box{std::vector<double>(width, std::numeric_limits<double>::infinity()),
+                   std::vector<double>(width, -std::numeric_limits<double>::infinity())};
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        box.low[i % width] = std::min(box.low[i % width], rows[i]);
+        box.high[i % width] = std::max(box.high[i % width], rows[i]);
+    }
+    for (std::size_t j = 0; j < width; ++j)
+        if (!(box.high[j] > box.low[j])) box.high[j] = box.low[j] + std::max(1.0, 1e-9 * std::abs(box.low[j]));
+    return box;
+}
+
 std::vector<Ratio> candidate_ratios(std::span<const ModelFactor> factors) {
     std::vector<Ratio> ratios;
     for (std::size_t over = 0; over < factors.size(); ++over)

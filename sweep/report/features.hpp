@@ -45,6 +45,15 @@ struct Features {
     std::function<std::vector<double>(std::span<const double> setting)> of;  ///< one number per name; NaN: undefined
 };
 
+/// Features of every setting, one row after the other.
+[[nodiscard]] std::vector<double> rows_of(const Features& features, std::span<const Setting> settings);
+/// Smallest and largest of each feature: the box that lengths are measured in. Of one that is the same everywhere the
+/// box is one unit wide, and without rows it is the unit box.
+struct FeatureBox {
+    std::vector<double> low, high;
+};
+[[nodiscard]] FeatureBox box_of(std::span<const double> rows, std::size_t width);
+
 /// log(a/b) takes the place of feature a.
 struct Ratio {
     std::size_t over = 0, under = 0;  ///< indices of factors

@@ -48,7 +48,7 @@ stats::FeatureMap map_of(const ObservableModel& model, const std::vector<ModelFa
 }
 
 Json json_of(const stats::SensitivityIndex& index) {
-    return {{"value", to_json(to_cell(index.value))}, {"error", to_json(to_cell(index.half_width))}};
+    return {{"value", json_number(index.value)}, {"error", json_number(index.half_width)}};
 }
 
 /// Calls with (j, k, index) of every pair.
@@ -138,8 +138,8 @@ Json model_influence_json(const ModelInfluence& influence) {
         value["pairs"].push_back(std::move(pair));
     });
     const auto& quality = influence.model->model.quality();
-    value["scatter_share"] = to_json(to_cell(quality.noise_share));
-    value["unexplained_share"] = to_json(to_cell(std::pow(quality.leave_one_out_error, 2)));
+    value["scatter_share"] = json_number(quality.noise_share);
+    value["unexplained_share"] = json_number(std::pow(quality.leave_one_out_error, 2));
     value["response_model"] = model_json(*influence.model);
     return value;
 }

@@ -29,10 +29,10 @@ Json model_json(const ObservableModel& model) {
             {"cases", quality.cases},
             {"rests_on", quality.rests_on},
             {"undefined", model.undefined},
-            {"leave_one_out_error", to_json(to_cell(quality.leave_one_out_error))},
-            {"coverage_50", to_json(to_cell(quality.coverage_50))},
-            {"coverage_95", to_json(to_cell(quality.coverage_95))},
-            {"noise_share", to_json(to_cell(quality.noise_share))},
+            {"leave_one_out_error", json_number(quality.leave_one_out_error)},
+            {"coverage_50", json_number(quality.coverage_50)},
+            {"coverage_95", json_number(quality.coverage_95)},
+            {"noise_share", json_number(quality.noise_share)},
             {"features", model.features.names},
             {"learned_map", quality.learned_map},
             {"notes", model.notes}};
@@ -77,11 +77,11 @@ Json predictions_json(const ModelCases& cases, const ObservableModel& model, std
     for (std::size_t i = 0; i < settings.size(); ++i) {
         const auto& p = predictions[i];
         points.push_back({{"inputs", inputs_json(cases.factors, settings[i])},
-                          {"mean", to_json(to_cell(p.mean))},
-                          {"mean_error", to_json(to_cell(p.mean_error))},
-                          {"scatter", to_json(to_cell(p.scatter))},
+                          {"mean", json_number(p.mean)},
+                          {"mean_error", json_number(p.mean_error)},
+                          {"scatter", json_number(p.scatter)},
                           {"inside", outside_text(cases.factors, settings[i]).empty()},
-                          {"defined", to_json(to_cell(defined[i]))}});
+                          {"defined", json_number(defined[i])}});
     }
     return {{"campaign", cases.campaign.name},
             {"observable", model.observable},

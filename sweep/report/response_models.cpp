@@ -91,29 +91,12 @@ std::vector<store::CampaignRecord> chosen_campaigns(const store::Store& store, s
     return records;
 }
 
-/// Smallest and largest of each feature: the box that lengths are measured in.
 stats::ResponseModelOptions boxed(std::span<const double> rows, std::size_t width) {
+    auto box = box_of(rows, width);
     stats::ResponseModelOptions options;
-    options.low.assign(width, std::numeric_limits<double>::infinity());
-    options.high.assign(width, -std::numeric_limits<double>::infinity());
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        options.low[i % width] = std::min(options.low[i % width], rows[i]);
-        options.high[i % width] = std::max(options.high[i % width], rows[i]);
-    }
-    if (rows.empty()) std::ranges::fill(options.low, 0.0), std::ranges::fill(options.high, 1.0);
-    for (std::size_t j = 0; j < width; ++j)  // the same everywhere: it tells nothing
-        if (!(options.high[j] > options.low[j]))
-            options.high[j] = options.low[j] + std::max(1.0, 1e-9 * std::abs(options.low[j]));
+    options.low = std::move(box.low);
+    options.high = std::move(box.high);
     return options;
-}
-
-std::vector<double> rows_of(const Features& features, std::span<const Setting> settings) {
-    std::vector<double> rows;
-    for (const auto& setting : settings) {
-        const auto row = features.of(setting);
-        rows.insert(rows.end(), row.begin(), row.end());
-    }
-    return rows;
 }
 
 /// Leave-one-out error on some of the cases, the same for every set of features; infinite where there is none.

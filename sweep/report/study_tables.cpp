@@ -66,11 +66,7 @@ Cell trend_cell(const FactorInfluence& factor) {
 }
 
 Json json_of(const stats::SensitivityIndex& index) {
-    return {{"value", to_json(to_cell(index.value))}, {"error", to_json(to_cell(index.half_width))}};
-}
-
-Json number(double x) {
-    return to_json(to_cell(x));
+    return {{"value", json_number(index.value)}, {"error", json_number(index.half_width)}};
 }
 
 store::Table no_checks() {
@@ -100,8 +96,8 @@ Json provisional_of(const History& history) {
     const auto& known = *history.provisional;
     Json value = {{"points", known.points}, {"values", known.count}, {"excluded", known.excluded}};
     for (const auto statistic : stats::statistics) {
-        value["statistics"][std::string(stats::to_string(statistic))] = {{"value", number(known.of(statistic).value)},
-                                                                         {"error", number(known.of(statistic).error)}};
+        value["statistics"][std::string(stats::to_string(statistic))] = {
+            {"value", json_number(known.of(statistic).value)}, {"error", json_number(known.of(statistic).error)}};
     }
     return value;
 }
@@ -202,7 +198,7 @@ Json to_json(const Responses& responses, const ResponseColumn& response, const H
                   {"points", history.all.points},
                   {"values", history.all.count},
                   {"excluded", history.all.excluded},
-                  {"zero_share", number(history.all.zero_share)},
+                  {"zero_share", json_number(history.all.zero_share)},
                   {"candidates", responses.candidates},
                   {"dropped", responses.dropped()},
                   {"asked", responses.rows()},
@@ -216,9 +212,9 @@ Json to_json(const Responses& responses, const ResponseColumn& response, const H
     for (const auto statistic : stats::statistics) {
         const auto& all = history.all.of(statistic);
         value["statistics"][std::string(stats::to_string(statistic))] = {
-            {"value", number(all.value)},
-            {"error", number(all.error)},
-            {"measure", number(judged_check(history).of(statistic).measure)}};
+            {"value", json_number(all.value)},
+            {"error", json_number(all.error)},
+            {"measure", json_number(judged_check(history).of(statistic).measure)}};
     }
     const auto converged = std::ranges::find(history.checks, true, &stats::Checkpoint::converged);
     const bool judged = history.has_rule && converged != history.checks.end();
@@ -311,10 +307,10 @@ Json to_json(const Responses& responses, const ResponseColumn& response, const I
             put("total", factor.total);
         }
         if (factor.effects) {
-            one["mu_star"] = {{"value", number(factor.effects->mu_star)},
-                              {"error", number(factor.effects->mu_star_half_width)}};
-            one["mu"] = number(factor.effects->mu);
-            one["sigma"] = number(factor.effects->sigma);
+            one["mu_star"] = {{"value", json_number(factor.effects->mu_star)},
+                              {"error", json_number(factor.effects->mu_star_half_width)}};
+            one["mu"] = json_number(factor.effects->mu);
+            one["sigma"] = json_number(factor.effects->sigma);
         }
         one["trend"] = to_json(trend_cell(factor));
         put("rank_correlation", factor.rank_correlation);
@@ -322,10 +318,10 @@ Json to_json(const Responses& responses, const ResponseColumn& response, const I
     }
     const auto& split = influence.split;
     value["variance"] = {
-        {"main_effects", json_of(split.main_effects)}, {"unexplained", json_of(split.unexplained)},
-        {"interactions", json_of(split.interactions)}, {"scatter", json_of(split.scatter)},
-        {"interactions_of_two", json_of(split.pairs)}, {"scatter_and_higher", json_of(split.remainder)},
-        {"pure_error", number(split.pure.variance)},   {"pure_error_freedom", split.pure.freedom}};
+        {"main_effects", json_of(split.main_effects)},    {"unexplained", json_of(split.unexplained)},
+        {"interactions", json_of(split.interactions)},    {"scatter", json_of(split.scatter)},
+        {"interactions_of_two", json_of(split.pairs)},    {"scatter_and_higher", json_of(split.remainder)},
+        {"pure_error", json_number(split.pure.variance)}, {"pure_error_freedom", split.pure.freedom}};
     value["notes"] = influence.notes;
     return value;
 }

@@ -142,6 +142,10 @@ Json to_json(const Cell& cell) {
     return nullptr;
 }
 
+Json json_number(double x) {
+    return to_json(to_cell(x));
+}
+
 Json to_json(const store::Table& table) {
     const auto names = distinct(table.columns);
     Json rows = Json::array();

@@ -52,6 +52,8 @@ void write(std::ostream& out, const store::Table& table, Format format);
 /// The table as a list of objects, to be part of a larger value.
 [[nodiscard]] nlohmann::ordered_json to_json(const store::Table& table);
 [[nodiscard]] nlohmann::ordered_json to_json(const store::Table::Cell& cell);
+/// null where it is not finite.
+[[nodiscard]] nlohmann::ordered_json json_number(double x);
 /// null where there is none.
 [[nodiscard]] nlohmann::ordered_json to_json(const std::optional<bool>& flag);
 /// One JSON value and a line end; bytes that are no UTF-8 are replaced.

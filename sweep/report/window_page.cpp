@@ -20,10 +20,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t points_of_curve = 41;
 
-Json number_or_null(double x) {
-    return to_json(to_cell(x));
-}
-
 std::size_t levels_of(const ModelFactor& factor) {
     return factor.is_word() ? factor.words.size() : factor.numbers.size();
 }
@@ -107,9 +103,9 @@ Json responses_of(const Window& window, const Judgement& one) {
     Json list = Json::array();
     for (std::size_t k = 0; k < window.models.size(); ++k) {
         const auto& p = one.predictions[k];
-        list.push_back({{"mean", number_or_null(p.mean)},
-                        {"mean_half_width", number_or_null(p.mean_half_width())},
-                        {"run_half_width", number_or_null(p.run_half_width())}});
+        list.push_back({{"mean", json_number(p.mean)},
+                        {"mean_half_width", json_number(p.mean_half_width())},
+                        {"run_half_width", json_number(p.run_half_width())}});
     }
     return list;
 }
@@ -120,7 +116,7 @@ Json json_of(const ModelCases& cases, const Window& window, const Judgement& one
         value["setting"].push_back(one.setting[j]);
         value["texts"].push_back(cases.factors[j].text(one.setting[j]));
     }
-    value["probability"] = number_or_null(one.probability);
+    value["probability"] = json_number(one.probability);
     value["responses"] = responses_of(window, one);
     return value;
 }
@@ -128,7 +124,7 @@ Json json_of(const ModelCases& cases, const Window& window, const Judgement& one
 Json json_of(const Window& window, const FactorCurve& curve) {
     Json value = {{"at", curve.at}, {"probability", Json::array()}, {"responses", Json::array()}};
     for (const auto& one : curve.judged) {
-        value["probability"].push_back(number_or_null(one.probability));
+        value["probability"].push_back(json_number(one.probability));
         value["responses"].push_back(responses_of(window, one));
     }
     return value;
@@ -155,9 +151,9 @@ Json map_of(const ModelCases& cases, const WindowRequest& request, const Window&
                   {"objective", request.objective.empty() ? Json(nullptr) : Json::array()}};
     for (std::size_t i = 0; i < settings.size(); ++i) {
         const bool there = !admits || admits(settings[i]);
-        value["probability"].push_back(there ? number_or_null(judged[i].probability) : Json(nullptr));
+        value["probability"].push_back(there ? json_number(judged[i].probability) : Json(nullptr));
         if (!request.objective.empty())
-            value["objective"].push_back(there ? number_or_null(judged[i].predictions.front().mean) : Json(nullptr));
+            value["objective"].push_back(there ? json_number(judged[i].predictions.front().mean) : Json(nullptr));
     }
     return value;
 }

@@ -43,17 +43,17 @@ store::Table settings_table(const ModelCases& cases, const Window& window, std::
 Json json_of(const ModelCases& cases, const WindowRequest& request, const Window& window, const Judgement& one) {
     Json object = {{"inputs", inputs_json(cases.factors, one.setting)}};
     if (!request.objective.empty()) {
-        object["mean"] = to_json(to_cell(one.predictions[0].mean));
-        object["mean_error"] = to_json(to_cell(one.predictions[0].mean_error));
-        object["scatter"] = to_json(to_cell(one.predictions[0].scatter));
+        object["mean"] = json_number(one.predictions[0].mean);
+        object["mean_error"] = json_number(one.predictions[0].mean_error);
+        object["scatter"] = json_number(one.predictions[0].scatter);
     }
-    object["probability"] = to_json(to_cell(one.probability));
+    object["probability"] = json_number(one.probability);
     object["observables"] = Json::object();
     for (std::size_t k = 0; k < window.models.size(); ++k)
         object["observables"][window.models[k].observable] = {
-            {"mean", to_json(to_cell(one.predictions[k].mean))},
-            {"mean_error", to_json(to_cell(one.predictions[k].mean_error))},
-            {"scatter", to_json(to_cell(one.predictions[k].scatter))}};
+            {"mean", json_number(one.predictions[k].mean)},
+            {"mean_error", json_number(one.predictions[k].mean_error)},
+            {"scatter", json_number(one.predictions[k].scatter)}};
     return object;
 }
 
