@@ -222,7 +222,8 @@ int sensitivity(const Subject& subject, Format format) {
     return 0;
 }
 
-int write_report(const std::vector<std::string>& databases, std::string output, std::int64_t watched, Format format) {
+int write_report(const std::vector<std::string>& databases, std::string output, std::int64_t watched,
+                 const report::PageModels& models, Format format) {
     std::vector<Store> stores;
     stores.reserve(databases.size());
     std::vector<report::PageSource> sources;
@@ -241,11 +242,11 @@ int write_report(const std::vector<std::string>& databases, std::string output, 
     if (!films.empty())
         std::cerr << fmt::format("{} films: {} of the page\n", films.size(), report::size_text(film_bytes));
     if (to_standard_output) {  // the page is the answer: nothing else goes there
-        report::write_page(std::cout, sources, films);
+        report::write_page(std::cout, sources, films, models);
         return 0;
     }
     std::ostringstream stream;
-    report::write_page(stream, sources, films);
+    report::write_page(stream, sources, films, models);
     const std::string page = std::move(stream).str();
     write_page_file(output, page);
     const auto size = static_cast<std::int64_t>(page.size());
@@ -290,6 +291,7 @@ std::vector<Command> study_commands() {
                  std::string database, output;
                  std::vector<std::string> others;
                  std::int64_t watched = 0;
+                 report::PageModels models;
              };
              const auto request = std::make_shared<Request>();
              parser.add_option("DB", request->database, "the database")->required();
@@ -304,10 +306,15 @@ std::vector<Command> study_commands() {
                              "observable, computed again")
                  ->type_name("N")
                  ->check(whole_number(0, 100));
+             parser
+                 .add_option("--model", request->models.of,
+                             "scalars whose response models are drawn against the factors; default: the main one, of "
+                             "campaigns of at most 1000 cases")
+                 ->type_name("NAME");
              return [request, &format] {
                  std::vector<std::string> databases = {request->database};
                  databases.insert(databases.end(), request->others.begin(), request->others.end());
-                 return write_report(databases, request->output, request->watched, format);
+                 return write_report(databases, request->output, request->watched, request->models, format);
              };
          },
          false, true},

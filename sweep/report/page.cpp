@@ -3,15 +3,18 @@
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/identity.hpp"
 #include "sweep/campaign/stored_text.hpp"
+#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/report/brackets.hpp"
 #include "sweep/report/calibration.hpp"
 #include "sweep/report/curves.hpp"
 #include "sweep/report/effects.hpp"
 #include "sweep/report/history.hpp"
 #include "sweep/report/influence.hpp"
+#include "sweep/report/model_page.hpp"
 #include "sweep/report/packed_column.hpp"
 #include "sweep/report/page_files.hpp"
 #include "sweep/report/page_template.hpp"
+#include "sweep/report/response_models.hpp"
 #include "sweep/report/summary.hpp"
 #include "sweep/report/table.hpp"
 #include "sweep/report/watch_page.hpp"
@@ -227,7 +230,42 @@ Json runs_of(const store::Store& store, const std::string& campaign) {
                     campaign)));
 }
 
-Json campaign_of(const store::Store& store, const store::CampaignRecord& record, std::string_view database) {
+/// One response model after the other, or why there is none.
+Json models_of(const store::Store& store, const Responses& responses, const PageModels& asked) {
+    Json list = Json::array();
+    std::vector<std::string> names = asked.of;
+    const auto* main = responses.main_observable();
+    if (names.empty() && main != nullptr && responses.settled <= asked.unasked_cases) names.push_back(main->name);
+    if (names.empty() || responses.settled == 0) return list;
+    const auto cases = settled_cases(responses);
+    if (cases.settings.empty()) return list;
+    for (const auto& name : names) {
+        const auto found = std::ranges::find(cases.observables, name, &ResponseColumn::name);
+        if (found == cases.observables.end()) continue;
+        const auto learned = learn(cases, *found);
+        if (const auto* model = std::get_if<ObservableModel>(&learned))
+            list.push_back(model_page_data(cases, *model, admission(store, cases)));
+        else
+            list.push_back({{"observable", name}, {"refused", std::get<stats::Refusal>(learned).sentence}});
+    }
+    return list;
+}
+
+void refuse_unknown_models(const Json& page, const PageModels& asked) {
+    std::vector<std::string> names;
+    for (const auto& campaign : page["campaigns"])
+        for (const auto& observable : campaign["observables"])
+            if (const std::string name = observable["name"]; !std::ranges::count(names, name)) names.push_back(name);
+    for (const auto& name : asked.of)
+        if (!std::ranges::count(names, name))
+            throw campaign::wrong_question(
+                "--model", fmt::format("'{}'", name),
+                fmt::format("no campaign has values of such a scalar; there are {}", campaign::listed(names)),
+                campaign::nearest_word(name, names));
+}
+
+Json campaign_of(const store::Store& store, const store::CampaignRecord& record, std::string_view database,
+                 const PageModels& models) {
     const auto responses = read_responses(store, record);
     const SceneInfo* scene = find_scene(record.scene);
     Json value = {{"name", record.name},
@@ -271,6 +309,7 @@ Json campaign_of(const store::Store& store, const store::CampaignRecord& record,
             value["brackets"]["rows"].push_back(std::move(cells));
         }
     }
+    value["models"] = models_of(store, responses, models);
     const auto calibration = calibration_report(store, record);
     value["calibration"] = calibration ? page_of(*calibration) : Json(nullptr);
     value["curves"] = json_of(read_curves(store, responses));
@@ -281,13 +320,14 @@ Json campaign_of(const store::Store& store, const store::CampaignRecord& record,
 
 }  // namespace
 
-Json page_data(std::span<const PageSource> sources) {
+Json page_data(std::span<const PageSource> sources, const PageModels& models) {
     Json value = {{"databases", Json::array()}, {"campaigns", Json::array()}};
     for (const auto& [store, database] : sources) {
         value["databases"].push_back(database);
         for (const auto& record : find_campaigns(*store, ""))
-            value["campaigns"].push_back(campaign_of(*store, record, database));
+            value["campaigns"].push_back(campaign_of(*store, record, database, models));
     }
+    refuse_unknown_models(value, models);
     return value;
 }
 
@@ -335,9 +375,10 @@ std::string film_elements(std::span<const PageFilm> films) {
 
 }  // namespace
 
-void write_page(std::ostream& out, std::span<const PageSource> sources, std::span<const PageFilm> films) {
+void write_page(std::ostream& out, std::span<const PageSource> sources, std::span<const PageFilm> films,
+                const PageModels& models) {
     const auto files = page_files();
-    const auto data = safe_in_script(page_data(sources));
+    const auto data = safe_in_script(page_data(sources, models));
     const auto film_text = film_elements(films);
     fill(out, files.skeleton,
          {{"style", files.style},

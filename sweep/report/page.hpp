@@ -6,9 +6,11 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <cstddef>
 #include <iosfwd>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace grainsweep::report {
 
@@ -21,6 +23,15 @@ struct PageSource {
     std::string name;  ///< what the page calls it
 };
 
+/// Which response models the page shows, campaign by campaign.
+struct PageModels {
+    /// Their observables; a campaign that lacks one is passed over.
+    std::vector<std::string> of = {};
+    /// Without a name: that of the main observable, of campaigns of at most so many settled cases (a model of 1,000
+    /// cases takes some seconds).
+    std::size_t unasked_cases = 1000;
+};
+
 /// A film in the page, of a case that it shows.
 struct PageFilm {
     std::string campaign, case_id;
@@ -30,13 +41,14 @@ struct PageFilm {
 
 /// The figures and all cases of every campaign of the databases, as the page's program reads them. Columns of numbers
 /// are packed (packed_column.hpp).
-[[nodiscard]] nlohmann::ordered_json page_data(std::span<const PageSource> sources);
+[[nodiscard]] nlohmann::ordered_json page_data(std::span<const PageSource> sources, const PageModels& models = {});
 
 /// JSON that may stand inside a script element: "</", "<!--" and the line separators of JavaScript cannot occur.
 [[nodiscard]] std::string safe_in_script(const nlohmann::ordered_json& value);
 
 /// Writes the page: all campaigns of all databases, of which any two can be laid over one another. Bytes of a database
 /// that are no UTF-8 are replaced.
-void write_page(std::ostream& out, std::span<const PageSource> sources, std::span<const PageFilm> films = {});
+void write_page(std::ostream& out, std::span<const PageSource> sources, std::span<const PageFilm> films = {},
+                const PageModels& models = {});
 
 }  // namespace grainsweep::report

@@ -1,5 +1,6 @@
 #include "sweep/report/window_page.hpp"
 
+#include "sweep/report/factor_axis.hpp"
 #include "sweep/report/model_tables.hpp"
 #include "sweep/report/page.hpp"
 #include "sweep/report/page_files.hpp"
@@ -20,41 +21,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t points_of_curve = 41;
 
-std::size_t levels_of(const ModelFactor& factor) {
-    return factor.is_word() ? factor.words.size() : factor.numbers.size();
-}
-
-std::size_t cells_of(const ModelFactor& factor) {
-    const auto levels = levels_of(factor);
-    return levels > 0 ? levels : factor.high > factor.low ? points_of_curve : 1;
-}
-
-/// The number of a factor at share u of its range.
-double at_share(const ModelFactor& factor, double u) {
-    return exact_setting(std::span(&factor, 1), std::span(&u, 1)).front();
-}
-
-/// Numbers of a factor along its range: ends included (curves), or the centres of cells (map).
-std::vector<double> along(const ModelFactor& factor, bool centres) {
-    const auto cells = cells_of(factor);
-    std::vector<double> numbers;
-    for (std::size_t k = 0; k < cells; ++k) {
-        const bool middle = centres || levels_of(factor) > 0 || cells == 1;
-        const auto place = static_cast<double>(k) + (middle ? 0.5 : 0.0);
-        numbers.push_back(at_share(factor, place / static_cast<double>(middle ? cells : cells - 1)));
-    }
-    return numbers;
-}
-
-/// Where cells begin and end; levels have none.
-Json edges(const ModelFactor& factor) {
-    Json list = Json::array();
-    const auto cells = cells_of(factor);
-    for (std::size_t k = 0; levels_of(factor) == 0 && k <= cells; ++k)
-        list.push_back(at_share(factor, static_cast<double>(k) / static_cast<double>(cells)));
-    return list;
-}
-
 struct FactorCurve {
     std::vector<double> at;
     std::vector<Judgement> judged;
@@ -62,7 +28,7 @@ struct FactorCurve {
 
 FactorCurve curve_through(const ModelCases& cases, const WindowRequest& request, const Window& window,
                           const Setting& centre, std::size_t factor) {
-    FactorCurve curve{along(cases.factors[factor], false), {}};
+    FactorCurve curve{points_along(cases.factors[factor], points_of_curve), {}};
     std::vector<Setting> settings(curve.at.size(), centre);
     for (std::size_t i = 0; i < settings.size(); ++i) settings[i][factor] = curve.at[i];
     curve.judged = judge_settings(cases, request, window, settings);
@@ -132,7 +98,8 @@ Json json_of(const Window& window, const FactorCurve& curve) {
 
 Json map_of(const ModelCases& cases, const WindowRequest& request, const Window& window, const Admits& admits,
             const Setting& centre, std::size_t a, std::size_t b) {
-    const auto across = along(cases.factors[a], true), up = along(cases.factors[b], true);
+    const auto across = cells_along(cases.factors[a], points_of_curve),
+               up = cells_along(cases.factors[b], points_of_curve);
     std::vector<Setting> settings;
     for (const double y : up)
         for (const double x : across) {
@@ -143,8 +110,8 @@ Json map_of(const ModelCases& cases, const WindowRequest& request, const Window&
     const auto judged = judge_settings(cases, request, window, settings);
     Json value = {{"across", a},
                   {"up", b},
-                  {"across_edges", edges(cases.factors[a])},
-                  {"up_edges", edges(cases.factors[b])},
+                  {"across_edges", cell_edges(cases.factors[a], points_of_curve)},
+                  {"up_edges", cell_edges(cases.factors[b], points_of_curve)},
                   {"columns", across.size()},
                   {"rows", up.size()},
                   {"probability", Json::array()},
@@ -156,23 +123,6 @@ Json map_of(const ModelCases& cases, const WindowRequest& request, const Window&
             value["objective"].push_back(there ? json_number(judged[i].predictions.front().mean) : Json(nullptr));
     }
     return value;
-}
-
-Json factors_of(const ModelCases& cases) {
-    Json list = Json::array();
-    for (const auto& factor : cases.factors) {
-        Json levels = Json::array();
-        for (const auto& word : factor.words) levels.push_back(word);
-        for (const double x : factor.numbers) levels.push_back(factor.text(x));
-        list.push_back({{"name", factor.name},
-                        {"unit", factor.unit},
-                        {"levels", levels},
-                        {"numbers", factor.numbers},
-                        {"low", factor.low},
-                        {"high", factor.high},
-                        {"log", factor.log}});
-    }
-    return list;
 }
 
 }  // namespace
@@ -202,7 +152,7 @@ Json window_page_data(const ModelCases& cases, const WindowRequest& request, con
                   {"risk", request.risk},
                   {"share", window.share_of_box},
                   {"share_error", window.share_error},
-                  {"factors", factors_of(cases)},
+                  {"factors", axes_json(cases.factors)},
                   {"meets", window.best.has_value()},
                   {"best", json_of(cases, window, centre)},
                   {"order", order}};

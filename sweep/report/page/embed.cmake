@@ -8,14 +8,14 @@ if(NOT CHART_JS)
   message(FATAL_ERROR "Chart.js is missing: install libjs-chart.js, or set CHART_JS to its chart.min.js")
 endif()
 set(PAGE_FOLDER "${CMAKE_SOURCE_DIR}/sweep/report/page")
-set(PAGE_SCRIPTS data elements colours svg figure response explore curves calibration cases case_panel page)
+set(PAGE_SCRIPTS data elements colours svg figure response explore curves calibration model_figures model cases case_panel page)
 list(TRANSFORM PAGE_SCRIPTS REPLACE "(.+)" "${PAGE_FOLDER}/\\1.js")
 set(PAGE_PROGRAM "${CMAKE_BINARY_DIR}/generated/page_program.js")
 add_custom_command(OUTPUT "${PAGE_PROGRAM}"
   COMMAND "${CMAKE_COMMAND}" -E cat ${PAGE_SCRIPTS} > "${PAGE_PROGRAM}"
   DEPENDS ${PAGE_SCRIPTS} VERBATIM)
 # The page of a process window is drawn by the same figures.
-set(WINDOW_SCRIPTS data elements colours svg figure window)
+set(WINDOW_SCRIPTS data elements colours svg figure model_figures window)
 list(TRANSFORM WINDOW_SCRIPTS REPLACE "(.+)" "${PAGE_FOLDER}/\\1.js")
 set(WINDOW_PROGRAM "${CMAKE_BINARY_DIR}/generated/window_program.js")
 add_custom_command(OUTPUT "${WINDOW_PROGRAM}"

@@ -188,7 +188,7 @@ function render() {
     if (!chosen.view.x) firstView(model, response);
     parts = explorerSections(model, response, other);
     page.append(...[bracketsSection(campaign), calibrationSection(campaign), distributionSection(response, campaign.sample, other), momentsSection(campaign, response, other), effectsSection(model, response, other),
-      influenceSection(response), filmsSection(model), parts.explore, parts.maps, parts.listed, parts.small, curvesSection(model), extremesSection(campaign, response)].filter(Boolean));
+      influenceSection(response), modelSection(campaign, response), filmsSection(model), parts.explore, parts.maps, parts.listed, parts.small, curvesSection(model), extremesSection(campaign, response)].filter(Boolean));
   } else if (values.some(Number.isFinite)) {  // answers, but none of the gapless beginning
     if (!chosen.view.x) firstView(model, response);
     parts = explorerSections(model, response, other);

@@ -1,0 +1,149 @@
+#include "sweep/report/model_page.hpp"
+
+#include "sweep/report/box_search.hpp"
+#include "sweep/report/factor_axis.hpp"
+#include "sweep/report/model_tables.hpp"
+#include "sweep/report/table.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace grainsweep::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t points_of_slice = 31, cells_of_map = 21;
+constexpr std::size_t points_averaged = 128, points_needed = 4;
+
+/// A response model and what its pictures are taken through.
+struct Pictured {
+    const ModelCases& cases;
+    const ObservableModel& model;
+    const Admits& admits;
+    std::vector<BoxPoint> others = spread_points(cases.factors, {}, points_averaged);
+    Setting middle = exact_setting(cases.factors, std::vector<double>(cases.factors.size(), 0.5));
+
+    [[nodiscard]] bool has(const Setting& setting) const { return !admits || admits(setting); }
+
+    /// Mean over the other factors where those of `held` are as given; nothing where hardly any setting is admitted.
+    [[nodiscard]] std::vector<double> averaged(std::span<const std::size_t> held,
+                                               std::span<const Setting> values) const {
+        std::vector<Setting> settings;
+        std::vector<std::size_t> counts;
+        for (const auto& value : values) {
+            const auto before = settings.size();
+            for (const auto& other : others) {
+                Setting setting = other.setting;
+                for (std::size_t k = 0; k < held.size(); ++k) setting[held[k]] = value[k];
+                if (has(setting)) settings.push_back(std::move(setting));
+            }
+            counts.push_back(settings.size() - before);
+        }
+        const auto means = model.model.means({model.rows(settings), model.features.names.size()});
+        std::vector<double> averages;
+        auto next = means.begin();
+        for (const auto count : counts) {
+            const auto end = next + static_cast<std::ptrdiff_t>(count);
+            const double sum = std::accumulate(next, end, 0.0);
+            averages.push_back(count < points_needed ? std::numeric_limits<double>::quiet_NaN()
+                                                     : sum / static_cast<double>(count));
+            next = end;
+        }
+        return averages;
+    }
+};
+
+struct SliceCurve {
+    std::vector<double> at, averaged;
+    std::vector<Setting> slice;
+
+    [[nodiscard]] double range() const {
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (const double x : averaged)
+            if (std::isfinite(x)) low = std::min(low, x), high = std::max(high, x);
+        return high > low ? high - low : 0;
+    }
+};
+
+SliceCurve curve_of(const Pictured& pictured, std::size_t factor) {
+    SliceCurve curve{points_along(pictured.cases.factors[factor], points_of_slice), {}, {}};
+    std::vector<Setting> values;
+    for (const double x : curve.at) {
+        values.push_back({x});
+        curve.slice.push_back(pictured.middle);
+        curve.slice.back()[factor] = x;
+    }
+    curve.averaged = pictured.averaged(std::span(&factor, 1), values);
+    return curve;
+}
+
+Json json_of(const Pictured& pictured, const SliceCurve& curve) {
+    Json value = {{"at", curve.at}};
+    for (const char* name : {"averaged", "mean", "mean_half_width", "run_half_width"}) value[name] = Json::array();
+    const auto predictions = pictured.model.predict(curve.slice);
+    for (std::size_t i = 0; i < curve.at.size(); ++i) {
+        const bool there = pictured.has(curve.slice[i]);
+        const auto shown = [&](double x) { return there ? json_number(x) : Json(nullptr); };
+        value["averaged"].push_back(json_number(curve.averaged[i]));
+        value["mean"].push_back(shown(predictions[i].mean));
+        value["mean_half_width"].push_back(shown(predictions[i].mean_half_width()));
+        value["run_half_width"].push_back(shown(predictions[i].run_half_width()));
+    }
+    return value;
+}
+
+Json map_over(const Pictured& pictured, std::size_t a, std::size_t b) {
+    const auto& factors = pictured.cases.factors;
+    const auto across = cells_along(factors[a], cells_of_map), up = cells_along(factors[b], cells_of_map);
+    std::vector<Setting> values, slice;
+    for (const double y : up)
+        for (const double x : across) {
+            values.push_back({x, y});
+            slice.push_back(pictured.middle);
+            slice.back()[a] = x;
+            slice.back()[b] = y;
+        }
+    Json value = {{"across", a},
+                  {"up", b},
+                  {"across_edges", cell_edges(factors[a], cells_of_map)},
+                  {"up_edges", cell_edges(factors[b], cells_of_map)},
+                  {"columns", across.size()},
+                  {"rows", up.size()},
+                  {"averaged", Json::array()},
+                  {"slice", Json::array()}};
+    const std::size_t held[] = {a, b};
+    for (const double x : pictured.averaged(held, values)) value["averaged"].push_back(json_number(x));
+    const auto means = pictured.model.model.means({pictured.model.rows(slice), pictured.model.features.names.size()});
+    for (std::size_t i = 0; i < slice.size(); ++i)
+        value["slice"].push_back(pictured.has(slice[i]) ? json_number(means[i]) : Json(nullptr));
+    return value;
+}
+
+}  // namespace
+
+Json model_page_data(const ModelCases& cases, const ObservableModel& model,
+                     const std::function<bool(const Setting&)>& admits) {
+    const Pictured pictured{cases, model, admits};
+    std::vector<SliceCurve> curves;
+    for (std::size_t j = 0; j < cases.factors.size(); ++j) curves.push_back(curve_of(pictured, j));
+    std::vector<std::size_t> order(curves.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t j) { return curves[j].range(); });
+
+    Json middle = {{"setting", pictured.middle}, {"texts", Json::array()}};
+    for (std::size_t j = 0; j < cases.factors.size(); ++j)
+        middle["texts"].push_back(cases.factors[j].text(pictured.middle[j]));
+    Json value = {{"observable", model.observable},      {"unit", model.unit}, {"says", model_lines(model)},
+                  {"factors", axes_json(cases.factors)}, {"order", order},     {"middle", middle}};
+    value["curves"] = Json::array();
+    for (const auto& curve : curves) value["curves"].push_back(json_of(pictured, curve));
+    value["map"] = order.size() < 2 ? Json(nullptr) : map_over(pictured, order[0], order[1]);
+    return value;
+}
+
+}  // namespace grainsweep::report

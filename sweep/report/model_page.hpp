@@ -1,0 +1,27 @@
+// A response model in pictures: the response against every factor with its bands, and over the two factors that matter
+// most, the other factors averaged over their ranges or at the middle.
+//
+//   averaged   mean over 128 Sobol points of the other factors of the mean response; points that the campaign's `where`
+//              leaves out do not count, where less than four are left there is nothing
+//   slice      the other factors at the middle of their ranges (levels: the middle one), with the 95 % bands of the
+//   mean and of a
+//              single run about it
+//
+// Curves have 31 points, the map 21 x 21 cells, evenly over the ranges (logarithmic ones over their logarithms). A
+// factor matters by the range of its averaged curve.
+#pragma once
+
+#include "sweep/report/response_models.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace grainsweep::report {
+
+/// {"observable", "unit", "says": lines, "factors", "order": factors by how much they matter, "middle": {"setting",
+/// "texts"}, "curves": one per factor {"at", "averaged", "mean", "mean_half_width", "run_half_width"}, "map": of the
+/// first two of `order` or null {"across", "up", "across_edges", "up_edges", "columns", "rows", "averaged", "slice"}}.
+/// `admits`: settings that are left out are empty.
+[[nodiscard]] nlohmann::ordered_json model_page_data(const ModelCases& cases, const ObservableModel& model,
+                                                     const std::function<bool(const Setting&)>& admits);
+
+}  // namespace grainsweep::report

@@ -1,0 +1,107 @@
+// What the report shows of a response model: averages, slices and bands of a response that is known.
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/report/model_page.hpp"
+#include "sweep/report/page.hpp"
+#include "tests/support/study.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <numbers>
+
+namespace grainsweep::tests {
+using namespace report;
+
+namespace {
+
+using testing::HasSubstr;
+using Json = nlohmann::ordered_json;
+
+/// y = sin(pi x1) + x1 x2/2 + x3/20 over [0, 1]^2 and three levels of x3: averaged over the others it is
+/// sin(pi x1) + x1/4 + 1/40 along x1, 2/pi + x2/4 + 1/40 along x2; at their middle the same, but 1 in place of 2/pi.
+double known(double x1, double x2, double x3) {
+    return std::sin(std::numbers::pi * x1) + x1 * x2 / 2 + x3 / 20;
+}
+
+struct ModelPage : Study {
+    Json data(int points, const std::string& more = "", const PageModels& models = {}) {
+        answer_by(store,
+                  R"({"campaign": "c", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]},
+                      {"name": "x2", "between": [0, 1]}, {"name": "x3", "levels": [0, 0.5, 1]}],
+                      "design": {"kind": "halton", "points": )" +
+                      std::to_string(points) + "}" + more + "}",
+                  [](const Inputs& i) { return known(input(i, "x1"), input(i, "x2"), input(i, "x3")); });
+        const PageSource source{&store, "a.db"};
+        return page_data({&source, 1}, models)["campaigns"][0]["models"];
+    }
+};
+
+TEST_F(ModelPage, AveragesAndSlicesAreThoseOfTheResponse) {
+    const auto models = data(150);
+    ASSERT_EQ(models.size(), 1U);
+    const auto& model = models[0];
+    EXPECT_EQ(model["observable"], "y");
+    EXPECT_THAT(model["says"].get<std::string>(), HasSubstr("model of y: 150 cases"));
+    EXPECT_EQ(model["order"], Json({0, 1, 2}));
+    EXPECT_EQ(model["middle"]["texts"], Json({"0.5", "0.5", "0.5"}));
+    const auto& along_x1 = model["curves"][0];
+    ASSERT_EQ(along_x1["at"].size(), 31U);
+    EXPECT_EQ(along_x1["at"].front(), 0);
+    EXPECT_EQ(along_x1["at"].back(), 1);
+    for (std::size_t i = 0; i < 31; ++i) {
+        const double x = along_x1["at"][i];
+        EXPECT_NEAR(along_x1["mean"][i], known(x, 0.5, 0.5), 0.02) << x;
+        EXPECT_NEAR(along_x1["averaged"][i], known(x, 0.5, 0.5), 0.02) << x;
+        EXPECT_GT(along_x1["mean_half_width"][i], 0);
+        EXPECT_GE(along_x1["run_half_width"][i], along_x1["mean_half_width"][i]);
+        const double x2 = model["curves"][1]["at"][i];
+        EXPECT_NEAR(model["curves"][1]["mean"][i], known(0.5, x2, 0.5), 0.02) << x2;
+        EXPECT_NEAR(model["curves"][1]["averaged"][i], 2 / std::numbers::pi + x2 / 4 + 0.025, 0.02) << x2;
+    }
+    EXPECT_EQ(model["curves"][2]["at"], Json({0.0, 0.5, 1.0}));
+    EXPECT_NEAR(model["curves"][2]["averaged"][2].get<double>() - model["curves"][2]["averaged"][0].get<double>(), 0.05,
+                0.01);
+}
+
+TEST_F(ModelPage, TheMapIsOverTheTwoFactorsThatMatterMost) {
+    const auto models = data(150, R"(, "where": "x1 + x2 <= 1.5")");
+    const auto& map = models[0]["map"];
+    EXPECT_EQ(map["across"], 0);
+    EXPECT_EQ(map["up"], 1);
+    ASSERT_EQ(map["slice"].size(), 21U * 21U);
+    ASSERT_EQ(map["across_edges"].size(), 22U);
+    for (std::size_t j = 0; j < 21; ++j)
+        for (std::size_t i = 0; i < 21; ++i) {
+            const double x1 = (static_cast<double>(i) + 0.5) / 21, x2 = (static_cast<double>(j) + 0.5) / 21;
+            const auto& slice = map["slice"][j * 21 + i];
+            const auto& averaged = map["averaged"][j * 21 + i];
+            ASSERT_EQ(slice.is_null(), x1 + x2 > 1.5) << "what the condition leaves out is empty";
+            ASSERT_EQ(averaged.is_null(), x1 + x2 > 1.5);
+            if (slice.is_null()) continue;
+            EXPECT_NEAR(slice, known(x1, x2, 0.5), 0.05) << x1 << ' ' << x2;
+            EXPECT_NEAR(averaged, known(x1, x2, 0.5), 0.05) << x1 << ' ' << x2;
+        }
+}
+
+TEST_F(ModelPage, AReasonStandsWhereThereIsNone) {
+    const auto models = data(10);
+    ASSERT_EQ(models.size(), 1U);
+    EXPECT_THAT(models[0]["refused"].get<std::string>(), HasSubstr("10"));
+}
+
+TEST_F(ModelPage, LargeCampaignsHaveOneWhereItIsAskedFor) {
+    EXPECT_TRUE(data(60, "", {.of = {}, .unasked_cases = 50}).empty());
+    EXPECT_EQ(data(60, "", {.of = {"y"}, .unasked_cases = 50}).size(), 1U);
+    try {
+        (void)data(60, "", {.of = {"yy"}, .unasked_cases = 50});
+        ADD_FAILURE() << "an unknown scalar passed";
+    } catch (const campaign::WrongQuestion& wrong) {
+        EXPECT_THAT(wrong.what(), HasSubstr("--model: got 'yy'"));
+        EXPECT_THAT(wrong.what(), HasSubstr("Did you mean 'y'?"));
+    }
+}
+
+}  // namespace
+}  // namespace grainsweep::tests
