@@ -243,8 +243,9 @@ TEST_F(ReportInABrowser, DrawsSavesFiltersAndSelects) {
     if (seen.contains("failed")) return;
     for (const auto& [title, ink] : seen["figures"].get<std::vector<std::pair<std::string, int>>>())
         EXPECT_GT(ink, 500) << title;
-    // A distribution, five moments, three effects, the shares, the cases, the map, three pictures against a factor.
-    EXPECT_EQ(seen["figures"].size(), 15u);
+    // A distribution, five moments, three effects, the shares, the cases, the map, three pictures against a factor; of the
+    // response model three curves and two maps.
+    EXPECT_EQ(seen["figures"].size(), 20u);
     EXPECT_LT(seen["listed"], 60);  // of 320: the rows in view only
 
     const std::string row_1 = query("SELECT case_id FROM first ORDER BY point, replicate LIMIT 1 OFFSET 1");
@@ -262,14 +263,14 @@ TEST_F(ReportInABrowser, DrawsSavesFiltersAndSelects) {
     EXPECT_NEAR(seen["lowest"].get<double>(), std::stod(query("SELECT min(x1) FROM first")), 1e-5);
     EXPECT_NEAR(seen["highest"].get<double>(), std::stod(query("SELECT max(x1) FROM first")), 1e-5);
 
-    ASSERT_EQ(seen["svg"].size(), 15u);
+    ASSERT_EQ(seen["svg"].size(), 20u);
     for (const auto& picture : seen["svg"]) {
         EXPECT_TRUE(picture[0].get<bool>());
         EXPECT_GT(picture[1], 10);
         EXPECT_GT(picture[2], 4);
     }
-    EXPECT_EQ(seen["png"], 15);
-    EXPECT_EQ(seen["saved"].size(), 30u);
+    EXPECT_EQ(seen["png"], 20);
+    EXPECT_EQ(seen["saved"].size(), 40u);
 
     EXPECT_EQ(seen["others"], Json({"nothing", "second"}));
     EXPECT_EQ(seen["overlaid"], "Blue: first; orange: second");
