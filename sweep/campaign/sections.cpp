@@ -126,6 +126,13 @@ Execution read_execution(const Cursor& place) {
     Execution execution;
     execution.workers = section.whole("workers", execution.workers);
     execution.launcher = section.words("launcher", {});
+    execution.hosts = section.whole("hosts", execution.hosts);
+    execution.workers_per_host = section.whole("workers_per_host", execution.workers_per_host);
+    if (execution.hosts > 0 && section.find("workers"))
+        section.at("workers").refuse("with 'hosts' it has no effect: take 'workers_per_host'");
+    if (execution.hosts == 0 && section.find("workers_per_host"))
+        section.at("workers_per_host").refuse("without 'hosts' it has no effect: take 'workers'");
+    execution.walltime = read_time_limit(section, "walltime", execution.walltime, shortest_limit);
     execution.start_seconds = read_time_limit(section, "start_seconds", execution.start_seconds, shortest_limit);
     execution.silence_seconds =
         read_time_limit(section, "silence_seconds", execution.silence_seconds, shortest_silence);

@@ -5,9 +5,11 @@
 #include "sweep/cli/path_option.hpp"
 #include "sweep/cli/run_campaign.hpp"
 #include "sweep/report/summary.hpp"
+#include "sweep/workers/host.hpp"
 #include "sweep/workers/worker.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
 #include <nlohmann/json.hpp>
@@ -87,7 +89,9 @@ Command running(std::string name, std::string summary, bool calibrates) {
                 const auto again = std::make_shared<std::string>();
                 parser.add_option("CONFIG", request->config, "campaign file")->required();
                 parser.add_option("--db", request->database, "database; default: NAME.db in the current folder");
-                parser.add_option("-j", request->workers, "workers; 0: all cores; default: execution.workers")
+                parser
+                    .add_option("-j", request->workers,
+                                "workers, with execution.hosts of each host; 0: all cores; default: execution.workers")
                     ->check(whole_number(0, 4096));
                 parser
                     .add_option("-k", request->stop_after_failures, "start nothing more after N failed cases; 0: never")
@@ -112,20 +116,47 @@ Command running(std::string name, std::string summary, bool calibrates) {
             false};
 }
 
+void declare_worker(Parser& parser, workers::WorkerOptions& options, std::string& path) {
+    parser.add_option("--artefacts", options.artefacts, "folder of shared starting states and checkpoints");
+    parser.add_option("--checkpoint-seconds", options.checkpoint_seconds, "a case is saved this often");
+    parser.add_option("--lease-seconds", options.lease_seconds, "silence after which it ends itself");
+    declare_path(parser, path);
+}
+
 Command worker_command() {
     return {"worker", "computes cases for a run; started by it",
             [](Parser& parser, const Format&) -> Action {
                 const auto options = std::make_shared<workers::WorkerOptions>();
-                parser.add_option("--artefacts", options->artefacts,
-                                  "folder of shared starting states and checkpoints");
-                parser.add_option("--checkpoint-seconds", options->checkpoint_seconds, "a case is saved this often");
-                parser.add_option("--lease-seconds", options->lease_seconds, "silence after which it ends itself");
                 const auto path = std::make_shared<std::string>();
-                declare_path(parser, *path);
+                declare_worker(parser, *options, *path);
                 return [options, path] {
                     use_path(*path);
                     options->computer = this_computer();
                     return workers::work(*options);
+                };
+            },
+            true};
+}
+
+Command host_command() {
+    return {"host", "runs the workers of a node for a run; started by it, once a node (execution.hosts)",
+            [](Parser& parser, const Format&) -> Action {
+                const auto options = std::make_shared<workers::WorkerOptions>();
+                const auto path = std::make_shared<std::string>();
+                declare_worker(parser, *options, *path);
+                return [options, path] {
+                    workers::HostOptions host;
+                    host.lease_seconds = options->lease_seconds;
+                    host.command = {std::filesystem::read_symlink("/proc/self/exe").string(),
+                                    "worker",
+                                    "--checkpoint-seconds",
+                                    fmt::format("{}", options->checkpoint_seconds),
+                                    "--lease-seconds",
+                                    fmt::format("{}", options->lease_seconds)};
+                    if (!options->artefacts.empty())
+                        host.command.insert(host.command.end(), {"--artefacts", options->artefacts.string()});
+                    if (!path->empty()) host.command.insert(host.command.end(), {"--path", *path});
+                    return workers::host(host);
                 };
             },
             true};
@@ -137,7 +168,7 @@ std::vector<Command> run_commands() {
     return {running("run", "runs what is not settled yet; running again is resuming", false),
             running("calibrate",
                     "runs waves of cases until the settings that reproduce measurements are known; resumes", true),
-            worker_command()};
+            worker_command(), host_command()};
 }
 
 }  // namespace grainsweep::cli

@@ -4,7 +4,9 @@
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
+#include "sweep/cli/crew_options.hpp"
 #include "sweep/cli/progress.hpp"
+#include "sweep/cli/walltime.hpp"
 #include "sweep/report/features.hpp"
 #include "sweep/report/history.hpp"
 #include "sweep/report/model_view.hpp"
@@ -37,11 +39,6 @@ using schedule::Ending;
 
 // Places of a campaign that are in the archive before its first case is handed out: a fraction of a second.
 constexpr std::size_t entered_first = 16'384;
-
-std::size_t worker_count(const campaign::Campaign& campaign, const RunRequest& request) {
-    const std::int64_t asked = request.workers.value_or(campaign.execution.workers);
-    return asked > 0 ? static_cast<std::size_t>(asked) : std::max(1U, std::thread::hardware_concurrency());
-}
 
 /// What the statistics of a campaign are over: every place that is stored. Where the run asks for a part of them, the
 /// others are there too, by the id of their question alone, and not to be computed.
@@ -166,32 +163,11 @@ std::unique_ptr<schedule::Judge> make_judge(const campaign::Campaign& campaign, 
                                              std::move(known), placement.candidates, std::move(view));
 }
 
-std::vector<std::string> worker_command(const fs::path& artefacts, const std::string& path) {
-    std::vector<std::string> command = {fs::read_symlink("/proc/self/exe").string(), "worker", "--artefacts",
-                                        artefacts.string()};
-    if (!path.empty()) command.insert(command.end(), {"--path", path});
-    return command;
-}
-
 /// What the last line says of convergence; empty where the campaign gives no rule.
 std::string standing(const schedule::Judge* judge) {
     if (judge == nullptr) return {};
     if (const auto points = judge->converged_at()) return fmt::format("; converged at {} points", *points);
     return "; not converged: " + judge->verdict();
-}
-
-workers::PoolOptions pool_options(const campaign::Campaign& campaign, const fs::path& artefacts,
-                                  const RunRequest& request) {
-    workers::PoolOptions options;
-    options.launcher = campaign.execution.launcher;
-    options.command = worker_command(artefacts, request.path);
-    options.workers = worker_count(campaign, request);
-    options.limits = {campaign.limits.wall_seconds, campaign.execution.start_seconds,
-                      campaign.execution.silence_seconds};
-    options.expected.program = this_computer();
-    for (const auto& observable : campaign.scene().observables)
-        options.expected.measured.emplace(observable.name, observable.shape);
-    return options;
 }
 
 /// Beside the database: x.artefacts for x.db, and never the database itself.
@@ -214,6 +190,17 @@ std::string describe(Ending ending, const schedule::Plan::Tally& tally, const sc
                                standing(judge));
         case Ending::too_many_failures:
             return fmt::format("stopped after {} failed cases{}", tally.failed_now, standing(judge));
+        case Ending::out_of_time:
+            return fmt::format("out of time with {} cases left; run again to go on{}", tally.questions - tally.decided,
+                               standing(judge));
+        case Ending::asked_to_end:
+            return fmt::format("asked to end with {} cases left; run again to go on{}", tally.questions - tally.decided,
+                               standing(judge));
+        case Ending::too_long:
+            return fmt::format(
+                "stopped with {} cases left that are predicted to take longer than a run may; give it "
+                "more time (execution.walltime, or the job's time limit){}",
+                tally.questions - tally.decided, standing(judge));
         case Ending::interrupted:
             return fmt::format("interrupted with {} cases left; run again to go on{}", tally.questions - tally.decided,
                                standing(judge));
@@ -223,6 +210,7 @@ std::string describe(Ending ending, const schedule::Plan::Tally& tally, const sc
 
 int exit_code(Ending ending, const schedule::Plan::Tally& tally) {
     if (ending == Ending::interrupted) return 130;
+    if (ending == Ending::out_of_time || ending == Ending::asked_to_end) return 75;
     if (ending == Ending::converged) return 0;
     return tally.failed == 0 && tally.decided == tally.questions ? 0 : 1;
 }
@@ -260,11 +248,7 @@ void refuse_what_cannot_start(const campaign::Campaign& campaign, const RunReque
         throw campaign::wrong_question(
             request.config.string() + ": $", "",
             "key 'calibration' is missing: what was measured; run takes campaigns with a design");
-    const auto& launcher = campaign.execution.launcher;
-    if (!launcher.empty() && !workers::Pool::can_start(launcher.front()))
-        throw campaign::wrong_question(request.config.string() + ": $.execution.launcher[0]", launcher.front(),
-                                       "there is no such program to start workers with");
-
+    refuse_launcher_that_is_not_there(campaign, request.config);
     if (const auto folder = fs::absolute(database).parent_path(); !fs::is_directory(folder))
         throw campaign::wrong_question("--db", database.string(),
                                        fmt::format("there is no folder '{}'", folder.string()));
@@ -281,12 +265,13 @@ public:
     explicit Run(const RunRequest& request)
         : request_(request),
           campaign_(campaign::read_campaign(request.config)),
-          workers_(worker_count(campaign_, request)) {
+          workers_(worker_count(campaign_.execution, request.workers)) {
         unfold();
         database_ = request.database.empty() ? fs::path(campaign_.name + ".db") : request.database;
         refuse_what_cannot_start(campaign_, request, database_);
         artefacts_ = artefact_folder(database_);
         line_.emplace(request.quiet, workers_);
+        walltime_ = walltime_of(campaign_);
         store_.emplace(database_, store::Store::Mode::create);
     }
 
@@ -338,7 +323,7 @@ private:
     }
     void compute() {
         schedule::Plan plan(std::move(questions_), rules_of(campaign_, request_, workers_));
-        workers::Pool pool(pool_options(campaign_, artefacts_, request_));
+        workers::Pool pool(pool_options(campaign_, artefacts_, workers_, request_.path));
         store::ArtefactFolder folder(artefacts_);
         sweep(folder, *store_);
         schedule::Watchers watchers;
@@ -349,7 +334,7 @@ private:
         };
         {
             store::Recorder recorder(*store_);
-            schedule::Scheduler scheduler(campaign_.name, plan, pool, recorder, judge_.get(), watchers);
+            schedule::Scheduler scheduler(campaign_.name, plan, pool, recorder, judge_.get(), watchers, walltime_);
             ending_ = scheduler.run();
         }
         sweep(folder, *store_);
@@ -369,6 +354,7 @@ private:
     schedule::Questions questions_;
     Ending ending_{};
     schedule::Plan::Tally tally_;
+    schedule::Walltime walltime_;
 };
 
 }  // namespace

@@ -19,7 +19,7 @@ struct RunRequest {
     std::int64_t max_cases = 0;              ///< 0: all
     bool quiet = false;
     bool calibrates = false;  ///< the campaign file must give a calibration
-    std::string path;  ///< instruction path for the workers; empty: each the widest it has
+    std::string path;         ///< instruction path for the workers; empty: each the widest it has
 };
 
 /// What became of the run; the database is closed again.

@@ -180,6 +180,18 @@ void Plan::never_begun(const campaign::Attempt& attempt) {
     --entries_[one.question].attempts;
 }
 
+void Plan::leave_out_longer_than(double seconds) {
+    const auto too_long = [&](std::uint32_t question) {
+        const double predicted = entries_[question].predicted;
+        if (!(predicted > seconds)) return false;
+        shortest_left_out_ = left_out_++ == 0 ? predicted : std::min(shortest_left_out_, predicted);
+        return true;
+    };
+    queue_.erase(queue_.begin(), queue_.begin() + static_cast<std::ptrdiff_t>(std::exchange(head_, 0)));
+    std::erase_if(queue_, too_long);
+    std::erase_if(returned_, too_long);
+}
+
 std::size_t Plan::settled_prefix() {
     while (prefix_ < placed() && decided_[question_at(prefix_)]) ++prefix_;
     return prefix_;

@@ -76,6 +76,11 @@ public:
     Verdict given_back(const campaign::Attempt& attempt);
     /// It was handed out but no worker began it: the same, and its number is free again.
     void never_begun(const campaign::Attempt& attempt);
+    /// Start none that is predicted to take longer than this, in this run.
+    void leave_out_longer_than(double seconds);
+    [[nodiscard]] std::size_t left_out() const { return left_out_; }
+    /// Of those the shortest prediction, seconds.
+    [[nodiscard]] double shortest_left_out() const { return shortest_left_out_; }
     /// Start nothing more.
     void close() { closed_ = true; }
 
@@ -144,6 +149,8 @@ private:
     Rules rules_;
     Tally tally_;
     std::size_t prefix_ = 0;
+    std::size_t left_out_ = 0;
+    double shortest_left_out_ = 0;
     bool closed_ = false;
 };
 

@@ -32,13 +32,14 @@ campaign::CaseResult unanswered(const campaign::Attempt& attempt, Outcome outcom
 }  // namespace
 
 Scheduler::Scheduler(std::string campaign, Plan& plan, workers::Crew& crew, store::Recorder& recorder, Judge* judge,
-                     Watchers watchers)
+                     Watchers watchers, Walltime walltime)
     : campaign_(std::move(campaign)),
       plan_(plan),
       crew_(crew),
       recorder_(recorder),
       judge_(judge),
-      watchers_(std::move(watchers)) {}
+      watchers_(std::move(watchers)),
+      walltime_(std::move(walltime)) {}
 
 Ending Scheduler::run() {
     judge_prefix(Judge::Models::awaited);  // what the archive already has may be enough
@@ -58,15 +59,41 @@ Ending Scheduler::run() {
     recorder_.drain();
     show();
     if (broken_) throw store::BrokenWorld(*broken_);
-    const bool all = plan_.tally().decided == plan_.tally().questions;
-    if (early_ && !(all && early_ == Ending::interrupted)) return *early_;
-    if (all) return Ending::finished;  // an interrupt that comes when nothing is left is none
+    return ending();
+}
+
+Ending Scheduler::ending() const {
+    const auto& tally = plan_.tally();
+    if (early_ == Ending::converged) return *early_;
+    if (tally.decided == tally.questions) return Ending::finished;  // a stop that comes when nothing is left is none
+    if (early_) return *early_;
+    if (plan_.left_out() > 0) {
+        const bool hopeless = tally.decided + plan_.left_out() == tally.questions && !walltime_.cases_go_on &&
+                              plan_.shortest_left_out() > walltime_.whole;
+        return hopeless ? Ending::too_long : Ending::out_of_time;
+    }
     return plan_.too_many_failures() ? Ending::too_many_failures : Ending::limited;
+}
+
+void Scheduler::look_at_time() {
+    if (!walltime_.left || early_) return;
+    const double left = walltime_.left();
+    if (left <= 0) {
+        plan_.close();
+        early_ = Ending::out_of_time;
+        crew_.retire();
+        return;
+    }
+    if (walltime_.cases_go_on && left >= walltime_.shortest_part) return;
+    if (const auto next = plan_.next_predicted(); next && *next > left) plan_.leave_out_longer_than(left);
 }
 
 void Scheduler::hand_out() {
     crew_.expect(plan_.waiting());
-    while (const auto predicted = plan_.next_predicted()) {
+    while (true) {
+        look_at_time();
+        const auto predicted = plan_.next_predicted();
+        if (!predicted) return;
         const auto place = crew_.place_for(*predicted);
         if (!place) return;
         const auto start = plan_.next();
@@ -103,7 +130,7 @@ void Scheduler::handle(workers::PoolEvent event) {
                           [&](const workers::Remark& remark) { watchers_.note(remark.text); },
                           [&](const workers::Interrupted& stop) {
                               plan_.close();
-                              if (!early_) early_ = Ending::interrupted;
+                              if (!early_) early_ = stop.goes_on ? Ending::asked_to_end : Ending::interrupted;
                               crew_.retire();
                               at_once_ = stop.at_once;
                           }},

@@ -20,6 +20,17 @@ enum class Ending {
     limited,    ///< as many cases as asked for in this run
     too_many_failures,
     interrupted,
+    out_of_time,   ///< what is left does not fit into the time there is
+    asked_to_end,  ///< by a system that will let it go on later
+    too_long,      ///< what is left is predicted to fit into no run
+};
+
+/// How long a run may take. Seconds.
+struct Walltime {
+    std::function<double()> left = {};  ///< until every worker must have been asked to stop; empty: no limit
+    double whole = 0;                   ///< what `left` begins with in a run of full length
+    bool cases_go_on = true;            ///< an unfinished case goes on in another run from where it was
+    double shortest_part = 0;           ///< such a case is not begun for less
 };
 
 /// What watchers get. Counts are of results on disk.
@@ -39,7 +50,7 @@ struct Watchers {
 class Scheduler {
 public:
     Scheduler(std::string campaign, Plan& plan, workers::Crew& crew, store::Recorder& recorder, Judge* judge,
-              Watchers watchers);
+              Watchers watchers, Walltime walltime = {});
 
     /// Runs until nothing is left to do, the judge is satisfied or the user interrupts. Returns with
     /// everything on disk. Throws only for a broken world.
@@ -47,6 +58,9 @@ public:
 
 private:
     void hand_out();
+    /// Leaves out what does not fit into the time left, and stops when there is none.
+    void look_at_time();
+    [[nodiscard]] Ending ending() const;
     void handle(workers::PoolEvent event);
     void handle_finished(workers::Finished& finished);
     void handle_failure(const campaign::Attempt& attempt, campaign::Outcome outcome, const std::string& reason,
@@ -62,6 +76,7 @@ private:
     store::Recorder& recorder_;
     Judge* judge_;
     Watchers watchers_;
+    Walltime walltime_;
     Progress progress_;
     std::size_t in_flight_ = 0;
     std::optional<Ending> early_;

@@ -210,6 +210,10 @@ void Child::wait(std::chrono::milliseconds at_most) {
     wait_while([this] { return runs(); }, at_most);
 }
 
+std::string Child::end() const {
+    return describe_end("worker", status());
+}
+
 void wait_while(const std::function<bool()>& condition, std::chrono::milliseconds at_most) {
     using Clock = std::chrono::steady_clock;
     const auto until = Clock::now() + at_most;
@@ -231,10 +235,10 @@ bool ended_from_outside(int status, std::string_view log) {
            log.find("Node failure on ") != std::string_view::npos;
 }
 
-std::string describe_end(int status) {
+std::string describe_end(std::string_view what, int status) {
     if (WIFSIGNALED(status))
-        return fmt::format("worker ended by signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)));
-    return fmt::format("worker ended with exit code {}", WEXITSTATUS(status));
+        return fmt::format("{} ended by signal {} ({})", what, WTERMSIG(status), ::strsignal(WTERMSIG(status)));
+    return fmt::format("{} ended with exit code {}", what, WEXITSTATUS(status));
 }
 
 }  // namespace grainsweep::workers

@@ -2,6 +2,8 @@
 // what is written or why it ends; the pool does.
 #pragma once
 
+#include "sweep/workers/process.hpp"
+
 #include <utility>  // Boost 1.74's Asio needs it first under C++20
 
 #include <boost/asio.hpp>
@@ -19,15 +21,8 @@
 
 namespace grainsweep::workers {
 
-class Child : public std::enable_shared_from_this<Child> {
+class Child final : public Process, public std::enable_shared_from_this<Child> {
 public:
-    /// `read` gets what comes through standard output, piece by piece; `ended` is called once, at its end of file.
-    /// Neither is called after close().
-    struct Listener {
-        std::function<void(std::string_view piece)> read;
-        std::function<void()> ended;
-    };
-
     /// nullptr, and why in `error`, where there is no program of that name, or no descriptor, memory or process to be
     /// had. Does not wait until the program is loaded: one that cannot be executed ends at once and says so in its log.
     /// The process is the head of a group of its own: the terminal's Ctrl-C does not reach it.
@@ -37,26 +32,22 @@ public:
     [[nodiscard]] static bool can_start(const std::string& program);
 
     explicit Child(boost::asio::io_context& io) : in_(io), out_(io), err_(io) {}
-    Child(const Child&) = delete;
-    Child& operator=(const Child&) = delete;
-    ~Child();
+    ~Child() override;
 
-    void listen(Listener listener);
-    /// Written as soon as the pipe takes it.
-    void write(std::string line);
-    [[nodiscard]] bool everything_is_written() const { return outgoing_.empty(); }
-    /// Its end is no longer waited for, nor anything it writes.
-    void close();
+    void listen(Listener listener) override;
+    void write(std::string line) override;
+    [[nodiscard]] bool everything_is_written() const override { return outgoing_.empty(); }
+    void close() override;
 
-    void signal(int number);  ///< to all of its process group
-    [[nodiscard]] bool runs();
-    /// Waits until it has ended, or for so long.
-    void wait(std::chrono::milliseconds at_most);
-    /// As of waitpid(2), once it has ended.
-    [[nodiscard]] int status() const { return process_.native_exit_code(); }
-    [[nodiscard]] int id() const { return id_; }
-    /// The last it wrote to standard error, including what stands in the pipe.
-    [[nodiscard]] const std::string& log();
+    void signal(int number) override;
+    [[nodiscard]] bool runs() override;
+    void wait(std::chrono::milliseconds at_most) override;
+    [[nodiscard]] int status() const override { return process_.native_exit_code(); }
+    [[nodiscard]] std::string end() const override;
+    [[nodiscard]] std::string id() const override { return std::to_string(id_); }
+    [[nodiscard]] int process_group() const { return id_; }
+    /// Including what stands in the pipe.
+    [[nodiscard]] const std::string& log() override;
 
 private:
     void await_output();
@@ -84,6 +75,7 @@ void wait_while(const std::function<bool()>& condition, std::chrono::millisecond
 /// Whether it was ended by something else than what it computed: by a signal that asks, or by Slurm, which says in the
 /// log where it ends a step for its time limit, a pre-emption or a failed node.
 [[nodiscard]] bool ended_from_outside(int status, std::string_view log);
-[[nodiscard]] std::string describe_end(int status);
+/// "worker ended by signal 9 (Killed)".
+[[nodiscard]] std::string describe_end(std::string_view what, int status);
 
 }  // namespace grainsweep::workers

@@ -57,9 +57,10 @@ struct Remark {
     std::string text;
 };
 
-/// The user asked to stop: politely (first time) or at once (again).
+/// A request to stop: politely (first time) or at once (again).
 struct Interrupted {
     bool at_once = false;
+    bool goes_on = false;  ///< not the user: a system that will let it go on later
 };
 
 using PoolEvent = std::variant<Finished, Heartbeat, Lost, TimedOut, GivenBack, Remark, Interrupted>;

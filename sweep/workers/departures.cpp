@@ -1,5 +1,7 @@
 #include "sweep/workers/departures.hpp"
 
+#include "sweep/workers/child.hpp"
+
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -18,12 +20,12 @@ constexpr auto time_to_end = 5s;  // of a worker that has nothing left to do, an
 
 }  // namespace
 
-void Departures::hurry(std::shared_ptr<Child> child, bool launched, double now) {
+void Departures::hurry(std::shared_ptr<Process> child, bool launched, double now) {
     leaving_.push_back({std::move(child), now, now, launched ? now + grace_before_kill : now});
     escalate(leaving_.back(), now);
 }
 
-void Departures::let_go(std::shared_ptr<Child> child, double now) {
+void Departures::let_go(std::shared_ptr<Process> child, double now) {
     leaving_.push_back({std::move(child), now, now + grace_before_kill, now + 2 * grace_before_kill});
 }
 
@@ -45,7 +47,7 @@ std::size_t Departures::places_taken(double now) const {
         std::ranges::count_if(leaving_, [&](const One& one) { return now - one.since < place_kept; }));
 }
 
-void Departures::end_all(std::vector<std::shared_ptr<Child>> children) {
+void Departures::end_all(std::vector<std::shared_ptr<Process>> children) {
     for (const auto& one : leaving_) children.push_back(one.child);
     const auto running = [&] { return std::ranges::any_of(children, [](const auto& child) { return child->runs(); }); };
     constexpr auto grace = std::chrono::milliseconds(static_cast<int>(1000 * grace_before_kill));

@@ -127,7 +127,8 @@ void Desk::leave() {
 
 void Desk::end(Ending why, std::string reason) {
     const std::lock_guard lock(mutex_);
-    if (ending_ == Ending::signal && why == Ending::signal) leave();  // asked twice: at once
+    // Asked twice: at once. A host passes on a signal that all of its processes may have got: that is one request.
+    if (ending_ == Ending::signal && why == Ending::signal && ending_for_ > 1) leave();
     if (ending_ == Ending::none || (ending_ == Ending::asked && why == Ending::signal)) {
         ending_ = why;
         reason_ = std::move(reason);

@@ -4,6 +4,7 @@
 #include "sweep/workers/child.hpp"
 #include "sweep/workers/departures.hpp"
 #include "sweep/workers/fruitless_launches.hpp"
+#include "sweep/workers/hosts.hpp"
 #include "sweep/workers/line_buffer.hpp"
 #include "sweep/workers/message.hpp"
 
@@ -32,6 +33,8 @@ constexpr double look_every = 0.05;  // at the clock
 constexpr double heartbeat_every = 0.5;
 constexpr double time_to_leave = 1;  // of a worker that gave back its case, before its place is taken
 constexpr double remark_on_start = 30;
+constexpr double one_request = 2;  // signals of a system within it are one request to stop
+constexpr auto time_to_end_hosted = 5s;
 constexpr int launches_at_once = 16;
 constexpr int events_at_once = 64;
 constexpr int most_remarks_on_banners = 3;
@@ -50,10 +53,10 @@ bool was_killed(int status) {
 
 struct Pool::Impl {
     struct Worker {
-        Worker(std::shared_ptr<Child> process, const Expected& expected, double now)
+        Worker(std::shared_ptr<Process> process, const Expected& expected, double now)
             : state(expected, now), child(std::move(process)) {}
         WorkerState state;
-        std::shared_ptr<Child> child;
+        std::shared_ptr<Process> child;
         LineBuffer lines{longest_line};
         double beat = -heartbeat_every;  // when a heartbeat was last passed on
         bool stop_sent = false, remarked = false;
@@ -66,14 +69,24 @@ struct Pool::Impl {
     explicit Impl(PoolOptions o)
         : options(std::move(o)), argv(command_of(options)), signals(io, SIGINT, SIGTERM, SIGUSR1), fruitless(argv) {
         await_signal();
+        if (options.hosts == 0) return;
+        HostPlan plan{options.launcher, options.hosts, options.workers / options.hosts, options.limits};
+        plan.argv.insert(plan.argv.end(), options.host_command.begin(), options.host_command.end());
+        hosts.emplace(
+            io, std::move(plan),
+            Hosts::Listener{[this] { return clock.now(); }, [this](const std::string& line) { remark_on_banner(line); },
+                            [this](std::string remark) { events.emplace_back(Remark{std::move(remark)}); }});
     }
 
     // ---- reading -----------------------------------------------------------------------------------------
 
     void await_signal() {
-        signals.async_wait([this](const boost::system::error_code& error, int) {
+        signals.async_wait([this](const boost::system::error_code& error, int number) {
             if (error) return;
-            events.emplace_back(Interrupted{interruptions++ > 0});
+            // What ends a job may signal every process of it, and the job's script pass the signal on besides.
+            const bool repeated = number != SIGINT && clock.now() - interrupted < one_request;
+            if (!repeated) events.emplace_back(Interrupted{interruptions++ > 0, number != SIGINT});
+            interrupted = clock.now();
             await_signal();
         });
     }
@@ -93,6 +106,7 @@ struct Pool::Impl {
         auto meaning = worker->state.receive(line, clock.now());
         if (!fruitful && worker->state.has_begun_any()) {
             fruitless.fruitful();
+            worker->child->was_fruitful();
         }
         if (auto* finished = std::get_if<Finished>(&meaning)) {
             events.emplace_back(std::move(*finished));
@@ -130,8 +144,8 @@ struct Pool::Impl {
         worker->child->signal(SIGKILL);  // whatever is left of its process group
         worker->child->wait(2s);
         const int status = worker->child->status();
-        Lost lost = account_for(*worker, describe_end(status));
-        lost.from_outside = ended_from_outside(status, worker->child->log());
+        Lost lost = account_for(*worker, worker->child->end());
+        lost.from_outside = worker->child->lost_with_host() || ended_from_outside(status, worker->child->log());
         lost.spoils_checkpoint = worker->state.resumed() || ending_signal(status) != SIGKILL;
         discard(worker);
         report(*worker, std::move(lost), was_killed(status));
@@ -159,7 +173,8 @@ struct Pool::Impl {
 
     void report(const Worker& worker, Lost lost, bool killed) {
         const bool owed = lost.running || !lost.queued.empty();
-        if (!worker.state.has_begun_any() && (owed || !worker.state.was_ready() || worker.stop_sent) && !retired)
+        const bool begun = worker.state.has_begun_any() || worker.child->lost_with_host();
+        if (!begun && (owed || !worker.state.was_ready() || worker.stop_sent) && !retired)
             say(fruitless.ended(lost.reason, killed, workers.size(), clock.now()));
         if (owed) events.emplace_back(std::move(lost));
     }
@@ -187,13 +202,27 @@ struct Pool::Impl {
         leaving.let_go(worker->child, clock.now());
     }
 
+    /// The end of a worker on a host is read. Those that take longer end with their host.
+    void await_ends(std::vector<std::shared_ptr<Process>> processes) {
+        using Clock = std::chrono::steady_clock;
+        for (const auto until = Clock::now() + time_to_end_hosted; Clock::now() < until;) {
+            std::erase_if(processes, [](const auto& process) { return !process->runs(); });
+            if (processes.empty()) return;
+            io.restart();
+            io.run_one_for(50ms);
+        }
+    }
+
     // ---- doing -------------------------------------------------------------------------------------------
 
     /// False where none can be had now.
     bool launch() {
         std::error_code error;
-        auto child = Child::start(io, argv, error);
-        if (child == nullptr) {
+        std::shared_ptr<Process> child;
+        if (hosts) {
+            child = hosts->start_worker();
+            if (child == nullptr) return false;
+        } else if ((child = Child::start(io, argv, error)) == nullptr) {
             say(fruitless.not_launched(error.message(), workers.size(), clock.now()));
             return false;
         }
@@ -223,10 +252,12 @@ struct Pool::Impl {
         looked = now;
         if (now - leased > lease_every) {
             leased = now;
+            if (hosts) hosts->lease();
             for (const auto& worker : workers)
                 if (worker->child->everything_is_written())
                     send(*worker, Lease{});  // else it has not read the last one yet
         }
+        if (hosts) hosts->keep_time();
         const auto watched = workers;  // some may be dismissed
         for (const auto& worker : watched) {
             if (!retired && worker->state.phase() == Phase::leaving && !worker->state.running() &&
@@ -285,6 +316,10 @@ struct Pool::Impl {
 
     // ---- where a case goes -------------------------------------------------------------------------------
 
+    [[nodiscard]] const std::string& why_none() const {
+        return hosts && !hosts->why().empty() ? hosts->why() : fruitless.why();
+    }
+
     [[nodiscard]] std::size_t free_workers() const {
         return static_cast<std::size_t>(std::ranges::count_if(workers, [](const auto& worker) {
             return worker->state.phase() == Phase::starting ||
@@ -300,10 +335,12 @@ struct Pool::Impl {
     Departures leaving;
     std::deque<PoolEvent> events;
     AwakeClock clock;
+    std::optional<Hosts> hosts;
     FruitlessLaunches fruitless;
     int events_before_reading = 0;
     double leased = 0, looked = 0;
     int interruptions = 0;
+    double interrupted = -one_request;  // when last
     bool retired = false;
     std::string last_banner;  // remarked on
     int remarks_on_banners = 0;
@@ -320,7 +357,7 @@ Pool::~Pool() {
 void Pool::expect(std::size_t cases) {
     auto& pool = *impl_;
     for (int launched = 0; launched < launches_at_once; ++launched) {
-        if (pool.retired || !pool.fruitless.why().empty() || pool.workers.size() >= pool.options.workers) return;
+        if (pool.retired || !pool.why_none().empty() || pool.workers.size() >= pool.options.workers) return;
         const double now = pool.clock.now();
         if (pool.fruitless.waits(now) || pool.workers.size() + pool.leaving.places_taken(now) >= pool.options.workers ||
             pool.free_workers() >= cases)
@@ -361,7 +398,7 @@ std::optional<PoolEvent> Pool::wait(std::chrono::milliseconds at_most) {
         impl_->keep_time();
     }
     while (impl_->events.empty()) {
-        if (const auto& why = impl_->fruitless.why(); !why.empty()) throw std::runtime_error(why);
+        if (const auto& why = impl_->why_none(); !why.empty()) throw std::runtime_error(why);
         const auto left = until - Clock::now();
         if (left <= 0s) return std::nullopt;
         impl_->io.restart();
@@ -375,6 +412,7 @@ std::optional<PoolEvent> Pool::wait(std::chrono::milliseconds at_most) {
 
 void Pool::retire() {
     impl_->retired = true;
+    if (impl_->hosts) impl_->hosts->retire();
     for (const auto& worker : impl_->workers) impl_->send_stop(worker);
 }
 
@@ -384,12 +422,18 @@ bool Pool::can_start(const std::string& program) {
 
 // Workers that were retired and have nothing left to do end by themselves.
 void Pool::dismiss() {
-    std::vector<std::shared_ptr<Child>> all;
+    std::vector<std::shared_ptr<Process>> all;
     for (const auto& worker : impl_->workers) {
         const bool ends_by_itself = worker->stop_sent && worker->state.was_ready() && worker->state.cases() == 0;
         worker->state.dismiss();
         if (!ends_by_itself) worker->child->signal(SIGTERM);
         all.push_back(worker->child);
+    }
+    if (impl_->hosts) {
+        impl_->hosts->retire();
+        impl_->await_ends(std::move(all));
+        impl_->hosts->end_all();
+        all = {};
     }
     impl_->leaving.end_all(std::move(all));
     impl_->workers.clear();

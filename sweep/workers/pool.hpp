@@ -16,7 +16,11 @@ struct PoolOptions {
     std::vector<std::string> launcher;  ///< argv prefix; empty: the workers are children of this process
     std::vector<std::string> command;   ///< executable, "worker", its arguments
     std::size_t workers = 1;
-    TimeLimits limits;  ///< in this process's running time
+    /// Where not 0, the launcher starts so many hosts instead, and each runs an equal part of the workers. `{host}` in
+    /// a word of the launcher is the host's number, from 1 on.
+    std::size_t hosts = 0;
+    std::vector<std::string> host_command;  ///< executable, "host", its arguments
+    TimeLimits limits;                      ///< in this process's running time
     Expected expected;
 };
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # What a case costs beside its computation: no-op cases end to end, durable, with -j2, and GNU Parallel with a joblog
-# beside it where installed. Then a million of them: the plan, the time until the first case begins, the run, its
+# beside it where installed; the same through a host (execution.hosts). Then a million of them: the plan, the time until the first case begins, the run, its
 # memory, the same run again with nothing left to do. JSON lines; memory is the resident memory of the main program at
 # its highest, MB of 10^6 bytes.
 #   tests/bench/overhead.sh [CASES [MANY]]
@@ -15,10 +15,10 @@ trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 
 now() { date +%s.%N; }
-# campaign NAME CASES > file
+# campaign NAME CASES [MEMBERS] > file
 campaign() {
     cat <<JSON
-{"campaign": "$1", "scene": "rehearsal",
+{"campaign": "$1", "scene": "rehearsal",${3:-}
  "factors": [{"name": "x1", "between": [0, 1]}, {"name": "x2", "between": [0, 1]}, {"name": "x3", "between": [0, 1]}],
  "design": {"kind": "halton", "points": $2}}
 JSON
@@ -49,6 +49,10 @@ watched "$grainsweep" run noop.json -j 2 --quiet
 told overhead "$cases"
 watched "$grainsweep" status noop.db
 told status "$cases"
+
+campaign hosted "$cases" ' "execution": {"hosts": 1, "workers_per_host": 2},' >hosted.json
+watched "$grainsweep" run hosted.json --quiet
+told overhead_through_a_host "$cases"
 
 if command -v parallel >/dev/null; then
     memory=0

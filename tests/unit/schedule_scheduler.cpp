@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <functional>
@@ -80,15 +81,19 @@ protected:
     }
 
     Ending run(ScriptedCrew& crew, Rules rules = {}, Watchers watchers = {}, Judge* judge = nullptr,
-               std::size_t at_once = 1000) {
+               std::size_t at_once = 1000, Walltime walltime = {}) {
         const auto states = store.enrol(campaign, placed, {}, at_once);
         std::vector<History> histories;
         for (const auto& state : states) histories.push_back({state.attempts, state.failures, state.outcome});
         const auto question = [this](std::uint32_t i) { return placed[i].question; };
-        Plan plan({question, histories, std::vector<double>(placed.size(), 1.0), {}, {}}, rules);
+        Plan plan({question, histories, predicted(), {}, {}}, rules);
         store::Recorder recorder(store);
-        Scheduler scheduler("loop", plan, crew, recorder, judge, std::move(watchers));
+        Scheduler scheduler("loop", plan, crew, recorder, judge, std::move(watchers), std::move(walltime));
         return scheduler.run();
+    }
+
+    [[nodiscard]] std::vector<double> predicted() const {
+        return seconds.empty() ? std::vector<double>(placed.size(), 1.0) : seconds;
     }
 
     std::int64_t stored(const std::string& outcome) {
@@ -99,6 +104,7 @@ protected:
     test::Folder folder;
     campaign::Campaign campaign;
     std::vector<campaign::PlacedCase> placed;
+    std::vector<double> seconds;  ///< predicted; empty: 1 of each
     store::Store store;
 };
 
@@ -345,6 +351,78 @@ TEST_F(SchedulerLoop, CheckpointsAreForgottenOnlyAfterTheResultIsOnDisk) {
     });
     run(crew, {}, std::move(watchers));
     EXPECT_EQ(forgotten, std::vector<std::string>{placed[4].question.id});
+}
+
+/// A crew whose cases take what is predicted, and the time that is left of `whole` seconds.
+class TimedCrew {
+public:
+    TimedCrew(std::vector<double> seconds, double whole, bool cases_go_on)
+        : seconds_(std::move(seconds)), left_(whole), whole_(whole), cases_go_on_(cases_go_on) {}
+    [[nodiscard]] ScriptedCrew crew(const std::vector<campaign::PlacedCase>& placed) {
+        return ScriptedCrew([&](const auto& attempt) -> workers::PoolEvent {
+            const auto at = std::ranges::find(placed, attempt.case_id, [](const auto& one) { return one.question.id; });
+            const double takes = seconds_.at(static_cast<std::size_t>(at - placed.begin()));
+            const double spent = std::min(takes, left_);
+            left_ -= spent;
+            if (spent < takes) return workers::GivenBack{attempt, "given back before it was finished", spent, true};
+            return completed(attempt);
+        });
+    }
+    [[nodiscard]] Walltime walltime() {
+        return {[this] { return left_; }, whole_, cases_go_on_, 0.5};
+    }
+
+private:
+    std::vector<double> seconds_;
+    double left_, whole_;
+    bool cases_go_on_;
+};
+
+TEST_F(SchedulerLoop, NothingIsBegunThatCannotFinishInTime) {
+    seconds = {1, 1, 1, 8, 1, 1, 1, 1, 1, 1};
+    TimedCrew timed(seconds, 7, false);
+    auto crew = timed.crew(placed);
+    EXPECT_EQ(run(crew, {}, {}, nullptr, 1000, timed.walltime()), Ending::out_of_time);
+    EXPECT_EQ(stored("completed"), 7) << "what fits is computed, what does not is left out";
+    EXPECT_EQ(stored("abandoned"), 0);
+    TimedCrew next(seconds, 10, false);
+    auto again = next.crew(placed);
+    EXPECT_EQ(run(again, {}, {}, nullptr, 1000, next.walltime()), Ending::finished);
+}
+
+TEST_F(SchedulerLoop, WhatFitsIntoNoRunIsSaid) {
+    seconds = {1, 1, 1, 12, 1, 1, 1, 1, 1, 1};
+    TimedCrew timed(seconds, 10, false);
+    auto crew = timed.crew(placed);
+    EXPECT_EQ(run(crew, {}, {}, nullptr, 1000, timed.walltime()), Ending::too_long);
+    EXPECT_EQ(stored("completed"), 9);
+}
+
+TEST_F(SchedulerLoop, ACaseThatGoesOnLaterIsBegunWhereAPartOfItFits) {
+    seconds = {1, 1, 1, 12, 1, 1, 1, 1, 1, 1};
+    TimedCrew timed(seconds, 10, true);
+    auto crew = timed.crew(placed);
+    EXPECT_EQ(run(crew, {}, {}, nullptr, 1000, timed.walltime()), Ending::out_of_time);
+    EXPECT_TRUE(crew.retired);
+    EXPECT_EQ(store.attempts(placed[3].question.id).size(), 1U) << "it is given back unfinished";
+}
+
+TEST_F(SchedulerLoop, NoPartIsBegunForLessThanItsSavingTakes) {
+    seconds = std::vector<double>(10, 1);
+    TimedCrew timed(seconds, 3.4, true);
+    auto crew = timed.crew(placed);
+    EXPECT_EQ(run(crew, {}, {}, nullptr, 1000, timed.walltime()), Ending::out_of_time);
+    EXPECT_EQ(stored("completed"), 3);
+    EXPECT_EQ(crew.started.size(), 3U);
+}
+
+TEST_F(SchedulerLoop, ARequestOfASystemIsNoInterruptOfTheUser) {
+    ScriptedCrew crew([asked = false](const auto& attempt) mutable -> workers::PoolEvent {
+        if (!std::exchange(asked, true)) return workers::Interrupted{false, true};
+        return completed(attempt);
+    });
+    EXPECT_EQ(run(crew), Ending::asked_to_end);
+    EXPECT_EQ(stored("completed"), 1);
 }
 
 }  // namespace

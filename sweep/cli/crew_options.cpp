@@ -1,0 +1,54 @@
+#include "sweep/cli/crew_options.hpp"
+
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/cli/build_facts.hpp"
+
+#include <algorithm>
+#include <thread>
+#include <vector>
+
+namespace grainsweep::cli {
+namespace {
+
+std::vector<std::string> own_command(const std::string& command, const std::filesystem::path& artefacts,
+                                     const std::string& path) {
+    std::vector<std::string> argv = {std::filesystem::read_symlink("/proc/self/exe").string(), command, "--artefacts",
+                                     artefacts.string()};
+    if (!path.empty()) argv.insert(argv.end(), {"--path", path});
+    return argv;
+}
+
+}  // namespace
+
+std::size_t worker_count(const campaign::Execution& execution, std::optional<std::int64_t> asked) {
+    const bool hosted = execution.hosts > 0;
+    const std::int64_t number = asked.value_or(hosted ? execution.workers_per_host : execution.workers);
+    const std::size_t each =
+        number > 0 ? static_cast<std::size_t>(number) : std::max(1U, std::thread::hardware_concurrency());
+    return hosted ? each * static_cast<std::size_t>(execution.hosts) : each;
+}
+
+workers::PoolOptions pool_options(const campaign::Campaign& campaign, const std::filesystem::path& artefacts,
+                                  std::size_t workers, const std::string& path) {
+    const auto& execution = campaign.execution;
+    workers::PoolOptions options;
+    options.launcher = execution.launcher;
+    options.command = own_command("worker", artefacts, path);
+    options.workers = workers;
+    options.hosts = static_cast<std::size_t>(execution.hosts);
+    if (options.hosts > 0) options.host_command = own_command("host", artefacts, path);
+    options.limits = {campaign.limits.wall_seconds, execution.start_seconds, execution.silence_seconds};
+    options.expected.program = this_computer();
+    for (const auto& observable : campaign.scene().observables)
+        options.expected.measured.emplace(observable.name, observable.shape);
+    return options;
+}
+
+void refuse_launcher_that_is_not_there(const campaign::Campaign& campaign, const std::filesystem::path& config) {
+    const auto& launcher = campaign.execution.launcher;
+    if (launcher.empty() || workers::Pool::can_start(launcher.front())) return;
+    throw campaign::wrong_question(config.string() + ": $.execution.launcher[0]", launcher.front(),
+                                   "there is no such program to start workers with");
+}
+
+}  // namespace grainsweep::cli

@@ -1,0 +1,28 @@
+// How long this process may take: what the campaign file says, or the end of the Slurm job it runs in.
+#pragma once
+
+#include "sweep/campaign/campaign.hpp"
+#include "sweep/schedule/scheduler.hpp"
+
+#include <optional>
+#include <string_view>
+
+namespace grainsweep::cli {
+
+/// Seconds, from the start of the process.
+struct TimeGiven {
+    double left = 0;   ///< now
+    double whole = 0;  ///< to a run of full length
+};
+
+/// The earlier of the two; nothing where there is no limit. `configured`: execution.walltime, 0: none. The texts are
+/// SLURM_JOB_END_TIME and SLURM_JOB_START_TIME, seconds since 1970; empty: not set. What is no such number is none.
+[[nodiscard]] std::optional<TimeGiven> time_given(double configured, std::string_view job_end,
+                                                  std::string_view job_start, double now);
+/// Of this it keeps back for workers to save what they have and for everything to be written: a tenth, 5 to 30 s, at
+/// most half.
+[[nodiscard]] double kept_back(double whole);
+/// Counts from now.
+[[nodiscard]] schedule::Walltime walltime_of(const campaign::Campaign& campaign);
+
+}  // namespace grainsweep::cli

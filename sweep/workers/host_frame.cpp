@@ -1,0 +1,162 @@
+#include "sweep/workers/host_frame.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <optional>
+
+namespace grainsweep::workers::frames {
+namespace {
+
+constexpr std::string_view hello_word = "grainsweep host ";
+// A launcher may greet; one that floods is no launcher.
+constexpr std::size_t most_greeting_bytes = std::size_t{64} << 10U;
+constexpr std::size_t longest_head = 80;  // three numbers and a word
+
+void add_numbers(std::string& to, std::initializer_list<std::uint64_t> numbers) {
+    bool first = to.empty() || to.back() == '\n';
+    for (const auto number : numbers) {
+        if (!first) to += ' ';
+        first = false;
+        std::array<char, 24> digits{};
+        to.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr);
+    }
+}
+
+/// Numbers and words of a line, taken one by one.
+class Words {
+public:
+    explicit Words(std::string_view line) : rest_(line) {}
+    [[nodiscard]] std::string_view word() {
+        const auto end = std::min(rest_.find(' '), rest_.size());
+        const auto taken = rest_.substr(0, end);
+        rest_.remove_prefix(std::min(end + 1, rest_.size()));
+        return taken;
+    }
+    template <class Whole>
+    [[nodiscard]] Whole number() {
+        const auto taken = word();
+        Whole value{};
+        const auto [end, error] = std::from_chars(taken.data(), taken.data() + taken.size(), value);
+        if (taken.empty() || error != std::errc() || end != taken.data() + taken.size()) sound_ = false;
+        return value;
+    }
+    /// Whether all that was taken was there, and nothing is left.
+    [[nodiscard]] bool over() const { return sound_ && rest_.empty(); }
+
+private:
+    std::string_view rest_;
+    bool sound_ = true;
+};
+
+struct Head {
+    Frame frame;
+    std::optional<std::size_t> body = {};  ///< bytes that follow the line, without their end
+};
+
+std::optional<Head> head_of(std::string_view line) {
+    Words words(line);
+    Head head;
+    if (!line.empty() && line.front() >= '0' && line.front() <= '9') {
+        head.frame = Piece{words.number<WorkerNumber>(), {}};
+        head.body = words.number<std::size_t>();
+    } else if (line.starts_with(hello_word)) {
+        words = Words(line.substr(hello_word.size()));
+        head.frame = Hello{words.number<std::int64_t>()};
+    } else {
+        const auto word = words.word();
+        if (word == "alive" || word == "lease") {
+            head.frame = Beat{};
+        } else if (word == "start") {
+            head.frame = Start{words.number<WorkerNumber>()};
+        } else if (word == "close") {
+            head.frame = Close{words.number<WorkerNumber>()};
+        } else if (word == "signal") {
+            const auto worker = words.number<WorkerNumber>();
+            head.frame = Signal{worker, words.number<int>()};
+        } else if (word == "ended") {
+            const auto worker = words.number<WorkerNumber>();
+            const int status = words.number<int>();
+            head.frame = Ended{worker, status, {}};
+            head.body = words.number<std::size_t>();
+        } else {
+            return std::nullopt;
+        }
+    }
+    if (!words.over() || head.body.value_or(0) > longest_piece) return std::nullopt;
+    return head;
+}
+
+}  // namespace
+
+void add_hello(std::string& to) {
+    to += hello_word;
+    to += std::to_string(host_protocol) + "\n";
+}
+
+void add_start(std::string& to, WorkerNumber worker) {
+    to += "start";
+    add_numbers(to, {worker});
+    to += '\n';
+}
+
+void add_piece(std::string& to, WorkerNumber worker, std::string_view bytes) {
+    while (!bytes.empty()) {
+        const auto part = bytes.substr(0, longest_piece);
+        add_numbers(to, {worker, part.size()});
+        to.append("\n").append(part) += '\n';
+        bytes.remove_prefix(part.size());
+    }
+}
+
+void add_signal(std::string& to, WorkerNumber worker, int number) {
+    to += "signal";
+    add_numbers(to, {worker, static_cast<std::uint64_t>(number)});
+    to += '\n';
+}
+
+void add_close(std::string& to, WorkerNumber worker) {
+    to += "close";
+    add_numbers(to, {worker});
+    to += '\n';
+}
+
+void add_ended(std::string& to, WorkerNumber worker, int status, std::string_view log) {
+    log = log.substr(log.size() - std::min(log.size(), longest_piece));
+    to += "ended";
+    add_numbers(to, {worker, static_cast<std::uint64_t>(status), log.size()});
+    to.append("\n").append(log) += '\n';
+}
+
+std::size_t Reader::parse(std::string_view text, Frame& frame) {
+    const std::size_t end = text.find('\n');
+    if (!greeted_) {
+        const auto line = text.substr(0, end);
+        if (greeting_bytes_ + line.size() > most_greeting_bytes) return nonsense;
+        if (end == std::string_view::npos) return 0;
+        // Only a host's first words are no greeting.
+        const auto head = line.starts_with(hello_word) ? head_of(line) : std::nullopt;
+        if (head) {
+            greeted_ = true;
+            frame = head->frame;
+        } else {
+            greeting_bytes_ += line.size() + 1;
+            frame = Greeting{line};
+        }
+        return end + 1;
+    }
+    if (end > longest_head) return text.size() > longest_head ? nonsense : 0;
+    const auto head = head_of(text.substr(0, end));
+    if (!head) return nonsense;
+    frame = head->frame;
+    if (!head->body) return end + 1;
+    const std::size_t whole = end + 1 + *head->body + 1;
+    if (text.size() < whole) return 0;
+    if (text[whole - 1] != '\n') return nonsense;
+    const auto body = text.substr(end + 1, *head->body);
+    if (auto* piece = std::get_if<Piece>(&frame)) piece->bytes = body;
+    if (auto* ended = std::get_if<Ended>(&frame)) ended->log = body;
+    return whole;
+}
+
+}  // namespace grainsweep::workers::frames

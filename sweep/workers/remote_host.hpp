@@ -1,0 +1,100 @@
+// A host (host.hpp) as the main program sees it: one process, launched once, that runs workers on another node and
+// speaks for them over its standard input and output. Its workers are processes like any other to the pool.
+#pragma once
+
+#include "sweep/workers/child.hpp"
+#include "sweep/workers/host_frame.hpp"
+#include "sweep/workers/process.hpp"
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace grainsweep::workers {
+
+class HostedWorker;
+
+class RemoteHost final : public std::enable_shared_from_this<RemoteHost> {
+public:
+    struct Listener {
+        std::function<void(std::string_view line)> greeting;  ///< its launcher's, before it speaks
+        /// It is gone, for this reason, and so are its workers: each has been told.
+        std::function<void(std::string reason)> gone;
+    };
+
+    RemoteHost(std::shared_ptr<Child> process, std::size_t number, double now);
+
+    void listen(Listener listener, std::function<double()> clock);
+    /// Its workers' first lines may come later: a host that is not ready yet is written to all the same.
+    [[nodiscard]] std::shared_ptr<HostedWorker> start_worker();
+    /// Tells it that the main program lives.
+    void lease();
+    /// Nothing it writes counts from now on; all its workers have ended.
+    void give_up(const std::string& reason);
+
+    [[nodiscard]] const std::shared_ptr<Child>& process() const { return process_; }
+    [[nodiscard]] std::size_t number() const { return number_; }
+    [[nodiscard]] bool is_ready() const { return ready_; }
+    /// One of its workers began a case.
+    [[nodiscard]] bool was_of_use() const { return of_use_; }
+    /// Not known to have ended.
+    [[nodiscard]] std::size_t workers() const { return workers_.size(); }
+    [[nodiscard]] double launched() const { return launched_; }
+    /// Seconds since it last wrote.
+    [[nodiscard]] double silence(double now) const { return now - heard_; }
+    /// Seconds for which it has not ended a worker that it was told to kill; 0: there is none.
+    [[nodiscard]] double owes_an_end(double now) const;
+
+private:
+    friend class HostedWorker;
+    void take(const frames::Frame& frame);
+    void lose(const std::string& reason);
+    void write(std::string frames);
+
+    std::shared_ptr<Child> process_;
+    std::size_t number_;
+    Listener listener_;
+    std::function<double()> clock_;
+    frames::Reader reader_{frames::Reader::Side::main_program};
+    std::map<frames::WorkerNumber, std::weak_ptr<HostedWorker>> workers_;
+    std::map<frames::WorkerNumber, double> killed_;  ///< when, of those whose end is not told yet
+    frames::WorkerNumber last_ = 0;
+    bool ready_ = false, of_use_ = false, gone_ = false;
+    double launched_, heard_;
+};
+
+class HostedWorker final : public Process {
+public:
+    HostedWorker(std::shared_ptr<RemoteHost> host, frames::WorkerNumber number);
+
+    void listen(Listener listener) override { listener_ = std::move(listener); }
+    void write(std::string line) override;
+    [[nodiscard]] bool everything_is_written() const override { return host_->process_->everything_is_written(); }
+    void close() override;
+    void signal(int number) override;
+    [[nodiscard]] bool runs() override { return runs_; }
+    void wait(std::chrono::milliseconds) override {}  // its end is told, and only then is it waited for
+    [[nodiscard]] int status() const override { return status_; }
+    [[nodiscard]] std::string end() const override;
+    [[nodiscard]] bool lost_with_host() const override { return !host_end_.empty(); }
+    void was_fruitful() override { host_->of_use_ = true; }
+    [[nodiscard]] std::string id() const override;
+    [[nodiscard]] const std::string& log() override { return log_; }
+
+private:
+    friend class RemoteHost;
+    void ended(int status, std::string_view log, const std::string& host_end);
+
+    std::shared_ptr<RemoteHost> host_;
+    frames::WorkerNumber number_;
+    Listener listener_;
+    bool runs_ = true, closed_ = false;
+    int status_ = 0;
+    std::string log_;
+    std::string host_end_;  ///< why its host is gone
+};
+
+}  // namespace grainsweep::workers
