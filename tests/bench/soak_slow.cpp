@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int cases = 2000, killed = 128 + SIGKILL, interrupted = 130, broken = 3;
+constexpr int cases = 2000, killed = 128 + SIGKILL, interrupted = 130, asked_to_end = 75, broken = 3;
 
 // Most take milliseconds and wait for their turn inside a worker, some several checkpoints.
 const char* config = R"({"campaign": "soak", "scene": "rehearsal",
@@ -170,7 +170,8 @@ private:
                 return met("SIGKILL to a worker", send(worker_of(run), SIGKILL));
             case 2: {
                 const int signal = one_of<int>({SIGTERM, SIGINT, SIGUSR1});
-                run.codes.insert({interrupted, 128 + signal});  // the second before it is prepared for signals
+                // The second before it is prepared for signals.
+                run.codes.insert({signal == SIGINT ? interrupted : asked_to_end, 128 + signal});
                 met("TERM, INT or USR1 to the main program", send(run.process.pid(), signal));
                 if (below(3) == 0) met("and once more, to end at once", send(run.process.pid(), signal));
                 return;

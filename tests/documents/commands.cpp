@@ -244,7 +244,7 @@ TEST(Bootstrap, RunsACampaignAndWritesItsPage) {
 TEST(Options, InTheDocumentsExist) {
     // Of other programs, as the documents use them.
     std::set<std::string> known = {"--gtest_filter", "--preset", "--build", "--target",
-                                   "--install",      "--prefix", "--part"};
+                                   "--install",      "--prefix", "--part",  "--signal"};
     for (const auto& command : command_names())
         for (const auto& option : options_of(command)) known.insert(option);
     for (const auto& option : options_of("")) known.insert(option);
