@@ -26,7 +26,8 @@ struct Command {
 
 // One line per group of commands; each group has a file of its own.
 [[nodiscard]] std::vector<Command> plan_commands();       // plan
-[[nodiscard]] std::vector<Command> run_commands();        // run, worker
+[[nodiscard]] std::vector<Command> run_commands();        // run, calibrate, worker, host
+[[nodiscard]] std::vector<Command> spool_commands();      // work, collect
 [[nodiscard]] std::vector<Command> archive_commands();    // status, explain, replay, query, dump
 [[nodiscard]] std::vector<Command> verify_commands();     // verify
 [[nodiscard]] std::vector<Command> study_commands();      // converge, sensitivity, report

@@ -8,6 +8,7 @@ std::vector<Command> all_commands() {
     for (const auto& group : {
              plan_commands(),
              run_commands(),
+             spool_commands(),
              archive_commands(),
              verify_commands(),
              study_commands(),

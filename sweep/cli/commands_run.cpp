@@ -34,32 +34,6 @@ campaign::Outcome outcome_asked_again(const std::string& word) {
     throw campaign::wrong_question("--again", word, "is no outcome", campaign::nearest_word(word, words));
 }
 
-/// What a program wants to know of a finished run; the science is in the database.
-void show(const RunReport& report, Format format) {
-    if (format == Format::text) {
-        const store::Store archive(report.database, store::Store::Mode::read);
-        std::cout << report::closing_summary(archive, report.campaign, report.database) << '\n'
-                  << report.ending << '\n';
-        return;
-    }
-    std::error_code none;
-    const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(report.database, none));
-    if (format == Format::json) {
-        report::write(std::cout, nlohmann::ordered_json{{"campaign", report.campaign},
-                                                        {"database", report.database.string()},
-                                                        {"bytes", bytes},
-                                                        {"ending", report.ending},
-                                                        {"converged", report::to_json(report.converged)},
-                                                        {"exit_code", report.exit_code}});
-        return;
-    }
-    report::write(std::cout,
-                  {{"campaign", "database", "bytes", "ending", "exit_code", "converged"},
-                   {{report.campaign, report.database.string(), bytes, report.ending, std::int64_t{report.exit_code},
-                     report.converged ? store::Table::Cell{std::int64_t{*report.converged}} : store::Table::Cell{}}}},
-                  format);
-}
-
 /// Whether standard output has no reader: a pipe without a reader, a closed terminal or descriptor.
 bool reader_is_gone() {
     if (errno == EPIPE || errno == EIO || errno == EBADF) return true;
@@ -99,6 +73,8 @@ Command running(std::string name, std::string summary, bool calibrates) {
                 parser.add_option("--again", *again, "asks again what ended with this outcome");
                 parser.add_option("--max-cases", request->max_cases, "settle at most N cases in this run; 0: all")
                     ->check(whole_number(0));
+                parser.add_flag("--network-disk", request->network_disk,
+                                "the database may lie on a network file system: one node at a time writes it");
                 parser.add_flag("--quiet", request->quiet, "no progress, no table");
                 declare_path(parser, request->path);
                 return [request, again, &format] {
@@ -108,7 +84,7 @@ Command running(std::string name, std::string summary, bool calibrates) {
                     std::signal(SIGPIPE, SIG_IGN);
                     if (!again->empty()) request->again = outcome_asked_again(*again);
                     const RunReport report = run_campaign(*request);
-                    if (!request->quiet || format != Format::text) show(report, format);
+                    if (!request->quiet || format != Format::text) show_run(report, format);
                     forgive_a_reader_that_is_gone();
                     return report.exit_code;
                 };
@@ -163,6 +139,31 @@ Command host_command() {
 }
 
 }  // namespace
+
+void show_run(const RunReport& report, Format format) {
+    if (format == Format::text) {
+        const store::Store archive(report.database, store::Store::Mode::read);
+        std::cout << report::closing_summary(archive, report.campaign, report.database) << '\n'
+                  << report.ending << '\n';
+        return;
+    }
+    std::error_code none;
+    const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(report.database, none));
+    if (format == Format::json) {
+        report::write(std::cout, nlohmann::ordered_json{{"campaign", report.campaign},
+                                                        {"database", report.database.string()},
+                                                        {"bytes", bytes},
+                                                        {"ending", report.ending},
+                                                        {"converged", report::to_json(report.converged)},
+                                                        {"exit_code", report.exit_code}});
+        return;
+    }
+    report::write(std::cout,
+                  {{"campaign", "database", "bytes", "ending", "exit_code", "converged"},
+                   {{report.campaign, report.database.string(), bytes, report.ending, std::int64_t{report.exit_code},
+                     report.converged ? store::Table::Cell{std::int64_t{*report.converged}} : store::Table::Cell{}}}},
+                  format);
+}
 
 std::vector<Command> run_commands() {
     return {running("run", "runs what is not settled yet; running again is resuming", false),

@@ -4,6 +4,7 @@
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
+#include "sweep/cli/collect_spool.hpp"
 #include "sweep/cli/crew_options.hpp"
 #include "sweep/cli/progress.hpp"
 #include "sweep/cli/walltime.hpp"
@@ -26,6 +27,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <memory>
 #include <thread>
@@ -248,7 +250,7 @@ void refuse_what_cannot_start(const campaign::Campaign& campaign, const RunReque
         throw campaign::wrong_question(
             request.config.string() + ": $", "",
             "key 'calibration' is missing: what was measured; run takes campaigns with a design");
-    refuse_launcher_that_is_not_there(campaign, request.config);
+    if (request.spool.empty()) refuse_launcher_that_is_not_there(campaign, request.config);
     if (const auto folder = fs::absolute(database).parent_path(); !fs::is_directory(folder))
         throw campaign::wrong_question("--db", database.string(),
                                        fmt::format("there is no folder '{}'", folder.string()));
@@ -264,15 +266,17 @@ class Run {
 public:
     explicit Run(const RunRequest& request)
         : request_(request),
-          campaign_(campaign::read_campaign(request.config)),
+          campaign_(request.spool.empty() ? campaign::read_campaign(request.config) : campaign_of_spool(request.spool)),
           workers_(worker_count(campaign_.execution, request.workers)) {
         unfold();
+        if (!request.spool.empty()) refuse_other_cases(request.spool, placed_);
         database_ = request.database.empty() ? fs::path(campaign_.name + ".db") : request.database;
         refuse_what_cannot_start(campaign_, request, database_);
         artefacts_ = artefact_folder(database_);
         line_.emplace(request.quiet, workers_);
-        walltime_ = walltime_of(campaign_);
-        store_.emplace(database_, store::Store::Mode::create);
+        if (request.spool.empty()) walltime_ = walltime_of(campaign_);
+        store_.emplace(database_, store::Store::Mode::create,
+                       request.network_disk ? store::Store::Disk::network : store::Store::Disk::found_out);
     }
 
     RunReport operator()() {
@@ -282,6 +286,7 @@ public:
             unfold();
         }
         if (grow()) unfold();
+        if (!request_.spool.empty()) return collect();
         bool first = true;
         do {
             enrol(std::exchange(first, false));
@@ -315,11 +320,42 @@ private:
         states_ = campaign::asked_in(request_.config,
                                      [&] { return store_->enrol(campaign_, placed_, provenance(), entered_first); });
         for (const auto& note : store_->notes()) line_->note(note);
+        if (!request_.spool.empty())
+            collected_ =
+                import_answers(request_.spool, campaign_, placed_, *store_, states_, [](const std::string& text) {
+                    // Every one of them, whatever a progress line would leave out.
+                    std::fprintf(stderr, "grainsweep: %s\n", text.c_str());
+                });
         const auto record = store_->stored(campaign_).value();
         if (first) say_first(*line_, campaign_, forecast_, record);
         const auto placement = placement_of(*store_, record, placed_, std::move(states_), std::move(forecast_.seconds));
         judge_ = campaign::asked_in(request_.config, [&] { return make_judge(campaign_, *store_, placement); });
         questions_ = questions_of(campaign_, placement);
+    }
+    RunReport collect() {
+        enrol(true);
+        walltime_ = {};
+        schedule::Plan plan(std::move(questions_), rules_of(campaign_, request_, workers_));
+        plan.close();
+        NoCrew crew;
+        settle(plan, crew, {});
+        store_->remember_file();
+        auto ending = fmt::format("{} cases collected, {} were there before", collected_.imported, collected_.known);
+        if (const auto left = tally_.questions - tally_.decided; left > 0)
+            ending += fmt::format(", {} have no answer yet", left);
+        if (tally_.failed > 0) ending += fmt::format(", {} failed", tally_.failed);
+        if (collected_.unusable > 0) ending += fmt::format("; {} files are not imported", collected_.unusable);
+        const int code = collected_.unusable > 0 ? 1 : exit_code(ending_, tally_);
+        return {code, campaign_.name, database_, ending + standing(judge_.get()),
+                judge_ ? std::optional(judge_->converged_at().has_value()) : std::nullopt};
+    }
+    /// Everything is on disk when this returns.
+    void settle(schedule::Plan& plan, workers::Crew& crew, schedule::Watchers watchers) {
+        store::Recorder recorder(*store_);
+        schedule::Scheduler scheduler(campaign_.name, plan, crew, recorder, judge_.get(), std::move(watchers),
+                                      walltime_);
+        ending_ = scheduler.run();
+        tally_ = plan.tally();
     }
     void compute() {
         schedule::Plan plan(std::move(questions_), rules_of(campaign_, request_, workers_));
@@ -332,13 +368,8 @@ private:
         watchers.forget_checkpoint = [&](const campaign::CaseId& id) {
             folder.remove(workers::checkpoint_key(id, this_computer()));
         };
-        {
-            store::Recorder recorder(*store_);
-            schedule::Scheduler scheduler(campaign_.name, plan, pool, recorder, judge_.get(), watchers, walltime_);
-            ending_ = scheduler.run();
-        }
+        settle(plan, pool, std::move(watchers));
         sweep(folder, *store_);
-        tally_ = plan.tally();
     }
 
     const RunRequest& request_;
@@ -355,6 +386,7 @@ private:
     Ending ending_{};
     schedule::Plan::Tally tally_;
     schedule::Walltime walltime_;
+    spool::Collected collected_;
 };
 
 }  // namespace

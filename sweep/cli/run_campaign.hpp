@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sweep/campaign/case.hpp"
+#include "sweep/report/table.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -17,6 +18,10 @@ struct RunRequest {
     std::int64_t stop_after_failures = 0;    ///< 0: never
     std::optional<campaign::Outcome> again;  ///< ask again what ended like this
     std::int64_t max_cases = 0;              ///< 0: all
+    /// Not empty: nothing is computed; the folder that tasks of `work` share says what is asked, and their answers are
+    /// put into the database.
+    std::filesystem::path spool;
+    bool network_disk = false;  ///< the database may lie on a network file system
     bool quiet = false;
     bool calibrates = false;  ///< the campaign file must give a calibration
     std::string path;         ///< instruction path for the workers; empty: each the widest it has
@@ -32,5 +37,7 @@ struct RunReport {
 };
 
 [[nodiscard]] RunReport run_campaign(const RunRequest& request);
+/// What a program wants to know of a finished run, to standard output; the science is in the database.
+void show_run(const RunReport& report, report::Format format);
 
 }  // namespace grainsweep::cli

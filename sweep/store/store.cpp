@@ -178,6 +178,7 @@ bool is_as_remembered_now(Connection& db, const std::filesystem::path& file) {
 
 std::unique_ptr<Store::Impl> open_to_write(const std::filesystem::path& file, Store::Disk disk) {
     check_name(file);
+    if (disk == Store::Disk::found_out) refuse_network(file, file_system_of(file));
     std::error_code ignored;
     if (std::filesystem::exists(file, ignored)) check_readable(file);
     auto lock = WriterLock::take(file);
@@ -185,8 +186,7 @@ std::unique_ptr<Store::Impl> open_to_write(const std::filesystem::path& file, St
     refuse_several_names(file);
     Connection db(file, Connection::Access::write);
     const bool empty = schema_version(db, file) == 0;  // before anything is changed in a foreign file
-    const bool network = disk == Store::Disk::network || (disk == Store::Disk::found_out && on_network(file));
-    db.use(network ? Connection::Journal::rollback : Connection::Journal::write_ahead);
+    db.use(disk == Store::Disk::network ? Connection::Journal::rollback : Connection::Journal::write_ahead);
     const bool as_remembered = !empty && is_as_remembered_now(db, file);
     if (!empty && !as_remembered) check_structure(db, file);
     migrate(db, file);

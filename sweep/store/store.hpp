@@ -1,8 +1,8 @@
 // The archive: every result of every campaign in one SQLite file.
 //
 // One writer: an advisory lock on the file itself, which ends with its holder. Readers go on beside it, and the last
-// one to close the file, reader or writer, leaves nothing beside it. WAL, synchronous FULL; on network file systems a
-// rollback journal, synchronous FULL. A result is on disk before it is shown: callers write inside group() and show
+// one to close the file, reader or writer, leaves nothing beside it. WAL, synchronous FULL; on a network disk, asked
+// for, a rollback journal. A result is on disk before it is shown: callers write inside group() and show
 // what the group held only after it returned. A Store belongs to one thread.
 #pragma once
 
@@ -121,7 +121,7 @@ struct Damage {
 class Store {
 public:
     enum class Mode { create, read };
-    /// A network disk gets a rollback journal instead of a write-ahead log; which it is, statfs(2) knows.
+    /// A network disk gets a rollback journal instead of a write-ahead log; found out by statfs(2) it is refused.
     enum class Disk { found_out, local, network };
     /// create: makes the file and its schema where absent, takes the writer's lock (a second writer is
     /// refused with a sentence naming the first) and brings an older schema up to date; read: changes no content and

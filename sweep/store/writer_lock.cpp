@@ -1,5 +1,6 @@
 #include "sweep/store/writer_lock.hpp"
 
+#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/store/broken_world.hpp"
 
 #include <fcntl.h>
@@ -51,33 +52,45 @@ WriterLock::~WriterLock() {
     if (descriptor_ >= 0) close(descriptor_);
 }
 
-bool is_network_file_system(long magic) {
+std::string_view network_file_system(long magic) {
     // linux/magic.h and the sources of the file systems.
-    constexpr std::array<std::uint32_t, 16> network = {
-        0x6969,      // NFS
-        0x517B,      // SMB
-        0xFE534D42,  // SMB 2
-        0xFF534D42,  // CIFS
-        0x0BD00BD0,  // Lustre
-        0x47504653,  // GPFS
-        0x19830326,  // BeeGFS
-        0x65735546,  // FUSE: sshfs and its like
-        0x00C36400,  // Ceph
-        0x5346414F,  // AFS
-        0x6B414653,  // kAFS
-        0x01021997,  // 9P
-        0x73757245,  // Coda
-        0xAAD7AAEA,  // PanFS
-        0x01161970,  // GFS2
-        0x7461636F,  // OCFS2
-    };
-    return std::ranges::find(network, static_cast<std::uint32_t>(magic)) != network.end();
+    static constexpr std::array<std::pair<std::uint32_t, std::string_view>, 16> network = {{
+        {0x6969, "NFS"},
+        {0x517B, "SMB"},
+        {0xFE534D42, "SMB 2"},
+        {0xFF534D42, "CIFS"},
+        {0x0BD00BD0, "Lustre"},
+        {0x47504653, "GPFS"},
+        {0x19830326, "BeeGFS"},
+        {0x65735546, "FUSE"},  // sshfs and its like
+        {0x00C36400, "Ceph"},
+        {0x5346414F, "AFS"},
+        {0x6B414653, "kAFS"},
+        {0x01021997, "9P"},
+        {0x73757245, "Coda"},
+        {0xAAD7AAEA, "PanFS"},
+        {0x01161970, "GFS2"},
+        {0x7461636F, "OCFS2"},
+    }};
+    const auto found =
+        std::ranges::find(network, static_cast<std::uint32_t>(magic), &decltype(network)::value_type::first);
+    return found == network.end() ? std::string_view() : found->second;
 }
 
-bool on_network(const std::filesystem::path& file) {
+long file_system_of(const std::filesystem::path& file) {
     struct statfs system {};
     const auto folder = std::filesystem::weakly_canonical(file).parent_path();
-    return statfs(folder.c_str(), &system) == 0 && is_network_file_system(static_cast<long>(system.f_type));
+    return statfs(folder.c_str(), &system) == 0 ? static_cast<long>(system.f_type) : 0;
+}
+
+void refuse_network(const std::filesystem::path& database, long magic) {
+    const auto name = network_file_system(magic);
+    if (name.empty()) return;
+    throw campaign::WrongQuestion(fmt::format(
+        "'{}' lies on a network file system ({}), where two nodes may both write a database: give --db a file on a "
+        "disk of this machine and copy it afterwards, or compute with 'grainsweep work' and collect there, or say "
+        "--network-disk where one node at a time is all that ever writes it",
+        database.string(), name));
 }
 
 }  // namespace grainsweep::store

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string_view>
 
 namespace grainsweep::store {
 
@@ -21,10 +22,12 @@ private:
     int descriptor_ = -1;
 };
 
-/// True where the folder of the file lies on a network or cluster file system, whose shared memory between
-/// hosts does not exist and whose write-ahead logs therefore tear.
-[[nodiscard]] bool on_network(const std::filesystem::path& file);
-/// The same by the magic number of statfs(2).
-[[nodiscard]] bool is_network_file_system(long magic);
+/// The magic number of statfs(2) of the file system on which the file lies, or would; 0: not known.
+[[nodiscard]] long file_system_of(const std::filesystem::path& file);
+/// Its name where that is of a network or cluster file system, whose shared memory between hosts does not exist and
+/// whose write-ahead logs therefore tear; empty: it is none.
+[[nodiscard]] std::string_view network_file_system(long magic);
+/// Throws WrongQuestion, with what to do instead, for a database on a file system of that number.
+void refuse_network(const std::filesystem::path& database, long magic);
 
 }  // namespace grainsweep::store

@@ -66,7 +66,7 @@ Done to_done(const Json& object) {
     done.result.message = object.at("message").get<std::string>();
     done.result.observations = to_observations(object.at("observations"));
     const Json& cost = object.at("cost");
-    done.result.cost = {cost.at("wall").get<double>(), cost.at("cpu").get<double>(), cost.at("steps").get<double>(),
+    done.result.cost = {number_or_nan(cost.at("wall")), number_or_nan(cost.at("cpu")), number_or_nan(cost.at("steps")),
                         cost.at("phases").get<std::map<std::string, double, std::less<>>>()};
     done.checkpointed = object.at("checkpointed").get<bool>();
     return done;

@@ -208,12 +208,26 @@ TEST(StoreFiles, AnOlderSchemaIsReadAsItIsAndBroughtUpToDateByTheNextRun) {
 }
 
 TEST(StoreFiles, TheJournalFitsTheFileSystem) {
-    EXPECT_TRUE(store::is_network_file_system(0x6969));                         // NFS
-    EXPECT_TRUE(store::is_network_file_system(0x0BD00BD0));                     // Lustre
-    EXPECT_TRUE(store::is_network_file_system(static_cast<long>(0xFE534D42)));  // SMB 2
-    EXPECT_FALSE(store::is_network_file_system(0xEF53));                        // ext4
-    EXPECT_FALSE(store::is_network_file_system(0x01021994));                    // tmpfs
-    EXPECT_FALSE(store::is_network_file_system(0x58465342));                    // XFS
+    EXPECT_EQ(store::network_file_system(0x6969), "NFS");
+    EXPECT_EQ(store::network_file_system(0x0BD00BD0), "Lustre");
+    EXPECT_EQ(store::network_file_system(static_cast<long>(0xFE534D42)), "SMB 2");
+    EXPECT_EQ(store::network_file_system(0xEF53), "") << "ext4";
+    EXPECT_EQ(store::network_file_system(0x01021994), "") << "tmpfs";
+    EXPECT_EQ(store::network_file_system(0x58465342), "") << "XFS";
+}
+
+TEST(StoreFiles, ADatabaseOnANetworkDiskIsRefusedWithWhatToDo) {
+    const tests::Folder folder;
+    EXPECT_NO_THROW(store::refuse_network(folder / "x.db", store::file_system_of(folder / "x.db")));
+    EXPECT_NO_THROW(store::refuse_network(folder / "x.db", 0xEF53));
+    try {
+        store::refuse_network("shared/x.db", 0x47504653);
+        FAIL();
+    } catch (const campaign::WrongQuestion& wrong) {
+        const std::string sentence = wrong.what();
+        for (const char* part : {"shared/x.db", "GPFS", "--db", "grainsweep work", "--network-disk"})
+            EXPECT_NE(sentence.find(part), std::string::npos) << part;
+    }
 }
 
 TEST(StoreFiles, BothJournalsAreFullySynced) {

@@ -1,0 +1,38 @@
+// `collect`: from the answers in a spool to those of an archive.
+#pragma once
+
+#include "sweep/campaign/campaign.hpp"
+#include "sweep/campaign/cases.hpp"
+#include "sweep/spool/collect.hpp"
+#include "sweep/store/store.hpp"
+#include "sweep/workers/crew.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace grainsweep::cli {
+
+/// The campaign of a spool. Throws WrongQuestion where there is none, or where a file that it names has changed.
+[[nodiscard]] campaign::Campaign campaign_of_spool(const std::filesystem::path& spool);
+/// Throws WrongQuestion where these are not the cases that the spool's tasks were asked.
+void refuse_other_cases(const std::filesystem::path& spool, const campaign::Cases& cases);
+/// Into the archive, where the cases are enrolled, and into their states.
+[[nodiscard]] spool::Collected import_answers(const std::filesystem::path& spool, const campaign::Campaign& campaign,
+                                              const campaign::Cases& cases, store::Store& store,
+                                              std::vector<store::CaseState>& states,
+                                              const std::function<void(const std::string&)>& note);
+
+/// Of a run that computes nothing.
+class NoCrew final : public workers::Crew {
+public:
+    void expect(std::size_t) override {}
+    [[nodiscard]] std::optional<workers::Place> place_for(double) override { return std::nullopt; }
+    void give(const workers::Place&, const campaign::Attempt&, const campaign::Case&) override {}
+    [[nodiscard]] std::optional<workers::PoolEvent> wait(std::chrono::milliseconds) override { return std::nullopt; }
+    void retire() override {}
+    void dismiss() override {}
+};
+
+}  // namespace grainsweep::cli

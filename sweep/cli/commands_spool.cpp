@@ -1,0 +1,102 @@
+// work: a task of a campaign without a main program. collect: what such tasks have answered becomes an archive.
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/cli/command.hpp"
+#include "sweep/cli/path_option.hpp"
+#include "sweep/cli/run_campaign.hpp"
+#include "sweep/cli/work_task.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <csignal>
+#include <iostream>
+#include <memory>
+#include <string>
+
+namespace grainsweep::cli {
+namespace {
+
+using report::Format;
+
+void show_work(const WorkReport& report, Format format) {
+    const std::string share = fmt::format("{}/{}", report.part, report.of);
+    if (format == Format::text) {
+        std::cout << fmt::format("{}, share {}: {} of {} cases have an answer, {} of them from this task\n{}\n",
+                                 report.campaign, share, report.answered, report.cases, report.computed, report.ending);
+    } else if (format == Format::json) {
+        report::write(std::cout, nlohmann::ordered_json{{"campaign", report.campaign},
+                                                        {"share", share},
+                                                        {"cases", report.cases},
+                                                        {"answered", report.answered},
+                                                        {"computed", report.computed},
+                                                        {"ending", report.ending},
+                                                        {"exit_code", report.exit_code}});
+    } else {
+        report::write(std::cout,
+                      {{"campaign", "share", "cases", "answered", "computed", "ending", "exit_code"},
+                       {{report.campaign, share, report.cases, report.answered, report.computed, report.ending,
+                         std::int64_t{report.exit_code}}}},
+                      format);
+    }
+}
+
+Command work_command() {
+    return {
+        "work", "computes a share of a campaign without a main program, into a folder; see collect",
+        [](Parser& parser, const Format& format) -> Action {
+            const auto request = std::make_shared<WorkRequest>();
+            parser.add_option("CONFIG", request->config, "campaign file")->required();
+            parser.add_option("--spool", request->spool, "folder that all tasks share")->required()->type_name("DIR");
+            parser
+                .add_option("--share", request->share,
+                            "part i of n is this task's to begin with; default: that of the Slurm array, else 1/1")
+                ->type_name("I/N");
+            parser
+                .add_option("-j", request->workers,
+                            "workers, with execution.hosts of each host; 0: all cores; default: "
+                            "execution.workers")
+                ->check(whole_number(0, 4096));
+            parser.add_option("--lease", request->lease,
+                              "a task without a sign of life for so long is taken for dead, s; at least 2; the "
+                              "same for all tasks");
+            parser.add_flag("--quiet", request->quiet, "no progress, no summary");
+            declare_path(parser, request->path);
+            return [request, &format] {
+                if (!(request->lease >= 2 && request->lease <= 1e6))
+                    throw campaign::wrong_question("--lease", fmt::format("{}", request->lease),
+                                                   "a number from 2 to 1e6 is expected");
+                use_path(request->path);
+                std::signal(SIGHUP, SIG_IGN);
+                std::signal(SIGPIPE, SIG_IGN);
+                const auto report = work_on(*request);
+                if (!request->quiet || format != Format::text) show_work(report, format);
+                return report.exit_code;
+            };
+        }};
+}
+
+Command collect_command() {
+    return {"collect", "puts what tasks of work have answered into a database, each answer once, at any time",
+            [](Parser& parser, const Format& format) -> Action {
+                const auto request = std::make_shared<RunRequest>();
+                parser.add_option("DB", request->database, "database; made where there is none")->required();
+                parser.add_option("DIR", request->spool, "folder that the tasks shared")->required();
+                parser.add_flag("--network-disk", request->network_disk,
+                                "the database may lie on a network file system: one node at a time writes it");
+                parser.add_flag("--quiet", request->quiet, "no summary");
+                return [request, &format] {
+                    std::signal(SIGPIPE, SIG_IGN);
+                    const RunReport report = run_campaign(*request);
+                    if (!request->quiet || format != Format::text) show_run(report, format);
+                    return report.exit_code;
+                };
+            }};
+}
+
+}  // namespace
+
+std::vector<Command> spool_commands() {
+    return {work_command(), collect_command()};
+}
+
+}  // namespace grainsweep::cli

@@ -1,0 +1,157 @@
+#include "sweep/cli/work_task.hpp"
+
+#include "sweep/campaign/forecast.hpp"
+#include "sweep/campaign/reader.hpp"
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/cli/build_facts.hpp"
+#include "sweep/cli/crew_options.hpp"
+#include "sweep/cli/progress.hpp"
+#include "sweep/cli/walltime.hpp"
+#include "sweep/designs/design.hpp"
+#include "sweep/report/features.hpp"
+#include "sweep/spool/task.hpp"
+#include "sweep/store/artefacts.hpp"
+#include "sweep/store/expression.hpp"
+#include "sweep/workers/pool.hpp"
+#include "sweep/workers/worker.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <string_view>
+
+namespace grainsweep::cli {
+namespace {
+
+using schedule::Ending;
+
+constexpr std::int64_t most_parts = 1'000'000;
+
+std::optional<std::int64_t> whole_in(std::string_view text) {
+    std::int64_t number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (text.empty() || error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return number;
+}
+
+std::optional<std::int64_t> whole_of_environment(const char* name) {
+    const char* text = std::getenv(name);
+    return text == nullptr ? std::nullopt : whole_in(text);
+}
+
+/// Arrays may begin anywhere and have steps; the place among their numbers counts.
+spool::Share share_of_array() {
+    const auto id = whole_of_environment("SLURM_ARRAY_TASK_ID");
+    const auto count = whole_of_environment("SLURM_ARRAY_TASK_COUNT");
+    if (!id || !count || *count < 1) return {};
+    const auto first = whole_of_environment("SLURM_ARRAY_TASK_MIN").value_or(0);
+    const auto step = whole_of_environment("SLURM_ARRAY_TASK_STEP").value_or(1);
+    const auto place = step > 0 && *id >= first ? (*id - first) / step : *id;
+    return {place % *count + 1, *count};
+}
+
+spool::Share share_asked(const std::string& word) {
+    if (word.empty()) return share_of_array();
+    const auto slash = std::min(word.find('/'), word.size());
+    const auto part = whole_in(std::string_view(word).substr(0, slash)).value_or(0);
+    const auto of = whole_in(std::string_view(word).substr(std::min(slash + 1, word.size()))).value_or(0);
+    if (part < 1 || part > of || of > most_parts)
+        throw campaign::wrong_question("--share", word, "i/n is expected, i from 1 to n, 2/16 for one");
+    return {part, of};
+}
+
+void refuse_what_follows_from_answers(const campaign::Campaign& campaign, const std::filesystem::path& config) {
+    if (designs::design_named(campaign.design).grows)
+        throw campaign::wrong_question(
+            config.string() + ": $", campaign.design,
+            "its later points follow from answers, which no task without a main program has; take run");
+    if (campaign.convergence && campaign.convergence->stop)
+        throw campaign::wrong_question(
+            config.string() + ": $.convergence.stop", "true",
+            "tasks without a main program compute every point, and collect judges; set it to false, or take run");
+}
+
+std::string described(Ending ending, const spool::Task::Tally& tally) {
+    const std::size_t left = tally.cases - tally.answered;
+    switch (ending) {
+        case Ending::finished:
+            return tally.failed == 0 ? "all cases are settled"
+                                     : fmt::format("all cases are done, {} of them failed", tally.failed);
+        case Ending::out_of_time:
+            return fmt::format("out of time with {} cases left; work again to go on", left);
+        case Ending::asked_to_end:
+            return fmt::format("asked to end with {} cases left; work again to go on", left);
+        case Ending::interrupted:
+            return fmt::format("interrupted with {} cases left; work again to go on", left);
+        case Ending::too_long:
+            return fmt::format(
+                "stopped with {} cases left that are predicted to take longer than a task may; give it "
+                "more time (execution.walltime, or the job's time limit)",
+                left);
+        default:
+            return tally.elsewhere == left
+                       ? fmt::format("nothing left for this task; other tasks are at the last {} cases", left)
+                       : fmt::format("stopped with {} cases left; work again to go on", left);
+    }
+}
+
+int exit_code_of(Ending ending, const spool::Task::Tally& tally) {
+    if (ending == Ending::interrupted) return 130;
+    if (ending == Ending::out_of_time || ending == Ending::asked_to_end) return 75;
+    return tally.failed == 0 && tally.answered + tally.elsewhere == tally.cases ? 0 : 1;
+}
+
+}  // namespace
+
+WorkReport work_on(const WorkRequest& request) {
+    const auto share = share_asked(request.share);
+    const auto campaign = campaign::read_campaign(request.config);
+    refuse_what_follows_from_answers(campaign, request.config);
+    refuse_launcher_that_is_not_there(campaign, request.config);
+    campaign::Forecast forecast;
+    const auto cases = campaign::asked_in(request.config, [&] {
+        report::check_features(campaign);
+        auto unfolded =
+            campaign::unfold(campaign, store::make_filter(campaign.where, campaign::filter_names(campaign)));
+        forecast = campaign::forecast(campaign.scene(), unfolded);
+        return unfolded;
+    });
+    const auto beside = std::filesystem::absolute(request.config).parent_path();
+    const spool::Spool spool(std::filesystem::absolute(request.spool),
+                             {beside, spool::hash_of_cases(cases), campaign.text});
+    const std::size_t workers = worker_count(campaign.execution, request.workers);
+    ProgressLine line(request.quiet, workers);
+    for (const auto& warning : campaign::warnings_of(campaign, forecast)) line.note("warning: " + warning);
+
+    spool::TaskRules rules{share, campaign.limits.attempts, request.lease, walltime_of(campaign)};
+    store::ArtefactFolder artefacts(spool.artefacts());
+    spool::Task::Watchers watchers;
+    watchers.progress = [&](const spool::Task::Tally& tally, std::size_t running) {
+        schedule::Progress progress;
+        progress.tally.questions = tally.cases;
+        progress.tally.decided = tally.answered;
+        progress.tally.settled_now = progress.durable = tally.computed;
+        progress.running = running;
+        line.update(progress);
+    };
+    watchers.note = [&](const std::string& text) { line.note(text); };
+    watchers.forget_checkpoint = [&](const campaign::CaseId& id) {
+        artefacts.remove(workers::checkpoint_key(id, this_computer()));
+    };
+    workers::Pool pool(pool_options(campaign, spool.artefacts(), workers, request.path));
+    spool::Task task(spool, cases, forecast.seconds, pool, std::move(rules), std::move(watchers));
+    const Ending ending = task.run();
+    const auto& tally = task.tally();
+    return {exit_code_of(ending, tally),
+            campaign.name,
+            share.part,
+            share.of,
+            static_cast<std::int64_t>(tally.cases),
+            static_cast<std::int64_t>(tally.answered),
+            static_cast<std::int64_t>(tally.computed),
+            described(ending, tally)};
+}
+
+}  // namespace grainsweep::cli

@@ -1,0 +1,216 @@
+#include "sweep/spool/spool.hpp"
+
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/store/aside_file.hpp"
+#include "sweep/store/broken_world.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <random>
+#include <span>
+#include <utility>
+
+namespace grainsweep::spool {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view campaign_head = "grainsweep spool 1\n";
+constexpr double touches_per_lease = 5;
+
+[[noreturn]] void broken(const fs::path& file, std::string_view what, int number = errno) {
+    throw store::BrokenWorld(fmt::format("'{}': cannot be {}: {}", file.string(), what, std::strerror(number)));
+}
+
+/// Closed when it goes out of scope.
+class Descriptor {
+public:
+    Descriptor(const fs::path& file, int flags) : number_(::open(file.c_str(), flags | O_CLOEXEC, 0666)) {}
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+    ~Descriptor() { (void)close(); }
+    [[nodiscard]] bool is_open() const { return number_ >= 0; }
+    [[nodiscard]] int number() const { return number_; }
+    [[nodiscard]] bool close() { return number_ < 0 || ::close(std::exchange(number_, -1)) == 0; }
+
+private:
+    int number_;
+};
+
+/// Nothing where there is no such file.
+std::optional<std::string> contents_of_file(const fs::path& file) {
+    const Descriptor stream(file, O_RDONLY);
+    if (!stream.is_open() && (errno == ENOENT || errno == ESTALE)) return std::nullopt;
+    if (!stream.is_open()) broken(file, "read");
+    std::string text;
+    std::array<char, 65536> part{};
+    while (true) {
+        const auto length = ::read(stream.number(), part.data(), part.size());
+        if (length < 0 && errno == EINTR) continue;
+        if (length < 0 && errno == ESTALE) return std::nullopt;
+        if (length < 0) broken(file, "read");
+        if (length == 0) return text;
+        text.append(part.data(), static_cast<std::size_t>(length));
+    }
+}
+
+bool write_all(const Descriptor& file, std::string_view text) {
+    while (!text.empty()) {
+        const auto length = ::write(file.number(), text.data(), text.size());
+        if (length < 0 && errno == EINTR) continue;
+        if (length < 0) return false;
+        text.remove_prefix(static_cast<std::size_t>(length));
+    }
+    return true;
+}
+
+/// A renamed file is on disk when its folder is.
+void sync_folder(const fs::path& folder) {
+    const Descriptor stream(folder, O_RDONLY | O_DIRECTORY);
+    if (!stream.is_open() || (::fsync(stream.number()) != 0 && errno != EINVAL)) broken(folder, "synced");
+}
+
+void put_in_place(const fs::path& file, std::string_view text) {
+    store::AsideFile aside(file);
+    aside.write(std::as_bytes(std::span(text)));
+    aside.take_place();
+    sync_folder(file.parent_path());
+}
+
+std::string text_of(const Asked& asked) {
+    const std::string body = fmt::format("{}{}\n{}\n{}", campaign_head, asked.folder.string(), asked.cases, asked.text);
+    return body + "\n" + campaign::content_hash(body) + "\n";
+}
+
+std::optional<Asked> asked_of(std::string_view text) {
+    constexpr std::size_t tail = 34;
+    if (text.size() < campaign_head.size() + tail || !text.starts_with(campaign_head)) return std::nullopt;
+    const auto body = text.substr(0, text.size() - tail);
+    if (text.substr(body.size()) != "\n" + campaign::content_hash(body) + "\n") return std::nullopt;
+    auto rest = body.substr(campaign_head.size());
+    const auto folder_end = rest.find('\n');
+    const auto cases_end = rest.find('\n', folder_end + 1);
+    if (cases_end == std::string_view::npos) return std::nullopt;
+    return Asked{fs::path(rest.substr(0, folder_end)),
+                 std::string(rest.substr(folder_end + 1, cases_end - folder_end - 1)),
+                 std::string(rest.substr(cases_end + 1))};
+}
+
+/// ns; nothing where the file is gone. Opened, so that a network file system asks its server.
+std::optional<std::int64_t> modified(const fs::path& file) {
+    const Descriptor stream(file, O_RDONLY);
+    struct stat seen {};
+    if (!stream.is_open() || ::fstat(stream.number(), &seen) != 0) return std::nullopt;
+    return std::int64_t{seen.st_mtim.tv_sec} * 1'000'000'000 + seen.st_mtim.tv_nsec;
+}
+
+}  // namespace
+
+Asked Spool::asked_in(const fs::path& folder) {
+    const auto text = contents_of_file(folder / "campaign");
+    if (!text)
+        throw campaign::wrong_question("DIR", folder.string(),
+                                       "is no spool: 'grainsweep work CONFIG --spool DIR' makes one");
+    auto asked = asked_of(*text);
+    if (!asked)
+        throw store::BrokenWorld(
+            fmt::format("'{}': is damaged, or no spool of this program", (folder / "campaign").string()));
+    return std::move(*asked);
+}
+
+Spool::Spool(fs::path folder, const Asked& asked) : folder_(std::move(folder)) {
+    std::error_code error;
+    for (const char* part : {"tasks", "cases"}) {
+        fs::create_directories(folder_ / part, error);
+        if (error) broken(folder_ / part, "made", error.value());
+    }
+    const auto file = folder_ / "campaign";
+    // Tasks that begin together write the same.
+    if (!fs::exists(file)) put_in_place(file, text_of(asked));
+    if (const auto there = asked_in(folder_); there.cases != asked.cases)
+        throw campaign::wrong_question("--spool", folder_.string(),
+                                       "is a spool of other cases; take another folder for this campaign file");
+}
+
+fs::path Spool::file_of(const campaign::Attempt& attempt) const {
+    return folder_ / "cases" / fmt::format("{}.{}", attempt.case_id, attempt.number);
+}
+
+bool Spool::claim(const campaign::Attempt& attempt, const std::string& task) const {
+    const auto path = file_of(attempt);
+    Descriptor file(path, O_WRONLY | O_CREAT | O_EXCL);
+    if (!file.is_open() && errno == EEXIST) return false;
+    if (!file.is_open()) broken(path, "made");
+    if (!write_all(file, text_of(Claim{task})) || !file.close()) broken(path, "written");
+    return true;
+}
+
+std::optional<Entry> Spool::read(const campaign::Attempt& attempt) const {
+    const auto text = contents_of_file(file_of(attempt));
+    if (!text) return std::nullopt;
+    auto entry = entry_in(*text);
+    if (const auto* answer = std::get_if<Answer>(&entry); answer != nullptr && answer->result.attempt != attempt)
+        return Damaged{"it answers another attempt than its name says"};
+    return entry;
+}
+
+void Spool::answer(const Answer& answer) const {
+    put_in_place(file_of(answer.result.attempt), spool::text_of(answer));
+}
+
+void Spool::release(const campaign::Attempt& attempt) const {
+    ::unlink(file_of(attempt).c_str());
+}
+
+double Spool::age_of(const campaign::Attempt& attempt, const fs::path& touched_now) const {
+    const auto then = modified(file_of(attempt));
+    const auto now = modified(touched_now);
+    return then && now ? static_cast<double>(*now - *then) * 1e-9 : 0;
+}
+
+TaskFile::TaskFile(const Spool& spool, double lease) : spool_(spool), lease_(lease) {
+    std::array<char, 65> host{};
+    ::gethostname(host.data(), host.size() - 1);
+    name_ = fmt::format("{}.{}.{:08x}", host.data(), ::getpid(), std::random_device{}());
+    file_ = spool_.task(name_);
+    touch();
+}
+
+TaskFile::~TaskFile() {
+    ::unlink(file_.c_str());
+}
+
+void TaskFile::touch() {
+    Descriptor file(file_, O_WRONLY | O_CREAT);
+    if (!file.is_open() || ::futimens(file.number(), nullptr) != 0 || !file.close()) broken(file_, "written");
+}
+
+void TaskFile::keep_young(double now) {
+    if (now - touched_ < lease_ / touches_per_lease) return;
+    touched_ = now;
+    touch();
+}
+
+TaskFile::State TaskFile::state_of(const std::string& task) {
+    const auto other = modified(spool_.task(task));
+    if (!other) return State::dead;  // it has ended, and left this behind
+    const auto [first, fresh] = first_seen_.emplace(task, *other);
+    touch();
+    const auto own = modified(file_);
+    if (own && static_cast<double>(*own - *other) * 1e-9 > lease_) return State::dead;
+    return first->second != *other ? State::renewed : State::lives;
+}
+
+bool TaskFile::is_abandoned(const campaign::Attempt& attempt) {
+    touch();
+    return spool_.age_of(attempt, file_) > lease_;
+}
+
+}  // namespace grainsweep::spool

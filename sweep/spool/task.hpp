@@ -1,0 +1,108 @@
+// One task of a campaign without a main program: claims cases, has them computed, leaves their answers in the spool.
+// Its own share first, the longest first; then what other tasks have not begun, or left unfinished.
+#pragma once
+
+#include "sweep/campaign/cases.hpp"
+#include "sweep/schedule/scheduler.hpp"
+#include "sweep/spool/spool.hpp"
+#include "sweep/workers/crew.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace grainsweep::spool {
+
+/// Part `part` of `of`, from 1 on.
+struct Share {
+    std::int64_t part = 1, of = 1;
+};
+
+struct TaskRules {
+    Share share;
+    std::int64_t attempts = 3;  ///< tries of a case that crashes or times out, by all tasks
+    double lease = 300;         ///< s; what a task that gave no sign of life for so long had claimed is anybody's
+    schedule::Walltime walltime = {};
+};
+
+/// The order in which a task of this share takes the cases: places of `predicted`, which are seconds.
+[[nodiscard]] std::vector<std::uint32_t> order_of(const std::vector<double>& predicted, const Share& share);
+
+class Task {
+public:
+    struct Tally {
+        std::size_t cases = 0;         ///< different ones
+        std::size_t answered = 0;      ///< by any task, as far as this one knows
+        std::size_t failed = 0;        ///< of those: given up, unstable or rejected
+        std::size_t computed = 0;      ///< by this task
+        std::size_t elsewhere = 0;     ///< at the end: other tasks that live are at them
+        std::size_t left_out = 0;      ///< they do not fit into the time there is
+        double shortest_left_out = 0;  ///< of those the shortest prediction, s
+    };
+    struct Watchers {
+        std::function<void(const Tally&, std::size_t running)> progress = [](const Tally&, std::size_t) {};
+        std::function<void(const std::string&)> note = [](const std::string&) {};
+        std::function<void(const campaign::CaseId&)> forget_checkpoint = [](const campaign::CaseId&) {};
+    };
+
+    /// `predicted`: seconds of each place.
+    Task(const Spool& spool, campaign::Cases cases, const std::vector<double>& predicted, workers::Crew& crew,
+         TaskRules rules, Watchers watchers);
+
+    /// Runs until no case is left for it; `limited` is returned where other tasks are at the rest. Throws only for a
+    /// broken world.
+    schedule::Ending run();
+    [[nodiscard]] const Tally& tally() const { return tally_; }
+
+private:
+    struct Progress {
+        std::int64_t next = 1;  ///< number of the next attempt, as far as known
+        std::int64_t failures = 0;
+        std::int64_t given_back = 0;  ///< by this task
+    };
+    struct Running {
+        std::uint32_t place = 0;
+        campaign::Computer computer;
+    };
+    enum class Taken { claimed, over, elsewhere };
+
+    void hand_out();
+    void look_at_time();
+    void look_elsewhere();
+    [[nodiscard]] bool claims(std::uint32_t place);
+    [[nodiscard]] Taken take(std::uint32_t place);
+    [[nodiscard]] bool pass_over(std::uint32_t place, const campaign::Attempt& attempt, const Entry& entry);
+    [[nodiscard]] bool is_alive(const campaign::Attempt& attempt, const Claim& claim);
+    void handle(workers::PoolEvent event);
+    void finish(const campaign::CaseResult& result);
+    void fail(const campaign::Attempt& attempt, campaign::Outcome outcome, const std::string& reason, double seconds);
+    void give_back(const campaign::Attempt& attempt, const std::string& reason, double seconds, bool asked);
+    void never_begun(const std::vector<campaign::Attempt>& attempts);
+    void settle(campaign::Outcome outcome);
+    [[nodiscard]] schedule::Ending ending() const;
+
+    const Spool& spool_;
+    campaign::Cases cases_;
+    std::vector<double> predicted_;
+    workers::Crew& crew_;
+    TaskRules rules_;
+    Watchers watchers_;
+    TaskFile file_;
+    std::deque<std::uint32_t> open_;        ///< in the order in which they are taken
+    std::vector<std::uint32_t> elsewhere_;  ///< claimed by others
+    std::map<std::uint32_t, Progress> known_;
+    std::map<campaign::CaseId, Running> running_;
+    Tally tally_;
+    double looked_elsewhere_ = 0;
+    bool waits_ = true;  ///< for others that may be dead
+    bool at_once_ = false, closed_ = false;
+    std::optional<schedule::Ending> early_;
+    std::optional<std::string> broken_;
+};
+
+}  // namespace grainsweep::spool
