@@ -190,7 +190,7 @@ void Task::settle(Outcome outcome) {
     if (outcome != Outcome::completed && outcome != Outcome::skipped) ++tally_.failed;
 }
 
-/// With nothing left of its own to begin: which of the others' cases are answered by now, which are anybody's.
+/// With nothing left of its own to begin: which of the others' cases are answered by now, which are free.
 void Task::look_elsewhere() {
     const double now = running_time();
     if (!open_.empty() || elsewhere_.empty() || !waits_) return;

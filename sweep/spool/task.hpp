@@ -26,7 +26,7 @@ struct Share {
 struct TaskRules {
     Share share;
     std::int64_t attempts = 3;  ///< tries of a case that crashes or times out, by all tasks
-    double lease = 300;         ///< s; what a task that gave no sign of life for so long had claimed is anybody's
+    double lease = 300;         ///< s; what a task that gave no sign of life for so long had claimed is free
     schedule::Walltime walltime = {};
 };
 
