@@ -66,6 +66,7 @@ struct Method {
     /// something faster comes near or half its weight pushes it (solver/dem/fast/resting.hpp); 0: all is advanced.
     /// Not with a vessel that is shaken or blades, nor without gravity.
     double rest_speed = 0;
+    int threads = 1;  ///< mixed precision: see Engine::set_threads
 };
 
 /// State of the particles still present, in order of id.
@@ -117,6 +118,9 @@ public:
 
     /// Advances by `steps` time steps; stops at once when the state is no longer sound (fault()).
     virtual void run(std::int64_t steps) = 0;
+    /// Uses up to `count` threads from the next run() on, the calling one among them; 0: one for each core. Where there
+    /// are too few particles for it, fewer. No bit depends on it; the double-precision engine always uses one.
+    virtual void set_threads(int count) { static_cast<void>(count); }
     /// New walls: wall time starts at 0, wall histories are dropped, particle histories stay; forces are
     /// recomputed once without touching histories. Throws std::invalid_argument with one sentence on walls that cannot
     /// be, or whose surface has friction or rolling friction where nothing in the Setup had.

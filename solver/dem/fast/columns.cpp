@@ -25,10 +25,7 @@ void give_back(void* memory) noexcept {
     std::free(memory);
 }
 
-void Columns::bind(Field& f) const {
-    f.records = records.data();
-    f.residuals = residuals.data();
-    f.forces = forces.data();
+void PairColumns::bind_pairs(Field& f) const {
     f.inner_first = inner_first.data();
     f.inner_second = inner_second.data();
     f.inner_source = inner_source.data();
@@ -39,13 +36,22 @@ void Columns::bind(Field& f) const {
     f.outer_second = outer_second.data();
     f.outer_reach = outer_reach.data();
     f.outer_touching = outer_touching.data();
-    f.row = row.data();
-    f.advanced = advanced.data();
-    f.advanced_before = advanced_before.data();
     f.histories = histories;
     for (int a = 0; a < histories_at_most; ++a) {
         f.history[a] = history[a].data();
         f.history_next[a] = history_next[a].data();
+    }
+}
+
+void Columns::bind(Field& f) const {
+    bind_pairs(f);
+    f.records = records.data();
+    f.residuals = residuals.data();
+    f.forces = forces.data();
+    f.row = row.data();
+    f.advanced = advanced.data();
+    f.advanced_before = advanced_before.data();
+    for (int a = 0; a < histories_at_most; ++a) {
         f.wall_history[a] = wall_history[a].data();
         f.touch_memory[a] = touch_memory[a].data();
     }
@@ -79,13 +85,17 @@ void Columns::hold_particles(std::size_t particles, std::size_t wall_count) {
     wall_sums.hold(wall_count), segments.hold(wall_count);
 }
 
-void Columns::hold_pairs(std::size_t pairs) {
+void PairColumns::hold_pairs(std::size_t pairs) {
     const std::size_t n = pairs + spare;
     outer_first.hold(n), outer_second.hold(n), outer_reach.hold(n), outer_touching.hold(n);
     inner_first.hold(n), inner_second.hold(n), inner_source.hold(n), inner_reach.hold(n);
     touching.hold(n), touching_next.hold(n);
-    owner.hold(n);
     for (int a = 0; a < histories; ++a) history[a].hold(n), history_next[a].hold(n);
+}
+
+void Columns::hold_lists(std::size_t pairs) {
+    hold_pairs(pairs);
+    owner.hold(pairs + spare);
 }
 
 void Columns::hold_wall_contacts(std::size_t contacts) {
@@ -101,10 +111,10 @@ void Columns::hold_touches(std::size_t touches) {
     for (int a = 0; a < histories; ++a) touch_memory[a].hold(n), touch_memory_next[a].hold(n);
 }
 
-void Columns::swap_histories(Field& f) {
+void PairColumns::swap_histories(Field& f) {
     touching.swap(touching_next);
     for (int a = 0; a < histories; ++a) history[a].swap(history_next[a]);
-    bind(f);
+    bind_pairs(f);
 }
 
 }  // namespace grainsweep::dem::fast

@@ -52,15 +52,9 @@ private:
     std::size_t capacity_ = 0;
 };
 
-/// Everything a Field points to, and what only rebuilding needs.
-struct Columns {
-    std::int32_t histories = 0;               ///< history columns in use; the others stay empty
-    float exchanged[histories_at_most] = {};  ///< their factors when the particles of a contact change places
-    Column<Record> records, records_next;
-    Column<Residual> residuals, residuals_next;
-    Column<Force> forces;
-    Column<std::int32_t> id, id_next;
-
+/// The two lists and the contacts of one range of particles.
+struct PairColumns {
+    std::int32_t histories = 0;  ///< history columns in use; the others stay empty
     Column<Place> inner_first, inner_second;
     Column<std::int32_t> inner_source;
     Column<float> inner_reach;
@@ -68,10 +62,26 @@ struct Columns {
     Column<float> history[histories_at_most], history_next[histories_at_most];
 
     Column<Place> outer_first, outer_second;
-    Column<std::int32_t> row;
     Column<float> outer_reach;
     Column<std::uint16_t> outer_touching;
 
+    /// Points the lists of the field at these.
+    void bind_pairs(Field& f) const;
+    /// Makes room for `pairs` in both lists.
+    void hold_pairs(std::size_t pairs);
+    /// What a sweep wrote becomes what the next one reads.
+    void swap_histories(Field& f);
+};
+
+/// Everything a Field points to, and what only rebuilding needs.
+struct Columns : PairColumns {
+    float exchanged[histories_at_most] = {};  ///< factors of histories when the particles of a contact change places
+    Column<Record> records, records_next;
+    Column<Residual> residuals, residuals_next;
+    Column<Force> forces;
+    Column<std::int32_t> id, id_next;
+
+    Column<std::int32_t> row;
     Column<std::int32_t> column[3];
     Column<float> column_radius, column_mobile;
     Column<std::int32_t> cell_start, cell_of, place;  ///< place: where a particle went, -1: removed
@@ -91,8 +101,8 @@ struct Columns {
     void bind(Field& f) const;
     /// Makes room for `particles` and `walls`.
     void hold_particles(std::size_t particles, std::size_t walls);
-    /// Makes room for `pairs` in both lists.
-    void hold_pairs(std::size_t pairs);
+    /// The same, and for what rebuilding needs beside them.
+    void hold_lists(std::size_t pairs);
     void hold_wall_contacts(std::size_t contacts);
     void hold_touches(std::size_t touches);
     /// Lists the particles that are advanced: all but those with is_held(index).
@@ -109,8 +119,6 @@ struct Columns {
         advanced_before[n] = count;
         bind(f);
     }
-    /// What a sweep wrote becomes what the next one reads.
-    void swap_histories(Field& f);
 };
 
 }  // namespace grainsweep::dem::fast

@@ -130,7 +130,7 @@ struct alignas(32) Tally {
     float velocity_low[8];
     float overlap;       ///< of pairs, over the smaller diameter
     float wall_overlap;  ///< over the diameter
-    std::int64_t contacts;
+    std::int64_t unused[3];  ///< fills a saved tally up; 0
 };
 
 /// Raw view of everything a kernel touches. Owners live in files compiled for the baseline.
@@ -139,6 +139,9 @@ struct Field {
     /// Particles present. Behind them in `records`: two far apart ones that fill vectors of pairs up, one that fills
     /// vectors of wall contacts up, and one at rest without mass, spin and size, the partner in these.
     std::int32_t count;
+    /// Particles whose pairs the lists hold, and which a sweep advances: all, or those of one domain (domains.hpp).
+    std::int32_t begin, end;
+    std::int32_t filler;  ///< index of the two records that fill vectors of pairs up
 
     std::int32_t read_ahead;  ///< 1: the particles do not fit the caches near the core, fetch them early
 

@@ -80,7 +80,29 @@ Seal MixedEngine::seal() const {
     return s;
 }
 
+/// What lies behind the ends of lists and histories, and the forces on the records that fill vectors up, depends on the
+/// past and counts for nothing: bytes that depend on the state only.
+void MixedEngine::clear_spare_entries() const {
+    const auto width = static_cast<std::size_t>(kernels_->width), n = static_cast<std::size_t>(field_.inner_count);
+    std::size_t contacts = 0;
+    for (std::size_t b = 0; b < n / width; ++b) contacts += static_cast<std::size_t>(std::popcount(field_.touching[b]));
+    std::size_t k = n;
+    while (k > 0 && field_.inner_first[k - 1] >= static_cast<Place>(field_.count * places_per_index)) --k;
+    for (; k < n + spare; ++k) {
+        field_.inner_first[k] = static_cast<Place>(field_.count * places_per_index);
+        field_.inner_second[k] = static_cast<Place>((field_.count + 1) * places_per_index);
+        field_.inner_source[k] = 0;
+        field_.inner_reach[k] = 0;
+    }
+    std::fill(field_.touching + n / width, field_.touching + (n + spare) / 4, std::uint16_t{0});
+    for (int a = 0; a < columns_.histories; ++a)
+        std::fill(field_.history[a] + contacts, field_.history[a] + n + spare, 0.0F);
+    std::fill_n(field_.forces + field_.count, 4, Force{});
+}
+
 void MixedEngine::save(std::vector<std::byte>& into) const {
+    join_lists();
+    clear_spare_entries();
     Writer writer(into);
     writer.value(seal());
     pass(*this, writer);
@@ -165,11 +187,12 @@ void MixedEngine::restore(std::span<const std::byte> from) {
     const Seal own = seal();
     if (std::memcmp(&theirs, &own, sizeof own) != 0)
         throw std::invalid_argument("the checkpoint belongs to another setup, instruction path or version");
+    domains_.drop();
     pass(*this, reader);
     reader.finish();
     require_possible();
     columns_.hold_particles(size(), walls_.count());
-    columns_.hold_pairs(static_cast<std::size_t>(std::max(field_.outer_count, field_.inner_count)) + spare);
+    columns_.hold_lists(static_cast<std::size_t>(std::max(field_.outer_count, field_.inner_count)) + spare);
     columns_.hold_wall_contacts(size());
     columns_.bind(field_);
     tidy_spare_entries();

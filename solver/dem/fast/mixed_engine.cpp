@@ -17,7 +17,7 @@ constexpr std::size_t many_particles = 40000;
 
 }  // namespace
 
-MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, double rest_speed)
+MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, double rest_speed, Threads threads)
     : space_{setup.domain, make_scale(setup), 0.3F},
       gravity_(setup.gravity),
       shaking_(setup.shaking),
@@ -31,6 +31,8 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
       sound_(sound_overlaps(setup)),
       watch_(setup, space_.scale),
       resting_(setup, *laws_, space_.scale, rest_speed),
+      domains_(*kernels_, threads),
+      threads_(threads),
       adapts_skin_(!(skin > 0)) {
     for (std::size_t a = 0; a < 3; ++a)  // a pair must not meet across both ends of a period
         if (setup.domain.periodic[a]) {
@@ -52,7 +54,7 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
 void MixedEngine::load(const Setup& setup) {
     const auto n = setup.spheres.size();
     columns_.hold_particles(n, walls_.count());
-    columns_.hold_pairs(8 * n);
+    columns_.hold_lists(8 * n);
     columns_.hold_wall_contacts(n);
     columns_.bind(field_);
     field_.count = spheres_at_start_ = static_cast<std::int32_t>(n);
@@ -92,7 +94,8 @@ void MixedEngine::load(const Setup& setup) {
     place_fillers(field_);
 }
 
-std::unique_ptr<Engine> make_mixed_engine(const Setup& setup, Method::Path path, double skin, double rest_speed) {
+std::unique_ptr<Engine> make_mixed_engine(const Setup& setup, Method::Path path, double skin, double rest_speed,
+                                          Threads threads) {
     require_possible(setup);
     double diameter = 0;
     for (const Sphere& s : setup.spheres) diameter = std::max(diameter, 2 * s.radius);
@@ -101,7 +104,7 @@ std::unique_ptr<Engine> make_mixed_engine(const Setup& setup, Method::Path path,
             throw std::invalid_argument("a period must be at least 2.02 of the largest diameters long");
     if (path == Method::Path::best) path = best_path();
     if (!supports(path)) throw std::invalid_argument("this processor lacks the instructions of the path asked for");
-    return std::make_unique<MixedEngine>(setup, path, skin, rest_speed);
+    return std::make_unique<MixedEngine>(setup, path, skin, rest_speed, threads);
 }
 
 }  // namespace grainsweep::dem::fast

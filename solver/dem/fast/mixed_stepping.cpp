@@ -23,11 +23,12 @@ constexpr double outer_skin_least = 0.2, outer_skin_most = 0.7;
 }  // namespace
 
 void MixedEngine::run(std::int64_t steps) {
+    use_wanted_domains();
     bool advanced = false;  // the sweep before has moved the particles on
     for (std::int64_t s = 0; s < steps && fault_.empty(); ++s) {
         if (!advanced) {
             begin_tally();
-            kernels_->advance(field_, tally_);
+            advance_particles();
         }
         ++work_.steps;
         ++wall_steps_;
@@ -42,8 +43,7 @@ void MixedEngine::run(std::int64_t steps) {
         advanced = s + 1 < steps && !checked;
         begin_tally();
         press_walls(true);
-        kernels_->sweep(field_, advanced, tally_);
-        columns_.swap_histories(field_);
+        sweep_pairs(advanced, false);
         peak_overlap_ = std::max(peak_overlap_, overlap());
         work_.pair_visits += field_.inner_count;
         if (too_deep() && fault_.empty()) fault_ = describe_overlap(view(), tally_);
@@ -64,6 +64,7 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
                 static_cast<float>(std::clamp(std::sqrt(outer_balance * per_step), outer_skin_least, outer_skin_most)),
                 largest_skin_);
         const std::int32_t before = field_.count;
+        join_lists();
         rebuild(field_, columns_, *kernels_, space_, walls_, removed, needs_.resting ? &resting_ : nullptr,
                 drift_.steps);
         touches_.reorder(field_, columns_);
@@ -71,6 +72,7 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
         columns_.forces.clear(size());  // what was carried over belongs to the old order
         if (field_.count < before) watch_.restart_balance();
         list_advanced();
+        domains_.cut_up(field_, columns_, false);
         drift_.outer = 0;
         drift_.steps = 0;
         mobile_ = 0;
@@ -79,8 +81,40 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
     }
     inner_skin_ = static_cast<float>(
         std::clamp(std::sqrt(inner_balance * drift_.last_step), inner_skin_least, static_cast<double>(space_.skin)));
-    refresh(field_, columns_, *kernels_, inner_skin_, rebuilt);
+    if (domains_.cut())
+        refresh_ = Refresh{inner_skin_, rebuilt};
+    else
+        refresh(field_, columns_, *kernels_, inner_skin_, rebuilt);
     drift_.inner = 0;
+}
+
+void MixedEngine::set_threads(int count) {
+    threads_.most = count;
+    domains_.use(threads_);
+}
+
+/// After a change of the number of threads, or a restored state; all other changes come with new lists.
+void MixedEngine::use_wanted_domains() {
+    if (domains_.wanted(field_.count) == domains_.count()) return;
+    join_lists();
+    domains_.cut_up(field_, columns_, true);
+}
+
+void MixedEngine::advance_particles() {
+    if (domains_.cut())
+        domains_.advance(field_, tally_);
+    else
+        kernels_->advance(field_, tally_);
+}
+
+/// Forces of all pairs, and where `advance` the next positions. `keep_histories`: those of contacts stay as they were.
+void MixedEngine::sweep_pairs(bool advance, bool keep_histories) {
+    if (domains_.cut()) {
+        domains_.sweep(field_, std::exchange(refresh_, std::nullopt), advance, keep_histories, tally_);
+        return;
+    }
+    kernels_->sweep(field_, advance, tally_);
+    if (!keep_histories) columns_.swap_histories(field_);
 }
 
 /// Lets the walls stand where they are now.
@@ -139,7 +173,7 @@ void MixedEngine::begin_tally() {
     }
     walls_.bound_velocities(wall_time(), tally_);
     tally_.overlap = tally_.wall_overlap = 0;
-    tally_.contacts = 0;
+    for (auto& unused : tally_.unused) unused = 0;
 }
 
 /// Gives the constants the acceleration of the present step: gravity and the body force of shaking.
@@ -190,7 +224,7 @@ void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
     begin_tally();
     field_.history_step = 0;
     press_walls(false);
-    kernels_->sweep(field_, false, tally_);
+    sweep_pairs(false, true);
     field_.history_step = 1;
     peak_overlap_ = std::max(peak_overlap_, overlap());
     for (std::int32_t i = 0; i < field_.count; ++i) {

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,6 +22,7 @@
 #include "solver/dem/fast/checkpoint.hpp"
 #include "solver/dem/fast/columns.hpp"
 #include "solver/dem/fast/contact_reader.hpp"
+#include "solver/dem/fast/domains.hpp"
 #include "solver/dem/fast/faults.hpp"
 #include "solver/dem/fast/layout.hpp"
 #include "solver/dem/fast/rebuild.hpp"
@@ -43,9 +45,10 @@ struct Drift {
 /// One case with its laws, its instruction path and all that changes.
 class MixedEngine final : public Engine {
 public:
-    MixedEngine(const Setup& setup, Method::Path path, double skin, double rest_speed);
+    MixedEngine(const Setup& setup, Method::Path path, double skin, double rest_speed, Threads threads);
 
     void run(std::int64_t steps) override;
+    void set_threads(int count) override;
     void set_walls(std::vector<Wall> walls) override;
     void remove(std::span<const std::int32_t> ids) override;
     [[nodiscard]] std::size_t size() const override { return static_cast<std::size_t>(field_.count); }
@@ -73,6 +76,10 @@ private:
     void account_travel();
     void make_lists(std::span<const std::int32_t> removed = {});
     void list_advanced();
+    void use_wanted_domains();
+    void advance_particles();
+    void sweep_pairs(bool advance, bool keep_histories);
+    void join_lists() const { domains_.join(field_, columns_); }
     void full_step_velocities();
     void restart_forces(std::span<const std::int32_t> removed = {});
     void shake();
@@ -80,6 +87,7 @@ private:
     [[nodiscard]] double half_change(std::int32_t particle, int axis) const;
     [[nodiscard]] double half_spin_change(std::int32_t particle, int axis) const;
     [[nodiscard]] FaultView view() const {
+        join_lists();
         return {field_, columns_.id.data(), space_.scale, walls_, smallest_diameter_, sound_, work_.steps};
     }
     /// Of all pairs, over the smaller diameter; parked contacts keep theirs.
@@ -93,6 +101,7 @@ private:
     static void pass(Self& self, Archive& archive);
     void require_possible() const;
     void tidy_spare_entries();
+    void clear_spare_entries() const;
     static void pass_walls(const MixedEngine& self, Writer& archive);
     static void pass_walls(MixedEngine& self, Reader& archive);
 
@@ -114,6 +123,9 @@ private:
     Watch watch_;
     Columns columns_;
     Resting resting_;
+    Domains domains_;
+    std::optional<Refresh> refresh_;  ///< of the domains' inner lists, by the sweep that follows
+    Threads threads_;
     Field field_{};
     Tally tally_{};
     float peak_overlap_ = 0;  ///< largest of overlap() so far

@@ -167,7 +167,7 @@ void find_pairs(Field& f, Columns& c, const Kernels& kernels, const ListSpace& s
             f.outer_count = static_cast<std::int32_t>(found);
             break;
         }
-        c.hold_pairs(static_cast<std::size_t>(found) + 3 * spare);
+        c.hold_lists(static_cast<std::size_t>(found) + 3 * spare);
         c.bind(f);
     }
     pad_pairs(f, c);
@@ -255,9 +255,11 @@ void place_fillers(Field& f) {
         f.records[f.count + k] = r;
     }
     f.records[f.count + 3] = Record{};
+    f.begin = 0;
+    f.end = f.filler = f.count;
 }
 
-void refresh(Field& f, Columns& c, const Kernels& kernels, float skin, bool marked) {
+void refresh(Field& f, PairColumns& c, const Kernels& kernels, float skin, bool marked) {
     if (!marked) {
         const auto width = static_cast<std::size_t>(kernels.width);
         c.outer_touching.clear(static_cast<std::size_t>(f.outer_count) / width + 2);

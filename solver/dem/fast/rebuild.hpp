@@ -28,9 +28,9 @@ void rebuild(Field& field, Columns& columns, const Kernels& kernels, const ListS
 
 /// Makes the inner list from the outer one; histories stay as they are, in the same order.
 /// `marked`: outer_touching already says which outer pairs touch.
-void refresh(Field& field, Columns& columns, const Kernels& kernels, float skin, bool marked);
+void refresh(Field& field, PairColumns& columns, const Kernels& kernels, float skin, bool marked);
 
-/// Writes the records behind the last particle that fill vectors up, and the one of any wall.
+/// Writes the records behind the last particle that fill vectors up, and the one of any wall; lists are of all.
 void place_fillers(Field& field);
 
 }  // namespace grainsweep::dem::fast

@@ -149,8 +149,8 @@ std::int32_t refresh(const Field& f, float skin) {
     }
     const std::int64_t padded = (n + width - 1) / width * width;
     for (std::int64_t k = n; k < padded + 2 * tile; ++k) {
-        f.inner_first[k] = static_cast<Place>(f.count * places_per_index);
-        f.inner_second[k] = static_cast<Place>((f.count + 1) * places_per_index);
+        f.inner_first[k] = static_cast<Place>(f.filler * places_per_index);
+        f.inner_second[k] = static_cast<Place>((f.filler + 1) * places_per_index);
         if constexpr (unequal) f.inner_reach[k] = 0;
     }
     // the touching bits travelled as signs of the second index; take them off again

@@ -293,15 +293,15 @@ GRAINSWEEP_PHASE void advance_range(const Field& f, std::int32_t from, std::int3
 template <class Kernel>
 void advance(const Field& f, Tally& t) {
     const auto denormals = flush_denormals();
-    advance_range<Kernel>(f, 0, f.count, t);
+    advance_range<Kernel>(f, f.begin, f.end, t);
     restore_denormals(denormals);
 }
 
 /// Fills the last vector up with a pair that never touches.
 GRAINSWEEP_LANES void fill_up(const Field& f, Packed& p, int packed) {
     for (int q = packed; q < packed + width; ++q) {
-        p.first[q] = static_cast<Place>(f.count * places_per_index);
-        p.second[q] = static_cast<Place>((f.count + 1) * places_per_index);
+        p.first[q] = static_cast<Place>(f.filler * places_per_index);
+        p.second[q] = static_cast<Place>((f.filler + 1) * places_per_index);
         for (auto& offset : p.offset) offset[q] = INT32_MIN;
     }
 }
@@ -318,25 +318,25 @@ void sweep(const Field& f, bool advancing, Tally& t) {
     const auto denormals = flush_denormals();
     Packed p;
     Progress at{};
+    at.done = f.begin;
     const typename Kernel::Laws laws(f.constants.laws);
     const std::int32_t batches = f.inner_count / width;
     for (bool last = false; !last;) {
         sift<Kernel>(f, batches, p, at);
         last = at.packed < tile;
         if (last) fill_up(f, p, at.packed);
-        t.contacts += at.packed;
         const int full = (last ? at.packed + width - 1 : at.packed) / width;
         meet<Kernel>(f, laws, p, full, at.met, t);
         scatter<Kernel>(f, p, full);
         at.met += full * width;
         at.packed = last ? 0 : at.packed - full * width;
-        t.contacts -= at.packed;
         keep_rest(p, full * width);
         if (!advancing) continue;
         // pairs still to come begin with the first one left over, or the next one listed
         const Place next = at.packed > 0 ? p.first[0] : f.inner_first[static_cast<std::int64_t>(at.batch) * width];
         const auto first = static_cast<std::int32_t>(next / places_per_index);
-        const std::int32_t until = last || first > f.count ? f.count : first;
+        // copies of other domains' particles lie behind the fillers, and come first in a list
+        const std::int32_t until = last || first == f.filler ? f.end : first > f.filler ? at.done : first;
         advance_range<Kernel>(f, at.done, until, t);
         at.done = until;
     }
