@@ -139,7 +139,7 @@ struct Field {
     /// Particles present. Behind them in `records`: two far apart ones that fill vectors of pairs up, one that fills
     /// vectors of wall contacts up, and one at rest without mass, spin and size, the partner in these.
     std::int32_t count;
-    /// Particles whose pairs the lists hold, and which a sweep advances: all, or those of one domain (domains.hpp).
+    /// Particles whose pairs the lists hold, and which a sweep advances: all, or those of a subdomain (subdomains.hpp).
     std::int32_t begin, end;
     std::int32_t filler;  ///< index of the two records that fill vectors of pairs up
 

@@ -187,7 +187,7 @@ void MixedEngine::restore(std::span<const std::byte> from) {
     const Seal own = seal();
     if (std::memcmp(&theirs, &own, sizeof own) != 0)
         throw std::invalid_argument("the checkpoint belongs to another setup, instruction path or version");
-    domains_.drop();
+    subdomains_.drop();
     pass(*this, reader);
     reader.finish();
     require_possible();

@@ -31,7 +31,7 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
       sound_(sound_overlaps(setup)),
       watch_(setup, space_.scale),
       resting_(setup, *laws_, space_.scale, rest_speed),
-      domains_(*kernels_, threads),
+      subdomains_(*kernels_, threads),
       threads_(threads),
       adapts_skin_(!(skin > 0)) {
     for (std::size_t a = 0; a < 3; ++a)  // a pair must not meet across both ends of a period

@@ -24,7 +24,7 @@ inline constexpr double travel_limit = 0.25;
 
 /// Precision: positions are multiples of a period over 2^32, or of about an open extent over 2^31; forces are rounded
 /// to 1e-7. `skin` (m): of the outer neighbour list, 0: chosen from the motion; `rest_speed`:
-/// that of Method; the number of threads changes no bit (domains.hpp).
+/// that of Method; the number of threads changes no bit (subdomains.hpp).
 /// Throws std::invalid_argument with one sentence on an impossible setup or a path this processor lacks.
 [[nodiscard]] std::unique_ptr<Engine> make_mixed_engine(const Setup& setup, Method::Path path, double skin = 0,
                                                         double rest_speed = 0, Threads threads = {});

@@ -23,7 +23,7 @@ constexpr double outer_skin_least = 0.2, outer_skin_most = 0.7;
 }  // namespace
 
 void MixedEngine::run(std::int64_t steps) {
-    use_wanted_domains();
+    use_wanted_subdomains();
     bool advanced = false;  // the sweep before has moved the particles on
     for (std::int64_t s = 0; s < steps && fault_.empty(); ++s) {
         if (!advanced) {
@@ -72,7 +72,7 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
         columns_.forces.clear(size());  // what was carried over belongs to the old order
         if (field_.count < before) watch_.restart_balance();
         list_advanced();
-        domains_.cut_up(field_, columns_, false);
+        subdomains_.cut_up(field_, columns_, false);
         drift_.outer = 0;
         drift_.steps = 0;
         mobile_ = 0;
@@ -81,7 +81,7 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
     }
     inner_skin_ = static_cast<float>(
         std::clamp(std::sqrt(inner_balance * drift_.last_step), inner_skin_least, static_cast<double>(space_.skin)));
-    if (domains_.cut())
+    if (subdomains_.cut())
         refresh_ = Refresh{inner_skin_, rebuilt};
     else
         refresh(field_, columns_, *kernels_, inner_skin_, rebuilt);
@@ -90,27 +90,27 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
 
 void MixedEngine::set_threads(int count) {
     threads_.most = count;
-    domains_.use(threads_);
+    subdomains_.use(threads_);
 }
 
 /// After a change of the number of threads, or a restored state; all other changes come with new lists.
-void MixedEngine::use_wanted_domains() {
-    if (domains_.wanted(field_.count) == domains_.count()) return;
+void MixedEngine::use_wanted_subdomains() {
+    if (subdomains_.wanted(field_.count) == subdomains_.count()) return;
     join_lists();
-    domains_.cut_up(field_, columns_, true);
+    subdomains_.cut_up(field_, columns_, true);
 }
 
 void MixedEngine::advance_particles() {
-    if (domains_.cut())
-        domains_.advance(field_, tally_);
+    if (subdomains_.cut())
+        subdomains_.advance(field_, tally_);
     else
         kernels_->advance(field_, tally_);
 }
 
 /// Forces of all pairs, and where `advance` the next positions. `keep_histories`: those of contacts stay as they were.
 void MixedEngine::sweep_pairs(bool advance, bool keep_histories) {
-    if (domains_.cut()) {
-        domains_.sweep(field_, std::exchange(refresh_, std::nullopt), advance, keep_histories, tally_);
+    if (subdomains_.cut()) {
+        subdomains_.sweep(field_, std::exchange(refresh_, std::nullopt), advance, keep_histories, tally_);
         return;
     }
     kernels_->sweep(field_, advance, tally_);

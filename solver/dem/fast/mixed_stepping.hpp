@@ -22,7 +22,7 @@
 #include "solver/dem/fast/checkpoint.hpp"
 #include "solver/dem/fast/columns.hpp"
 #include "solver/dem/fast/contact_reader.hpp"
-#include "solver/dem/fast/domains.hpp"
+#include "solver/dem/fast/subdomains.hpp"
 #include "solver/dem/fast/faults.hpp"
 #include "solver/dem/fast/layout.hpp"
 #include "solver/dem/fast/rebuild.hpp"
@@ -76,10 +76,10 @@ private:
     void account_travel();
     void make_lists(std::span<const std::int32_t> removed = {});
     void list_advanced();
-    void use_wanted_domains();
+    void use_wanted_subdomains();
     void advance_particles();
     void sweep_pairs(bool advance, bool keep_histories);
-    void join_lists() const { domains_.join(field_, columns_); }
+    void join_lists() const { subdomains_.join(field_, columns_); }
     void full_step_velocities();
     void restart_forces(std::span<const std::int32_t> removed = {});
     void shake();
@@ -123,8 +123,8 @@ private:
     Watch watch_;
     Columns columns_;
     Resting resting_;
-    Domains domains_;
-    std::optional<Refresh> refresh_;  ///< of the domains' inner lists, by the sweep that follows
+    Subdomains subdomains_;
+    std::optional<Refresh> refresh_;  ///< of the subdomains' inner lists, by the sweep that follows
     Threads threads_;
     Field field_{};
     Tally tally_{};

@@ -335,7 +335,7 @@ void sweep(const Field& f, bool advancing, Tally& t) {
         // pairs still to come begin with the first one left over, or the next one listed
         const Place next = at.packed > 0 ? p.first[0] : f.inner_first[static_cast<std::int64_t>(at.batch) * width];
         const auto first = static_cast<std::int32_t>(next / places_per_index);
-        // copies of other domains' particles lie behind the fillers, and come first in a list
+        // copies of other subdomains' particles lie behind the fillers, and come first in a list
         const std::int32_t until = last || first == f.filler ? f.end : first > f.filler ? at.done : first;
         advance_range<Kernel>(f, at.done, until, t);
         at.done = until;

@@ -6,7 +6,7 @@ namespace grainsweep::dem::fast {
 
 namespace {
 
-constexpr int spins = 2000;  // about 20 us
+constexpr int most_spins = 2000;  // about 20 us
 constexpr std::chrono::microseconds patience{200};
 
 void pause_core() {
@@ -18,6 +18,9 @@ void pause_core() {
 }
 
 }  // namespace
+
+Barrier::Barrier(int threads)
+    : threads_(threads), spins_(threads <= static_cast<int>(std::thread::hardware_concurrency()) ? most_spins : 0) {}
 
 void Barrier::meet() noexcept {
     const unsigned round = round_.load(std::memory_order_relaxed);
@@ -32,7 +35,7 @@ void Barrier::meet() noexcept {
 
 void Barrier::wait_for_end_of(unsigned round) noexcept {
     const auto ended = [&] { return round_.load(std::memory_order_acquire) != round; };
-    for (int k = 0; k < spins; ++k) {
+    for (int k = 0; k < spins_; ++k) {
         if (ended()) return;
         pause_core();
     }

@@ -19,7 +19,7 @@ struct Threads {
 /// the same time; then lets other programs run; then sleeps.
 class Barrier {
 public:
-    explicit Barrier(int threads) : threads_(threads) {}
+    explicit Barrier(int threads);
     /// Returns when as many calls as there are threads have come. What each thread wrote before, all may read after.
     void meet() noexcept;
 
@@ -27,6 +27,7 @@ private:
     void wait_for_end_of(unsigned round) noexcept;
 
     int threads_;
+    int spins_;  ///< none where threads share cores
     alignas(64) std::atomic<int> arrived_ = 0;
     alignas(64) std::atomic<unsigned> round_ = 0;
 };

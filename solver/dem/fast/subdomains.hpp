@@ -1,11 +1,11 @@
 // One case on several cores, with the bits of one.
 //
-// The sorted particles are cut into contiguous ranges, one per thread: domains. Each has lists of its own, with all
-// pairs that touch one of its particles: first those whose first particle lies in an earlier domain, in the order of
+// The sorted particles are cut into contiguous ranges, one per thread: subdomains. Each has lists of its own, with all
+// pairs that touch one of its particles: first those whose first particle lies in an earlier subdomain, in the order of
 // the whole list, then the rows of its own particles. So every force on its particles is added up in the order of the
-// whole list. A pair across domains is computed in both, with a copy of its history in each, and to the same bits: what
-// a lane computes depends on its pair alone. Partners in other domains are read from copies of their records, taken
-// before any domain advances its particles; what is added to the copies' forces is not used. Hence no bit of a result
+// whole list. A pair across subdomains is computed in both, with a copy of its history in each, and to the same bits: what
+// a lane computes depends on its pair alone. Partners in other subdomains are read from copies of their records, taken
+// before any subdomain advances its particles; what is added to the copies' forces is not used. Hence no bit of a result
 // depends on where the cuts are, and none on the number of threads.
 //
 // What is not part of a step (contacts in SI, checkpoints, energy, faults, rebuilding) reads the whole lists: join()
@@ -30,13 +30,13 @@ struct Refresh {
 };
 
 /// One range of particles and its lists. Places below the number of particles are those of the particles; behind come,
-/// for each domain, two records that fill vectors up, and the copies of its partners in other domains.
-struct alignas(64) Domain {
+/// for each subdomain, two records that fill vectors up, and the copies of its partners in other subdomains.
+struct alignas(64) Subdomain {
     std::int32_t begin = 0, end = 0;
     std::int32_t filler = 0;
-    std::vector<std::int32_t> partner;  ///< in other domains, ascending; their copies lie behind the fillers
+    std::vector<std::int32_t> partner;  ///< in other subdomains, ascending; their copies lie behind the fillers
     std::vector<std::int32_t> ghost;    ///< of its outer list the first ones: where they stand in the whole list
-    std::vector<std::int32_t> leaving;  ///< pairs of its rows with a later domain, likewise
+    std::vector<std::int32_t> leaving;  ///< pairs of its rows with a later subdomain, likewise
     std::int32_t row_begin = 0, row_end = 0;  ///< its rows in the whole outer list
     std::int32_t inner_count = 0;             ///< a multiple of the width
     std::int32_t inner_ghosts = 0;            ///< the first ones of the inner list
@@ -44,7 +44,7 @@ struct alignas(64) Domain {
     PairColumns pairs;
     Tally tally{};
 
-    /// The whole field with the lists of this domain.
+    /// The whole field with the lists of this subdomain.
     [[nodiscard]] Field view(const Field& whole) const;
     /// The particle at a place: the partner where it is a copy.
     [[nodiscard]] std::int32_t particle_at(Place place) const;
@@ -53,24 +53,24 @@ struct alignas(64) Domain {
     void count_inner(const Field& view);
 };
 
-class Domains {
+class Subdomains {
 public:
-    Domains(const Kernels& kernels, Threads threads) : kernels_(&kernels) { use(threads); }
+    Subdomains(const Kernels& kernels, Threads threads) : kernels_(&kernels) { use(threads); }
 
     /// From the next cut on.
     void use(Threads threads);
     /// How many there should be.
     [[nodiscard]] int wanted(std::int32_t particles) const;
     /// How many there are; 1: the whole lists are used.
-    [[nodiscard]] int count() const { return domains_.empty() ? 1 : static_cast<int>(domains_.size()); }
-    [[nodiscard]] bool cut() const { return !domains_.empty(); }
+    [[nodiscard]] int count() const { return subdomains_.empty() ? 1 : static_cast<int>(subdomains_.size()); }
+    [[nodiscard]] bool cut() const { return !subdomains_.empty(); }
 
     /// Cuts the whole lists into as many parts as wanted. `listed`: the inner list, too; otherwise a refresh follows,
     /// and columns.outer_touching says which pairs touch.
     void cut_up(Field& whole, Columns& columns, bool listed);
     /// The whole lists are used from here on; they must have been joined.
-    void drop() { domains_.clear(); }
-    /// Writes inner list, touching pairs and histories of all domains to the whole lists, where they are not yet.
+    void drop() { subdomains_.clear(); }
+    /// Writes inner list, touching pairs and histories of all subdomains to the whole lists, where they are not yet.
     void join(const Field& whole, const Columns& columns) const;
 
     /// As the kernel of that name over all particles. `keep`: the histories remain those of before.
@@ -82,15 +82,15 @@ private:
     void choose_ranges(const Field& whole, const Columns& columns, int parts);
     void find_partners(const Field& whole);
     void place_copies(Field& whole, Columns& columns);
-    void fill(Domain& domain, const Field& whole, const Columns& columns) const;
-    void fill_inner(Domain& domain, const Field& whole) const;
+    void fill(Subdomain& subdomain, const Field& whole, const Columns& columns) const;
+    void fill_inner(Subdomain& subdomain, const Field& whole) const;
     [[nodiscard]] std::int32_t contacts_before(const Field& whole, std::int32_t pair) const;
     void merge(Tally& tally) const;
 
     const Kernels* kernels_;
     Threads threads_{};
     std::unique_ptr<ThreadPool> pool_;
-    std::vector<std::unique_ptr<Domain>> domains_;
+    std::vector<std::unique_ptr<Subdomain>> subdomains_;
     std::vector<std::int32_t> contacts_before_;  ///< vectors of the whole outer list
     mutable bool joined_ = true;
 };

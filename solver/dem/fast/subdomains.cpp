@@ -1,4 +1,4 @@
-#include "solver/dem/fast/domains.hpp"
+#include "solver/dem/fast/subdomains.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -63,7 +63,7 @@ Tally neutral_tally() {
 
 }  // namespace
 
-Field Domain::view(const Field& whole) const {
+Field Subdomain::view(const Field& whole) const {
     Field f = whole;
     pairs.bind_pairs(f);
     f.begin = begin;
@@ -74,18 +74,18 @@ Field Domain::view(const Field& whole) const {
     return f;
 }
 
-std::int32_t Domain::particle_at(Place place) const {
+std::int32_t Subdomain::particle_at(Place place) const {
     const std::int32_t index = index_at(place);
     return index < filler ? index : partner[static_cast<std::size_t>(index - filler - 2)];
 }
 
-Place Domain::place_of(std::int32_t particle) const {
+Place Subdomain::place_of(std::int32_t particle) const {
     if (particle >= begin && particle < end) return place_at(particle);
     const auto at = std::ranges::lower_bound(partner, particle) - partner.begin();
     return place_at(filler + 2 + static_cast<std::int32_t>(at));
 }
 
-void Domain::count_inner(const Field& view) {
+void Subdomain::count_inner(const Field& view) {
     inner_count = view.inner_count;
     const std::int32_t all = true_pairs(view);
     const auto ghosts = static_cast<std::int32_t>(ghost.size());
@@ -94,26 +94,26 @@ void Domain::count_inner(const Field& view) {
     inner_rows = all - inner_ghosts;
 }
 
-void Domains::use(Threads threads) {
+void Subdomains::use(Threads threads) {
     threads_ = threads;
     if (threads_.most <= 0) threads_.most = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     threads_.least_particles = std::max(1, threads_.least_particles);
 }
 
-int Domains::wanted(std::int32_t particles) const {
+int Subdomains::wanted(std::int32_t particles) const {
     return std::clamp(static_cast<int>(particles / threads_.least_particles), 1, threads_.most);
 }
 
-std::int32_t Domains::contacts_before(const Field& whole, std::int32_t pair) const {
+std::int32_t Subdomains::contacts_before(const Field& whole, std::int32_t pair) const {
     const std::int32_t width = kernels_->width, rest = pair % width;
     const auto vector = static_cast<std::size_t>(pair / width);
     const unsigned before = rest == 0 ? 0 : whole.outer_touching[vector] & ((1U << static_cast<unsigned>(rest)) - 1);
     return contacts_before_[vector] + std::popcount(before);
 }
 
-void Domains::cut_up(Field& whole, Columns& columns, bool listed) {
+void Subdomains::cut_up(Field& whole, Columns& columns, bool listed) {
     const int parts = wanted(whole.count);
-    domains_.clear();
+    subdomains_.clear();
     if (parts == 1) {
         pool_.reset();
         return;
@@ -135,15 +135,15 @@ void Domains::cut_up(Field& whole, Columns& columns, bool listed) {
     choose_ranges(whole, columns, parts);
     find_partners(whole);
     place_copies(whole, columns);
-    for (const auto& domain : domains_) {
-        fill(*domain, whole, columns);
-        if (listed) fill_inner(*domain, whole);
+    for (const auto& subdomain : subdomains_) {
+        fill(*subdomain, whole, columns);
+        if (listed) fill_inner(*subdomain, whole);
     }
     joined_ = true;
 }
 
 /// Ranges that cost about the same.
-void Domains::choose_ranges(const Field& whole, const Columns& columns, int parts) {
+void Subdomains::choose_ranges(const Field& whole, const Columns& columns, int parts) {
     const auto cost_before = [&](std::int32_t particle) {
         const std::int32_t pairs = pairs_before(whole.outer_first, whole.outer_count, particle);
         const std::int32_t advanced =
@@ -162,26 +162,26 @@ void Domains::choose_ranges(const Field& whole, const Columns& columns, int part
             else
                 high = middle;
         }
-        auto domain = std::make_unique<Domain>();
-        domain->begin = begin;
-        domain->end = begin = high;
-        domain->row_begin = pairs_before(whole.outer_first, whole.outer_count, domain->begin);
-        domain->row_end = pairs_before(whole.outer_first, whole.outer_count, domain->end);
-        domains_.push_back(std::move(domain));
+        auto subdomain = std::make_unique<Subdomain>();
+        subdomain->begin = begin;
+        subdomain->end = begin = high;
+        subdomain->row_begin = pairs_before(whole.outer_first, whole.outer_count, subdomain->begin);
+        subdomain->row_end = pairs_before(whole.outer_first, whole.outer_count, subdomain->end);
+        subdomains_.push_back(std::move(subdomain));
     }
 }
 
-/// Pairs across domains, and the particles that these need of other domains.
-void Domains::find_partners(const Field& whole) {
-    for (std::size_t n = 0; n < domains_.size(); ++n) {
-        Domain& d = *domains_[n];
+/// Pairs across subdomains, and the particles that these need of other subdomains.
+void Subdomains::find_partners(const Field& whole) {
+    for (std::size_t n = 0; n < subdomains_.size(); ++n) {
+        Subdomain& d = *subdomains_[n];
         for (std::int32_t o = d.row_begin; o < d.row_end; ++o)
             if (whole.outer_second[o] >= place_at(d.end)) {
                 d.leaving.push_back(o);
                 d.partner.push_back(index_at(whole.outer_second[o]));
             }
         for (std::size_t earlier = 0; earlier < n; ++earlier)
-            for (const std::int32_t o : domains_[earlier]->leaving) {
+            for (const std::int32_t o : subdomains_[earlier]->leaving) {
                 const std::int32_t second = index_at(whole.outer_second[o]);
                 if (second < d.begin || second >= d.end) continue;
                 d.ghost.push_back(o);
@@ -194,22 +194,22 @@ void Domains::find_partners(const Field& whole) {
 }
 
 /// Makes room for the copies behind the particles.
-void Domains::place_copies(Field& whole, Columns& columns) {
+void Subdomains::place_copies(Field& whole, Columns& columns) {
     const auto even = [](std::size_t n) { return n + n % 2; };  // two forces share a cache line
     std::size_t next = even(static_cast<std::size_t>(whole.count) + 4);
-    for (const auto& domain : domains_) {
-        domain->filler = static_cast<std::int32_t>(next);
-        next = even(next + 2 + domain->partner.size());
+    for (const auto& subdomain : subdomains_) {
+        subdomain->filler = static_cast<std::int32_t>(next);
+        next = even(next + 2 + subdomain->partner.size());
     }
     columns.records.hold(next + spare);
     columns.forces.hold(next + spare);
     columns.bind(whole);
-    for (const auto& domain : domains_)
-        for (std::int32_t k = 0; k < 2; ++k) whole.records[domain->filler + k] = whole.records[whole.filler + k];
+    for (const auto& subdomain : subdomains_)
+        for (std::int32_t k = 0; k < 2; ++k) whole.records[subdomain->filler + k] = whole.records[whole.filler + k];
 }
 
-/// The outer list of a domain, which of its pairs touch, and their histories.
-void Domains::fill(Domain& d, const Field& whole, const Columns& columns) const {
+/// The outer list of a subdomain, which of its pairs touch, and their histories.
+void Subdomains::fill(Subdomain& d, const Field& whole, const Columns& columns) const {
     const std::int32_t width = kernels_->width, rows = d.row_end - d.row_begin;
     const auto ghosts = static_cast<std::int32_t>(d.ghost.size());
     d.pairs.histories = columns.histories;
@@ -242,8 +242,8 @@ void Domains::fill(Domain& d, const Field& whole, const Columns& columns) const 
     }
 }
 
-/// The part of the whole inner list that is in a domain.
-void Domains::fill_inner(Domain& d, const Field& whole) const {
+/// The part of the whole inner list that is in a subdomain.
+void Subdomains::fill_inner(Subdomain& d, const Field& whole) const {
     const std::int32_t width = kernels_->width, all = true_pairs(whole);
     const auto ghosts = static_cast<std::int32_t>(d.ghost.size());
     Field f = d.view(whole);
@@ -270,13 +270,13 @@ void Domains::fill_inner(Domain& d, const Field& whole) const {
     d.count_inner(f);
 }
 
-void Domains::join(const Field& whole, const Columns& columns) const {
-    if (domains_.empty() || joined_) return;
+void Subdomains::join(const Field& whole, const Columns& columns) const {
+    if (subdomains_.empty() || joined_) return;
     const std::int32_t width = kernels_->width;
     std::fill_n(whole.touching, columns.touching.capacity(), std::uint16_t{0});
     std::int32_t n = 0, contacts = 0;
-    for (const auto& domain : domains_) {
-        const Domain& d = *domain;
+    for (const auto& subdomain : subdomains_) {
+        const Subdomain& d = *subdomain;
         const Field f = d.view(whole);
         const auto ghosts = static_cast<std::int32_t>(d.ghost.size());
         std::int32_t ghost_contacts = 0, row_contacts = 0;
@@ -298,9 +298,9 @@ void Domains::join(const Field& whole, const Columns& columns) const {
     joined_ = true;
 }
 
-void Domains::sweep(Field& whole, std::optional<Refresh> renewal, bool advance, bool keep, Tally& tally) {
+void Subdomains::sweep(Field& whole, std::optional<Refresh> renewal, bool advance, bool keep, Tally& tally) {
     pool_->run([&](int thread) {
-        Domain& d = *domains_[static_cast<std::size_t>(thread)];
+        Subdomain& d = *subdomains_[static_cast<std::size_t>(thread)];
         for (std::size_t k = 0; k < d.partner.size(); ++k)
             whole.records[static_cast<std::size_t>(d.filler) + 2 + k] = whole.records[d.partner[k]];
         pool_->meet();
@@ -315,26 +315,26 @@ void Domains::sweep(Field& whole, std::optional<Refresh> renewal, bool advance, 
     });
     if (renewal) {
         std::int32_t pairs = 0;
-        for (const auto& domain : domains_) pairs += domain->inner_rows;
+        for (const auto& subdomain : subdomains_) pairs += subdomain->inner_rows;
         whole.inner_count = (pairs + kernels_->width - 1) / kernels_->width * kernels_->width;
     }
     merge(tally);
     joined_ = false;
 }
 
-void Domains::advance(const Field& whole, Tally& tally) {
+void Subdomains::advance(const Field& whole, Tally& tally) {
     pool_->run([&](int thread) {
-        Domain& d = *domains_[static_cast<std::size_t>(thread)];
+        Subdomain& d = *subdomains_[static_cast<std::size_t>(thread)];
         d.tally = neutral_tally();
         kernels_->advance(d.view(whole), d.tally);
     });
     merge(tally);
 }
 
-/// Adds what the domains met, in their order; of two equal extremes the earlier stays, as in a sweep over all.
-void Domains::merge(Tally& tally) const {
-    for (const auto& domain : domains_) {
-        const Tally& t = domain->tally;
+/// Adds what the subdomains met, in their order; of two equal extremes the earlier stays, as in a sweep over all.
+void Subdomains::merge(Tally& tally) const {
+    for (const auto& subdomain : subdomains_) {
+        const Tally& t = subdomain->tally;
         for (int a = 0; a < 8; ++a) {
             if (t.velocity_high[a] > tally.velocity_high[a]) tally.velocity_high[a] = t.velocity_high[a];
             if (t.velocity_low[a] < tally.velocity_low[a]) tally.velocity_low[a] = t.velocity_low[a];

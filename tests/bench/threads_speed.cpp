@@ -1,0 +1,141 @@
+// One case on several threads beside the same case on one: one JSON line per scene.
+//
+//   bench_threads [--scene NAME] [--threads N] [--windows N] [--large]
+//
+// Two engines of the same case, one thread and N (2), take turns window by window. `speedup` is the ratio of their
+// cheapest windows, `speedup_mean` that of all, lists made anew included, in elapsed time: on a machine that does
+// something else besides, both are too small. `same`: both end with the same checkpoint. --large adds a bed of a
+// million spheres and what a sphere takes of memory.
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "solver/dem/fast/mixed_engine.hpp"
+#include "tests/support/granular_beds.hpp"
+
+using namespace grainsweep;
+using dem::fast::make_mixed_engine;
+
+namespace {
+
+struct Options {
+    std::string scene;
+    int threads = 2, windows = 20;
+    bool large = false;
+};
+
+double seconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Of this process, bytes.
+double resident() {
+    std::ifstream in("/proc/self/statm");
+    double all = 0, pages = 0;
+    in >> all >> pages;
+    return pages * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+struct Timed {
+    std::unique_ptr<dem::Engine> engine;
+    double least = 1e300, total = 0;
+
+    void run(std::int64_t steps) {
+        const double start = seconds();
+        engine->run(steps);
+        const double spent = seconds() - start;
+        least = std::min(least, spent);
+        total += spent;
+    }
+    [[nodiscard]] std::vector<std::byte> bytes() const {
+        std::vector<std::byte> all;
+        engine->save(all);
+        return all;
+    }
+};
+
+void compare(const Options& o, const std::string& scene, const dem::Setup& setup) {
+    const auto particles = static_cast<double>(setup.spheres.size());
+    const auto window = static_cast<std::int64_t>(std::clamp(2e6 / particles, 10.0, 100.0));
+    double memory[3] = {resident()};
+    Timed one, several;
+    one.engine = make_mixed_engine(setup, dem::Method::Path::best);
+    one.engine->run(2 * window);
+    memory[1] = resident();
+    several.engine = make_mixed_engine(setup, dem::Method::Path::best, 0, 0, {.most = o.threads});
+    several.engine->run(2 * window);
+    memory[2] = resident();
+    const auto rebuilds = one.engine->work().rebuilds;
+    for (int k = 0; k < o.windows; ++k) {
+        one.run(window);
+        several.run(window);
+    }
+    const double steps = static_cast<double>(window) * o.windows, scale = 1e9 / particles;
+    std::printf(
+        "{\"bench\": \"threads\", \"scene\": \"%s\", \"particles\": %.0f, \"threads\": %d, \"steps\": %.0f, "
+        "\"ns_one\": %.2f, \"ns_several\": %.2f, \"speedup\": %.3f, \"speedup_mean\": %.3f, "
+        "\"steps_per_s\": %.1f, \"rebuilds_per_1000\": %.1f, \"bytes_per_particle_one\": %.0f, "
+        "\"bytes_per_particle_several\": %.0f, \"same\": %s, \"fault\": \"%s\"}\n",
+        scene.c_str(), particles, o.threads, steps, scale * one.least / static_cast<double>(window),
+        scale * several.least / static_cast<double>(window), one.least / several.least, one.total / several.total,
+        static_cast<double>(window) / several.least,
+        1000 * static_cast<double>(one.engine->work().rebuilds - rebuilds) / steps, (memory[1] - memory[0]) / particles,
+        (memory[2] - memory[1]) / particles, one.bytes() == several.bytes() ? "true" : "false",
+        one.engine->fault().c_str());
+    std::fflush(stdout);
+}
+
+Options read_options(int argc, char** argv) {
+    Options o;
+    for (int i = 1; i < argc; ++i) {
+        const std::string name = argv[i];
+        const auto value = [&] { return i + 1 < argc ? argv[++i] : ""; };
+        if (name == "--scene")
+            o.scene = value();
+        else if (name == "--threads")
+            o.threads = std::atoi(value());
+        else if (name == "--windows")
+            o.windows = std::max(1, std::atoi(value()));
+        else if (name == "--large")
+            o.large = true;
+    }
+    return o;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const Options o = read_options(argc, argv);
+    const auto wanted = [&](const char* name) { return o.scene.empty() || o.scene == name; };
+    const auto run = [&](const char* name, const std::function<dem::Setup()>& setup) {
+        if (wanted(name)) compare(o, name, setup());
+    };
+    dem::Setup bed, chute;
+    if (wanted("settled_20k") || wanted("settled_180k") || o.large) bed = test::settled_bed({});
+    if (wanted("chute_20k") || wanted("chute_180k")) chute = test::flowing(test::settled_bed({}), 26, 0.02);
+    run("small_chute_2k", [] { return test::flowing(test::small_chute(1), 26, test::small_chute_time); });
+    run("settled_20k", [&] { return bed; });
+    run("chute_20k", [&] { return chute; });
+    run("chute_unequal_20k", [] {
+        test::BedOptions b;
+        b.spread = 0.25, b.per_side = 20, b.layers = 50;
+        return test::flowing(test::settled_bed(b), 26, 0.02);
+    });
+    if (wanted("drum") || wanted("drum_mesh")) {
+        const dem::Setup drum = test::turning_drum();
+        run("drum", [&] { return drum; });
+        run("drum_mesh", [&] { return test::of_triangles(drum); });
+    }
+    run("settled_180k", [&] { return test::replicated(bed, 3, 3); });
+    run("chute_180k", [&] { return test::replicated(chute, 3, 3); });
+    if (o.large) compare(o, "settled_1M", test::replicated(bed, 7, 7));
+    return 0;
+}
