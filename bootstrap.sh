@@ -116,7 +116,8 @@ test)
     for shard in "${shards[@]}"; do wait "$shard"; done
     ;;
 threads)
-    # What has threads under the thread sanitizer: tests of the store, the loop and the workers, and whole campaigns.
+    # What has threads under the thread sanitizer: tests of the store, the loop, the workers and cases on
+    # several threads, and whole campaigns.
     install_missing "${program_packages[@]}" "${test_packages[@]}"
     (cd "$here" && configure thread -DGRAINSWEEP_TESTS=ON)
     quiet "building" cmake --build "$here/build-thread" -j "$jobs" --target test_threads grainsweep

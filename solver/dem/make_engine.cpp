@@ -91,8 +91,7 @@ std::unique_ptr<Engine> make_engine(const Setup& setup, const Method& method) {
 
     // One line per precision: where an engine joins.
     return method.precision == Method::Precision::mixed
-               ? fast::make_mixed_engine(setup, method.path, method.skin, method.rest_speed,
-                                       {.most = method.threads})
+               ? fast::make_mixed_engine(setup, method.path, method.skin, method.rest_speed, {.most = method.threads})
                : clear::make_clear_engine(setup, method);
 }
 

@@ -1,20 +1,23 @@
 // One case on several threads beside the same case on one: one JSON line per scene.
 //
-//   bench_threads [--scene NAME] [--threads N] [--windows N] [--large]
+//   bench_threads [--scene NAME] [--threads N] [--windows N] [--large] [--pin]
 //
 // Two engines of the same case, one thread and N (2), take turns window by window. `speedup` is the ratio of their
 // cheapest windows, `speedup_mean` that of all, lists made anew included, in elapsed time: on a machine that does
 // something else besides, both are too small. `same`: both end with the same checkpoint. --large adds a bed of a
 // million spheres and what a sphere takes of memory.
+#include <sched.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -29,11 +32,26 @@ namespace {
 struct Options {
     std::string scene;
     int threads = 2, windows = 20;
-    bool large = false;
+    bool large = false, pin = false;
 };
 
 double seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Binds the threads of this process to the cores, one after the other.
+void pin_threads() {
+    const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+    std::vector<pid_t> threads;
+    for (const auto& entry : std::filesystem::directory_iterator("/proc/self/task"))
+        threads.push_back(static_cast<pid_t>(std::atoi(entry.path().filename().c_str())));
+    std::ranges::sort(threads);
+    for (std::size_t k = 0; k < threads.size(); ++k) {
+        cpu_set_t one;
+        CPU_ZERO(&one);
+        CPU_SET(k % cores, &one);
+        sched_setaffinity(threads[k], sizeof one, &one);
+    }
 }
 
 /// Of this process, bytes.
@@ -73,6 +91,7 @@ void compare(const Options& o, const std::string& scene, const dem::Setup& setup
     several.engine = make_mixed_engine(setup, dem::Method::Path::best, 0, 0, {.most = o.threads});
     several.engine->run(2 * window);
     memory[2] = resident();
+    if (o.pin) pin_threads();
     const auto rebuilds = one.engine->work().rebuilds;
     for (int k = 0; k < o.windows; ++k) {
         one.run(window);
@@ -106,6 +125,8 @@ Options read_options(int argc, char** argv) {
             o.windows = std::max(1, std::atoi(value()));
         else if (name == "--large")
             o.large = true;
+        else if (name == "--pin")
+            o.pin = true;
     }
     return o;
 }

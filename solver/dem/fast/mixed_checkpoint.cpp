@@ -143,12 +143,20 @@ void MixedEngine::require_possible() const {
         };
         Place before = 0;
         for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
-            require(known_place(first[k]) && known_place(second[k]) && first[k] >= before);
+            require(known_place(first[k]) && known_place(second[k]) && first[k] >= before && second[k] > first[k]);
             before = first[k];
         }
     };
     listed(c.outer_first, c.outer_second, field_.outer_count);
     listed(c.inner_first, c.inner_second, field_.inner_count);
+    std::int32_t source = -1;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(field_.inner_count); ++k) {
+        if (c.inner_first[k] == static_cast<Place>(n * places_per_index)) break;  // fills the list up
+        require(c.inner_source[k] > source && c.inner_source[k] < field_.outer_count);
+        source = c.inner_source[k];
+        const auto o = static_cast<std::size_t>(source);
+        require(c.inner_first[k] == c.outer_first[o] && c.inner_second[k] == c.outer_second[o]);
+    }
     for (std::size_t b = 0; b < static_cast<std::size_t>(field_.inner_count / width); ++b) {
         require(static_cast<std::uint32_t>(c.touching[b]) >> static_cast<unsigned>(width) == 0);
         for (unsigned m = c.touching[b]; m != 0; m &= m - 1) {

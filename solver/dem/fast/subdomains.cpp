@@ -89,8 +89,8 @@ void Subdomain::count_inner(const Field& view) {
     inner_count = view.inner_count;
     const std::int32_t all = true_pairs(view);
     const auto ghosts = static_cast<std::int32_t>(ghost.size());
-    inner_ghosts =
-        static_cast<std::int32_t>(std::lower_bound(view.inner_source, view.inner_source + all, ghosts) - view.inner_source);
+    inner_ghosts = static_cast<std::int32_t>(std::lower_bound(view.inner_source, view.inner_source + all, ghosts) -
+                                             view.inner_source);
     inner_rows = all - inner_ghosts;
 }
 
@@ -218,8 +218,9 @@ void Subdomains::fill(Subdomain& d, const Field& whole, const Columns& columns) 
     d.pairs.outer_touching.clear(static_cast<std::size_t>((ghosts + rows) / width) + 2);
     const auto take = [&](std::int32_t to, std::int32_t from) {
         f.outer_first[to] = d.place_of(index_at(whole.outer_first[from]));
-        f.outer_second[to] = whole.outer_second[from] >= place_at(d.end) ? d.place_of(index_at(whole.outer_second[from]))
-                                                                        : whole.outer_second[from];
+        f.outer_second[to] = whole.outer_second[from] >= place_at(d.end)
+                                 ? d.place_of(index_at(whole.outer_second[from]))
+                                 : whole.outer_second[from];
         f.outer_reach[to] = whole.outer_reach[from];
         const bool touches = bit_at(whole.outer_touching, from, width);
         if (touches) set_bit(f.outer_touching, to, width);
@@ -234,7 +235,8 @@ void Subdomains::fill(Subdomain& d, const Field& whole, const Columns& columns) 
     }
     for (std::int32_t k = 0; k < rows; ++k) take(ghosts + k, d.row_begin + k);
     const std::int32_t from = contacts_before(whole, d.row_begin), to = contacts_before(whole, d.row_end);
-    for (int a = 0; a < f.histories; ++a) std::copy(whole.history[a] + from, whole.history[a] + to, f.history[a] + contact);
+    for (int a = 0; a < f.histories; ++a)
+        std::copy(whole.history[a] + from, whole.history[a] + to, f.history[a] + contact);
     for (std::int32_t k = ghosts + rows; k < ghosts + rows + spare; ++k) {
         f.outer_first[k] = place_at(d.filler);
         f.outer_second[k] = place_at(d.filler + 1);
@@ -264,7 +266,8 @@ void Subdomains::fill_inner(Subdomain& d, const Field& whole) const {
             take(static_cast<std::int32_t>(at - source.begin()), k);
     }
     const auto end = static_cast<std::int32_t>(std::ranges::lower_bound(source, d.row_end) - source.begin());
-    for (auto k = static_cast<std::int32_t>(std::ranges::lower_bound(source, d.row_begin) - source.begin()); k < end; ++k)
+    for (auto k = static_cast<std::int32_t>(std::ranges::lower_bound(source, d.row_begin) - source.begin()); k < end;
+         ++k)
         take(k, ghosts + whole.inner_source[k] - d.row_begin);
     f.inner_count = fill_up(f, n, width);
     d.count_inner(f);

@@ -3,10 +3,10 @@
 // The sorted particles are cut into contiguous ranges, one per thread: subdomains. Each has lists of its own, with all
 // pairs that touch one of its particles: first those whose first particle lies in an earlier subdomain, in the order of
 // the whole list, then the rows of its own particles. So every force on its particles is added up in the order of the
-// whole list. A pair across subdomains is computed in both, with a copy of its history in each, and to the same bits: what
-// a lane computes depends on its pair alone. Partners in other subdomains are read from copies of their records, taken
-// before any subdomain advances its particles; what is added to the copies' forces is not used. Hence no bit of a result
-// depends on where the cuts are, and none on the number of threads.
+// whole list. A pair across subdomains is computed in both, with a copy of its history in each, and to the same bits:
+// what a lane computes depends on its pair alone. Partners in other subdomains are read from copies of their records,
+// taken before any subdomain advances its particles; what is added to the copies' forces is not used. Hence no bit of a
+// result depends on where the cuts are, and none on the number of threads.
 //
 // What is not part of a step (contacts in SI, checkpoints, energy, faults, rebuilding) reads the whole lists: join()
 // writes the contacts back to them.
@@ -34,9 +34,9 @@ struct Refresh {
 struct alignas(64) Subdomain {
     std::int32_t begin = 0, end = 0;
     std::int32_t filler = 0;
-    std::vector<std::int32_t> partner;  ///< in other subdomains, ascending; their copies lie behind the fillers
-    std::vector<std::int32_t> ghost;    ///< of its outer list the first ones: where they stand in the whole list
-    std::vector<std::int32_t> leaving;  ///< pairs of its rows with a later subdomain, likewise
+    std::vector<std::int32_t> partner;        ///< in other subdomains, ascending; their copies lie behind the fillers
+    std::vector<std::int32_t> ghost;          ///< of its outer list the first ones: where they stand in the whole list
+    std::vector<std::int32_t> leaving;        ///< pairs of its rows with a later subdomain, likewise
     std::int32_t row_begin = 0, row_end = 0;  ///< its rows in the whole outer list
     std::int32_t inner_count = 0;             ///< a multiple of the width
     std::int32_t inner_ghosts = 0;            ///< the first ones of the inner list

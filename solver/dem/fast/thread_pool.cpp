@@ -7,7 +7,7 @@ namespace grainsweep::dem::fast {
 namespace {
 
 constexpr int most_spins = 2000;  // about 20 us
-constexpr std::chrono::microseconds patience{200};
+constexpr std::chrono::milliseconds patience{1};
 
 void pause_core() {
 #if defined(__x86_64__)
