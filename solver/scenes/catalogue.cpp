@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <stdexcept>
 
 namespace grainsweep {
@@ -27,13 +28,8 @@ Inputs SceneInfo::defaults() const {
 
 std::span<const SceneInfo> scene_catalogue() {
     static const std::vector<SceneInfo> scenes = {
-        powder_spreading_scene(),
-        tpms_discharge_scene(),
-        rotating_drum_scene(),
-        hopper_scene(),
-        heap_scene(),
-        rehearsal_scene(),
-        thermovibration_scene(),
+        powder_spreading_scene(), tpms_discharge_scene(),  rotating_drum_scene(), hopper_scene(), heap_scene(),
+        rehearsal_scene(),        thermovibration_scene(),
     };
     return scenes;
 }
@@ -62,6 +58,23 @@ bool choose_instruction_path(std::string_view word) {
     if (!dem::fast::supports(path)) return false;
     dem::fast::prefer(path);
     return true;
+}
+
+namespace {
+
+std::atomic<int>& threads() {
+    static std::atomic<int> allowed = 1;
+    return allowed;
+}
+
+}  // namespace
+
+void allow_threads(int count) {
+    threads() = count;
+}
+
+int allowed_threads() {
+    return threads();
 }
 
 std::string_view instruction_path() {

@@ -51,6 +51,9 @@ public:
     /// Integrates in the scene's own steps until time() >= until, finished() or !health().stable().
     /// Where the slices are cut never changes the result.
     virtual void advance(double until) = 0;
+    /// Up to `count` threads compute from the next advance() on, the calling one among them; 0: one for each core.
+    /// Never changes the result; a scene that always uses one takes no notice.
+    virtual void use_threads(int count) { static_cast<void>(count); }
     /// Adds everything measured so far. Reads only.
     virtual void observe(Observations& into) const = 0;
     /// Physical time since the start, s. Grows with every advance until finished.
@@ -122,5 +125,10 @@ struct SceneInfo {
 /// and benchmarks; to be called before a scene is made. False, and nothing changes: this processor lacks it.
 /// Throws std::invalid_argument on any other word.
 [[nodiscard]] bool choose_instruction_path(std::string_view word);
+
+/// How many threads a case in this process may have; 0: one for each core. At the start 1. May be called from any
+/// thread: the case takes it up at its next slice.
+void allow_threads(int count);
+[[nodiscard]] int allowed_threads();
 
 }  // namespace grainsweep

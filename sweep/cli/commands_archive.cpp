@@ -1,4 +1,5 @@
 // status, explain, replay, query, dump: what is in the archive.
+#include "solver/scenes/scene.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/path_option.hpp"
@@ -6,6 +7,7 @@
 #include "sweep/cli/replay.hpp"
 #include "sweep/cli/status_text.hpp"
 #include "sweep/cli/stored_case.hpp"
+#include "sweep/cli/threads_option.hpp"
 #include "sweep/report/history.hpp"
 #include "sweep/store/store.hpp"
 
@@ -256,7 +258,10 @@ std::vector<Command> archive_commands() {
              declare_pictures(parser, *pictures);
              const auto path = std::make_shared<std::string>();
              declare_path(parser, *path, "that of the archive");
-             return [arguments, pictures, path, &format] {
+             const auto threads = std::make_shared<std::int64_t>(0);
+             declare_threads(parser, *threads);
+             return [arguments, pictures, path, threads, &format] {
+                 allow_threads(static_cast<int>(*threads));
                  return replay(arguments->database, arguments->text, *pictures, *path, format);
              };
          },

@@ -1,10 +1,12 @@
 // solve: one case of a campaign in this process, without a database.
+#include "solver/scenes/scene.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/relevance.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/path_option.hpp"
 #include "sweep/cli/pictures.hpp"
+#include "sweep/cli/threads_option.hpp"
 #include "sweep/report/features.hpp"
 #include "sweep/store/expression.hpp"
 #include "sweep/workers/compute.hpp"
@@ -35,6 +37,7 @@ struct SolveRequest {
     std::vector<std::string> settings;  ///< NAME=VALUE
     PictureRequest pictures;
     std::string path;                   ///< instruction path; empty: the widest there is
+    std::int64_t threads = 0;           ///< 0: one for each core
     std::optional<std::uint64_t> seed;  ///< the case's own; none: the campaign's for this question
 };
 
@@ -220,8 +223,10 @@ std::vector<Command> solve_commands() {
                      ->grouped_digits();
                  declare_pictures(parser, request->pictures);
                  declare_path(parser, request->path);
+                 declare_threads(parser, request->threads);
                  return [request, &format] {
                      use_path(request->path);
+                     allow_threads(static_cast<int>(request->threads));
                      return solve(*request, format);
                  };
              },

@@ -99,6 +99,7 @@ bool drive(Scene& scene, const Watch& watch, const Camera& camera) {
     while (!scene.finished() && scene.health().stable()) {
         const auto start = Clock::now();
         const bool cut = shutter.next() < scene.time() + slice;
+        scene.use_threads(allowed_threads());
         scene.advance(cut ? shutter.next() : scene.time() + slice);
         const double took = std::max(seconds_since(start), 1e-6);
         if (!cut) slice *= std::clamp(slice_seconds / took, 0.25, 4.0);

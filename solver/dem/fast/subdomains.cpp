@@ -302,11 +302,13 @@ void Subdomains::join(const Field& whole, const Columns& columns) const {
 }
 
 void Subdomains::sweep(Field& whole, std::optional<Refresh> renewal, bool advance, bool keep, Tally& tally) {
-    pool_->run([&](int thread) {
-        Subdomain& d = *subdomains_[static_cast<std::size_t>(thread)];
+    pool_->run([&](int part) {
+        const Subdomain& d = *subdomains_[static_cast<std::size_t>(part)];
         for (std::size_t k = 0; k < d.partner.size(); ++k)
             whole.records[static_cast<std::size_t>(d.filler) + 2 + k] = whole.records[d.partner[k]];
-        pool_->meet();
+    });
+    pool_->run([&](int part) {
+        Subdomain& d = *subdomains_[static_cast<std::size_t>(part)];
         Field f = d.view(whole);
         if (renewal) {
             refresh(f, d.pairs, *kernels_, renewal->skin, renewal->marked);
@@ -326,8 +328,8 @@ void Subdomains::sweep(Field& whole, std::optional<Refresh> renewal, bool advanc
 }
 
 void Subdomains::advance(const Field& whole, Tally& tally) {
-    pool_->run([&](int thread) {
-        Subdomain& d = *subdomains_[static_cast<std::size_t>(thread)];
+    pool_->run([&](int part) {
+        Subdomain& d = *subdomains_[static_cast<std::size_t>(part)];
         d.tally = neutral_tally();
         kernels_->advance(d.view(whole), d.tally);
     });

@@ -1,13 +1,13 @@
 #include "solver/dem/fast/thread_pool.hpp"
 
-#include <chrono>
-
 namespace grainsweep::dem::fast {
 
 namespace {
 
-constexpr int most_spins = 2000;  // about 20 us
-constexpr std::chrono::milliseconds patience{1};
+// Looks at a condition while awake: half a millisecond or more, longer than the serial part of most steps takes. Giving
+// the core away instead would cost the rest of a time slice wherever something else wants it; a thread that slept is
+// resumed at once.
+constexpr int patience = 20000;
 
 void pause_core() {
 #if defined(__x86_64__)
@@ -19,51 +19,69 @@ void pause_core() {
 
 }  // namespace
 
-Barrier::Barrier(int threads)
-    : threads_(threads), spins_(threads <= static_cast<int>(std::thread::hardware_concurrency()) ? most_spins : 0) {}
-
-void Barrier::meet() noexcept {
-    const unsigned round = round_.load(std::memory_order_relaxed);
-    if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 < threads_) {
-        wait_for_end_of(round);
-        return;
-    }
-    arrived_.store(0, std::memory_order_relaxed);
-    round_.store(round + 1, std::memory_order_release);
-    round_.notify_all();
-}
-
-void Barrier::wait_for_end_of(unsigned round) noexcept {
-    const auto ended = [&] { return round_.load(std::memory_order_acquire) != round; };
-    for (int k = 0; k < spins_; ++k) {
-        if (ended()) return;
-        pause_core();
-    }
-    const auto start = std::chrono::steady_clock::now();
-    while (std::chrono::steady_clock::now() - start < patience) {
-        if (ended()) return;
-        std::this_thread::yield();
-    }
-    while (!ended()) round_.wait(round, std::memory_order_acquire);
-}
-
-ThreadPool::ThreadPool(int threads) : size_(threads), barrier_(threads) {
+ThreadPool::ThreadPool(int threads)
+    : size_(threads),
+      spins_(threads <= static_cast<int>(std::thread::hardware_concurrency())),
+      parts_(std::make_unique<Part[]>(static_cast<std::size_t>(threads))) {
     threads_.reserve(static_cast<std::size_t>(threads));
     for (int k = 1; k < threads; ++k) threads_.emplace_back([this, k] { serve(k); });
 }
 
 ThreadPool::~ThreadPool() {
-    work_ = nullptr;
-    if (size_ > 1) barrier_.meet();
+    ends_ = true;
+    round_.fetch_add(1);
+    wake();
 }
 
 void ThreadPool::serve(int thread) noexcept {
-    for (;;) {
-        barrier_.meet();
-        if (work_ == nullptr) return;
-        work_(of_, thread);
-        barrier_.meet();
+    unsigned round = 0;
+    while (!ends_) {
+        wait_until([&] { return round_.load() != round; });
+        round = round_.load();
+        if (!ends_) work_on_parts(thread, round);
     }
+}
+
+void ThreadPool::publish() noexcept {
+    ended_.store(0, std::memory_order_relaxed);
+    round_.fetch_add(1);
+    wake();
+}
+
+/// A part is begun by the thread that moves it from the round before to this one. All parts of a round are begun
+/// before the round ends: a thread that comes too late, with the number of an old round, finds none.
+void ThreadPool::work_on_parts(int first, unsigned round) noexcept {
+    for (int k = 0; k < size_; ++k) {
+        const int part = (first + k) % size_;
+        unsigned before = round - 1;
+        if (!parts_[static_cast<std::size_t>(part)].begun.compare_exchange_strong(before, round)) continue;
+        work_(of_, part);
+        if (ended_.fetch_add(1) + 1 == size_ && first != 0) wake();
+    }
+}
+
+void ThreadPool::wait_for_the_rest() noexcept {
+    wait_until([&] { return ended_.load() == size_; });
+}
+
+/// Conditions change by sequentially consistent writes, after which wake() is called: it sees a thread that sleeps,
+/// or one that falls asleep sees the change.
+template <class Condition>
+void ThreadPool::wait_until(const Condition& holds) noexcept {
+    for (int k = 0; k < (spins_ ? patience : 64); ++k) {
+        if (holds()) return;
+        pause_core();
+    }
+    std::unique_lock lock(mutex_);
+    asleep_.fetch_add(1);
+    wakes_.wait(lock, holds);
+    asleep_.fetch_sub(1);
+}
+
+void ThreadPool::wake() noexcept {
+    if (asleep_.load() == 0) return;
+    const std::lock_guard lock(mutex_);
+    wakes_.notify_all();
 }
 
 }  // namespace grainsweep::dem::fast

@@ -1,8 +1,11 @@
-// Threads that do one piece of work together, again and again: the calling one is number 0.
+// Threads that share the parts of one piece of work, again and again.
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -15,23 +18,9 @@ struct Threads {
     std::int32_t least_particles = 1500;
 };
 
-/// Where threads wait for one another. Spins for some microseconds, since on cores of their own all arrive at nearly
-/// the same time; then lets other programs run; then sleeps.
-class Barrier {
-public:
-    explicit Barrier(int threads);
-    /// Returns when as many calls as there are threads have come. What each thread wrote before, all may read after.
-    void meet() noexcept;
-
-private:
-    void wait_for_end_of(unsigned round) noexcept;
-
-    int threads_;
-    int spins_;  ///< none where threads share cores
-    alignas(64) std::atomic<int> arrived_ = 0;
-    alignas(64) std::atomic<unsigned> round_ = 0;
-};
-
+/// As many threads as a piece of work has parts, the calling one among them. Each begins with its own part, which its
+/// core's caches know, and goes on with parts that none has begun: where something else keeps the cores busy, the
+/// calling thread does alone what the others do not come to do.
 class ThreadPool {
 public:
     /// At least one; starts one fewer.
@@ -41,25 +30,42 @@ public:
     ~ThreadPool();
 
     [[nodiscard]] int size() const { return size_; }
-    /// Calls work(k) on every thread k, 0 to size() - 1; returns when all have ended. The work must not throw.
+    /// Calls work(k) once for every part k, 0 to size() - 1, on some thread; returns when all have ended. What was
+    /// written before, the parts may read; what they write, the caller may read after. The work must not throw.
     template <class Work>
     void run(const Work& work) noexcept {
-        work_ = [](const void* of, int thread) { (*static_cast<const Work*>(of))(thread); };
+        work_ = [](const void* of, int part) { (*static_cast<const Work*>(of))(part); };
         of_ = &work;
-        barrier_.meet();
-        work(0);
-        barrier_.meet();
+        publish();
+        work_on_parts(0, round_.load());
+        wait_for_the_rest();
     }
-    /// Within run(), by every thread: waits for all.
-    void meet() noexcept { barrier_.meet(); }
 
 private:
+    /// The round in which a part was last begun, on a cache line of its own.
+    struct alignas(64) Part {
+        std::atomic<unsigned> begun = 0;
+    };
+
     void serve(int thread) noexcept;
+    void publish() noexcept;
+    void work_on_parts(int first, unsigned round) noexcept;
+    void wait_for_the_rest() noexcept;
+    template <class Condition>
+    void wait_until(const Condition& holds) noexcept;
+    void wake() noexcept;
 
     int size_;
-    Barrier barrier_;
-    void (*work_)(const void*, int) = nullptr;  ///< null: end
+    bool spins_;  ///< not where threads share cores
+    void (*work_)(const void*, int) = nullptr;
     const void* of_ = nullptr;
+    std::atomic<bool> ends_ = false;
+    std::unique_ptr<Part[]> parts_;
+    alignas(64) std::atomic<unsigned> round_ = 0;
+    alignas(64) std::atomic<int> ended_ = 0;   ///< parts of this round
+    alignas(64) std::atomic<int> asleep_ = 0;  ///< threads
+    std::mutex mutex_;
+    std::condition_variable wakes_;
     std::vector<std::jthread> threads_;
 };
 

@@ -22,6 +22,10 @@ public:
     Experiment(const Study& study, std::uint64_t seed, const dem::Method& method, Artefacts& artefacts);
 
     void advance(double until) override;
+    void use_threads(int count) override {
+        method_.threads = count;  // of the engines of later layers
+        engine_->set_threads(count);
+    }
     void observe(Observations& into) const override;
     [[nodiscard]] double time() const override {
         return study_.time_step * static_cast<double>(layer_ * study_.steps_of_layer() + step_);

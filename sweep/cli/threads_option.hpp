@@ -1,0 +1,13 @@
+// --threads: how many threads compute the one case of a command.
+#pragma once
+
+#include "sweep/cli/parser.hpp"
+
+#include <cstdint>
+
+namespace grainsweep::cli {
+
+/// Adds --threads to a command; 0, also where it is not given: one for each core.
+void declare_threads(Parser& parser, std::int64_t& count);
+
+}  // namespace grainsweep::cli
