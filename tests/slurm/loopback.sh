@@ -94,6 +94,8 @@ expect_the_rows_of_a_run() {
     cmp plain.txt c.txt
     [ "$(wc -l <c.txt)" -gt "$1" ]
     "$grainsweep" verify c.db >/dev/null
+}
+expect_no_crash() {
     local crashed
     crashed=$("$grainsweep" query c.db "SELECT count(*) FROM attempt WHERE outcome IN ('crashed', 'timed_out')" --format csv | tail -n 1)
     [ "$crashed" = 0 ] || { echo "$crashed attempts crashed"; return 1; }
@@ -110,6 +112,7 @@ calm)
     job=$(in_three_nodes)
     settled_in 120 "$job"
     expect_the_rows_of_a_run 64 0.2
+    expect_no_crash
     [ "$(query "SELECT count(*) FROM attempt")" = 64 ]
     ;;
 host_killed)
@@ -126,6 +129,7 @@ host_killed)
     [ $killed -eq 3 ] || { echo "there were $killed hosts"; exit 1; }
     settled_in 180 "$job"
     expect_the_rows_of_a_run 64 0.5
+    expect_no_crash
     ;;
 node_killed)
     campaign c 64 0.5 "$hosts" >c.json
@@ -146,6 +150,7 @@ node_killed)
     [ $killed -ge 3 ] || { echo "only $killed processes ran on $victim"; exit 1; }
     settled_in 240 "$job"
     expect_the_rows_of_a_run 64 0.5
+    expect_no_crash
     ;;
 cancelled)
     campaign c 64 0.5 "$hosts" >c.json
@@ -158,6 +163,7 @@ cancelled)
     job=$(in_three_nodes)
     settled_in 180 "$job"
     expect_the_rows_of_a_run 64 0.5
+    expect_no_crash
     ;;
 controller)
     campaign c 160 0.5 "$hosts" >c.json
@@ -169,6 +175,7 @@ controller)
     "$loopback" start-ctld "$cluster"
     settled_in 180 "$job"
     expect_the_rows_of_a_run 160 0.5
+    expect_no_crash
     ;;
 walltime)
     # Slurm counts time limits in minutes and looks seldom; the campaign's own limit is the shorter one.
@@ -182,6 +189,7 @@ walltime)
     until_so 200 in_the_end
     [ "$(grep -c "exit code 75" job.out)" -ge 1 ] || { echo "it was never out of time"; exit 1; }
     expect_the_rows_of_a_run 48 1
+    expect_no_crash
     # The end of the job counts where the file gives no limit.
     campaign c 1 100 '{"workers": 1}' >c.json
     mkdir end && cd end && cp ../c.json .
@@ -215,6 +223,7 @@ JOB
     until_so 240 is_over "$job"
     GRAINSWEEP=$grainsweep sbatch --wait --export=ALL --array=1-2 --cpus-per-task=2 --mem=100 -o last.%a.out task.sh
     "$grainsweep" collect c.db spool
+    # Slurm kills what takes longer to end than its KillWait, workers before their task: those attempts have crashed.
     expect_the_rows_of_a_run 96 0.5
     ;;
 *)
