@@ -52,7 +52,8 @@ schedule::Walltime walltime_of(const campaign::Campaign& campaign) {
     };
     walltime.whole = given->whole - reserve;
     walltime.shortest_part = std::min(reserve, walltime.whole / 4);
-    walltime.cases_go_on = campaign.scene().name != "program";
+    // A program that answers a case begins anew: nothing of it is saved.
+    walltime.cases_go_on = !campaign.scene().name.starts_with("program:");
     return walltime;
 }
 
