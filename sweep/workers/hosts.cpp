@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 namespace grainsweep::workers {
 namespace {
 
+constexpr auto time_to_end_workers = std::chrono::seconds(5);
 constexpr double time_to_kill = 10;  // s; a worker that cannot be ended would keep its place for ever
 
 std::vector<std::string> with_host_number(std::vector<std::string> argv, std::size_t number) {
@@ -96,7 +98,15 @@ void Hosts::keep_time() {
     leaving_.keep_time(now);
 }
 
-void Hosts::end_all() {
+void Hosts::end_all(std::vector<std::shared_ptr<Process>> workers) {
+    retired_ = true;
+    using Clock = std::chrono::steady_clock;
+    for (const auto until = Clock::now() + time_to_end_workers; Clock::now() < until;) {  // their ends are read
+        std::erase_if(workers, [](const auto& worker) { return !worker->runs(); });
+        if (workers.empty()) break;
+        io_.restart();
+        io_.run_one_for(std::chrono::milliseconds(50));
+    }
     std::vector<std::shared_ptr<Process>> processes;
     for (const auto& host : hosts_) {
         processes.push_back(host->process());

@@ -38,8 +38,8 @@ public:
     void keep_time();
     /// Asks for no more workers: a host that ends now needs no replacement and no remark.
     void retire() { retired_ = true; }
-    /// Ends all; they end what is left of their workers.
-    void end_all();
+    /// Waits for these workers a moment, then ends all hosts; they end what is left of their workers.
+    void end_all(std::vector<std::shared_ptr<Process>> workers);
     /// Why no host can be had at all; empty: one can.
     [[nodiscard]] const std::string& why() const { return fruitless_.why(); }
 

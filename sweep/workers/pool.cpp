@@ -7,6 +7,7 @@
 #include "sweep/workers/hosts.hpp"
 #include "sweep/workers/line_buffer.hpp"
 #include "sweep/workers/message.hpp"
+#include "sweep/workers/pool_worker.hpp"
 
 #include <fmt/format.h>
 
@@ -22,6 +23,7 @@ namespace {
 namespace asio = boost::asio;
 using namespace std::chrono_literals;
 using Phase = WorkerState::Phase;
+using Worker = PoolWorker;
 
 // A case predicted to take less than this waits its turn inside the worker, so that no worker idles while
 // the main program is busy.
@@ -30,11 +32,8 @@ constexpr std::size_t queue_of_short_cases = 4;
 // Seconds.
 constexpr double lease_every = 10;
 constexpr double look_every = 0.05;  // at the clock
-constexpr double heartbeat_every = 0.5;
 constexpr double time_to_leave = 1;  // of a worker that gave back its case, before its place is taken
-constexpr double remark_on_start = 30;
-constexpr double one_request = 2;  // signals of a system within it are one request to stop
-constexpr auto time_to_end_hosted = 5s;
+constexpr double one_request = 2;    // signals of a system within it are one request to stop
 constexpr int launches_at_once = 16;
 constexpr int events_at_once = 64;
 constexpr int most_remarks_on_banners = 3;
@@ -52,20 +51,6 @@ bool was_killed(int status) {
 }  // namespace
 
 struct Pool::Impl {
-    struct Worker {
-        Worker(std::shared_ptr<Process> process, const Expected& expected, double now)
-            : state(expected, now), child(std::move(process)) {}
-        WorkerState state;
-        std::shared_ptr<Process> child;
-        LineBuffer lines{longest_line};
-        double beat = -heartbeat_every;  // when a heartbeat was last passed on
-        bool stop_sent = false, remarked = false;
-
-        [[nodiscard]] std::string name() const {
-            const auto& by = state.computer();
-            return by ? fmt::format("worker {} on {}", child->id(), by->host) : fmt::format("worker {}", child->id());
-        }
-    };
     explicit Impl(PoolOptions o)
         : options(std::move(o)), argv(command_of(options)), signals(io, SIGINT, SIGTERM, SIGUSR1), fruitless(argv) {
         await_signal();
@@ -124,7 +109,7 @@ struct Pool::Impl {
 
     void pass_on(Worker& worker, Heartbeat beat) {
         const double now = clock.now();
-        if (now - worker.beat < heartbeat_every) return;
+        if (now - worker.beat < Worker::beats_apart) return;
         worker.beat = now;
         events.emplace_back(std::move(beat));
     }
@@ -144,7 +129,7 @@ struct Pool::Impl {
         worker->child->signal(SIGKILL);  // whatever is left of its process group
         worker->child->wait(2s);
         const int status = worker->child->status();
-        Lost lost = account_for(*worker, worker->child->end());
+        Lost lost = worker->account(clock.now(), worker->child->end());
         lost.from_outside = worker->child->lost_with_host() || ended_from_outside(status, worker->child->log());
         lost.spoils_checkpoint = worker->state.resumed() || ending_signal(status) != SIGKILL;
         discard(worker);
@@ -153,22 +138,10 @@ struct Pool::Impl {
 
     /// It broke the protocol.
     void dismiss_for(const std::shared_ptr<Worker>& worker, std::string complaint) {
-        Lost lost = account_for(*worker, complaint);
+        Lost lost = worker->account(clock.now(), complaint);
         lost.spoils_checkpoint = true;
         discard(worker);
         report(*worker, std::move(lost), false);
-    }
-
-    Lost account_for(const Worker& worker, const std::string& reason) {
-        Lost lost;
-        lost.running = worker.state.running();
-        lost.queued = worker.state.waiting();
-        lost.seconds = worker.state.running_seconds(clock.now());
-        lost.reason = reason;
-        if (const auto& log = worker.child->log(); !log.empty()) lost.reason += "; it wrote: " + log;
-        if (!worker.state.was_ready() && !worker.state.banner().empty())
-            lost.reason += "; before that: " + worker.state.banner();
-        return lost;
     }
 
     void report(const Worker& worker, Lost lost, bool killed) {
@@ -194,23 +167,12 @@ struct Pool::Impl {
 
     /// It gave back its case and is to end by itself; its place is free.
     void let_go(const std::shared_ptr<Worker>& worker) {
-        Lost rest = account_for(*worker, "a worker gave back what it was given");
+        Lost rest = worker->account(clock.now(), "a worker gave back what it was given");
         worker->state.dismiss();
         worker->child->close();
         std::erase(workers, worker);
         report(*worker, std::move(rest), false);
         leaving.let_go(worker->child, clock.now());
-    }
-
-    /// The end of a worker on a host is read. Those that take longer end with their host.
-    void await_ends(std::vector<std::shared_ptr<Process>> processes) {
-        using Clock = std::chrono::steady_clock;
-        for (const auto until = Clock::now() + time_to_end_hosted; Clock::now() < until;) {
-            std::erase_if(processes, [](const auto& process) { return !process->runs(); });
-            if (processes.empty()) return;
-            io.restart();
-            io.run_one_for(50ms);
-        }
     }
 
     // ---- doing -------------------------------------------------------------------------------------------
@@ -265,7 +227,7 @@ struct Pool::Impl {
                 let_go(worker);
                 continue;
             }
-            remark(*worker, now);
+            say(worker->overdue_remark(options.limits, now, fruitless.command()));
             check(worker, worker->state.overdue(options.limits, now), now);
         }
         leaving.keep_time(now);
@@ -279,38 +241,17 @@ struct Pool::Impl {
             discard(worker);
             events.emplace_back(std::move(late));
         } else if (overdue == WorkerState::Overdue::silence) {
-            Lost lost = account_for(*worker, fmt::format("{} gave no sign of life for {} s and is replaced",
-                                                         worker->name(), limits.silence));
+            Lost lost = worker->account(
+                now, fmt::format("{} gave no sign of life for {} s and is replaced", worker->name(), limits.silence));
             lost.from_outside = true;
             discard(worker);
             report(*worker, std::move(lost), true);
         } else if (overdue == WorkerState::Overdue::start) {
-            Lost lost = account_for(
-                *worker, fmt::format("{} was not ready within {} s and is replaced", worker->name(), limits.start));
+            Lost lost = worker->account(
+                now, fmt::format("{} was not ready within {} s and is replaced", worker->name(), limits.start));
             discard(worker);
             events.emplace_back(Remark{lost.reason});
             report(*worker, std::move(lost), false);
-        }
-    }
-
-    /// Says which worker is waited for, once, at half of its time.
-    void remark(Worker& worker, double now) {
-        const auto& limits = options.limits;
-        const double half_silence = limits.silence / 2;
-        if (!worker.state.was_ready()) {
-            const double limit = limits.start > 0 ? std::min(remark_on_start, limits.start / 2) : remark_on_start;
-            if (worker.remarked || now - worker.state.launched() < limit) return;
-            worker.remarked = true;
-            events.emplace_back(Remark{fmt::format("waiting for {} to be ready, {:.0f} s so far: started with '{}'",
-                                                   worker.name(), now - worker.state.launched(), fruitless.command())});
-            return;
-        }
-        const double silence = worker.state.silence(now);
-        if (limits.silence <= 0 || silence < half_silence) {
-            worker.remarked = false;
-        } else if (!std::exchange(worker.remarked, true) && worker.state.cases() > 0) {
-            events.emplace_back(
-                Remark{fmt::format("waiting for a sign of life of {}, {:.0f} s so far", worker.name(), silence)});
         }
     }
 
@@ -430,10 +371,7 @@ void Pool::dismiss() {
         all.push_back(worker->child);
     }
     if (impl_->hosts) {
-        impl_->hosts->retire();
-        impl_->await_ends(std::move(all));
-        impl_->hosts->end_all();
-        all = {};
+        impl_->hosts->end_all(std::exchange(all, {}));
     }
     impl_->leaving.end_all(std::move(all));
     impl_->workers.clear();

@@ -49,7 +49,6 @@ srun_host='["srun", "--nodes=1", "--ntasks=1", "--cpus-per-task=2", "--exact", "
 hosts="{\"hosts\": 3, \"workers_per_host\": 2, \"launcher\": $srun_host}"
 query() { "$grainsweep" query c.db "$1" --format csv 2>/dev/null | tail -n 1; }
 finished() { query "SELECT count(outcome) FROM c"; }
-state() { squeue -h -j "$1" -o %T 2>/dev/null || true; }
 # until SECONDS COMMAND...: waits until it succeeds
 until_so() {
     local end=$((SECONDS + $1))
@@ -60,11 +59,18 @@ until_so() {
     done
 }
 at_least() { [ "$(finished || echo 0)" -ge "$1" ] 2>/dev/null; }
-is_over() { [ -z "$(state "$1")" ] || [[ "$(state "$1")" =~ ^(COMPLETED|FAILED|CANCELLED|TIMEOUT|NODE_FAIL)$ ]]; }
+# All of its tasks; a controller that does not answer says nothing.
+is_over() {
+    local states
+    states=$(squeue -h -j "$1" -t all -o %T 2>/dev/null) || return 1
+    [ -n "$states" ] && ! grep -qvxE "COMPLETED|FAILED|CANCELLED|TIMEOUT|NODE_FAIL" <<<"$states"
+}
 # A job that runs the campaign in its allocation: submitted NAME SBATCH-OPTION...
 submitted() {
     cat >job.sh <<'JOB'
 #!/bin/bash
+# Older Slurms (22.05) do not set it.
+export SLURM_JOB_END_TIME=${SLURM_JOB_END_TIME:-$(date -d "$(squeue -h -j $SLURM_JOB_ID -o %e)" +%s 2>/dev/null)}
 $GRAINSWEEP run c.json --db c.db --quiet
 code=$?
 echo "exit code $code"
@@ -79,10 +85,10 @@ in_three_nodes() { submitted --nodes=3 --ntasks-per-node=1 --cpus-per-task=2 --m
 processes_with() { # ENVIRONMENT WORDS
     local process environment
     for process in /proc/[0-9]*; do
-        environment=$(tr '\0' '\n' <"$process/environ" 2>/dev/null) || continue
+        environment=$({ tr '\0' '\n' <"$process/environ"; } 2>/dev/null) || continue
         grep -qx "SLURM_CONF=$SLURM_CONF" <<<"$environment" || continue
         grep -qx -- "$1" <<<"$environment" || continue
-        [[ "$(tr '\0' ' ' <"$process/cmdline" 2>/dev/null)" == "$2"* ]] && echo "${process#/proc/}"
+        [[ "$({ tr '\0' ' ' <"$process/cmdline"; } 2>/dev/null)" == "$2"* ]] && echo "${process#/proc/}"
     done
     return 0
 }
@@ -183,7 +189,9 @@ walltime)
     job=$(in_three_nodes --time=5)
     in_the_end() {
         # Slurm lets a requeued job wait for two minutes.
-        scontrol update "JobId=$job" StartTime=now >/dev/null 2>&1 || true
+        if [ "$(squeue -h -j "$job" -o "%T %r" 2>/dev/null)" = "PENDING BeginTime" ]; then
+            scontrol update "JobId=$job" StartTime=now || true
+        fi
         grep -q "exit code 0" job.out 2>/dev/null
     }
     until_so 200 in_the_end
@@ -196,6 +204,7 @@ walltime)
     job=$(submitted --ntasks=1 --time=1)
     until_so 120 grep -qs "exit code 75" job.out
     scancel "$job"
+    [ "$(query "SELECT count(*) FROM attempt WHERE outcome = 'abandoned'")" = 1 ]
     cd ..
     ;;
 array)
