@@ -19,6 +19,8 @@ using namespace std::chrono_literals;
 
 // A case that came back so often in one task is left to others.
 constexpr std::int64_t most_given_back = 10;
+// Times in a row that a file is there and cannot be opened, before the case is looked at later.
+constexpr int most_vanished = 3;
 
 double running_time() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -150,11 +152,15 @@ bool Task::claims(std::uint32_t place) {
 Task::Taken Task::take(std::uint32_t place) {
     auto& known = known_[place];
     const auto id = cases_.id(place);
-    while (true) {
+    for (int vanished = 0;;) {
         const campaign::Attempt attempt{id, known.next};
         if (spool_.claim(attempt, file_.name())) return Taken::claimed;
         const auto entry = spool_.read(attempt);
-        if (!entry) continue;  // it was released in between
+        if (!entry) {
+            // It was released in between, or this node does not see it yet.
+            if (++vanished == most_vanished) return Taken::elsewhere;
+            continue;
+        }
         if (const auto* claim = std::get_if<Claim>(&*entry); claim != nullptr && is_alive(attempt, *claim))
             return Taken::elsewhere;
         if (pass_over(place, attempt, *entry)) return Taken::over;
