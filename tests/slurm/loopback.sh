@@ -2,7 +2,7 @@
 # Campaigns under a Slurm of emulated nodes on this machine, disturbed in one way each; all must end in the dump of a
 # run without Slurm.
 #   tests/slurm/loopback.sh GRAINSWEEP SCENARIO
-# SCENARIO: calm, host_killed, node_killed, cancelled, controller, walltime, array
+# SCENARIO: calm, host_killed, node_killed, spreading (a node killed under a real campaign), cancelled, requeued, controller, walltime, array
 # The cluster is made by `slurm-loopback` (start DIR, stop DIR, env DIR, kill-node DIR NODE, kill-ctld DIR, start-ctld
 # DIR), named by the environment variable SLURM_LOOPBACK or found on the search path. Exit code 77 where it, or Slurm
 # itself, is not installed.
@@ -36,8 +36,17 @@ mkdir "$cluster"
 eval "$("$loopback" env "$cluster")"
 cd "$folder"
 
-# campaign NAME POINTS SECONDS EXECUTION > file
+# campaign NAME POINTS SECONDS EXECUTION > file; SECONDS "spreading": powder spread by a blade
 campaign() {
+    if [ "$3" = spreading ]; then
+        cat <<JSON
+{"campaign": "$1", "scene": "powder_spreading",
+ "factors": [{"name": "cohesion", "between": [0, 100000]}, {"name": "gap", "between": [0.0025, 0.005]},
+             {"name": "speed", "between": [1.0, 1.5]}],
+ "fixed": {"diameter": 0.002}, "design": {"kind": "halton", "points": $2}, "execution": $4}
+JSON
+        return
+    fi
     cat <<JSON
 {"campaign": "$1", "scene": "rehearsal",
  "factors": [{"name": "x1", "between": [0, 1]}, {"name": "x2", "between": [0, 1]}],
@@ -137,8 +146,10 @@ host_killed)
     expect_the_rows_of_a_run 64 0.5
     expect_no_crash
     ;;
-node_killed)
-    campaign c 64 0.5 "$hosts" >c.json
+node_killed | spreading)
+    seconds=0.5
+    [ $scenario != spreading ] || seconds=spreading
+    campaign c 64 $seconds "$hosts" >c.json
     job=$(in_three_nodes)
     until_so 60 at_least 24
     batch=$(squeue -h -j "$job" -o %B)
@@ -155,7 +166,7 @@ node_killed)
     for process in "${there[@]}"; do kill -KILL "$process" 2>/dev/null && killed=$((killed + 1)); done
     [ $killed -ge 3 ] || { echo "only $killed processes ran on $victim"; exit 1; }
     settled_in 240 "$job"
-    expect_the_rows_of_a_run 64 0.5
+    expect_the_rows_of_a_run 64 $seconds
     expect_no_crash
     ;;
 cancelled)
@@ -170,6 +181,15 @@ cancelled)
     settled_in 180 "$job"
     expect_the_rows_of_a_run 64 0.5
     expect_no_crash
+    ;;
+requeued)
+    # As a pre-emption does it.
+    campaign c 64 0.5 "$hosts" >c.json
+    job=$(in_three_nodes)
+    until_so 60 at_least 16
+    scontrol requeue "$job"
+    until_so 400 grep -qs "^exit code 0" job.out
+    expect_the_rows_of_a_run 64 0.5
     ;;
 controller)
     campaign c 160 0.5 "$hosts" >c.json
