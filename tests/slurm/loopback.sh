@@ -2,7 +2,8 @@
 # Campaigns under a Slurm of emulated nodes on this machine, disturbed in one way each; all must end in the dump of a
 # run without Slurm.
 #   tests/slurm/loopback.sh GRAINSWEEP SCENARIO
-# SCENARIO: calm, host_killed, node_killed, spreading (a node killed under a real campaign), cancelled, requeued, controller, walltime, array
+# SCENARIO: calm, host_killed, node_killed, spreading (a node killed under a real campaign), cancelled, requeued,
+# controller, walltime, array
 # The cluster is made by `slurm-loopback` (start DIR, stop DIR, env DIR, kill-node DIR NODE, kill-ctld DIR, start-ctld
 # DIR), named by the environment variable SLURM_LOOPBACK or found on the search path. Exit code 77 where it, or Slurm
 # itself, is not installed.
