@@ -92,6 +92,23 @@ void Subdomain::count_inner(const Field& view) {
     inner_ghosts = static_cast<std::int32_t>(std::lower_bound(view.inner_source, view.inner_source + all, ghosts) -
                                              view.inner_source);
     inner_rows = all - inner_ghosts;
+    std::ranges::fill(is_met, std::uint8_t{0});
+    const auto look_at = [&](Place place) {
+        if (place > place_at(filler + 1)) is_met[static_cast<std::size_t>(index_at(place) - filler - 2)] = 1;
+    };
+    for (std::int32_t k = 0; k < inner_ghosts; ++k) look_at(view.inner_first[k]);
+    for (std::int32_t k = inner_ghosts; k < all; ++k) look_at(view.inner_second[k]);
+    met.clear();
+    for (std::size_t k = 0; k < is_met.size(); ++k)
+        if (is_met[k] != 0) met.push_back(static_cast<std::int32_t>(k));
+}
+
+void Subdomain::copy_partners(Record* records, bool all) const {
+    Record* const copy = records + filler + 2;
+    if (all)
+        for (std::size_t k = 0; k < partner.size(); ++k) copy[k] = records[partner[k]];
+    else
+        for (const std::int32_t k : met) copy[k] = records[partner[static_cast<std::size_t>(k)]];
 }
 
 void Subdomains::use(Threads threads) {
@@ -113,11 +130,14 @@ std::int32_t Subdomains::contacts_before(const Field& whole, std::int32_t pair) 
 
 void Subdomains::cut_up(Field& whole, Columns& columns, bool listed) {
     const int parts = wanted(whole.count);
-    subdomains_.clear();
     if (parts == 1) {
+        subdomains_.clear();
         pool_.reset();
         return;
     }
+    subdomains_.resize(static_cast<std::size_t>(parts));  // those there are keep their memory
+    for (auto& subdomain : subdomains_)
+        if (subdomain == nullptr) subdomain = std::make_unique<Subdomain>();
     if (pool_ == nullptr || pool_->size() != parts) pool_ = std::make_unique<ThreadPool>(parts);
     const std::int32_t width = kernels_->width;
     const std::int32_t vectors = whole.outer_count / width + 1;
@@ -132,18 +152,26 @@ void Subdomains::cut_up(Field& whole, Columns& columns, bool listed) {
         contacts_before_[static_cast<std::size_t>(b)] = contacts;
         contacts += std::popcount(static_cast<unsigned>(b < vectors ? whole.outer_touching[b] : 0));
     }
-    choose_ranges(whole, columns, parts);
+    choose_ranges(whole, columns);
     find_partners(whole);
     place_copies(whole, columns);
-    for (const auto& subdomain : subdomains_) {
-        fill(*subdomain, whole, columns);
-        if (listed) fill_inner(*subdomain, whole);
+    for (const auto& d : subdomains_) {
+        d->pairs.histories = columns.histories;
+        d->is_met.resize(d->partner.size());
+        d->met.reserve(d->partner.size());
+        d->pairs.hold_pairs(d->ghost.size() + static_cast<std::size_t>(d->row_end - d->row_begin) + 2 * tile);
     }
+    pool_->run([&](int part) {
+        Subdomain& d = *subdomains_[static_cast<std::size_t>(part)];
+        fill(d, whole);
+        if (listed) fill_inner(d, whole);
+    });
     joined_ = true;
 }
 
 /// Ranges that cost about the same.
-void Subdomains::choose_ranges(const Field& whole, const Columns& columns, int parts) {
+void Subdomains::choose_ranges(const Field& whole, const Columns& columns) {
+    const int parts = count();
     const auto cost_before = [&](std::int32_t particle) {
         const std::int32_t pairs = pairs_before(whole.outer_first, whole.outer_count, particle);
         const std::int32_t advanced =
@@ -162,12 +190,11 @@ void Subdomains::choose_ranges(const Field& whole, const Columns& columns, int p
             else
                 high = middle;
         }
-        auto subdomain = std::make_unique<Subdomain>();
-        subdomain->begin = begin;
-        subdomain->end = begin = high;
-        subdomain->row_begin = pairs_before(whole.outer_first, whole.outer_count, subdomain->begin);
-        subdomain->row_end = pairs_before(whole.outer_first, whole.outer_count, subdomain->end);
-        subdomains_.push_back(std::move(subdomain));
+        Subdomain& d = *subdomains_[static_cast<std::size_t>(part)];
+        d.begin = begin;
+        d.end = begin = high;
+        d.row_begin = pairs_before(whole.outer_first, whole.outer_count, d.begin);
+        d.row_end = pairs_before(whole.outer_first, whole.outer_count, d.end);
     }
 }
 
@@ -175,6 +202,7 @@ void Subdomains::choose_ranges(const Field& whole, const Columns& columns, int p
 void Subdomains::find_partners(const Field& whole) {
     for (std::size_t n = 0; n < subdomains_.size(); ++n) {
         Subdomain& d = *subdomains_[n];
+        d.leaving.clear(), d.ghost.clear(), d.partner.clear();
         for (std::int32_t o = d.row_begin; o < d.row_end; ++o)
             if (whole.outer_second[o] >= place_at(d.end)) {
                 d.leaving.push_back(o);
@@ -209,11 +237,9 @@ void Subdomains::place_copies(Field& whole, Columns& columns) {
 }
 
 /// The outer list of a subdomain, which of its pairs touch, and their histories.
-void Subdomains::fill(Subdomain& d, const Field& whole, const Columns& columns) const {
+void Subdomains::fill(Subdomain& d, const Field& whole) const {
     const std::int32_t width = kernels_->width, rows = d.row_end - d.row_begin;
     const auto ghosts = static_cast<std::int32_t>(d.ghost.size());
-    d.pairs.histories = columns.histories;
-    d.pairs.hold_pairs(static_cast<std::size_t>(ghosts + rows) + 2 * tile);
     const Field f = d.view(whole);
     d.pairs.outer_touching.clear(static_cast<std::size_t>((ghosts + rows) / width) + 2);
     const auto take = [&](std::int32_t to, std::int32_t from) {
@@ -303,9 +329,7 @@ void Subdomains::join(const Field& whole, const Columns& columns) const {
 
 void Subdomains::sweep(Field& whole, std::optional<Refresh> renewal, bool advance, bool keep, Tally& tally) {
     pool_->run([&](int part) {
-        const Subdomain& d = *subdomains_[static_cast<std::size_t>(part)];
-        for (std::size_t k = 0; k < d.partner.size(); ++k)
-            whole.records[static_cast<std::size_t>(d.filler) + 2 + k] = whole.records[d.partner[k]];
+        subdomains_[static_cast<std::size_t>(part)]->copy_partners(whole.records, renewal.has_value());
     });
     pool_->run([&](int part) {
         Subdomain& d = *subdomains_[static_cast<std::size_t>(part)];

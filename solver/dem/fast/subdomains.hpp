@@ -34,7 +34,9 @@ struct Refresh {
 struct alignas(64) Subdomain {
     std::int32_t begin = 0, end = 0;
     std::int32_t filler = 0;
-    std::vector<std::int32_t> partner;        ///< in other subdomains, ascending; their copies lie behind the fillers
+    std::vector<std::int32_t> partner;  ///< in other subdomains, ascending; their copies lie behind the fillers
+    std::vector<std::int32_t> met;  ///< those of the inner list: numbers in `partner`; only they are copied each step
+    std::vector<std::uint8_t> is_met;
     std::vector<std::int32_t> ghost;          ///< of its outer list the first ones: where they stand in the whole list
     std::vector<std::int32_t> leaving;        ///< pairs of its rows with a later subdomain, likewise
     std::int32_t row_begin = 0, row_end = 0;  ///< its rows in the whole outer list
@@ -50,7 +52,10 @@ struct alignas(64) Subdomain {
     [[nodiscard]] std::int32_t particle_at(Place place) const;
     /// The place of a particle here.
     [[nodiscard]] Place place_of(std::int32_t particle) const;
+    /// After the inner list was made.
     void count_inner(const Field& view);
+    /// Copies the records of its partners: all, or those that a sweep over the inner list meets.
+    void copy_partners(Record* records, bool all) const;
 };
 
 class Subdomains {
@@ -79,10 +84,10 @@ public:
     void advance(const Field& whole, Tally& tally);
 
 private:
-    void choose_ranges(const Field& whole, const Columns& columns, int parts);
+    void choose_ranges(const Field& whole, const Columns& columns);
     void find_partners(const Field& whole);
     void place_copies(Field& whole, Columns& columns);
-    void fill(Subdomain& subdomain, const Field& whole, const Columns& columns) const;
+    void fill(Subdomain& subdomain, const Field& whole) const;
     void fill_inner(Subdomain& subdomain, const Field& whole) const;
     [[nodiscard]] std::int32_t contacts_before(const Field& whole, std::int32_t pair) const;
     void merge(Tally& tally) const;
