@@ -64,6 +64,11 @@ Command running(std::string name, std::string summary, bool calibrates) {
                 parser.add_option("CONFIG", request->config, "campaign file")->required();
                 parser.add_option("--db", request->database, "database; default: NAME.db in the current folder");
                 parser
+                    .add_option("--artefacts", request->artefacts,
+                                "folder of checkpoints and shared starting states, for all nodes to see; default: "
+                                "beside the database")
+                    ->type_name("DIR");
+                parser
                     .add_option("-j", request->workers,
                                 "workers, with execution.hosts of each host; 0: all cores; default: execution.workers")
                     ->check(whole_number(0, 4096));

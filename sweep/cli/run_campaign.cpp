@@ -272,7 +272,7 @@ public:
         if (!request.spool.empty()) refuse_other_cases(request.spool, placed_);
         database_ = request.database.empty() ? fs::path(campaign_.name + ".db") : request.database;
         refuse_what_cannot_start(campaign_, request, database_);
-        artefacts_ = artefact_folder(database_);
+        artefacts_ = request.artefacts.empty() ? artefact_folder(database_) : fs::absolute(request.artefacts);
         line_.emplace(request.quiet, workers_);
         if (request.spool.empty()) walltime_ = walltime_of(campaign_);
         store_.emplace(database_, store::Store::Mode::create,

@@ -14,6 +14,7 @@ namespace grainsweep::cli {
 struct RunRequest {
     std::filesystem::path config;
     std::filesystem::path database;          ///< empty: NAME.db in the current folder
+    std::filesystem::path artefacts;         ///< folder of checkpoints and starting states; empty: beside the database
     std::optional<std::int64_t> workers;     ///< overrides the file's; 0: all cores
     std::int64_t stop_after_failures = 0;    ///< 0: never
     std::optional<campaign::Outcome> again;  ///< ask again what ended like this

@@ -8,6 +8,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <string>
 #include <thread>
 
@@ -80,6 +81,20 @@ TEST(Walltime, ACaseLongerThanARunGoesOnInTheNext) {
     EXPECT_EQ(ended.code, 0) << ended.err;
     EXPECT_GE(campaign.ask("SELECT count(*) FROM attempt"), 2);
     campaign.expect_the_science_of_a_calm_run();
+}
+
+TEST(Walltime, CheckpointsLieWhereAllNodesSeeThem) {
+    const LimitedCampaign campaign(1, 7, 4);
+    auto command = campaign.command();
+    command.insert(command.end(), {"--artefacts", (campaign.folder() / "for all").string()});
+    auto ended = Process(command, campaign.folder().path()).wait();
+    EXPECT_EQ(ended.code, again) << ended.err;
+    EXPECT_FALSE(std::filesystem::is_empty(campaign.folder() / "for all"));
+    EXPECT_FALSE(std::filesystem::exists(campaign.folder() / "c.json.artefacts"));
+    for (int runs = 0; runs < 5 && ended.code == again; ++runs)
+        ended = Process(command, campaign.folder().path()).wait();
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_LT(campaign.ask("SELECT max(wall_seconds) FROM attempt"), 6) << "it went on from there";
 }
 
 TEST(Walltime, ASystemThatAsksGetsTheSameAnswer) {
