@@ -15,7 +15,7 @@ namespace grainsweep::dem::fast {
 struct Threads {
     int most = 1;  ///< 0: as many as there are cores
     /// Particles for each of them, at least; with fewer, waiting for one another costs more than it saves.
-    std::int32_t least_particles = 1500;
+    std::int32_t least_particles = 4000;
 };
 
 /// As many threads as a piece of work has parts, the calling one among them. Each begins with its own part, which its
