@@ -74,12 +74,21 @@ struct Computer {
     auto operator<=>(const Computer&) const = default;
 };
 
+/// What the operating system and a program say of an attempt that a program answered.
+struct ProgramFacts {
+    std::string version;                      ///< as the campaign asked for it; empty: it did not
+    double peak_memory = 0;                   ///< bytes resident at once; NaN: not known
+    std::optional<std::int64_t> exit_status;  ///< negative: the signal that ended it; none: it was still running
+    bool operator==(const ProgramFacts&) const = default;
+};
+
 struct CaseResult {
     Attempt attempt;
     Outcome outcome = Outcome::completed;
     std::string message;  ///< why, where it is not completed
     Observations observations;
     Cost cost;
+    std::optional<ProgramFacts> program = {};  ///< none: the scene is of the solver
 };
 
 /// scene, revision, every input that differs from its default, seed: name=value, sorted, doubles in

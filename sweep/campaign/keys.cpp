@@ -91,6 +91,7 @@ std::span<const Key> campaign_keys() {
          {"survey", "fast", "balanced", "reference"},
          {}},
         {"model", "how responses are learned from the cases; changes no result", Kind::object, false, {}, {}, {}},
+        {"program", "with \"scene\": \"program\": the command that answers a case", Kind::object, false, {}, {}, {}},
         {"limits", "what one case may cost", Kind::object, false, {}, {}, {}},
         {"execution", "how the cases run; changes no result", Kind::object, false, {}, {}, {}},
     };
@@ -324,12 +325,27 @@ std::vector<Key> design_keys(const designs::DesignInfo& design) {
 }
 
 std::span<const std::string> reserved_names() {
-    static const std::vector<std::string> names = {
-        "campaign",       "sim_case",     "case_input",          "campaign_case",
-        "attempt",        "observable",   "observation",         "convergence",
-        "provenance",     "series",       "convergence_history", "parameter",
-        "inputs",         "json_each",    "json_tree",           "attempt_computer",
-        "table_checksum", "file_checksum"};  // json_ ...: SQLite's own
+    static const std::vector<std::string> names = {"campaign",
+                                                   "sim_case",
+                                                   "case_input",
+                                                   "campaign_case",
+                                                   "attempt",
+                                                   "observable",
+                                                   "observation",
+                                                   "convergence",
+                                                   "provenance",
+                                                   "series",
+                                                   "convergence_history",
+                                                   "parameter",
+                                                   "inputs",
+                                                   "json_each",
+                                                   "json_tree",
+                                                   "attempt_computer",
+                                                   "table_checksum",
+                                                   "file_checksum",
+                                                   "program",
+                                                   "program_content",
+                                                   "attempt_program"};  // json_ ...: SQLite's own
     return names;
 }
 

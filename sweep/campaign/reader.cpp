@@ -1,5 +1,7 @@
 #include "sweep/campaign/reader.hpp"
 
+#include "sweep/campaign/program.hpp"
+#include "sweep/campaign/program_section.hpp"
 #include "sweep/campaign/relevance.hpp"
 #include "sweep/campaign/sections.hpp"
 #include "sweep/campaign/wrong_question.hpp"
@@ -42,10 +44,13 @@ std::string read_name(const Cursor& place) {
     return name;
 }
 
-const SceneInfo& read_scene(const Cursor& place) {
-    std::vector<std::string> known;
-    for (const auto& scene : scene_catalogue()) known.push_back(scene.name);
-    return *find_scene(place.word(known));
+const SceneInfo& read_scene(const Section& top, const fs::path& folder) {
+    const auto word = top.at("scene").word(scene_words());
+    if (word == program_word) return enter_program(read_program(top, folder));
+    if (const auto program = top.find("program"))
+        throw wrong_question(program->path(), "",
+                             fmt::format("belongs to \"scene\": \"program\", and this is {}", word));
+    return *find_scene(word);
 }
 
 std::string read_accuracy(const Cursor& place, const SceneInfo& scene) {
@@ -106,7 +111,7 @@ Campaign parse_campaign(std::string_view text, const fs::path& folder) {
     Campaign campaign;
     campaign.text = text;
     campaign.name = read_name(top.at("campaign"));
-    campaign.space.scene = &read_scene(top.at("scene"));
+    campaign.space.scene = &read_scene(top, folder);
     campaign.seed = static_cast<std::uint64_t>(top.whole("seed", 1));
     campaign.replicates = top.whole("replicates", 1);
     if (const auto where = top.find("where")) campaign.where = where->text();

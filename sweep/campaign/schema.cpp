@@ -3,6 +3,8 @@
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/keys.hpp"
+#include "sweep/campaign/program.hpp"
+#include "sweep/campaign/program_keys.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -170,6 +172,41 @@ OrderedJson design_schema(const designs::DesignInfo& design) {
     return schema;
 }
 
+/// Of a scene that a program answers: names and values are the campaign's own.
+OrderedJson program_rule() {
+    OrderedJson then = OrderedJson::object();
+    const OrderedJson name = {{"type", "string"}, {"pattern", "^[A-Za-z_][A-Za-z0-9_]*$"}};
+    then["factors"]["items"] = section(factor_keys());
+    then["factors"]["items"]["properties"]["name"].update(name);
+    then["fixed"] = {{"additionalProperties", {{"type", {"number", "string"}}}},
+                     {"properties", {{std::string(notes_key), notes_schema()}}}};
+    then["accuracy"] = false;
+    OrderedJson condition;
+    condition["properties"]["scene"]["const"] = program_word;
+    return {{"if", condition},
+            {"then", {{"properties", then}, {"required", {"program"}}}},
+            {"else", {{"properties", {{"program", false}}}}}};
+}
+
+OrderedJson program_schema() {
+    OrderedJson schema = section(program_keys());
+    auto& properties = schema["properties"];
+    properties["command"]["minItems"] = 1;
+    properties["environment"]["additionalProperties"] = {{"type", "string"}};
+    const auto named = [](OrderedJson entry) {
+        return OrderedJson{{"additionalProperties", std::move(entry)},
+                           {"properties", {{std::string(notes_key), notes_schema()}}}};
+    };
+    properties["parameters"].update(named(section(program_parameter_keys())));
+    OrderedJson observable = section(program_observable_keys());
+    observable["properties"]["from"].update(section(program_from_keys()));
+    observable["properties"]["from"]["oneOf"] = {
+        {{"required", {"json", "path"}}}, {{"required", {"csv", "column"}}}, {{"required", {"output"}}}};
+    properties["observables"].update(named(std::move(observable)));
+    properties["version"].update(section(program_version_keys()));
+    return schema;
+}
+
 /// Matches what the reader refuses: SQL folds the case of names.
 std::string pattern_of_reserved_names() {
     const auto folded = [](std::string_view word) {
@@ -205,6 +242,7 @@ std::string campaign_schema() {
     properties["calibration"].update(section(calibration_keys()));
     properties["calibration"]["properties"]["targets"]["items"] = section(target_keys());
     properties["calibration"]["properties"]["stop"].update(section(stop_keys()));
+    properties["program"].update(program_schema());
     properties["limits"].update(section(limits_keys()));
     properties["execution"].update(section(execution_keys()));
     properties["design"]["oneOf"] = OrderedJson::array();
@@ -215,6 +253,8 @@ std::string campaign_schema() {
         scenes.push_back(scene.name);
         schema["allOf"].push_back(scene_rule(scene));
     }
+    scenes.push_back(program_word);
+    schema["allOf"].push_back(program_rule());
     properties["scene"]["enum"] = scenes;
     return schema.dump(2);
 }

@@ -86,7 +86,8 @@ std::string further_points(std::string_view campaign_file, std::string_view name
     nlohmann::ordered_json text;
     text["notes"] = notes;
     text["campaign"] = name;
-    for (const char* key : {"scene", "factors", "fixed", "where", "accuracy", "model", "limits", "execution"})
+    for (const char* key :
+         {"scene", "program", "factors", "fixed", "where", "accuracy", "model", "limits", "execution"})
         if (const auto found = document.find(key); found != document.end()) text[key] = *found;
     if (const auto calibration = document.find("calibration");
         calibration != document.end() && calibration->is_object()) {

@@ -1,5 +1,6 @@
 // status, explain, replay, query, dump: what is in the archive.
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/program.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/path_option.hpp"
@@ -161,6 +162,18 @@ Table attempts_table(const std::vector<store::LoggedAttempt>& attempts) {
              attempt.started, report::to_cell(attempt.wall_seconds), attempt.computer.host, attempt.computer.processor,
              attempt.computer.instruction_path, described_build(attempt.computer), attempt.message});
     }
+    if (std::ranges::none_of(attempts, [](const auto& one) { return one.program.has_value(); })) return table;
+    // Of a program, in the place of the path that the solver's loops take.
+    *std::ranges::find(table.columns, "instruction_path") = "program_version";
+    table.columns.insert(table.columns.end() - 1, {"peak_memory", "exit_status"});
+    for (std::size_t k = 0; k < attempts.size(); ++k) {
+        auto& row = table.rows[k];
+        const auto& program = attempts[k].program;
+        const bool versioned = program && !program->version.empty();
+        row[6] = versioned ? Table::Cell{program->version} : Table::Cell{};
+        row.insert(row.end() - 1, {program ? report::to_cell(program->peak_memory) : Table::Cell{},
+                                   program ? report::to_cell(program->exit_status) : Table::Cell{}});
+    }
     return table;
 }
 
@@ -189,7 +202,7 @@ int explain(const std::string& database, const std::string& id, Format format) {
     }
     std::cout << fmt::format("{}\nscene {} revision {}, seed {}\n", heading_of(archive, question.id), question.scene,
                              question.revision, question.seed);
-    const SceneInfo* scene = find_scene(question.scene);
+    const SceneInfo* scene = campaign::known_scene(question.scene);
     for (const auto& [name, value] : question.inputs) {
         const auto* parameter = scene == nullptr ? nullptr : scene->find_parameter(name);
         if (parameter != nullptr && parameter->default_value == value) continue;
@@ -202,6 +215,8 @@ int explain(const std::string& database, const std::string& id, Format format) {
 }
 
 // ---- the table ----------------------------------------------------------------------------------------------
+
+constexpr double none_given = -1;  // of a tolerance
 
 struct Arguments {
     std::string database, text;
@@ -252,17 +267,29 @@ std::vector<Command> archive_commands() {
          false},
         {"replay", "computes a stored case again in this process and compares",
          [](Parser& parser, const Format& format) -> Action {
-             const auto arguments = with_database(parser);
-             parser.add_option("CASE", arguments->text, "case id, or its beginning")->required();
-             const auto pictures = std::make_shared<PictureRequest>();
-             declare_pictures(parser, *pictures);
-             const auto path = std::make_shared<std::string>();
-             declare_path(parser, *path, "that of the archive");
+             const auto request = std::make_shared<ReplayRequest>();
+             parser.add_option("DB", request->database, "database")->required();
+             parser.add_option("CASE", request->id, "case id, or its beginning")->required();
+             const auto tolerance = std::make_shared<double>(none_given);
+             parser
+                 .add_option("--tolerance", *tolerance,
+                             "relative difference up to which both agree; default: none on the same build and "
+                             "instruction path, \"tolerance\" of a program")
+                 ->type_name("X");
+             parser
+                 .add_option("--keep", request->keep,
+                             "new folder that a program answers the case in; it stays, to be looked at")
+                 ->type_name("DIR");
+             declare_pictures(parser, request->pictures);
+             declare_path(parser, request->path, "that of the archive");
              const auto threads = std::make_shared<std::int64_t>(0);
              declare_threads(parser, *threads);
-             return [arguments, pictures, path, threads, &format] {
+             return [request, tolerance, threads, &format] {
                  allow_threads(static_cast<int>(*threads));
-                 return replay(arguments->database, arguments->text, *pictures, *path, format);
+                 if (*tolerance != none_given) request->tolerance = *tolerance;
+                 if (request->tolerance && !(*request->tolerance >= 0 && *request->tolerance <= 1))
+                     throw campaign::wrong_question("--tolerance", std::to_string(*tolerance), "a number from 0 to 1");
+                 return replay(*request, format);
              };
          },
          false},

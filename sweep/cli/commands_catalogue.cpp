@@ -1,6 +1,8 @@
 // scenes, designs, schema: what exists, from the same tables that the reader checks against.
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/cursor.hpp"
+#include "sweep/campaign/program.hpp"
+#include "sweep/campaign/program_keys.hpp"
 #include "sweep/campaign/schema.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
@@ -177,9 +179,47 @@ void show_scene(const SceneInfo& scene, Format format) {
     if (!scene.accuracy.empty()) std::cout << '\n';
 }
 
+/// The keys of the section "program", object by object.
+store::Table program_table() {
+    store::Table table{{"object", "key", "default", "meaning"}, {}};
+    const auto add = [&](const char* object, std::span<const campaign::Key> keys) {
+        for (const auto& key : keys) {
+            const auto one_of = key.words.empty() ? "" : "; one of " + joined(key.words);
+            table.rows.push_back({std::string(object), key.name,
+                                  key.required ? Cell{std::string("required")} : text_or_none(key.standard),
+                                  key.meaning + one_of});
+        }
+    };
+    add("program", campaign::program_keys());
+    add("parameters.NAME", campaign::program_parameter_keys());
+    add("observables.NAME", campaign::program_observable_keys());
+    add("observables.NAME.from", campaign::program_from_keys());
+    add("version", campaign::program_version_keys());
+    return table;
+}
+
+void show_program(Format format) {
+    const store::Table table = program_table();
+    if (format == Format::csv) return report::write(std::cout, table, format);
+    if (format == Format::json) {
+        Json object = {{"name", campaign::program_word}, {"summary", campaign::program_summary()}, {"revision", 1}};
+        object["parameters"] = object["observables"] = Json::array();  // the campaign file's own
+        object["accuracy"] = Json::object();
+        object["section"] = report::to_json(table);
+        return report::write(std::cout, object);
+    }
+    std::cout << fmt::format("{}: {}\n\n", campaign::program_word, campaign::program_summary());
+    report::write(std::cout, table, format);
+    std::cout << "\nparameters are the factors and fixed values of the campaign file, observables those of its "
+                 "\"program\"\n";
+}
+
 int list_scenes(const std::string& name, Format format) {
-    std::vector<std::string> known;
-    for (const auto& scene : scene_catalogue()) known.push_back(scene.name);
+    const std::vector<std::string> known = campaign::scene_words();
+    if (name == campaign::program_word) {
+        show_program(format);
+        return 0;
+    }
     if (!name.empty()) {
         const auto* scene = find_scene(name);
         if (scene == nullptr) {
@@ -195,6 +235,8 @@ int list_scenes(const std::string& name, Format format) {
                               static_cast<std::int64_t>(scene.parameters.size()),
                               static_cast<std::int64_t>(scene.observables.size()), scene.summary});
     }
+    table.rows.push_back({std::string(campaign::program_word), std::int64_t{1}, Cell{}, Cell{},
+                          std::string(campaign::program_summary())});
     report::write(std::cout, table, format);
     return 0;
 }

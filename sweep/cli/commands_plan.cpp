@@ -1,8 +1,8 @@
 // plan: check and unfold a campaign; show the design and the predicted cost; run nothing.
 #include "sweep/campaign/forecast.hpp"
-#include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
+#include "sweep/cli/program_campaign.hpp"
 #include "sweep/cli/progress.hpp"
 #include "sweep/report/features.hpp"
 #include "sweep/report/history.hpp"
@@ -239,7 +239,7 @@ void show_text(const Campaign& campaign, const Outlook& outlook) {
 }
 
 int plan(const std::string& config, std::string database, Format format) {
-    Campaign campaign = campaign::read_campaign(config);
+    Campaign campaign = read_with_program(config);
     std::optional<store::Store> archive;
     if (database.empty() && std::filesystem::exists(campaign.name + ".db")) database = campaign.name + ".db";
     if (!database.empty()) archive.emplace(database, store::Store::Mode::read);

@@ -101,6 +101,8 @@ void declare_worker(Parser& parser, workers::WorkerOptions& options, std::string
     parser.add_option("--artefacts", options.artefacts, "folder of shared starting states and checkpoints");
     parser.add_option("--checkpoint-seconds", options.checkpoint_seconds, "a case is saved this often");
     parser.add_option("--lease-seconds", options.lease_seconds, "silence after which it ends itself");
+    parser.add_option("--cases", options.cases, "folder of cases that programs answer");
+    parser.add_option("--limit-seconds", options.limit_seconds, "of a case that a program answers");
     declare_path(parser, path);
 }
 
@@ -136,6 +138,9 @@ Command host_command() {
                                     fmt::format("{}", options->lease_seconds)};
                     if (!options->artefacts.empty())
                         host.command.insert(host.command.end(), {"--artefacts", options->artefacts.string()});
+                    if (!options->cases.empty())
+                        host.command.insert(host.command.end(), {"--cases", options->cases.string(), "--limit-seconds",
+                                                                 fmt::format("{}", options->limit_seconds)});
                     if (!path->empty()) host.command.insert(host.command.end(), {"--path", *path});
                     return workers::host(host);
                 };

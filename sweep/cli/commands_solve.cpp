@@ -1,11 +1,14 @@
 // solve: one case of a campaign in this process, without a database.
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/program.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/relevance.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/path_option.hpp"
 #include "sweep/cli/pictures.hpp"
+#include "sweep/cli/program_campaign.hpp"
+#include "sweep/cli/program_case.hpp"
 #include "sweep/cli/threads_option.hpp"
 #include "sweep/report/features.hpp"
 #include "sweep/store/expression.hpp"
@@ -36,6 +39,7 @@ struct SolveRequest {
     std::string config;
     std::vector<std::string> settings;  ///< NAME=VALUE
     PictureRequest pictures;
+    std::string keep;                   ///< folder that a program's case is answered in; empty: none
     std::string path;                   ///< instruction path; empty: the widest there is
     std::int64_t threads = 0;           ///< 0: one for each core
     std::optional<std::uint64_t> seed;  ///< the case's own; none: the campaign's for this question
@@ -78,8 +82,20 @@ Inputs middle_of(const campaign::ParameterSpace& space) {
     return space.at(std::span<const double>(u));
 }
 
-campaign::Case question_of(const SolveRequest& request) {
-    Campaign campaign = campaign::read_campaign(request.config);
+/// Percents on a terminal, nothing elsewhere.
+bool show_progress(const Scene& scene) {
+    static const bool terminal = ::isatty(STDERR_FILENO) == 1;
+    if (terminal) std::cerr << fmt::format("\r{:3.0f} %", 100 * scene.progress()) << std::flush;
+    return true;
+}
+
+struct Asked {
+    campaign::Case question;
+    double limit_seconds = 0;
+};
+
+Asked question_of(const SolveRequest& request) {
+    Campaign campaign = read_with_program(request.config);
     campaign::asked_in(request.config, [&] { campaign::check_design(campaign); });
     campaign::asked_in(request.config, [&] { report::check_features(campaign); });
     apply(request.settings, campaign, std::filesystem::path(request.config).parent_path());
@@ -88,7 +104,18 @@ campaign::Case question_of(const SolveRequest& request) {
         request.config, [&] { return store::make_filter(campaign.where, campaign::filter_names(campaign)); });
     if (!filter(inputs)) std::cerr << "grainsweep: the campaign leaves this point out: " << campaign.where << '\n';
     const std::uint64_t seed = request.seed ? *request.seed : campaign::case_seed(campaign, inputs, 0);
-    return campaign::make_case(campaign.scene(), inputs, seed);
+    return {campaign::make_case(campaign.scene(), inputs, seed), campaign.limits.wall_seconds};
+}
+
+CaseResult answer_of(const Asked& asked, const SolveRequest& request, Pictures& pictures) {
+    if (auto program = campaign::known_program(asked.question.scene))
+        return answer_by_program(std::move(program), asked.question, 1, asked.limit_seconds, request.keep,
+                                 request.pictures);
+    if (!request.keep.empty())
+        throw campaign::wrong_question("--keep", request.keep, "is for cases that a program answers");
+    NoArtefacts artefacts;
+    auto computed = workers::compute(asked.question, 1, artefacts, std::nullopt, show_progress, pictures.camera());
+    return std::move(computed.value());  // the watch never gives it up
 }
 
 Json json_of(const Sample& sample) {
@@ -104,14 +131,20 @@ Json json_of(const campaign::Case& question, const CaseResult& result) {
                    {"revision", question.revision},
                    {"case_id", question.id},
                    {"seed", report::to_json(Cell{static_cast<std::int64_t>(question.seed)})}};
-    object["instruction_path"] = instruction_path();
+    if (result.program) {
+        object["program"] = {{"version", result.program->version},
+                             {"peak_memory", report::to_json(Cell{result.program->peak_memory})},
+                             {"exit_status", report::to_json(report::to_cell(result.program->exit_status))}};
+    } else {
+        object["instruction_path"] = instruction_path();
+    }
     object["inputs"] = Json::object();
     for (const auto& [name, value] : question.inputs) object["inputs"][name] = report::to_json(report::to_cell(value));
     object["outcome"] = campaign::to_string(result.outcome);
     object["message"] = result.message;
     object["scalars"] = Json::object();
     if (result.outcome == campaign::Outcome::completed || result.outcome == campaign::Outcome::skipped)
-        for (const auto& declared : find_scene(question.scene)->observables)  // null: undefined in this case
+        for (const auto& declared : campaign::known_scene(question.scene)->observables)  // null: undefined in this case
             if (declared.shape == Shape::scalar) object["scalars"][declared.name] = nullptr;
     for (const auto& [name, value] : result.observations.scalars)
         object["scalars"][name] = report::to_json(Cell{value});
@@ -152,7 +185,7 @@ store::Table table_of(const campaign::Case& question, const CaseResult& result) 
 }
 
 void show_text(const campaign::Case& question, const CaseResult& result) {
-    const auto& scene = *find_scene(question.scene);
+    const auto& scene = *campaign::known_scene(question.scene);
     store::Table table{{"name", "value", "unit", "meaning"}, {}};
     for (const auto& parameter : scene.parameters) {
         const Value& value = question.inputs.at(parameter.name);
@@ -178,24 +211,19 @@ void show_text(const campaign::Case& question, const CaseResult& result) {
         answers.rows.push_back({observable.name, value, observable.unit, observable.meaning});
     }
     if (!answers.rows.empty()) report::write(std::cout, answers, Format::text);
-    std::cout << fmt::format("\n{:.3g} s, {:.3g} s of processor, {:.3g} particle steps\n", result.cost.wall_seconds,
-                             result.cost.cpu_seconds, result.cost.particle_steps);
-}
-
-/// Percents on a terminal, nothing elsewhere.
-bool show_progress(const Scene& scene) {
-    static const bool terminal = ::isatty(STDERR_FILENO) == 1;
-    if (terminal) std::cerr << fmt::format("\r{:3.0f} %", 100 * scene.progress()) << std::flush;
-    return true;
+    std::cout << fmt::format("\n{:.3g} s, {:.3g} s of processor", result.cost.wall_seconds, result.cost.cpu_seconds);
+    if (result.program)
+        std::cout << fmt::format(", {:.3g} MB\n", 1e-6 * result.program->peak_memory);
+    else
+        std::cout << fmt::format(", {:.3g} particle steps\n", result.cost.particle_steps);
 }
 
 int solve(const SolveRequest& request, Format format) {
-    const campaign::Case question = question_of(request);
-    NoArtefacts artefacts;
+    const Asked asked = question_of(request);
+    const auto& question = asked.question;
     Pictures pictures(request.pictures, question);
-    const auto computed = workers::compute(question, 1, artefacts, std::nullopt, show_progress, pictures.camera());
+    const CaseResult result = answer_of(asked, request, pictures);
     if (::isatty(STDERR_FILENO) == 1) std::cerr << "\r\033[K" << std::flush;
-    const CaseResult& result = computed.value();  // the watch never gives it up
     pictures.finish(result);
     if (format == Format::text) show_text(question, result);
     if (format == Format::csv) report::write(std::cout, table_of(question, result), format);
@@ -222,6 +250,10 @@ std::vector<Command> solve_commands() {
                      ->check(whole_number(0))
                      ->grouped_digits();
                  declare_pictures(parser, request->pictures);
+                 parser
+                     .add_option("--keep", request->keep,
+                                 "new folder that a program answers the case in; it stays, to be looked at")
+                     ->type_name("DIR");
                  declare_path(parser, request->path);
                  declare_threads(parser, request->threads);
                  return [request, &format] {

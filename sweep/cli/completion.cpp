@@ -1,6 +1,7 @@
 #include "sweep/cli/completion.hpp"
 
 #include "sweep/campaign/case.hpp"
+#include "sweep/campaign/program.hpp"
 #include "sweep/designs/design.hpp"
 
 #include "solver/scenes/scene.hpp"
@@ -22,12 +23,6 @@ struct Values {
     bool folder = false;
     std::string sql = {};  ///< one column of words; @ stands for what is typed so far
 };
-
-std::vector<std::string> scene_names() {
-    std::vector<std::string> names;
-    for (const auto& scene : scene_catalogue()) names.push_back(scene.name);
-    return names;
-}
 
 std::vector<std::string> design_names() {
     std::vector<std::string> names;
@@ -70,7 +65,7 @@ const std::vector<Rule>& rules() {
         {"--path", {.words = {instruction_path_words().begin(), instruction_path_words().end()}}},
         {"--again", {.words = outcome_words()}},
         {"--set", {.words = settings()}},
-        {"scenes NAME", {.words = scene_names()}},
+        {"scenes NAME", {.words = campaign::scene_words()}},
         {"designs NAME", {.words = design_names()}},
         {"completion SHELL", {.words = {"bash", "zsh"}}},
         {"--campaign", {.sql = "SELECT name FROM campaign"}},

@@ -1,5 +1,6 @@
 #include "sweep/cli/crew_options.hpp"
 
+#include "sweep/campaign/program.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
 
@@ -10,34 +11,45 @@
 namespace grainsweep::cli {
 namespace {
 
-std::vector<std::string> own_command(const std::string& command, const std::filesystem::path& artefacts,
-                                     const std::string& path) {
+constexpr double time_to_end_a_program = 30;  // s
+
+std::vector<std::string> own_command(const std::string& command, const campaign::Campaign& campaign,
+                                     const WorkerFolders& folders, const std::string& path) {
     std::vector<std::string> argv = {std::filesystem::read_symlink("/proc/self/exe").string(), command, "--artefacts",
-                                     artefacts.string()};
+                                     folders.artefacts.string()};
+    if (campaign::is_program(campaign.scene().name))
+        argv.insert(argv.end(), {"--cases", folders.cases.string(), "--limit-seconds",
+                                 campaign::shortest(campaign.limits.wall_seconds)});
     if (!path.empty()) argv.insert(argv.end(), {"--path", path});
     return argv;
 }
 
 }  // namespace
 
-std::size_t worker_count(const campaign::Execution& execution, std::optional<std::int64_t> asked) {
+std::size_t worker_count(const campaign::Campaign& campaign, std::optional<std::int64_t> asked) {
+    const auto& execution = campaign.execution;
+    const auto program = campaign::known_program(campaign.scene().name);
+    const unsigned of_a_case = program ? static_cast<unsigned>(program->cores) : 1;
     const bool hosted = execution.hosts > 0;
     const std::int64_t number = asked.value_or(hosted ? execution.workers_per_host : execution.workers);
     const std::size_t each =
-        number > 0 ? static_cast<std::size_t>(number) : std::max(1U, std::thread::hardware_concurrency());
+        number > 0 ? static_cast<std::size_t>(number) : std::max(1U, std::thread::hardware_concurrency() / of_a_case);
     return hosted ? each * static_cast<std::size_t>(execution.hosts) : each;
 }
 
-workers::PoolOptions pool_options(const campaign::Campaign& campaign, const std::filesystem::path& artefacts,
-                                  std::size_t workers, const std::string& path) {
+workers::PoolOptions pool_options(const campaign::Campaign& campaign, const WorkerFolders& folders, std::size_t workers,
+                                  const std::string& path) {
     const auto& execution = campaign.execution;
     workers::PoolOptions options;
     options.launcher = execution.launcher;
-    options.command = own_command("worker", artefacts, path);
+    options.command = own_command("worker", campaign, folders, path);
     options.workers = workers;
     options.hosts = static_cast<std::size_t>(execution.hosts);
-    if (options.hosts > 0) options.host_command = own_command("host", artefacts, path);
+    if (options.hosts > 0) options.host_command = own_command("host", campaign, folders, path);
     options.limits = {campaign.limits.wall_seconds, execution.start_seconds, execution.silence_seconds};
+    // The worker of a program ends one that takes too long; this is for a worker that cannot.
+    if (campaign::is_program(campaign.scene().name) && options.limits.wall > 0)
+        options.limits.wall += time_to_end_a_program;
     options.expected.program = this_computer();
     for (const auto& observable : campaign.scene().observables)
         options.expected.measured.emplace(observable.name, observable.shape);

@@ -11,13 +11,15 @@
 
 namespace grainsweep::cli {
 
-/// `asked` overrides the campaign file's; with hosts, of each host. 0: all cores.
-[[nodiscard]] std::size_t worker_count(const campaign::Execution& execution, std::optional<std::int64_t> asked);
-/// `artefacts`: folder of shared starting states and checkpoints; `path`: instruction path of the workers, empty: each
-/// the widest it has.
-[[nodiscard]] workers::PoolOptions pool_options(const campaign::Campaign& campaign,
-                                                const std::filesystem::path& artefacts, std::size_t workers,
-                                                const std::string& path);
+/// `asked` overrides the campaign file's; with hosts, of each host. 0: all cores, as far as each case takes one.
+[[nodiscard]] std::size_t worker_count(const campaign::Campaign& campaign, std::optional<std::int64_t> asked);
+struct WorkerFolders {
+    std::filesystem::path artefacts;  ///< shared starting states and checkpoints
+    std::filesystem::path cases;      ///< of cases that a program answers
+};
+/// `path`: instruction path of the workers, empty: each the widest it has.
+[[nodiscard]] workers::PoolOptions pool_options(const campaign::Campaign& campaign, const WorkerFolders& folders,
+                                                std::size_t workers, const std::string& path);
 /// Throws campaign::WrongQuestion.
 void refuse_launcher_that_is_not_there(const campaign::Campaign& campaign, const std::filesystem::path& config);
 

@@ -1,6 +1,8 @@
 #include "sweep/cli/manual.hpp"
 
 #include "sweep/campaign/keys.hpp"
+#include "sweep/campaign/program.hpp"
+#include "sweep/campaign/program_keys.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/designs/design.hpp"
 
@@ -115,6 +117,7 @@ std::string keys_section() {
     add("Convergence", campaign::convergence_keys());
     add("A calibration", campaign::calibration_keys());
     add("A target of a calibration", campaign::target_keys());
+    add("Program", campaign::program_keys());
     add("Limits", campaign::limits_keys());
     add("Execution", campaign::execution_keys());
     return text;
@@ -123,6 +126,7 @@ std::string keys_section() {
 std::string catalogue_sections() {
     std::string text = section("SCENES");
     for (const auto& scene : scene_catalogue()) text += item(bold(scene.name), plain(scene.summary) + ".");
+    text += item(bold(std::string(campaign::program_word)), plain(std::string(campaign::program_summary()) + "."));
     text += section("DESIGNS");
     for (const auto& design : designs::design_catalogue()) text += item(bold(design.name), plain(design.summary));
     return text;

@@ -3,6 +3,7 @@
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/path_option.hpp"
+#include "sweep/cli/program_case.hpp"
 #include "sweep/cli/stored_case.hpp"
 #include "sweep/workers/compute.hpp"
 
@@ -14,6 +15,8 @@
 #include <iostream>
 #include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace grainsweep::cli {
 namespace {
@@ -44,18 +47,31 @@ double at(const std::map<std::string, double, std::less<>>& scalars, const std::
     return found == scalars.end() ? std::nan("") : found->second;
 }
 
-/// Equal to the last bit; an empty series is as good as none.
-bool same_samples(const auto& a, const auto& b, const std::string& name) {
+/// Not a number where one of them alone is.
+double largest_difference(const auto& a, const auto& b, const std::string& name) {
     static const std::vector<Sample> none;
     const auto of = [&](const auto& series) -> const std::vector<Sample>& {
         const auto found = series.find(name);
         return found == series.end() ? none : found->second;
     };
-    return std::ranges::equal(of(a), of(b), [](const Sample& x, const Sample& y) {
-        return relative_difference(x.time, y.time) == 0 && relative_difference(x.bin, y.bin) == 0 &&
-               relative_difference(x.value, y.value) == 0;
-    });
+    const auto &x = of(a), &y = of(b);  // an empty series is as good as none
+    if (x.size() != y.size()) return std::nan("");
+    double worst = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        for (const double one : {relative_difference(x[k].time, y[k].time), relative_difference(x[k].bin, y[k].bin),
+                                 relative_difference(x[k].value, y[k].value)})
+            worst = std::isnan(one) ? one : std::max(worst, one);
+        if (std::isnan(worst)) break;
+    }
+    return worst;
 }
+
+/// What may be expected of a replay.
+struct Expectation {
+    double tolerance = 0;       ///< relative; 0: the same bits
+    bool everything = true;     ///< also what the archive does not know, and series
+    std::string why_tolerated;  ///< in brackets behind the difference
+};
 
 struct Comparison {
     Table table{{"observable", "archive", "replay", "relative_difference"}, {}};
@@ -63,65 +79,85 @@ struct Comparison {
     std::string verdict;
 };
 
-/// `same_path`: the same bits are expected, and everything the replay measured is compared.
-Comparison compared(const campaign::CaseResult& stored, const campaign::CaseResult& now, bool same_path) {
+Comparison compared(const campaign::CaseResult& stored, const campaign::CaseResult& now, const Expectation& expected) {
     Comparison comparison;
     double worst = 0;
+    const auto take = [&](double difference) { worst = std::isnan(difference) ? 1 : std::max(worst, difference); };
     auto names = stored.observations.scalars;
-    if (same_path) names.insert(now.observations.scalars.begin(), now.observations.scalars.end());
+    if (expected.everything) names.insert(now.observations.scalars.begin(), now.observations.scalars.end());
     for (const auto& [name, ignored] : names) {  // another build may measure more than the archive knows
         const double a = at(stored.observations.scalars, name), b = at(now.observations.scalars, name);
         const double difference = relative_difference(a, b);
-        worst = std::isnan(difference) ? 1 : std::max(worst, difference);
+        take(difference);
         comparison.table.rows.push_back({name, report::to_cell(a), report::to_cell(b), report::to_cell(difference)});
     }
-    bool same_series = true;
-    auto series = stored.observations.series;
-    series.insert(now.observations.series.begin(), now.observations.series.end());
-    for (const auto& [name, ignored] : series)
-        same_series = same_series && same_samples(stored.observations.series, now.observations.series, name);
+    if (expected.everything) {
+        auto series = stored.observations.series;
+        series.insert(now.observations.series.begin(), now.observations.series.end());
+        for (const auto& [name, ignored] : series)
+            take(largest_difference(stored.observations.series, now.observations.series, name));
+    }
     const bool same_outcome = stored.outcome == now.outcome;
-    comparison.agrees = same_outcome && (same_path ? worst == 0 && same_series : worst <= tolerance_across_paths);
-    comparison.verdict = !same_outcome ? fmt::format("the archive says {}, the replay {}: {}",
-                                                     to_string(stored.outcome), to_string(now.outcome), now.message)
-                         : same_path
-                             ? (comparison.agrees ? "equal to the last bit"
-                                                  : "DIFFERENT although build and instruction path are the same")
-                             : fmt::format(
-                                   "largest relative difference {:.3g} (another build or instruction path: up to {} is "
-                                   "taken as agreement)",
-                                   worst, tolerance_across_paths);
+    comparison.agrees = same_outcome && worst <= expected.tolerance;
+    comparison.verdict =
+        !same_outcome ? fmt::format("the archive says {}, the replay {}: {}", to_string(stored.outcome),
+                                    to_string(now.outcome), now.message)
+        : expected.tolerance == 0
+            ? (comparison.agrees ? "equal to the last bit" : "DIFFERENT although " + expected.why_tolerated)
+            : fmt::format("largest relative difference {:.3g} ({}up to {} is taken as agreement)", worst,
+                          expected.why_tolerated.empty() ? "" : expected.why_tolerated + ": ", expected.tolerance);
     return comparison;
+}
+
+/// With another build or instruction path only scalars are compared.
+Expectation expectation_of(const ReplayRequest& request, const campaign::Program* program, bool same_path) {
+    if (program != nullptr) {
+        const double tolerance = request.tolerance.value_or(program->tolerance);
+        return {tolerance, true,
+                tolerance == 0 ? "no tolerance is given (--tolerance, or \"tolerance\" of the program)" : ""};
+    }
+    if (request.tolerance)
+        return {*request.tolerance, same_path, same_path ? "build and instruction path are the same" : ""};
+    if (same_path) return {0, true, "build and instruction path are the same"};
+    return {tolerance_across_paths, false, "another build or instruction path"};
 }
 
 }  // namespace
 
-int replay(const std::string& database, const std::string& id, const PictureRequest& wanted, const std::string& path,
-           Format format) {
-    const Store archive(database, Store::Mode::read);
-    const campaign::Case question = as_asked_today(require_case(archive, id));
+int replay(const ReplayRequest& request, Format format) {
+    const Store archive(request.database, Store::Mode::read);
+    const campaign::Case question = as_asked_today(require_case(archive, request.id));
     const auto stored = archive.result(question.id);
-    if (!stored) throw campaign::wrong_question("CASE", id, "has no result to compare with yet");
+    if (!stored) throw campaign::wrong_question("CASE", request.id, "has no result to compare with yet");
     if (stored->outcome == Outcome::abandoned)
-        throw campaign::wrong_question("CASE", id, "was given back unfinished: there is no answer to compare with yet");
+        throw campaign::wrong_question("CASE", request.id,
+                                       "was given back unfinished: there is no answer to compare with yet");
     if (stored->outcome == Outcome::crashed || stored->outcome == Outcome::timed_out)
         std::cerr << fmt::format("grainsweep: this case {}; computed here it may do the same\n",
                                  stored->outcome == Outcome::crashed ? "crashed its worker" : "ran out of time");
     const auto attempts = archive.attempts(question.id);
     const auto then = std::ranges::find(attempts, stored->attempt.number, &store::LoggedAttempt::number);
-    if (!path.empty())
-        use_path(path);
+    if (!request.path.empty())
+        use_path(request.path);
     else if (then != attempts.end())
         use_path_of_old(then->computer.instruction_path);
     const bool same_path = then != attempts.end() && gives_the_same_bits(then->computer, this_computer());
+    const auto program = archive.program(question.scene);
+    if (program == nullptr && !request.keep.empty())
+        throw campaign::wrong_question("--keep", request.keep, "is for cases that a program answers");
 
-    NoArtefacts artefacts;
-    Pictures pictures(wanted, question);
-    const auto now = workers::compute(
-        question, stored->attempt.number, artefacts, std::nullopt, [](const Scene&) { return true; },
-        pictures.camera());
-    pictures.finish(now.value());  // nothing gave it up
-    const auto [table, agrees, verdict] = compared(*stored, *now, same_path);
+    Pictures pictures(request.pictures, question);
+    const auto now = [&] {
+        if (program != nullptr)
+            return answer_by_program(program, question, stored->attempt.number, 0, request.keep, request.pictures);
+        NoArtefacts artefacts;
+        auto computed = workers::compute(
+            question, stored->attempt.number, artefacts, std::nullopt, [](const Scene&) { return true; },
+            pictures.camera());
+        return std::move(computed.value());  // nothing gave it up
+    }();
+    pictures.finish(now);
+    const auto [table, agrees, verdict] = compared(*stored, now, expectation_of(request, program.get(), same_path));
     if (format == Format::json) {
         report::write(std::cout, nlohmann::ordered_json{{"case_id", question.id},
                                                         {"same_path", same_path},

@@ -4,13 +4,20 @@
 #include "sweep/cli/pictures.hpp"
 #include "sweep/report/table.hpp"
 
+#include <optional>
 #include <string>
 
 namespace grainsweep::cli {
 
-/// `id`: of the case, or its beginning; `path`: the instruction path, empty: that of the archive. Returns the exit
-/// code: 0 where both agree. Throws WrongQuestion where there is nothing to compare with.
-[[nodiscard]] int replay(const std::string& database, const std::string& id, const PictureRequest& wanted,
-                         const std::string& path, report::Format format);
+struct ReplayRequest {
+    std::string database, id;  ///< `id`: of the case, or its beginning
+    PictureRequest pictures;
+    std::string path;                 ///< instruction path; empty: that of the archive
+    std::optional<double> tolerance;  ///< relative; none: bit for bit where that can be expected
+    std::string keep;                 ///< folder for the case of a program
+};
+
+/// Returns the exit code: 0 where both agree. Throws WrongQuestion where there is nothing to compare with.
+[[nodiscard]] int replay(const ReplayRequest& request, report::Format format);
 
 }  // namespace grainsweep::cli

@@ -1,11 +1,11 @@
 #include "sweep/cli/run_campaign.hpp"
 
 #include "sweep/campaign/forecast.hpp"
-#include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/collect_spool.hpp"
 #include "sweep/cli/crew_options.hpp"
+#include "sweep/cli/program_campaign.hpp"
 #include "sweep/cli/progress.hpp"
 #include "sweep/cli/walltime.hpp"
 #include "sweep/report/features.hpp"
@@ -266,8 +266,9 @@ class Run {
 public:
     explicit Run(const RunRequest& request)
         : request_(request),
-          campaign_(request.spool.empty() ? campaign::read_campaign(request.config) : campaign_of_spool(request.spool)),
-          workers_(worker_count(campaign_.execution, request.workers)) {
+          campaign_(request.spool.empty() ? read_with_program(request.config)
+                                          : with_program(campaign_of_spool(request.spool), request.spool / "campaign")),
+          workers_(worker_count(campaign_, request.workers)) {
         unfold();
         if (!request.spool.empty()) refuse_other_cases(request.spool, placed_);
         database_ = request.database.empty() ? fs::path(campaign_.name + ".db") : request.database;
@@ -359,7 +360,8 @@ private:
     }
     void compute() {
         schedule::Plan plan(std::move(questions_), rules_of(campaign_, request_, workers_));
-        workers::Pool pool(pool_options(campaign_, artefacts_, workers_, request_.path));
+        const StagedProgram staged(campaign::known_program(campaign_.scene().name), cases_folder(database_));
+        workers::Pool pool(pool_options(campaign_, {artefacts_, cases_folder(database_)}, workers_, request_.path));
         store::ArtefactFolder folder(artefacts_);
         sweep(folder, *store_);
         schedule::Watchers watchers;

@@ -1,10 +1,10 @@
 #include "sweep/cli/work_task.hpp"
 
 #include "sweep/campaign/forecast.hpp"
-#include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/crew_options.hpp"
+#include "sweep/cli/program_campaign.hpp"
 #include "sweep/cli/progress.hpp"
 #include "sweep/cli/walltime.hpp"
 #include "sweep/designs/design.hpp"
@@ -16,6 +16,7 @@
 #include "sweep/workers/worker.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
@@ -107,7 +108,7 @@ int exit_code_of(Ending ending, const spool::Task::Tally& tally) {
 
 WorkReport work_on(const WorkRequest& request) {
     const auto share = share_asked(request.share);
-    const auto campaign = campaign::read_campaign(request.config);
+    const auto campaign = read_with_program(request.config);
     refuse_what_follows_from_answers(campaign, request.config);
     refuse_launcher_that_is_not_there(campaign, request.config);
     campaign::Forecast forecast;
@@ -121,7 +122,7 @@ WorkReport work_on(const WorkRequest& request) {
     const auto beside = std::filesystem::absolute(request.config).parent_path();
     const spool::Spool spool(std::filesystem::absolute(request.spool),
                              {beside, spool::hash_of_cases(cases), campaign.text});
-    const std::size_t workers = worker_count(campaign.execution, request.workers);
+    const std::size_t workers = worker_count(campaign, request.workers);
     ProgressLine line(request.quiet, workers);
     for (const auto& warning : campaign::warnings_of(campaign, forecast)) line.note("warning: " + warning);
 
@@ -140,7 +141,11 @@ WorkReport work_on(const WorkRequest& request) {
     watchers.forget_checkpoint = [&](const campaign::CaseId& id) {
         artefacts.remove(workers::checkpoint_key(id, this_computer()));
     };
-    workers::Pool pool(pool_options(campaign, spool.artefacts(), workers, request.path));
+    // Tasks come and go: each has a folder of its own for the cases of a program.
+    const auto cases_here = std::filesystem::absolute(request.spool) /
+                            fmt::format("cases-{}-{}", this_computer().host, ::getpid());
+    const StagedProgram staged(campaign::known_program(campaign.scene().name), cases_here);
+    workers::Pool pool(pool_options(campaign, {spool.artefacts(), cases_here}, workers, request.path));
     spool::Task task(spool, cases, forecast.seconds, pool, std::move(rules), std::move(watchers));
     const Ending ending = task.run();
     const auto& tally = task.tally();

@@ -2,6 +2,7 @@
 
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/identity.hpp"
+#include "sweep/campaign/program.hpp"
 #include "sweep/campaign/stored_text.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/report/brackets.hpp"
@@ -267,7 +268,7 @@ void refuse_unknown_models(const Json& page, const PageModels& asked) {
 Json campaign_of(const store::Store& store, const store::CampaignRecord& record, std::string_view database,
                  const PageModels& models) {
     const auto responses = read_responses(store, record);
-    const SceneInfo* scene = find_scene(record.scene);
+    const SceneInfo* scene = campaign::known_scene(record.scene);
     Json value = {{"name", record.name},
                   {"database", database},
                   {"notes", campaign::remarks_in(record.text).notes},

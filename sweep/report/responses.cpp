@@ -3,6 +3,7 @@
 #include "solver/scenes/scene.hpp"
 #include "stats/random.hpp"
 #include "sweep/campaign/identity.hpp"
+#include "sweep/campaign/program.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/schedule/judge.hpp"
 
@@ -253,7 +254,7 @@ Responses read_responses(const store::Store& store, const store::CampaignRecord&
     Responses responses;
     responses.campaign = record;
     responses.judged_checks = judged_checks(store, record);
-    const SceneInfo* scene = find_scene(record.scene);
+    const SceneInfo* scene = campaign::known_scene(record.scene);
     std::vector<FactorReader> factors;
     for (auto& stated : campaign::factors_of(record)) factors.emplace_back(std::move(stated), scene);
     const auto first_observable = first_factor + factors.size();

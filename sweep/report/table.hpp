@@ -64,5 +64,8 @@ void write(std::ostream& out, const nlohmann::ordered_json& value);
 [[nodiscard]] store::Table::Cell to_cell(const Value& value);
 /// NaN is an absent value.
 [[nodiscard]] store::Table::Cell to_cell(double number);
+[[nodiscard]] inline store::Table::Cell to_cell(const std::optional<std::int64_t>& count) {
+    return count ? store::Table::Cell{*count} : store::Table::Cell{};
+}
 
 }  // namespace grainsweep::report

@@ -18,11 +18,12 @@ struct Overloaded : Cases... {
 };
 
 /// What the main program knows of an attempt that brought no answer: how long it took, not what it cost.
-campaign::CaseResult unanswered(const campaign::Attempt& attempt, Outcome outcome, double seconds) {
+campaign::CaseResult unanswered(const campaign::Attempt& attempt, Outcome outcome, std::string reason, double seconds) {
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     campaign::CaseResult result;
     result.attempt = attempt;
     result.outcome = outcome;
+    result.message = std::move(reason);
     result.cost.wall_seconds = seconds;
     result.cost.cpu_seconds = unknown;
     result.cost.particle_steps = unknown;
@@ -104,44 +105,43 @@ void Scheduler::hand_out() {
 }
 
 void Scheduler::handle(workers::PoolEvent event) {
-    std::visit(Overloaded{[&](workers::Finished& finished) { handle_finished(finished); },
-                          [&](const workers::Heartbeat& beat) { plan_.advanced(beat.attempt, beat.progress); },
-                          [&](const workers::Lost& lost) {
-                              if (lost.running && lost.from_outside)
-                                  handle_given_back(*lost.running, lost.reason, lost.seconds, true);
-                              else if (lost.running)
-                                  handle_failure(*lost.running, Outcome::crashed, lost.reason, lost.seconds);
-                              if (lost.running && lost.spoils_checkpoint && !lost.from_outside)
-                                  watchers_.forget_checkpoint(lost.running->case_id);
-                              take_back(lost.queued);
-                          },
-                          [&](const workers::TimedOut& late) {
-                              handle_failure(late.running, Outcome::timed_out, late.reason, late.seconds);
-                              take_back(late.queued);
-                          },
-                          [&](const workers::GivenBack& back) {
-                              if (back.broken && !broken_) {
-                                  broken_ = back.reason;
-                                  plan_.close();
-                                  crew_.retire();
-                              }
-                              handle_given_back(back.attempt, back.reason, back.seconds, !back.asked && !back.broken);
-                          },
-                          [&](const workers::Remark& remark) { watchers_.note(remark.text); },
-                          [&](const workers::Interrupted& stop) {
-                              plan_.close();
-                              if (!early_) early_ = stop.goes_on ? Ending::asked_to_end : Ending::interrupted;
-                              crew_.retire();
-                              at_once_ = stop.at_once;
-                          }},
-               event);
+    std::visit(
+        Overloaded{[&](workers::Finished& finished) { handle_finished(finished); },
+                   [&](const workers::Heartbeat& beat) { plan_.advanced(beat.attempt, beat.progress); },
+                   [&](const workers::Lost& lost) {
+                       if (lost.running && lost.from_outside)
+                           handle_given_back(*lost.running, lost.reason, lost.seconds, true);
+                       else if (lost.running)
+                           handle_failure(unanswered(*lost.running, Outcome::crashed, lost.reason, lost.seconds));
+                       if (lost.running && lost.spoils_checkpoint && !lost.from_outside)
+                           watchers_.forget_checkpoint(lost.running->case_id);
+                       take_back(lost.queued);
+                   },
+                   [&](const workers::TimedOut& late) {
+                       handle_failure(unanswered(late.running, Outcome::timed_out, late.reason, late.seconds));
+                       take_back(late.queued);
+                   },
+                   [&](const workers::GivenBack& back) {
+                       if (back.broken && !broken_) {
+                           broken_ = back.reason;
+                           plan_.close();
+                           crew_.retire();
+                       }
+                       handle_given_back(back.attempt, back.reason, back.seconds, !back.asked && !back.broken);
+                   },
+                   [&](const workers::Remark& remark) { watchers_.note(remark.text); },
+                   [&](const workers::Interrupted& stop) {
+                       plan_.close();
+                       if (!early_) early_ = stop.goes_on ? Ending::asked_to_end : Ending::interrupted;
+                       crew_.retire();
+                       at_once_ = stop.at_once;
+                   }},
+        event);
 }
 
 void Scheduler::handle_finished(workers::Finished& finished) {
-    if (!settles(finished.result.outcome)) {  // a worker that reports a crash or a time-out of what it started
-        const auto& result = finished.result;
-        return handle_failure(result.attempt, result.outcome, result.message, result.cost.wall_seconds);
-    }
+    // A worker that reports a crash or a time-out of what it started.
+    if (!settles(finished.result.outcome)) return handle_failure(std::move(finished.result));
     --in_flight_;
     const auto& result = finished.result;
     if (plan_.ended(result.attempt, result.outcome) == Plan::Verdict::stale) return;
@@ -157,17 +157,15 @@ void Scheduler::handle_finished(workers::Finished& finished) {
     judge_prefix();
 }
 
-void Scheduler::handle_failure(const campaign::Attempt& attempt, Outcome outcome, const std::string& reason,
-                               double seconds) {
+void Scheduler::handle_failure(campaign::CaseResult result) {
     --in_flight_;
-    campaign::CaseResult result = unanswered(attempt, outcome, seconds);
-    result.message = reason;
-    const auto verdict = plan_.ended(attempt, outcome);
+    const auto& attempt = result.attempt;
+    const auto verdict = plan_.ended(attempt, result.outcome);
     if (verdict == Plan::Verdict::stale) return;
-    recorder_.write(std::move(result));
-    watchers_.note(fmt::format("{} {} in attempt {}{}: {}", attempt.case_id.substr(0, 12), to_string(outcome),
+    watchers_.note(fmt::format("{} {} in attempt {}{}: {}", attempt.case_id.substr(0, 12), to_string(result.outcome),
                                attempt.number, verdict == Plan::Verdict::again ? ", trying again" : ", giving up",
-                               reason));
+                               result.message));
+    recorder_.write(std::move(result));
     if (verdict == Plan::Verdict::gave_up) judge_prefix();
 }
 
@@ -187,9 +185,7 @@ void Scheduler::handle_given_back(const campaign::Attempt& attempt, std::string 
     if (noted || gave_up)
         watchers_.note(fmt::format("{} given back in attempt {}{}: {}", attempt.case_id.substr(0, 12), attempt.number,
                                    gave_up ? ", giving up" : ", trying again", reason));
-    campaign::CaseResult result = unanswered(attempt, Outcome::abandoned, seconds);
-    result.message = std::move(reason);
-    recorder_.write(std::move(result));
+    recorder_.write(unanswered(attempt, Outcome::abandoned, std::move(reason), seconds));
     if (gave_up) judge_prefix();
 }
 

@@ -63,8 +63,7 @@ private:
     [[nodiscard]] Ending ending() const;
     void handle(workers::PoolEvent event);
     void handle_finished(workers::Finished& finished);
-    void handle_failure(const campaign::Attempt& attempt, campaign::Outcome outcome, const std::string& reason,
-                        double seconds);
+    void handle_failure(campaign::CaseResult result);
     void take_back(const std::vector<campaign::Attempt>& attempts);
     void handle_given_back(const campaign::Attempt& attempt, std::string reason, double seconds, bool noted);
     void judge_prefix(Judge::Models models = Judge::Models::beside);

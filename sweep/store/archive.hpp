@@ -106,6 +106,18 @@ void place_anew(Store::Impl& archive, const campaign::Campaign& campaign, std::i
 /// The verdicts given so far were about other places, or by another rule.
 void forget_convergence(Connection& db, std::int64_t campaign_key);
 
+// programs.cpp
+[[nodiscard]] bool has_programs(const Connection& db);
+/// Makes the programs of the archive known to this process, as far as they are as written.
+void enter_programs(const Connection& db);
+/// Stores the program that answers a campaign, and the contents of its files; nothing where the solver does.
+void store_program(Connection& db, const campaign::Campaign& campaign);
+/// What the system and the program said of an attempt.
+void store_program_facts(Connection& db, std::int64_t key, std::int64_t number, const campaign::ProgramFacts& facts);
+[[nodiscard]] std::map<std::int64_t, campaign::ProgramFacts> program_facts(const Connection& db, std::int64_t key);
+/// What of programs is not as it was written, a sentence each.
+[[nodiscard]] std::vector<std::string> damaged_programs(const Connection& db);
+
 /// Creates or renews the view that bears the campaign's name.
 void make_campaign_view(Store::Impl& archive, const campaign::Campaign& campaign, std::int64_t campaign_key);
 

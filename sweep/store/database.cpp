@@ -79,6 +79,10 @@ void Statement::bind(int parameter, std::string_view value) {
     check(owner(handle_.get()),
           sqlite3_bind_text64(handle_.get(), parameter, data, value.size(), SQLITE_STATIC, SQLITE_UTF8));
 }
+void Statement::bind(int parameter, const Blob& value) {
+    const char* data = value.bytes.data() == nullptr ? "" : value.bytes.data();
+    check(owner(handle_.get()), sqlite3_bind_blob64(handle_.get(), parameter, data, value.bytes.size(), SQLITE_STATIC));
+}
 void Statement::bind(int parameter, const Value& value) {
     std::visit([&](const auto& held) { bind(parameter, held); }, value);
 }
@@ -123,6 +127,12 @@ std::string_view Statement::text(int column) const {
     return bytes == nullptr
                ? std::string_view{}
                : std::string_view(bytes, static_cast<std::size_t>(sqlite3_column_bytes(handle_.get(), column)));
+}
+
+std::string Statement::blob(int column) const {
+    const auto* bytes = static_cast<const char*>(sqlite3_column_blob(handle_.get(), column));
+    if (bytes == nullptr) return {};
+    return {bytes, static_cast<std::size_t>(sqlite3_column_bytes(handle_.get(), column))};
 }
 
 SqlValue Statement::cell(int column) const {

@@ -54,6 +54,11 @@ void limit_memory(std::int64_t bytes);
 /// NULL, integer, real, text.
 using SqlValue = std::variant<std::monostate, std::int64_t, double, std::string>;
 
+/// Bytes that are no text.
+struct Blob {
+    std::string_view bytes;
+};
+
 /// A prepared statement. Parameters count from 1, columns from 0.
 class Statement {
 public:
@@ -68,6 +73,7 @@ public:
     void bind(int parameter, std::string_view value);  ///< refers to the text until reset()
     void bind(int parameter, const char* value) { bind(parameter, std::string_view(value)); }
     void bind(int parameter, const std::string& value) { bind(parameter, std::string_view(value)); }
+    void bind(int parameter, const Blob& value);  ///< refers to the bytes until reset()
     void bind(int parameter, const Value& value);
     template <class T>
     void bind(int parameter, const std::optional<T>& value) {
@@ -89,6 +95,7 @@ public:
     [[nodiscard]] T get(int column) const;
     [[nodiscard]] SqlValue cell(int column) const;
     [[nodiscard]] Value value(int column) const;  ///< of a column that is never NULL
+    [[nodiscard]] std::string blob(int column) const;
     /// What of the text was left after the first statement (the text given to the constructor must still live).
     [[nodiscard]] std::string_view tail() const { return tail_; }
 
@@ -121,6 +128,7 @@ public:
     [[nodiscard]] bool is_null(int column) const { return statement_->is_null(column); }
     [[nodiscard]] Value value(int column) const { return statement_->value(column); }
     [[nodiscard]] SqlValue cell(int column) const { return statement_->cell(column); }
+    [[nodiscard]] std::string blob(int column) const { return statement_->blob(column); }
 
 private:
     Statement* statement_;

@@ -216,6 +216,10 @@ std::vector<LoggedAttempt> Store::attempts(std::string_view case_id) const {
              .computer = {rows.get<std::string>(5), rows.get<std::string>(6), rows.get<std::string>(7),
                           rows.get<std::string>(8), rows.get<std::string>(9), rows.get<std::string>(10)}});
     }
+    for (auto& [number, facts] : program_facts(impl_->db, *key)) {
+        const auto attempt = std::ranges::find(attempts, number, &LoggedAttempt::number);
+        if (attempt != attempts.end()) attempt->program = std::move(facts);
+    }
     return attempts;
 }
 

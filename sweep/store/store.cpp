@@ -190,6 +190,7 @@ std::unique_ptr<Store::Impl> open_to_write(const std::filesystem::path& file, St
     const bool as_remembered = !empty && is_as_remembered_now(db, file);
     if (!empty && !as_remembered) check_structure(db, file);
     migrate(db, file);
+    enter_programs(db);
     auto archive = std::make_unique<Store::Impl>(file, std::move(lock), std::move(db));
     archive->as_remembered = as_remembered || empty;
     return archive;
@@ -204,6 +205,7 @@ std::unique_ptr<Store::Impl> open_to_read(const std::filesystem::path& file) {
         throw WrongQuestion(fmt::format("'{}' is empty: no campaign has been run into it.", file.string()));
     // An older schema is read as it is, and brought up to date by the next run: what a migration added is asked for
     // only where it is (keeps_extents).
+    enter_programs(db);
     return std::make_unique<Store::Impl>(file, std::nullopt, std::move(db));
 }
 

@@ -9,6 +9,7 @@
 #include "sweep/campaign/campaign.hpp"
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/identity.hpp"
+#include "sweep/campaign/program.hpp"
 #include "sweep/store/broken_world.hpp"
 
 #include <cstdint>
@@ -45,6 +46,7 @@ struct LoggedAttempt {
     double wall_seconds = 0;  ///< NaN: running, or its main program died
     std::string started;
     campaign::Computer computer;  ///< of an archive older than these columns: what ran the campaign; no build
+    std::optional<campaign::ProgramFacts> program = {};  ///< none: a scene of the solver
 };
 
 /// Rows for the commands: column names and cells (NULL, integer, real, text).
@@ -192,6 +194,9 @@ public:
     [[nodiscard]] StoredPlaces placement(std::string_view campaign) const;
     /// Throws WrongQuestion where several cases begin so.
     [[nodiscard]] std::optional<campaign::Case> find_case(std::string_view id_or_prefix) const;
+    /// The program that answers the cases of a scene, with the contents of its files; none where it is no program's, or
+    /// of an archive that has none. Throws BrokenWorld where it is not as it was written.
+    [[nodiscard]] std::shared_ptr<const campaign::Program> program(std::string_view scene) const;
     [[nodiscard]] std::vector<LoggedAttempt> attempts(std::string_view case_id) const;
     [[nodiscard]] std::vector<CasePlace> places(std::string_view case_id) const;
     /// The answer that stands, or how the last attempt ended where there is none.

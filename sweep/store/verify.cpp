@@ -113,6 +113,11 @@ std::vector<Damage> Store::verify() const {
         found);
     guarded([&] { check_texts(db, found); }, found);
     guarded([&] { check_cases(db, found); }, found);
+    guarded(
+        [&] {
+            for (auto& what : damaged_programs(db)) found.push_back({"table", "", "", "", std::move(what)});
+        },
+        found);
     return found;
 }
 

@@ -69,6 +69,12 @@ Done to_done(const Json& object) {
     done.result.cost = {number_or_nan(cost.at("wall")), number_or_nan(cost.at("cpu")), number_or_nan(cost.at("steps")),
                         cost.at("phases").get<std::map<std::string, double, std::less<>>>()};
     done.checkpointed = object.at("checkpointed").get<bool>();
+    if (const auto program = object.find("program"); program != object.end()) {
+        auto& facts = done.result.program.emplace();
+        facts.version = program->at("version").get<std::string>();
+        facts.peak_memory = number_or_nan(program->at("memory"));
+        if (!program->at("status").is_null()) facts.exit_status = program->at("status").get<std::int64_t>();
+    }
     return done;
 }
 

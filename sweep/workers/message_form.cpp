@@ -205,6 +205,15 @@ bool read_cost(Reader& line, Cost& cost) {
            line.real(cost.wall_seconds) && line.raw("}");
 }
 
+/// Of an attempt that a program answered; nothing where there is nothing.
+bool read_program(Reader& line, std::optional<campaign::ProgramFacts>& program) {
+    if (!line.raw(R"(,"program":{"memory":)")) return true;
+    auto& facts = program.emplace();
+    if (!line.real_or_null(facts.peak_memory) || !line.raw(R"(,"status":)")) return false;
+    if (!line.raw("null") && !line.whole(facts.exit_status.emplace())) return false;
+    return line.raw(R"(,"version":)") && line.text(facts.version) && line.raw("}");
+}
+
 }  // namespace
 
 std::string in_form(const Run& run) {
@@ -248,7 +257,7 @@ std::optional<Begun> begun_in_form(std::string_view text) {
 }
 
 std::string in_form(const Done& done) {
-    const auto& [attempt, outcome, message, observations, cost] = done.result;
+    const auto& [attempt, outcome, message, observations, cost, program] = done.result;
     Writer line(R"({"done":{"attempt":)");
     const auto real = [&](double number) { line.real(number); };
     line.whole(attempt.number).raw(R"(,"checkpointed":)").flag(done.checkpointed);
@@ -264,20 +273,29 @@ std::string in_form(const Done& done) {
         }
         line.raw("]");
     });
-    return line.raw(R"(},"outcome":)").text(campaign::to_string(outcome)).raw("}}").take();
+    line.raw(R"(},"outcome":)").text(campaign::to_string(outcome));
+    if (program) {
+        line.raw(R"(,"program":{"memory":)").real(program->peak_memory).raw(R"(,"status":)");
+        if (program->exit_status)
+            line.whole(*program->exit_status);
+        else
+            line.raw("null");
+        line.raw(R"(,"version":)").text(program->version).raw("}");
+    }
+    return line.raw("}}").take();
 }
 
 std::optional<Done> done_in_form(std::string_view text) {
     Reader line(text);
     Done done;
-    auto& [attempt, outcome, message, observations, cost] = done.result;
+    auto& [attempt, outcome, message, observations, cost, program] = done.result;
     std::string word;
     const bool read = line.raw(R"({"done":{"attempt":)") && line.whole(attempt.number) &&
                       line.raw(R"(,"checkpointed":)") && line.flag(done.checkpointed) && line.raw(R"(,"cost":)") &&
                       read_cost(line, cost) && line.raw(R"(,"id":)") && line.text(attempt.case_id) &&
                       line.raw(R"(,"message":)") && line.text(message) && line.raw(R"(,"observations":)") &&
                       read_observations(line, observations) && line.raw(R"(,"outcome":)") && line.text(word) &&
-                      line.raw("}}") && line.over();
+                      read_program(line, program) && line.raw("}}") && line.over();
     const auto known = campaign::outcome_named(word);
     if (!read || !known) return std::nullopt;
     outcome = *known;

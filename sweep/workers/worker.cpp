@@ -2,9 +2,11 @@
 
 #include "sweep/store/artefacts.hpp"
 #include "sweep/store/broken_world.hpp"
+#include "sweep/workers/answerer.hpp"
 #include "sweep/workers/compute.hpp"
 #include "sweep/workers/desk.hpp"
 #include "sweep/workers/message.hpp"
+#include "sweep/workers/program_answerer.hpp"
 
 #include <fmt/format.h>
 #include <gnu/libc-version.h>
@@ -14,6 +16,8 @@
 #include <csignal>
 #include <cstdio>
 #include <functional>
+#include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -111,32 +115,92 @@ private:
     std::optional<Clock::time_point> ending_seen_;
 };
 
-void answer(const Run& run, const WorkerOptions& options, store::ArtefactFolder* folder, Desk& desk,
-            std::string& damage) {
-    damage.clear();
-    OwnArtefacts artefacts(folder, options.computer);
-    Checkpoints checkpoints(folder, run.question.id, options.computer);
-    // Looking for a checkpoint costs a failed open; only a case tried before can have one.
-    const auto resume = run.attempt > 1 ? checkpoints.load() : std::nullopt;
-    desk.begin({run.question.id, run.attempt}, resume.has_value());
-    CaseWatch watch(options, desk, checkpoints);
+/// Cases of the solver's scenes.
+class Simulations final : public Answerer {
+public:
+    Simulations(const WorkerOptions& options, Desk& desk) : options_(options), desk_(desk) {
+        if (options.artefacts.empty()) return;
+        folder_.emplace(options.artefacts, [this](const std::string& sentence) {
+            std::fprintf(stderr, "grainsweep: %s\n", sentence.c_str());
+            damage_ += (damage_.empty() ? "" : "; ") + sentence;
+        });
+    }
+    bool prepare(const Run& run) override {
+        damage_.clear();
+        checkpoints_.emplace(folder_ ? &*folder_ : nullptr, run.question.id, options_.computer);
+        // Looking for a checkpoint costs a failed open; only a case tried before can have one.
+        resume_ = run.attempt > 1 ? checkpoints_->load() : std::nullopt;
+        return resume_.has_value();
+    }
+    std::optional<campaign::CaseResult> answer(const Run& run) override {
+        OwnArtefacts artefacts(folder_ ? &*folder_ : nullptr, options_.computer);
+        CaseWatch watch(options_, desk_, *checkpoints_);
+        auto result = compute(run.question, run.attempt, artefacts, resume_, std::ref(watch));
+        // Of an answer that is no other for it; the reasons of other outcomes are compared between runs.
+        if (result && result->outcome == campaign::Outcome::completed && !damage_.empty())
+            result->message += (result->message.empty() ? "" : "; ") + damage_;
+        return result;
+    }
+    bool left_checkpoint() const override { return checkpoints_->exists(); }
+
+private:
+    const WorkerOptions& options_;
+    Desk& desk_;
+    std::optional<store::ArtefactFolder> folder_;
+    std::string damage_;  ///< met while computing the present case
+    std::optional<Checkpoints> checkpoints_;
+    std::optional<Bytes> resume_;
+};
+
+/// Cases of programs, found by the names of their scenes.
+class Programs final : public Answerer {
+public:
+    Programs(const WorkerOptions& options, Desk& desk, ProgramGuard& guard)
+        : options_(options), desk_(desk), guard_(guard) {}
+    bool prepare(const Run&) override { return false; }
+    std::optional<campaign::CaseResult> answer(const Run& run) override {
+        auto& program = programs_[run.question.scene];
+        if (!program)
+            program = std::make_unique<ProgramAnswerer>(staged_program(run.question.scene, options_.cases),
+                                                        ProgramOptions{options_.cases, options_.limit_seconds}, guard_);
+        ending_seen_.reset();
+        return program->answer(run.question, run.attempt, [this] { return goes_on(); });
+    }
+    bool left_checkpoint() const override { return false; }
+
+private:
+    bool goes_on() {
+        desk_.advanced(std::numeric_limits<double>::quiet_NaN());
+        const auto ending = desk_.ending();
+        if (ending == Ending::none) return true;
+        const auto now = Clock::now();
+        if (!ending_seen_) ending_seen_ = now;
+        return ending == Ending::asked &&
+               std::chrono::duration<double>(now - *ending_seen_).count() < options_.finish_seconds;
+    }
+
+    const WorkerOptions& options_;
+    Desk& desk_;
+    ProgramGuard& guard_;
+    std::map<std::string, std::unique_ptr<ProgramAnswerer>> programs_;
+    std::optional<Clock::time_point> ending_seen_;
+};
+
+void answer(const Run& run, Answerer& answerer, Desk& desk) {
+    desk.begin({run.question.id, run.attempt}, answerer.prepare(run));
     std::optional<campaign::CaseResult> result;
     try {
-        result = compute(run.question, run.attempt, artefacts, resume, std::ref(watch));
+        result = answerer.answer(run);
     } catch (const store::BrokenWorld& broken) {  // not the case's fault, and the next would meet it, too
         desk.break_off(
             fmt::format("what its cases need cannot be read or written: {}; mend that, free some space for "
                         "one, and run again to resume",
                         broken.what()));
     }
-    if (result) {
-        // Of an answer that is no other for it; the reasons of other outcomes are compared between runs.
-        if (result->outcome == campaign::Outcome::completed && !damage.empty())
-            result->message += (result->message.empty() ? "" : "; ") + damage;
-        desk.answer(Done{std::move(*result), checkpoints.exists()});
-    } else {
+    if (result)
+        desk.answer(Done{std::move(*result), answerer.left_checkpoint()});
+    else
         desk.give_back();
-    }
 }
 
 }  // namespace
@@ -153,19 +217,19 @@ std::optional<campaign::CaseId> checkpointed_case(std::string_view key) {
 
 int work(const WorkerOptions& options) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // a local main program; a remote one is noticed by end of file and lease
-    std::optional<store::ArtefactFolder> folder;
-    std::string damage;  // met while computing the present case
-    if (!options.artefacts.empty()) {
-        folder.emplace(options.artefacts, [&damage](const std::string& sentence) {
-            std::fprintf(stderr, "grainsweep: %s\n", sentence.c_str());
-            damage += (damage.empty() ? "" : "; ") + sentence;
-        });
-    }
+    std::optional<ProgramGuard> guard;   // forks: before there are threads
+    if (!options.cases.empty()) guard.emplace();
 
     // Outlives main: its threads are never joined.
     static Desk* desk = new Desk({options.lease_seconds, options.give_back_seconds});
+    std::unique_ptr<Answerer> answerer;
+    if (guard)
+        answerer = std::make_unique<Programs>(options, *desk, *guard);
+    else
+        answerer = std::make_unique<Simulations>(options, *desk);
     desk->open(options.computer);
-    while (const auto run = desk->next()) answer(*run, options, folder ? &*folder : nullptr, *desk, damage);
+    while (const auto run = desk->next()) answer(*run, *answerer, *desk);
+    answerer.reset();  // a program that stays alive is asked to end
     desk->close();
 }
 

@@ -22,6 +22,8 @@ struct WorkerOptions {
     double finish_seconds = 3;  ///< after the main program's stop, a case that can finish within this does
     /// After a stop or a signal, a case that has not come to a point where it can be saved is given back as it is.
     double give_back_seconds = 20;
+    std::filesystem::path cases;  ///< its cases are answered by programs, and this holds their folders; empty: none is
+    double limit_seconds = 0;     ///< of a case that a program answers; 0: none
     campaign::Computer computer;  ///< reported to the main program; checkpoints of another build are not used
 };
 

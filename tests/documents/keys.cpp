@@ -23,12 +23,14 @@ Keys keys_of_schema() {
     const auto schema = json::parse(answer_of({"schema"}));
     Keys keys = {"notes"};
     add_properties(keys, "", schema);
-    for (const char* section : {"convergence", "calibration", "model", "limits", "execution"})
+    for (const char* section : {"convergence", "calibration", "model", "program", "limits", "execution"})
         add_properties(keys, section, schema["properties"][section]);
     for (const auto& design : schema["properties"]["design"]["oneOf"]) add_properties(keys, "design", design);
-    for (const auto& rule : schema["allOf"])
-        for (const auto& factor : rule["then"]["properties"]["factors"]["items"]["oneOf"])
-            add_properties(keys, "factors", factor);
+    for (const auto& rule : schema["allOf"]) {
+        const auto& factors = rule["then"]["properties"]["factors"]["items"];
+        if (!factors.contains("oneOf")) continue;  // of a program: the same keys
+        for (const auto& factor : factors["oneOf"]) add_properties(keys, "factors", factor);
+    }
     return keys;
 }
 

@@ -66,7 +66,22 @@ std::string bounds_of(const ordered_json& parameter) {
                        parameter["high_open"].get<bool>() ? ")" : "]");
 }
 
+/// The keys of the section "program": those of observables, or the others.
+std::string section_table(const ordered_json& scene, bool of_observables) {
+    std::string table = head({"object", "key", "default", "meaning"});
+    for (const auto& key : scene["section"]) {
+        const std::string object = key["object"];
+        if (object.starts_with("observables") != of_observables) continue;
+        const std::string standard = key["default"].is_null() ? "" : shown(key["default"]);
+        table += row({"`" + object + "`", "`" + shown(key["key"]) + "`",
+                      standard.empty() || standard == "required" ? standard : "`" + standard + "`",
+                      shown(key["meaning"])});
+    }
+    return table;
+}
+
 std::string parameters_table(const ordered_json& scene) {
+    if (scene.contains("section")) return section_table(scene, false);
     std::string table = head({"parameter", "unit", "bounds", "default", "meaning"});
     for (const auto& parameter : scene["parameters"]) {
         std::string meaning = parameter["meaning"];
@@ -81,6 +96,7 @@ std::string parameters_table(const ordered_json& scene) {
 }
 
 std::string observables_table(const ordered_json& scene) {
+    if (scene.contains("section")) return section_table(scene, true);
     std::string table = head({"observable", "unit", "over", "meaning"});
     for (const auto& observable : scene["observables"])
         table += row({"`" + shown(observable["name"]) + "`", shown(observable["unit"]), shown(observable["over"]),

@@ -93,6 +93,9 @@ void settle(store::Store& store, const campaign::Case& question, std::int64_t at
 
 void take_back_to_schema(int version, const std::filesystem::path& file) {
     store::Connection db(file, store::Connection::Access::write);
+    db.execute(  // 7
+        "DROP TABLE program; DROP TABLE program_content; DROP TABLE attempt_program; PRAGMA user_version = 6");
+    if (version == 6) return;
     db.execute("DROP TABLE file_checksum; PRAGMA user_version = 5");  // 6
     if (version == 5) return;
     db.execute(  // 5

@@ -1,0 +1,16 @@
+// The keys of the section "program" of a campaign file, a table per object.
+#pragma once
+
+#include "sweep/campaign/keys.hpp"
+
+#include <span>
+
+namespace grainsweep::campaign {
+
+[[nodiscard]] std::span<const Key> program_keys();
+[[nodiscard]] std::span<const Key> program_parameter_keys();
+[[nodiscard]] std::span<const Key> program_observable_keys();
+[[nodiscard]] std::span<const Key> program_from_keys();
+[[nodiscard]] std::span<const Key> program_version_keys();
+
+}  // namespace grainsweep::campaign

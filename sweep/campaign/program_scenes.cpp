@@ -1,0 +1,86 @@
+// The scenes of programs, as far as this process has met them.
+#include "sweep/campaign/program.hpp"
+
+#include <map>
+#include <mutex>
+#include <stdexcept>
+#include <utility>
+
+namespace grainsweep::campaign {
+namespace {
+
+struct Entered {
+    std::shared_ptr<const Program> program;
+    SceneInfo scene;
+};
+
+struct Register {
+    std::mutex mutex;
+    std::map<std::string, std::unique_ptr<Entered>, std::less<>> programs;
+};
+
+Register& entered() {
+    static Register all;
+    return all;
+}
+
+SceneInfo scene_of(const Program& program, std::string name) {
+    SceneInfo scene;
+    scene.name = std::move(name);
+    scene.summary = "answered by " + program.command.front();
+    for (const auto& parameter : program.parameters) {
+        // Part of every id, so that the value of a default is nobody's question.
+        const Value standard = parameter.is_word() ? Value{std::string()} : Value{0.0};
+        scene.parameters.push_back({parameter.name, parameter.unit, parameter.meaning, standard, parameter.bounds, {}});
+    }
+    for (const auto& observable : program.observables)
+        scene.observables.push_back({observable.name, observable.unit, observable.meaning, observable.shape});
+    scene.maker = [](const Inputs&, std::uint64_t, Artefacts&, const Files&) -> std::unique_ptr<Scene> {
+        throw std::logic_error("a program is no scene of the solver");
+    };
+    scene.estimate_cost = [seconds = program.cost_seconds](const Inputs&) { return seconds; };
+    scene.proven_answer = [](const Inputs&) -> std::optional<ProvenAnswer> { return std::nullopt; };
+    return scene;
+}
+
+}  // namespace
+
+const SceneInfo& enter_program(std::shared_ptr<const Program> program) {
+    auto name = program_scene_name(*program);
+    auto& all = entered();
+    const std::lock_guard lock(all.mutex);
+    auto& known = all.programs[name];
+    // Units and settings may be others than before; what refers to the scene keeps it.
+    if (known == nullptr) known = std::make_unique<Entered>();
+    known->scene = scene_of(*program, std::move(name));
+    known->program = std::move(program);
+    return known->scene;
+}
+
+std::shared_ptr<const Program> known_program(std::string_view scene) {
+    auto& all = entered();
+    const std::lock_guard lock(all.mutex);
+    const auto found = all.programs.find(scene);
+    return found == all.programs.end() ? nullptr : found->second->program;
+}
+
+const SceneInfo* known_scene(std::string_view name) {
+    if (!is_program(name)) return find_scene(name);
+    auto& all = entered();
+    const std::lock_guard lock(all.mutex);
+    const auto found = all.programs.find(name);
+    return found == all.programs.end() ? nullptr : &found->second->scene;
+}
+
+std::vector<std::string> scene_words() {
+    std::vector<std::string> words;
+    for (const auto& scene : scene_catalogue()) words.push_back(scene.name);
+    words.emplace_back(program_word);
+    return words;
+}
+
+std::string_view program_summary() {
+    return "any program, deck or script: a command per case, or lines to one that stays alive";
+}
+
+}  // namespace grainsweep::campaign

@@ -1,0 +1,57 @@
+#include "sweep/cli/program_campaign.hpp"
+
+#include "sweep/campaign/reader.hpp"
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/workers/program_answerer.hpp"
+#include "sweep/workers/program_guard.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+namespace grainsweep::cli {
+
+namespace fs = std::filesystem;
+
+campaign::Campaign with_program(campaign::Campaign campaign, const fs::path& config) {
+    const auto program = campaign::known_program(campaign.scene().name);
+    if (program == nullptr) return campaign;
+    const std::string place = config.string() + ": $.program.";
+    if (campaign.execution.launcher.empty())
+        if (const auto why = workers::why_not_here(*program); !why.empty())
+            throw campaign::wrong_question(place + "command[0]", program->command.front(), why);
+    if (program->version_command.empty()) return campaign;
+    auto versioned = std::make_shared<campaign::Program>(*program);
+    try {
+        workers::ProgramGuard guard;
+        versioned->version = workers::ask_version(*program, guard);
+    } catch (const std::runtime_error& why) {
+        throw campaign::wrong_question(place + "version", "", why.what());
+    }
+    campaign.space.scene = &campaign::enter_program(std::move(versioned));
+    return campaign;
+}
+
+campaign::Campaign read_with_program(const fs::path& config) {
+    return with_program(campaign::read_campaign(config), config);
+}
+
+fs::path cases_folder(const fs::path& database) {
+    fs::path folder = fs::absolute(database);
+    if (folder.extension() == ".cases") return folder += ".cases";
+    return folder.replace_extension(".cases");
+}
+
+StagedProgram::StagedProgram(std::shared_ptr<const campaign::Program> program, fs::path cases)
+    : program_(std::move(program)), cases_(std::move(cases)) {
+    if (program_ == nullptr) return;
+    workers::sweep_program_folders(cases_);
+    workers::stage_program(*program_, cases_);
+}
+
+StagedProgram::~StagedProgram() {
+    if (program_ == nullptr) return;
+    workers::sweep_program_folders(cases_);
+    workers::unstage_program(campaign::program_scene_name(*program_), cases_);
+}
+
+}  // namespace grainsweep::cli

@@ -1,0 +1,35 @@
+// A campaign whose cases a program answers, as far as commands have to see to it: is the program here, which version is
+// it, where do the cases' folders lie.
+#pragma once
+
+#include "sweep/campaign/campaign.hpp"
+#include "sweep/campaign/program.hpp"
+
+#include <filesystem>
+#include <memory>
+
+namespace grainsweep::cli {
+
+/// Where a program answers the cases: refuses one that is not here (unless workers start elsewhere) and asks for its
+/// version, which is part of every case's identity; nothing else is started. `config` is named in refusals.
+[[nodiscard]] campaign::Campaign with_program(campaign::Campaign campaign, const std::filesystem::path& config);
+/// Reads a campaign file so.
+[[nodiscard]] campaign::Campaign read_with_program(const std::filesystem::path& config);
+
+/// Beside the database: x.cases for x.db.
+[[nodiscard]] std::filesystem::path cases_folder(const std::filesystem::path& database);
+
+/// Puts the program where workers find it, for as long as this lives; then removes what is not kept.
+class StagedProgram {
+public:
+    StagedProgram(std::shared_ptr<const campaign::Program> program, std::filesystem::path cases);
+    StagedProgram(const StagedProgram&) = delete;
+    StagedProgram& operator=(const StagedProgram&) = delete;
+    ~StagedProgram();
+
+private:
+    std::shared_ptr<const campaign::Program> program_;
+    std::filesystem::path cases_;
+};
+
+}  // namespace grainsweep::cli

@@ -1,0 +1,260 @@
+#include "sweep/workers/program_answerer.hpp"
+
+#include "sweep/store/broken_world.hpp"
+#include "sweep/workers/program_lines.hpp"
+#include "sweep/workers/program_process.hpp"
+#include "sweep/workers/program_results.hpp"
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+namespace grainsweep::workers {
+namespace {
+
+namespace fs = std::filesystem;
+using campaign::CaseResult;
+using campaign::Outcome;
+using campaign::Program;
+using Clock = std::chrono::steady_clock;
+
+constexpr double pulse_seconds = 0.1, first_size_look = 0.3;
+constexpr std::int64_t most_kept = 100;  // folders of failed cases
+constexpr std::size_t log_bytes = 2000;
+
+double elapsed(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::int64_t exit_status(int status) {
+    return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+void close_result(CaseResult& result, Outcome outcome, std::string message) {
+    result.outcome = outcome;
+    result.message = std::move(message);
+}
+
+/// Why a running program is to be ended, besides that it is given up.
+class Limits {
+public:
+    Limits(const ProgramOptions& options, const Program& program, const ProgramFolder& folder)
+        : options_(options), program_(program), folder_(folder) {}
+
+    /// Whether one is exceeded; `result` says so.
+    bool exceeded(CaseResult& result) {
+        const double now = elapsed(start_);
+        if (options_.limit_seconds > 0 && now > options_.limit_seconds) {
+            close_result(result, Outcome::timed_out, fmt::format("no answer within {} s", options_.limit_seconds));
+            return true;
+        }
+        if (now < next_look_) return false;
+        const bool full = writes_too_much(result);
+        next_look_ = now + std::max(first_size_look, 10 * (elapsed(start_) - now));  // a tenth of the time at most
+        return full;
+    }
+    bool writes_too_much(CaseResult& result) const {
+        const auto size = folder_.size(program_.disk);
+        if (size.bytes < program_.disk && size.files < most_files) return false;
+        close_result(result, Outcome::rejected,
+                     size.files >= most_files ? fmt::format("it wrote {} files, more than a case may", size.files)
+                                              : fmt::format("it wrote {:.3g} MB, and \"disk\" allows a case {:.3g}",
+                                                            1e-6 * static_cast<double>(size.bytes),
+                                                            1e-6 * static_cast<double>(program_.disk)));
+        return true;
+    }
+    [[nodiscard]] double seconds() const { return elapsed(start_); }
+
+private:
+    static constexpr std::int64_t most_files = 100'000;
+
+    const ProgramOptions& options_;
+    const Program& program_;
+    const ProgramFolder& folder_;
+    Clock::time_point start_ = Clock::now();
+    double next_look_ = first_size_look;
+};
+
+/// What a reply says, as the outcome of a case.
+void take(ProgramReply&& reply, CaseResult& result) {
+    const auto outcome = reply.kind == ProgramReply::Kind::measured   ? Outcome::completed
+                         : reply.kind == ProgramReply::Kind::unstable ? Outcome::unstable
+                                                                      : Outcome::rejected;
+    close_result(result, outcome, std::move(reply.message));
+    if (outcome == Outcome::completed) result.observations = std::move(reply.observations);
+}
+
+/// How it ended, and the last lines of its standard error.
+std::string crash_sentence(int status, const ProgramFolder& folder) {
+    const auto log = folder.end_of("stderr.txt", log_bytes);
+    return fmt::format("the program {}{}{}", end_in_words(status), log.empty() ? "" : "; it wrote: ", log);
+}
+
+/// A descriptor that is open for a moment.
+class Open {
+public:
+    explicit Open(int descriptor) : descriptor_(descriptor) {}
+    Open(const Open&) = delete;
+    Open& operator=(const Open&) = delete;
+    ~Open() { ::close(descriptor_); }
+    [[nodiscard]] int get() const { return descriptor_; }
+
+private:
+    int descriptor_;
+};
+
+std::unique_ptr<ProgramProcess> start_case(const Program& program, const campaign::Case& question,
+                                           const ProgramFolder& folder, ProgramGuard& guard) {
+    ProgramStart start;
+    start.argv = program_argv(program, &question);
+    start.environment = program_environment(program, &question);
+    start.folder = folder.descriptor();
+    const Open out(folder.create("stdout.txt")), err(folder.create("stderr.txt"));
+    start.out = out.get();
+    start.err = err.get();
+    start.memory = program.memory;
+    start.file = program.disk;
+    try {
+        return std::make_unique<ProgramProcess>(start, guard);
+    } catch (const std::runtime_error& why) {
+        throw store::BrokenWorld(why.what());
+    }
+}
+
+}  // namespace
+
+ProgramAnswerer::ProgramAnswerer(std::shared_ptr<const Program> program, ProgramOptions options, ProgramGuard& guard)
+    : program_(std::move(program)), options_(std::move(options)), guard_(guard) {}
+
+ProgramAnswerer::~ProgramAnswerer() = default;
+
+std::optional<CaseResult> ProgramAnswerer::answer(const campaign::Case& question, std::int64_t attempt,
+                                                  const Pulse& pulse) {
+    check_version();
+    return program_->protocol == Program::Protocol::lines ? by_lines(question, attempt, pulse)
+                                                          : by_files(question, attempt, pulse);
+}
+
+void ProgramAnswerer::check_version() {
+    if (program_->version_command.empty() || std::exchange(version_checked_, true)) return;
+    try {
+        if (const auto here = ask_version(*program_, guard_); here != program_->version)
+            throw store::BrokenWorld(fmt::format("{} is version {} here, and the campaign was read with version {}",
+                                                 program_->version_command.front(), here, program_->version));
+    } catch (const store::BrokenWorld&) {
+        throw;
+    } catch (const std::runtime_error& why) {
+        throw store::BrokenWorld(
+            fmt::format("the version of {} cannot be asked: {}", program_->version_command.front(), why.what()));
+    }
+}
+
+std::optional<CaseResult> ProgramAnswerer::by_files(const campaign::Case& question, std::int64_t attempt,
+                                                    const Pulse& pulse) {
+    CaseResult result;
+    result.attempt = {question.id, attempt};
+    const bool stays = !options_.keep.empty();
+    ProgramFolder folder(stays ? options_.keep.parent_path() /
+                                     (options_.keep.filename().string() + std::string(running_suffix))
+                               : options_.folder / fmt::format("{}.{}{}", question.id, attempt, running_suffix));
+    fill_folder(folder, *program_, &question);
+    Limits limits(options_, *program_, folder);
+    const auto process = start_case(*program_, question, folder, guard_);
+    bool ended_by_limit = false;
+    for (double wait = 0.01; !process->wait(wait); wait = pulse_seconds) {
+        if (!pulse()) {
+            process->end();
+            return std::nullopt;
+        }
+        if (!limits.exceeded(result)) continue;
+        process->end();
+        ended_by_limit = true;
+        break;
+    }
+    const auto& end = process->result();
+    result.cost.wall_seconds = limits.seconds();
+    result.cost.cpu_seconds = end.cpu_seconds;
+    result.program = {program_->version, end.peak_memory, exit_status(end.status)};
+    if (!ended_by_limit && !limits.writes_too_much(result)) {
+        if (end.status != 0)
+            close_result(result, Outcome::crashed, crash_sentence(end.status, folder));
+        else
+            take(results_in(folder, *program_), result);
+    }
+    keep_or_remove(folder, result);
+    return result;
+}
+
+void ProgramAnswerer::keep_or_remove(ProgramFolder& folder, const CaseResult& result) {
+    if (!options_.keep.empty()) return folder.keep_as(options_.keep.filename().string());
+    const bool failed = result.outcome != Outcome::completed;
+    const bool all = program_->keep == Program::Keep::all;
+    if (program_->keep == Program::Keep::none || (!failed && !all)) return;
+    if (!all) {
+        if (kept_ < 0) {
+            std::error_code ignored;
+            kept_ = 0;
+            for (auto entry = fs::directory_iterator(options_.folder, ignored); entry != fs::directory_iterator();
+                 entry.increment(ignored))
+                if (!entry->path().filename().string().ends_with(running_suffix)) ++kept_;
+        }
+        if (kept_ > most_kept) return;
+        ++kept_;
+    }
+    folder.keep_as(fmt::format("{}.{}", result.attempt.case_id, result.attempt.number));
+}
+
+std::optional<CaseResult> ProgramAnswerer::by_lines(const campaign::Case& question, std::int64_t attempt,
+                                                    const Pulse& pulse) {
+    CaseResult result;
+    result.attempt = {question.id, attempt};
+    const auto start = Clock::now();
+    using Heard = ProgramLines::Heard;
+    const auto ask = [&] {
+        if (!lines_) lines_ = std::make_unique<ProgramLines>(*program_, options_.folder, guard_);
+        Limits limits(options_, *program_, lines_->folder());
+        const double before = lines_->cpu_seconds();
+        const auto heard =
+            lines_->ask(campaign::program_question(question.id, question.seed, program_->cores, question.inputs), [&] {
+                if (!pulse()) return ProgramLines::Go::give_up;
+                return limits.exceeded(result) ? ProgramLines::Go::stop : ProgramLines::Go::on;
+            });
+        result.cost.wall_seconds = elapsed(start);
+        result.cost.cpu_seconds = std::max(0.0, lines_->cpu_seconds() - before);
+        return heard;
+    };
+    auto heard = ask();
+    if (heard == Heard::ended_before || (heard == Heard::end && lines_->ended_well())) {
+        lines_.reset();  // it ended after the case before: no matter of this one
+        heard = ask();
+    }
+    result.program = {program_->version, lines_->peak_memory(), std::nullopt};
+    if (heard == Heard::reply) {
+        try {
+            take(results_in(lines_->line(), question.id, *program_), result);
+            return result;
+        } catch (const std::invalid_argument& why) {  // what it says next cannot be told from this
+            close_result(result, Outcome::rejected, why.what());
+        }
+    } else if (heard == Heard::too_long) {
+        close_result(result, Outcome::rejected, "it replied by a line of more than 16 MB");
+    }
+    lines_->end();
+    const auto& end = lines_->result();
+    result.program = {program_->version, end.peak_memory, exit_status(end.status)};
+    if (heard == Heard::end || heard == Heard::ended_before)
+        close_result(result, Outcome::crashed, crash_sentence(end.status, lines_->folder()));
+    else if (heard == Heard::unasked)
+        close_result(result, Outcome::crashed, "the program wrote a line that was not asked for: " + lines_->line());
+    lines_.reset();
+    if (heard == Heard::given_up) return std::nullopt;
+    return result;
+}
+
+}  // namespace grainsweep::workers

@@ -1,0 +1,227 @@
+#include "sweep/workers/program_folder.hpp"
+
+#include "sweep/store/broken_world.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <linux/fs.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace grainsweep::workers {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t most_files_counted = 1'000'000;
+
+[[noreturn]] void broken(const fs::path& what, int number) {
+    throw store::BrokenWorld(fmt::format("'{}': cannot be written: {}", what.string(), std::strerror(number)));
+}
+
+/// A descriptor, closed in the end.
+class Held {
+public:
+    explicit Held(int descriptor) : descriptor_(descriptor) {}
+    Held(const Held&) = delete;
+    Held& operator=(const Held&) = delete;
+    ~Held() {
+        if (descriptor_ >= 0) ::close(descriptor_);
+    }
+    [[nodiscard]] int get() const { return descriptor_; }
+    [[nodiscard]] int release() { return std::exchange(descriptor_, -1); }
+
+private:
+    int descriptor_;
+};
+
+/// Removes a folder whose owner may have taken away the right to.
+void clear_away(const fs::path& folder) {
+    std::error_code error;
+    fs::remove_all(folder, error);
+    if (!error) return;
+    std::error_code ignored;
+    for (auto entry = fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied, ignored);
+         entry != fs::recursive_directory_iterator(); entry.increment(ignored)) {
+        if (entry->is_directory(ignored) && !entry->is_symlink(ignored))
+            fs::permissions(entry->path(), fs::perms::owner_all, fs::perm_options::add, ignored);
+    }
+    fs::remove_all(folder, ignored);
+}
+
+void write_all(int file, std::string_view contents, const fs::path& name) {
+    while (!contents.empty()) {
+        const auto length = ::write(file, contents.data(), contents.size());
+        if (length < 0 && errno == EINTR) continue;
+        if (length < 0) broken(name, errno);
+        contents.remove_prefix(static_cast<std::size_t>(length));
+    }
+}
+
+}  // namespace
+
+ProgramFolder::ProgramFolder(fs::path path) : path_(std::move(path)) {
+    if (::mkdir(path_.c_str(), 0777) != 0) {
+        if (errno == EEXIST) clear_away(path_);
+        std::error_code error;
+        fs::create_directories(path_.parent_path(), error);
+        if (::mkdir(path_.c_str(), 0777) != 0) broken(path_, errno);
+    }
+    folder_ = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (folder_ < 0) broken(path_, errno);
+}
+
+ProgramFolder::~ProgramFolder() {
+    if (folder_ >= 0) ::close(folder_);
+    if (!kept_) clear_away(path_);
+}
+
+/// The folder that the last part of a name lies in, without following a link.
+int ProgramFolder::parent_of(const std::string& name, std::string& leaf) const {
+    int at = ::fcntl(folder_, F_DUPFD_CLOEXEC, 0);
+    std::string_view rest = name;
+    for (auto slash = rest.find('/'); slash != std::string_view::npos && at >= 0; slash = rest.find('/')) {
+        const std::string part(rest.substr(0, slash));
+        const int next = ::openat(at, part.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+        const int number = errno;
+        ::close(at);
+        errno = number;
+        at = next;
+        rest.remove_prefix(slash + 1);
+    }
+    leaf = rest;
+    return at;
+}
+
+int ProgramFolder::create(const std::string& name) const {
+    std::string leaf;
+    if (name.find('/') != std::string::npos) {
+        std::error_code error;
+        fs::create_directories((path_ / name).parent_path(),
+                               error);  // the program has not begun: nothing is a link yet
+    }
+    const Held parent(parent_of(name, leaf));
+    const int file = ::openat(parent.get(), leaf.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file < 0) broken(path_ / name, errno);
+    return file;
+}
+
+void ProgramFolder::write(const std::string& name, std::string_view contents, bool executable) const {
+    const Held file(create(name));
+    write_all(file.get(), contents, path_ / name);
+    if (executable) ::fchmod(file.get(), 0777);
+}
+
+void ProgramFolder::copy(const std::string& name, const fs::path& from, bool executable) const {
+    const Held source(::open(from.c_str(), O_RDONLY | O_CLOEXEC));
+    if (source.get() < 0)
+        throw store::BrokenWorld(fmt::format("'{}': cannot be read: {}", from.string(), std::strerror(errno)));
+    const Held file(create(name));
+    if (executable) ::fchmod(file.get(), 0777);
+    if (::ioctl(file.get(), FICLONE, source.get()) == 0) return;  // where the disk can share the blocks
+    std::array<char, 65536> piece{};
+    while (true) {
+        const auto length = ::read(source.get(), piece.data(), piece.size());
+        if (length < 0 && errno == EINTR) continue;
+        if (length < 0)
+            throw store::BrokenWorld(fmt::format("'{}': cannot be read: {}", from.string(), std::strerror(errno)));
+        if (length == 0) return;
+        write_all(file.get(), {piece.data(), static_cast<std::size_t>(length)}, path_ / name);
+    }
+}
+
+int ProgramFolder::open(const std::string& name, std::string& why) const {
+    std::string leaf;
+    const Held parent(parent_of(name, leaf));
+    const auto missing = [&](int number) {
+        why = number == ELOOP || number == ENOTDIR ? "is a link, or lies behind one, and those are not followed"
+              : number == ENOENT                   ? "was not written"
+                                                   : fmt::format("cannot be read: {}", std::strerror(number));
+        return -1;
+    };
+    if (parent.get() < 0) return missing(errno);
+    Held file(::openat(parent.get(), leaf.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+    if (file.get() < 0) return missing(errno);
+    struct stat status {};
+    if (::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) {
+        why = "is no regular file";
+        return -1;
+    }
+    return file.release();
+}
+
+std::optional<std::string> ProgramFolder::read(const std::string& name, std::size_t most_bytes,
+                                               std::string& why) const {
+    const Held file(open(name, why));
+    if (file.get() < 0) return std::nullopt;
+    struct stat status {};
+    if (::fstat(file.get(), &status) != 0 || static_cast<std::size_t>(status.st_size) > most_bytes) {
+        why = fmt::format("has {} MB, and at most {} are read", status.st_size / 1'000'000, most_bytes / 1'000'000);
+        return std::nullopt;
+    }
+    std::string text(static_cast<std::size_t>(status.st_size), '\0');
+    std::size_t have = 0;
+    while (have < text.size()) {
+        const auto length = ::read(file.get(), text.data() + have, text.size() - have);
+        if (length < 0 && errno == EINTR) continue;
+        if (length <= 0) break;
+        have += static_cast<std::size_t>(length);
+    }
+    text.resize(have);
+    return text;
+}
+
+bool ProgramFolder::has(const std::string& name) const {
+    struct stat status {};
+    return ::fstatat(folder_, name.c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0;
+}
+
+std::string ProgramFolder::end_of(const std::string& name, std::size_t bytes) const {
+    std::string why;
+    const Held file(open(name, why));
+    if (file.get() < 0) return {};
+    const off_t size = ::lseek(file.get(), 0, SEEK_END);
+    const off_t from = std::max<off_t>(0, size - static_cast<off_t>(bytes));
+    std::string text(static_cast<std::size_t>(size - from), '\0');
+    const auto got = ::pread(file.get(), text.data(), text.size(), from);
+    text.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
+    if (from > 0) text.erase(0, std::min(text.find('\n'), text.size() - 1) + 1);
+    while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
+    return text;
+}
+
+ProgramFolder::Size ProgramFolder::size(std::int64_t most) const {
+    Size total;
+    std::error_code ignored;
+    for (auto entry = fs::recursive_directory_iterator(path_, fs::directory_options::skip_permission_denied, ignored);
+         entry != fs::recursive_directory_iterator(); entry.increment(ignored)) {
+        struct stat status {};
+        if (::lstat(entry->path().c_str(), &status) != 0) continue;
+        total.bytes += 512 * static_cast<std::int64_t>(status.st_blocks);
+        if (++total.files >= most_files_counted || total.bytes >= most) break;
+    }
+    return total;
+}
+
+void ProgramFolder::keep_as(const std::string& name) {
+    const auto to = path_.parent_path() / name;
+    clear_away(to);
+    std::error_code error;
+    fs::rename(path_, to, error);
+    if (!error) kept_ = true;
+}
+
+void sweep_program_folders(const fs::path& cases) {
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(cases, ignored))
+        if (entry.path().filename().string().ends_with(running_suffix)) clear_away(entry.path());
+}
+
+}  // namespace grainsweep::workers

@@ -1,0 +1,56 @@
+// A program that stays alive and answers line by line.
+#pragma once
+
+#include "sweep/campaign/program.hpp"
+#include "sweep/workers/program_folder.hpp"
+#include "sweep/workers/program_process.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace grainsweep::workers {
+
+class ProgramLines {
+public:
+    enum class Go { on, stop, give_up };
+    enum class Heard { reply, end, ended_before, too_long, unasked, stopped, given_up };
+
+    /// Starts it in a folder of its own within `cases`. Throws BrokenWorld where it cannot be started.
+    ProgramLines(const campaign::Program& program, const std::filesystem::path& cases, ProgramGuard& guard);
+    ProgramLines(const ProgramLines&) = delete;
+    ProgramLines& operator=(const ProgramLines&) = delete;
+    ~ProgramLines();
+
+    /// Writes the question and waits for its line, without its end in line(). `look` is called about ten times a
+    /// second. `ended_before`: it had ended when it was asked.
+    [[nodiscard]] Heard ask(const std::string& question, const std::function<Go()>& look);
+    [[nodiscard]] const std::string& line() const { return line_; }
+
+    /// Ends it; then result() is known.
+    void end();
+    /// Whether it ends by itself, at once, with exit code 0.
+    [[nodiscard]] bool ended_well();
+    [[nodiscard]] const ProgramEnd& result() const { return process_->result(); }
+    [[nodiscard]] double cpu_seconds() const { return process_->cpu_seconds(); }
+    /// Bytes resident at once so far; NaN where the system does not say.
+    [[nodiscard]] double peak_memory() const;
+    [[nodiscard]] const ProgramFolder& folder() const { return folder_; }
+
+private:
+    /// A line of what has come; nothing: it is not whole yet.
+    [[nodiscard]] bool take_line();
+    [[nodiscard]] std::optional<Heard> exchange(std::string_view& rest, int milliseconds);
+    void shorten_log() const;
+
+    ProgramFolder folder_;
+    std::unique_ptr<ProgramProcess> process_;
+    int in_ = -1, out_ = -1, status_ = -1, log_ = -1;
+    std::string received_, line_;
+    std::size_t searched_ = 0;  ///< of received_, without a line end
+};
+
+}  // namespace grainsweep::workers

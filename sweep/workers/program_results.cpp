@@ -1,0 +1,245 @@
+#include "sweep/workers/program_results.hpp"
+
+#include "sweep/workers/program_tables.hpp"
+#include "sweep/workers/worker_state.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace grainsweep::workers {
+namespace {
+
+using campaign::Program;
+using campaign::ProgramObservable;
+using Json = nlohmann::json;
+using Kind = ProgramReply::Kind;
+
+constexpr std::size_t largest_json = std::size_t{16} << 20U;
+
+/// A value that is not there or not to be used: what the case is rejected for.
+using Unusable = std::invalid_argument;
+
+std::string shown(const Json& value) {
+    return shortened(value.dump(-1, ' ', true, Json::error_handler_t::replace), 60);
+}
+
+double number_in(const Json& value, const std::string& place) {
+    if (!value.is_number()) throw Unusable(fmt::format("{} is {}, which is no number", place, shown(value)));
+    const auto number = value.get<double>();
+    if (!std::isfinite(number)) throw Unusable(fmt::format("{} is beyond double precision", place));
+    return number;
+}
+
+Json parsed(std::string_view text, const std::string& file) {
+    try {
+        return Json::parse(text);
+    } catch (const Json::parse_error& error) {
+        const auto near = text.substr(std::min(text.size(), error.byte > 12 ? error.byte - 12 : 0), 24);
+        for (const char* word : {"NaN", "nan", "Infinity", "inf"})
+            if (near.find(word) != std::string_view::npos)
+                throw Unusable(fmt::format("{} holds {} at byte {}, which is no number", file, word, error.byte));
+        throw Unusable(fmt::format("{} is no JSON at byte {}: {}", file, error.byte, shown(Json(std::string(near)))));
+    }
+}
+
+/// Files read once for all that is found in them.
+class Documents {
+public:
+    explicit Documents(const ProgramFolder& folder) : folder_(folder) {}
+    const Json& json(const std::string& name) {
+        if (const auto known = json_.find(name); known != json_.end()) return known->second;
+        std::string why;
+        const auto text = folder_.read(name, largest_json, why);
+        if (!text) throw Unusable(fmt::format("{} {}", name, why));
+        return json_.emplace(name, parsed(*text, name)).first->second;
+    }
+    ProgramTable& table(const std::string& name, const std::string& separator) {
+        auto& known = tables_[{name, separator}];
+        if (known) return *known;
+        std::string why;
+        auto text = folder_.read(name, largest_table, why);
+        if (!text) throw Unusable(fmt::format("{} {}", name, why));
+        known = std::make_unique<ProgramTable>(name, std::move(*text), separator);
+        return *known;
+    }
+    [[nodiscard]] const ProgramFolder& folder() const { return folder_; }
+
+private:
+    const ProgramFolder& folder_;
+    std::map<std::string, Json> json_;
+    std::map<std::pair<std::string, std::string>, std::unique_ptr<ProgramTable>> tables_;
+};
+
+const Json& value_at(const Json& document, const std::string& file, const std::string& path) {
+    const Json::json_pointer pointer(path);
+    if (!document.contains(pointer)) throw Unusable(fmt::format("{} has no {}", file, path));
+    return document.at(pointer);
+}
+
+std::vector<double> numbers_at(const Json& document, const std::string& file, const std::string& path) {
+    const auto& list = value_at(document, file, path);
+    if (!list.is_array()) throw Unusable(fmt::format("{}: {} is {}, which is no list", file, path, shown(list)));
+    std::vector<double> numbers;
+    numbers.reserve(list.size());
+    for (const auto& value : list)
+        numbers.push_back(number_in(value, fmt::format("{}: {}/{}", file, path, numbers.size())));
+    return numbers;
+}
+
+/// Where a scalar was found, for messages, and its value; or values and their places.
+struct Found {
+    double value = 0;
+    std::vector<double> values, places;
+};
+
+Found find(const campaign::FromJson& from, bool scalar, Documents& documents) {
+    const auto& document = documents.json(from.file);
+    if (scalar)
+        return {
+            number_in(value_at(document, from.file, from.path), fmt::format("{}: {}", from.file, from.path)), {}, {}};
+    Found found{0, numbers_at(document, from.file, from.path), numbers_at(document, from.file, from.over)};
+    if (found.values.size() != found.places.size())
+        throw Unusable(fmt::format("{}: {} has {} values and {} has {}", from.file, from.path, found.values.size(),
+                                   from.over, found.places.size()));
+    return found;
+}
+
+Found find(const campaign::FromCsv& from, bool scalar, Documents& documents) {
+    auto& table = documents.table(from.file, from.separator);
+    if (scalar) return {table.value(from.column, from.row), {}, {}};
+    return {0, table.column(from.column), table.column(from.over)};
+}
+
+Found find(const campaign::FromOutput& from, bool, Documents& documents) {
+    return {last_in_output(documents.folder(), from.pattern), {}, {}};
+}
+
+Found find(const campaign::FromReply&, bool, Documents&) {
+    throw std::logic_error("a reply has no file");
+}
+
+void add(const ProgramObservable& declared, Found&& found, Observations& into) {
+    const auto check = [&](double value, std::size_t k) {
+        if (declared.bounds.contains(value)) return;
+        const auto number = declared.shape == Shape::scalar ? "" : fmt::format(" number {}", k);
+        throw Unusable(fmt::format("{}{} is {}, outside of its bounds {} to {}", declared.name, number, value,
+                                   declared.bounds.low, declared.bounds.high));
+    };
+    if (declared.shape == Shape::scalar) {
+        check(found.value, 0);
+        into.scalars[declared.name] = found.value;
+        return;
+    }
+    auto& samples = into.series[declared.name];
+    samples.resize(found.values.size());
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+        check(found.values[k], k);
+        samples[k].value = found.values[k];
+        (declared.shape == Shape::series ? samples[k].time : samples[k].bin) = found.places[k];
+    }
+}
+
+/// "outcome" and "message" of an object that says what became of the case itself; nothing: it was measured.
+std::optional<ProgramReply> said_in(const Json& object, const std::string& file) {
+    if (!object.is_object() || !object.contains("outcome")) return std::nullopt;
+    const auto& word = object["outcome"];
+    std::string message = "the program says so";
+    if (const auto why = object.find("message"); why != object.end() && why->is_string()) message = *why;
+    if (word == "completed") return std::nullopt;
+    if (word == "unstable") return ProgramReply{Kind::unstable, std::move(message), {}};
+    if (word == "rejected") return ProgramReply{Kind::rejected, std::move(message), {}};
+    throw Unusable(fmt::format("{}: /outcome is {}, and it may be completed, unstable or rejected", file, shown(word)));
+}
+
+/// Pairs [place, value].
+Found pairs_in(const Json& list, const std::string& name) {
+    if (!list.is_array()) throw Unusable(fmt::format("its {} is {}, which is no list", name, shown(list)));
+    Found found;
+    for (const auto& pair : list) {
+        const auto place = fmt::format("its {} number {}", name, found.values.size());
+        if (!pair.is_array() || pair.size() != 2)
+            throw Unusable(fmt::format("{} is {}, which is no pair of place and value", place, shown(pair)));
+        found.places.push_back(number_in(pair[0], place));
+        found.values.push_back(number_in(pair[1], place));
+    }
+    return found;
+}
+
+ProgramReply measured_in(const Json& object, const Program& program) {
+    const auto observables = object.find("observables");
+    if (observables == object.end() || !observables->is_object())
+        throw Unusable("it replied neither \"observables\" nor an \"outcome\"");
+    for (const auto& [name, value] : observables->items())
+        if (std::ranges::find(program.observables, name, &ProgramObservable::name) == program.observables.end())
+            throw Unusable(fmt::format("it measured '{}', which is not declared", shortened(name, 100)));
+    ProgramReply reply;
+    for (const auto& declared : program.observables) {
+        const auto value = observables->find(declared.name);
+        if (value == observables->end()) throw Unusable(fmt::format("it replied without {}", declared.name));
+        if (declared.shape == Shape::scalar)
+            add(declared, {number_in(*value, "its " + declared.name), {}, {}}, reply.observations);
+        else
+            add(declared, pairs_in(*value, declared.name), reply.observations);
+    }
+    return reply;
+}
+
+std::optional<ProgramReply> said_in_files(const Program& program, Documents& documents) {
+    if (documents.folder().has("outcome.json")) {
+        if (auto said = said_in(documents.json("outcome.json"), "outcome.json")) return said;
+    }
+    for (const auto& declared : program.observables) {
+        const auto* from = std::get_if<campaign::FromJson>(&declared.from);
+        if (from == nullptr || !documents.folder().has(from->file)) continue;
+        if (auto said = said_in(documents.json(from->file), from->file)) return said;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+ProgramReply results_in(const ProgramFolder& folder, const Program& program) {
+    Documents documents(folder);
+    try {
+        if (auto said = said_in_files(program, documents)) return std::move(*said);
+        ProgramReply reply;
+        for (const auto& declared : program.observables) {
+            auto found =
+                std::visit([&](const auto& from) { return find(from, declared.shape == Shape::scalar, documents); },
+                           declared.from);
+            add(declared, std::move(found), reply.observations);
+        }
+        return reply;
+    } catch (const Unusable& why) {
+        return {Kind::rejected, why.what(), {}};
+    }
+}
+
+ProgramReply results_in(std::string_view line, std::string_view case_id, const Program& program) {
+    const Json object = Json::parse(line, nullptr, false);
+    const bool not_a_number = object.is_discarded() && (line.find("NaN") != std::string_view::npos ||
+                                                        line.find("Infinity") != std::string_view::npos);
+    if (not_a_number) return {Kind::rejected, "it replied NaN or Infinity, which is no number", {}};
+    if (!object.is_object())
+        throw Unusable(
+            fmt::format("it replied what is no JSON object: {}", shown(Json(std::string(line.substr(0, 200))))));
+    if (const auto of = object.find("case"); of != object.end() && *of != case_id)
+        throw Unusable(fmt::format("it replied to case {}, which was not asked", shown(*of)));
+    try {
+        if (auto said = said_in(object, "its reply")) return std::move(*said);
+        return measured_in(object, program);
+    } catch (const Unusable& why) {
+        return {Kind::rejected, why.what(), {}};
+    }
+}
+
+}  // namespace grainsweep::workers

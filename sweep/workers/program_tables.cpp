@@ -1,0 +1,150 @@
+#include "sweep/workers/program_tables.hpp"
+
+#include "sweep/campaign/csv_record.hpp"
+#include "sweep/workers/worker_state.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <regex>
+#include <stdexcept>
+#include <utility>
+
+namespace grainsweep::workers {
+namespace {
+
+constexpr std::size_t most_columns = 10'000, most_rows = 10'000'000;
+constexpr std::size_t longest_searched = 4096;  // the search recurs once per character
+
+std::string_view without_blanks(std::string_view text) {
+    constexpr std::string_view blanks = " \t\r";
+    const auto first = text.find_first_not_of(blanks);
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+std::optional<double> number_of(std::string_view text) {
+    text = without_blanks(text);
+    if (text.starts_with('+')) text.remove_prefix(1);
+    double number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(number)) return std::nullopt;
+    return number;
+}
+
+}  // namespace
+
+ProgramTable::ProgramTable(std::string file, std::string text, std::string separator)
+    : file_(std::move(file)), text_(std::move(text)), separator_(std::move(separator)) {
+    std::string_view rest = text_;
+    if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
+    while (!rest.empty()) {
+        const auto end = rest.find('\n');
+        auto line = without_blanks(rest.substr(0, end));
+        rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+        if (names_.empty()) {  // a head may be marked as a comment
+            while (line.starts_with('#')) line = without_blanks(line.substr(1));
+            if (!line.empty()) names_ = cells_of(line);
+        } else if (!line.empty() && !line.starts_with('#')) {
+            if (rows_.size() >= most_rows)
+                throw std::invalid_argument(fmt::format("{} has more than {} rows", file_, most_rows));
+            rows_.push_back(line);
+        }
+    }
+}
+
+std::vector<std::string> ProgramTable::cells_of(std::string_view line) const {
+    if (separator_ == "comma") return campaign::take_csv_record(line);
+    std::vector<std::string> cells;
+    const char between = separator_ == "semicolon" ? ';' : '\t';
+    while (cells.size() < most_columns) {
+        if (separator_ == "blank") {
+            line = without_blanks(line);
+            if (line.empty()) break;
+        }
+        const auto end = separator_ == "blank" ? line.find_first_of(" \t") : line.find(between);
+        cells.emplace_back(without_blanks(line.substr(0, end)));
+        if (end == std::string_view::npos) break;
+        line.remove_prefix(end + 1);
+    }
+    return cells;
+}
+
+std::size_t ProgramTable::place_of(const std::string& column) const {
+    const auto found = std::ranges::find(names_, column);
+    if (found != names_.end()) return static_cast<std::size_t>(found - names_.begin());
+    std::string listed;
+    for (const auto& name : names_) listed += (listed.empty() ? "" : ", ") + name;
+    throw std::invalid_argument(fmt::format("{} has no column '{}'; it has {}", file_, column,
+                                            listed.empty() ? "none" : shortened(listed, 200)));
+}
+
+double ProgramTable::number(std::size_t row, std::size_t place, const std::string& column) const {
+    const auto cells = cells_of(rows_[row]);
+    if (place >= cells.size()) throw std::invalid_argument(fmt::format("{}: row {} has no '{}'", file_, row, column));
+    if (const auto number = number_of(cells[place])) return *number;
+    throw std::invalid_argument(
+        fmt::format("{}: '{}' in row {} is '{}', which is no number", file_, column, row, shortened(cells[place], 60)));
+}
+
+double ProgramTable::value(const std::string& column, std::int64_t row) const {
+    const std::size_t place = place_of(column);
+    const auto rows = static_cast<std::int64_t>(rows_.size());
+    const std::int64_t at = row < 0 ? rows + row : row;
+    if (at < 0 || at >= rows)
+        throw std::invalid_argument(fmt::format("{} has {} rows, and row {} is asked", file_, rows, row));
+    return number(static_cast<std::size_t>(at), place, column);
+}
+
+std::vector<double> ProgramTable::column(const std::string& name) const {
+    const std::size_t place = place_of(name);
+    if (rows_.size() > most_values)
+        throw std::invalid_argument(
+            fmt::format("{} has {} rows, and a series has at most {}", file_, rows_.size(), most_values));
+    std::vector<double> values;
+    values.reserve(rows_.size());
+    for (std::size_t row = 0; row < rows_.size(); ++row) values.push_back(number(row, place, name));
+    return values;
+}
+
+double last_in_output(const ProgramFolder& folder, const std::string& pattern) {
+    static std::map<std::string, std::regex> known;
+    auto found = known.find(pattern);
+    if (found == known.end()) found = known.emplace(pattern, std::regex(pattern, std::regex::optimize)).first;
+    std::string why;
+    const int file = folder.open("stdout.txt", why);
+    if (file < 0) throw std::invalid_argument("standard output " + why);
+    std::optional<std::string> last;
+    std::string line;
+    std::smatch parts;
+    const auto search = [&] {
+        if (std::regex_search(line, parts, found->second) && parts[1].matched) last = parts[1].str();
+        line.clear();
+    };
+    std::array<char, 65536> piece{};
+    for (ssize_t length = 0;
+         (length = ::read(file, piece.data(), piece.size())) > 0 || (length < 0 && errno == EINTR);) {
+        for (ssize_t k = 0; k < length; ++k) {
+            const char c = piece[static_cast<std::size_t>(k)];
+            if (c == '\n')
+                search();
+            else if (line.size() < longest_searched)
+                line += c;
+        }
+    }
+    ::close(file);
+    if (!line.empty()) search();
+    if (!last) throw std::invalid_argument(fmt::format("standard output has no line with '{}'", pattern));
+    if (const auto number = number_of(*last)) return *number;
+    throw std::invalid_argument(
+        fmt::format("standard output: '{}' found '{}', which is no number", pattern, shortened(*last, 60)));
+}
+
+}  // namespace grainsweep::workers
