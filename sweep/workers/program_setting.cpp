@@ -128,7 +128,7 @@ std::string ask_version(const Program& program, ProgramGuard& guard) {
         throw std::runtime_error(fmt::format("there is no program '{}'", program.version_command.front()));
     start.folder = folder.descriptor();
     start.out = start.err = folder.create("stdout.txt");
-    start.file = static_cast<std::int64_t>(longest_answer);
+    start.file = program.disk;  // some libraries make files of their own elsewhere
     std::string text, why;
     {
         ProgramProcess process(start, guard);

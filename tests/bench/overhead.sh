@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # What a case costs beside its computation: no-op cases end to end, durable, with -j2, and GNU Parallel with a joblog
 # beside it where installed; the same through a host (execution.hosts). Then a million of them: the plan, the time until the first case begins, the run, its
-# memory, the same run again with nothing left to do. JSON lines; memory is the resident memory of the main program at
+# memory, the same run again with nothing left to do. Programs as cases: one that does nothing, once per case, beside
+# GNU Parallel, and one in C++ that stays alive and answers line by line. JSON lines; memory is the resident memory of the main program at
 # its highest, MB of 10^6 bytes.
 #   tests/bench/overhead.sh [CASES [MANY]]
 set -euo pipefail
@@ -61,6 +62,31 @@ if command -v parallel >/dev/null; then
     awk -v n=$jobs -v many="$many" -v s="$seconds" 'BEGIN {
         printf "{\"bench\": \"gnu_parallel_joblog\", \"cases\": %d, \"seconds\": %.3f, \"cases_per_second\": %.0f, ", n, s, n / s
         printf "\"seconds_of_%d_at_this_rate\": %.0f}\n", many, many * s / n }'
+fi
+
+cat >command.json <<JSON
+{"campaign": "command", "scene": "program", "program": {"command": ["true"], "cost_seconds": 0.005},
+ "factors": [{"name": "x", "between": [0, 1]}], "design": {"kind": "halton", "points": $jobs}}
+JSON
+watched "$grainsweep" run command.json -j 2 --quiet
+told program_command "$jobs"
+cat >twice.cpp <<'CPP'
+#include <cstdlib>
+#include <iostream>
+#include <string>
+int main() {
+    for (std::string line; std::getline(std::cin, line);)
+        std::cout << "{\"observables\":{\"y\":" << 2 * std::strtod(line.c_str() + line.find("\"x\":") + 4, nullptr) << "}}" << std::endl;
+}
+CPP
+if c++ -O2 -o twice twice.cpp; then
+    cat >lines.json <<JSON
+{"campaign": "lines", "scene": "program",
+ "program": {"command": ["./twice"], "files": ["twice"], "protocol": "lines", "observables": {"y": {"unit": "1"}}},
+ "factors": [{"name": "x", "between": [0, 1]}], "design": {"kind": "halton", "points": $((10 * jobs))}}
+JSON
+    watched "$grainsweep" run lines.json -j 2 --quiet
+    told program_lines "$((10 * jobs))"
 fi
 
 campaign many "$many" >many.json
