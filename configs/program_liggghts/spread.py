@@ -1,11 +1,11 @@
 """One case of powder spreading by LIGGGHTS, as scene `program` starts it: reads inputs.json, writes the blade and the
 first positions, runs the deck in.spread beside it, and leaves result.json. The same experiment as the scene
 powder_spreading: a layer settles between two gates, then a box-shaped blade sweeps it.
-Needs numpy and the program liggghts (3.8)."""
+Needs the program liggghts (3.8)."""
 import json
+import math
+import random
 import subprocess
-
-import numpy as np
 
 asked = json.load(open("inputs.json"))
 x = asked["inputs"]
@@ -13,20 +13,22 @@ d, gap, speed = x["diameter"], x["gap"], x["speed"]
 rho, dt = 7980.0, 1e-5
 front, thick, top, layer = 0.015, 0.005, 0.150, 0.090  # blade's face, its thickness and upper end, length of the layer, m
 width = 10 * d
-mass = rho * np.pi / 6 * d**3
-count = round(400e-6 * width / (np.pi / 6 * d**3))
+mass = rho * math.pi / 6 * d**3
+count = round(400e-6 * width / (math.pi / 6 * d**3))
 
 
 def start():
     """A cubic lattice with a jitter, and small velocities."""
-    draw = np.random.default_rng(asked["seed"])
+    draw = random.Random(asked["seed"])
+    jitter = lambda size: [size * draw.uniform(-1, 1) for _ in range(3)]
     nx, ny = int((layer - 0.1 * d) / (1.1 * d)), int(width / (1.1 * d))
-    k = np.arange(count)
-    place = np.stack([k % nx, k // nx % ny, k // (nx * ny)], axis=1) + [0.5, 0.5, 0.5]
-    x0 = place * [(layer - 0.1 * d) / nx, width / ny, 1.1 * d] + [front + 0.05 * d, 0, 0.05 * d]
-    x0 += 0.05 * d * draw.uniform(-1, 1, (count, 3))
-    x0[:, 1] %= width
-    return x0, 0.1 * draw.uniform(-1, 1, (count, 3))
+    step = [(layer - 0.1 * d) / nx, width / ny, 1.1 * d]
+    x0 = []
+    for k in range(count):
+        place = [k % nx, k // nx % ny, k // (nx * ny)]
+        p = [(q + 0.5) * h + o + j for q, h, o, j in zip(place, step, [front + 0.05 * d, 0, 0.05 * d], jitter(0.05 * d))]
+        x0.append([p[0], p[1] % width, p[2]])
+    return x0, [jitter(0.1) for _ in x0]
 
 
 def write_start(file, x0, v0):
@@ -41,7 +43,7 @@ def write_start(file, x0, v0):
 
 def write_blade(file):
     """A box without its ends, front and back in strips: LIGGGHTS refuses triangles that are long beside the period."""
-    ys, zs = np.linspace(0, width, 5), np.linspace(gap, top, 6)
+    ys, zs = [width * k / 4 for k in range(5)], [gap + (top - gap) * k / 5 for k in range(6)]
     quads = []
     for y0, y1 in zip(ys, ys[1:]):
         for z0, z1 in zip(zs, zs[1:]):
@@ -52,9 +54,9 @@ def write_blade(file):
     file.write("solid blade\n")
     for a, b, c, e in quads:
         for corners in ((a, b, c), (a, c, e)):
-            n = np.cross(np.subtract(corners[1], corners[0]), np.subtract(corners[2], corners[0]))
-            n /= np.linalg.norm(n)
-            file.write(" facet normal %g %g %g\n  outer loop\n" % tuple(n))
+            u, v = ([q - o for q, o in zip(other, corners[0])] for other in corners[1:])
+            n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+            file.write(" facet normal %g %g %g\n  outer loop\n" % tuple(q / math.hypot(*n) for q in n))
             for p in corners:
                 file.write("   vertex %.9g %.9g %.9g\n" % p)
             file.write("  endloop\n endfacet\n")
@@ -70,7 +72,7 @@ def frames(name):
             n = int(lines.readline())
             for _ in range(5):
                 lines.readline()
-            yield step, np.array([float(lines.readline().split()[0]) for _ in range(n)])
+            yield step, [float(lines.readline().split()[0]) for _ in range(n)]
 
 
 with open("start.data", "w") as file:
@@ -82,7 +84,7 @@ subprocess.run(["liggghts", "-in", "in.spread", "-log", "log.txt", "-screen", "s
                check=True, stdout=subprocess.DEVNULL)
 
 # Net number of particles that the blade has passed, over its travel from 20 mm to the end.
-behind = [(step * dt, int((p < front + speed * step * dt).sum())) for step, p in frames("sweep.dump")]
+behind = [(step * dt, sum(p < front + speed * step * dt for p in places)) for step, places in frames("sweep.dump")]
 steady = [one for one in behind if one[0] * speed >= 0.020 - 1e-9]
 (t1, n1), (t2, n2) = steady[0], steady[-1]
 json.dump({"mfr": (n2 - n1) * mass / (t2 - t1) / (width * gap * speed * rho), "particles": count,
