@@ -26,7 +26,7 @@ program_packages=(
 )
 test_packages=(
     libgtest-dev=/usr/include/gtest/gtest.h libgmock-dev=/usr/include/gmock/gmock.h
-    sqlite3=/usr/bin/sqlite3 chromium=/usr/bin/chromium g++-aarch64-linux-gnu=/usr/bin/aarch64-linux-gnu-g++
+    sqlite3=/usr/bin/sqlite3 python3=/usr/bin/python3 chromium=/usr/bin/chromium g++-aarch64-linux-gnu=/usr/bin/aarch64-linux-gnu-g++
 )
 
 present() {  # PACKAGE=FILE[:LIBRARY]
