@@ -35,12 +35,6 @@ campaign::Campaign read_with_program(const fs::path& config) {
     return with_program(campaign::read_campaign(config), config);
 }
 
-fs::path cases_folder(const fs::path& database) {
-    fs::path folder = fs::absolute(database);
-    if (folder.extension() == ".cases") return folder += ".cases";
-    return folder.replace_extension(".cases");
-}
-
 StagedProgram::StagedProgram(std::shared_ptr<const campaign::Program> program, fs::path cases)
     : program_(std::move(program)), cases_(std::move(cases)) {
     if (program_ == nullptr) return;

@@ -16,9 +16,6 @@ namespace grainsweep::cli {
 /// Reads a campaign file so.
 [[nodiscard]] campaign::Campaign read_with_program(const std::filesystem::path& config);
 
-/// Beside the database: x.cases for x.db.
-[[nodiscard]] std::filesystem::path cases_folder(const std::filesystem::path& database);
-
 /// Puts the program where workers find it, for as long as this lives; then removes what is not kept.
 class StagedProgram {
 public:

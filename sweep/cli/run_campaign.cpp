@@ -5,6 +5,7 @@
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/collect_spool.hpp"
 #include "sweep/cli/crew_options.hpp"
+#include "sweep/cli/folder_beside.hpp"
 #include "sweep/cli/program_campaign.hpp"
 #include "sweep/cli/progress.hpp"
 #include "sweep/cli/walltime.hpp"
@@ -172,13 +173,6 @@ std::string standing(const schedule::Judge* judge) {
     return "; not converged: " + judge->verdict();
 }
 
-/// Beside the database: x.artefacts for x.db, and never the database itself.
-fs::path artefact_folder(const fs::path& database) {
-    fs::path folder = fs::absolute(database);
-    if (folder.extension() == ".artefacts") return folder += ".artefacts";
-    return folder.replace_extension(".artefacts");
-}
-
 std::string describe(Ending ending, const schedule::Plan::Tally& tally, const schedule::Judge* judge) {
     switch (ending) {
         case Ending::finished:
@@ -273,7 +267,8 @@ public:
         if (!request.spool.empty()) refuse_other_cases(request.spool, placed_);
         database_ = request.database.empty() ? fs::path(campaign_.name + ".db") : request.database;
         refuse_what_cannot_start(campaign_, request, database_);
-        artefacts_ = request.artefacts.empty() ? artefact_folder(database_) : fs::absolute(request.artefacts);
+        artefacts_ =
+            request.artefacts.empty() ? folder_beside(database_, of_artefacts) : fs::absolute(request.artefacts);
         line_.emplace(request.quiet, workers_);
         if (request.spool.empty()) walltime_ = walltime_of(campaign_);
         store_.emplace(database_, store::Store::Mode::create,
@@ -360,8 +355,10 @@ private:
     }
     void compute() {
         schedule::Plan plan(std::move(questions_), rules_of(campaign_, request_, workers_));
-        const StagedProgram staged(campaign::known_program(campaign_.scene().name), cases_folder(database_));
-        workers::Pool pool(pool_options(campaign_, {artefacts_, cases_folder(database_)}, workers_, request_.path));
+        // Where workers on other nodes see the artefacts, they see the folders of a program's cases, too.
+        const auto cases = folder_beside(request_.artefacts.empty() ? database_ : artefacts_, of_cases);
+        const StagedProgram staged(campaign::known_program(campaign_.scene().name), cases);
+        workers::Pool pool(pool_options(campaign_, {artefacts_, cases}, workers_, request_.path));
         store::ArtefactFolder folder(artefacts_);
         sweep(folder, *store_);
         schedule::Watchers watchers;
