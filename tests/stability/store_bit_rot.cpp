@@ -33,7 +33,7 @@ auto asked(Question&& question) -> std::optional<decltype(question())> {
 
 struct StoreBitRot : testing::Test {
     static constexpr std::uint64_t flips = 400;
-    WholeCampaign whole{24};
+    WholeCampaign whole{60};
     Folder folder;
     std::string sound, expected, values;
 
