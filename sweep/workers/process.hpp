@@ -1,5 +1,5 @@
 // A process that computes, as the pool sees it: written to, read from, signalled, waited for. A child of this process
-// (child.hpp), or a worker on a host that speaks for it (remote_host.hpp).
+// (child.hpp), or a worker on a host that passes its messages on (remote_host.hpp).
 #pragma once
 
 #include <chrono>

@@ -1,5 +1,5 @@
 // A host (host.hpp) as the main program sees it: one process, launched once, that runs workers on another node and
-// speaks for them over its standard input and output. Its workers are processes like any other to the pool.
+// passes their messages on over its standard input and output. Its workers are processes like any other to the pool.
 #pragma once
 
 #include "sweep/workers/child.hpp"
@@ -20,7 +20,7 @@ class HostedWorker;
 class RemoteHost final : public std::enable_shared_from_this<RemoteHost> {
 public:
     struct Listener {
-        std::function<void(std::string_view line)> greeting;  ///< its launcher's, before it speaks
+        std::function<void(std::string_view line)> greeting;  ///< lines of its launcher, before its own first message
         /// It is gone, for this reason, and so are its workers: each has been told.
         std::function<void(std::string reason)> gone;
     };

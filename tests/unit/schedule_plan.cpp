@@ -229,7 +229,7 @@ TEST(Plan, LateAnswersOfDeadAttemptsAreStale) {
     EXPECT_EQ(plan.ended(first, Outcome::completed), Plan::Verdict::stale);
     EXPECT_EQ(plan.ended(second, Outcome::completed), Plan::Verdict::settled);
     EXPECT_EQ(plan.ended(second, Outcome::completed), Plan::Verdict::stale);
-    EXPECT_EQ(plan.ended({"nobody", 1}, Outcome::completed), Plan::Verdict::stale);
+    EXPECT_EQ(plan.ended({"unknown", 1}, Outcome::completed), Plan::Verdict::stale);
 }
 
 TEST(Plan, ResumesWhereTheArchiveEnds) {
