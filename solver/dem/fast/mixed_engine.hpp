@@ -13,7 +13,7 @@
 
 #include "solver/dem/engine.hpp"
 #include "solver/dem/fast/instruction_path.hpp"
-#include "solver/dem/fast/thread_pool.hpp"
+#include "solver/dem/fast/threads.hpp"
 
 namespace grainsweep::dem::fast {
 

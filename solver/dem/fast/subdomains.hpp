@@ -19,7 +19,8 @@
 
 #include "solver/dem/fast/columns.hpp"
 #include "solver/dem/fast/layout.hpp"
-#include "solver/dem/fast/thread_pool.hpp"
+#include "solver/dem/fast/threads.hpp"
+#include "solver/threads/thread_pool.hpp"
 
 namespace grainsweep::dem::fast {
 

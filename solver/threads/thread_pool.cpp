@@ -1,6 +1,6 @@
-#include "solver/dem/fast/thread_pool.hpp"
+#include "solver/threads/thread_pool.hpp"
 
-namespace grainsweep::dem::fast {
+namespace grainsweep {
 
 namespace {
 
@@ -84,4 +84,4 @@ void ThreadPool::wake() noexcept {
     wakes_.notify_all();
 }
 
-}  // namespace grainsweep::dem::fast
+}  // namespace grainsweep

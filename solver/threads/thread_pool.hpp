@@ -3,20 +3,12 @@
 
 #include <atomic>
 #include <condition_variable>
-#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <thread>
 #include <vector>
 
-namespace grainsweep::dem::fast {
-
-/// How many threads a case may have.
-struct Threads {
-    int most = 1;  ///< 0: as many as there are cores
-    /// Particles for each of them, at least; with fewer, waiting for one another costs more than it saves.
-    std::int32_t least_particles = 4000;
-};
+namespace grainsweep {
 
 /// As many threads as a piece of work has parts, the calling one among them. Each begins with its own part, which its
 /// core's caches know, and goes on with parts that none has begun: where something else keeps the cores busy, the
@@ -69,4 +61,4 @@ private:
     std::vector<std::jthread> threads_;
 };
 
-}  // namespace grainsweep::dem::fast
+}  // namespace grainsweep
