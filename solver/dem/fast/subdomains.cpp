@@ -13,7 +13,8 @@ namespace grainsweep::dem::fast {
 namespace {
 
 // What a sweep costs, relative to one another: a particle that is advanced, a contact, a pair that is only listed.
-constexpr double cost_of_particle = 4, cost_of_contact = 5, cost_of_pair = 0.3;
+// Of a pair of another subdomain's rows also its particles, which come out of order and are waited for.
+constexpr double cost_of_particle = 4, cost_of_contact = 5, cost_of_pair = 0.3, cost_of_waiting = 1.5;
 
 std::int32_t index_at(Place place) {
     return static_cast<std::int32_t>(place / places_per_index);
@@ -169,8 +170,22 @@ void Subdomains::cut_up(Field& whole, Columns& columns, bool listed) {
     joined_ = true;
 }
 
-/// Ranges that cost about the same.
+/// Ranges that cost about the same. Pairs across subdomains are computed in both: what a subdomain computes of the
+/// earlier ones' depends little on where exactly its range begins, and is known from ranges chosen without it.
 void Subdomains::choose_ranges(const Field& whole, const Columns& columns) {
+    for (const auto& subdomain : subdomains_) subdomain->ghost_cost = 0;
+    set_ranges(whole, columns);
+    find_crossing_pairs(whole);
+    for (const auto& subdomain : subdomains_)
+        for (const std::int32_t o : subdomain->ghost)
+            subdomain->ghost_cost += cost_of_pair + cost_of_waiting +
+                                     (bit_at(whole.outer_touching, o, kernels_->width) ? cost_of_contact : 0);
+    set_ranges(whole, columns);
+    find_crossing_pairs(whole);
+}
+
+/// Ranges of equal cost with the ghosts' costs as they are.
+void Subdomains::set_ranges(const Field& whole, const Columns& columns) {
     const int parts = count();
     const auto cost_before = [&](std::int32_t particle) {
         const std::int32_t pairs = pairs_before(whole.outer_first, whole.outer_count, particle);
@@ -178,11 +193,13 @@ void Subdomains::choose_ranges(const Field& whole, const Columns& columns) {
             whole.skips != 0 ? columns.advanced_before[static_cast<std::size_t>(particle)] : particle;
         return cost_of_particle * advanced + cost_of_contact * contacts_before(whole, pairs) + cost_of_pair * pairs;
     };
-    const double total = cost_before(whole.count);
+    double total = cost_before(whole.count), share = 0;
+    for (const auto& subdomain : subdomains_) total += subdomain->ghost_cost;
     std::int32_t begin = 0;
     for (int part = 0; part < parts; ++part) {
+        Subdomain& d = *subdomains_[static_cast<std::size_t>(part)];
         std::int32_t low = begin, high = whole.count;
-        const double share = total * (part + 1) / parts;
+        share += total / parts - d.ghost_cost;
         while (part + 1 < parts && low < high) {
             const std::int32_t middle = low + (high - low) / 2;
             if (cost_before(middle) < share)
@@ -190,7 +207,6 @@ void Subdomains::choose_ranges(const Field& whole, const Columns& columns) {
             else
                 high = middle;
         }
-        Subdomain& d = *subdomains_[static_cast<std::size_t>(part)];
         d.begin = begin;
         d.end = begin = high;
         d.row_begin = pairs_before(whole.outer_first, whole.outer_count, d.begin);
@@ -198,27 +214,35 @@ void Subdomains::choose_ranges(const Field& whole, const Columns& columns) {
     }
 }
 
-/// Pairs across subdomains, and the particles that these need of other subdomains.
-void Subdomains::find_partners(const Field& whole) {
-    for (std::size_t n = 0; n < subdomains_.size(); ++n) {
-        Subdomain& d = *subdomains_[n];
-        d.leaving.clear(), d.ghost.clear(), d.partner.clear();
+void Subdomains::find_crossing_pairs(const Field& whole) {
+    pool_->run([&](int part) {
+        Subdomain& d = *subdomains_[static_cast<std::size_t>(part)];
+        d.leaving.clear();
         for (std::int32_t o = d.row_begin; o < d.row_end; ++o)
-            if (whole.outer_second[o] >= place_at(d.end)) {
-                d.leaving.push_back(o);
-                d.partner.push_back(index_at(whole.outer_second[o]));
-            }
-        for (std::size_t earlier = 0; earlier < n; ++earlier)
-            for (const std::int32_t o : subdomains_[earlier]->leaving) {
+            if (whole.outer_second[o] >= place_at(d.end)) d.leaving.push_back(o);
+    });
+    pool_->run([&](int part) {
+        Subdomain& d = *subdomains_[static_cast<std::size_t>(part)];
+        d.ghost.clear();
+        for (int earlier = 0; earlier < part; ++earlier)
+            for (const std::int32_t o : subdomains_[static_cast<std::size_t>(earlier)]->leaving) {
                 const std::int32_t second = index_at(whole.outer_second[o]);
-                if (second < d.begin || second >= d.end) continue;
-                d.ghost.push_back(o);
-                d.partner.push_back(index_at(whole.outer_first[o]));
+                if (second >= d.begin && second < d.end) d.ghost.push_back(o);
             }
+    });
+}
+
+/// The particles that pairs across subdomains need of other subdomains.
+void Subdomains::find_partners(const Field& whole) {
+    pool_->run([&](int part) {
+        Subdomain& d = *subdomains_[static_cast<std::size_t>(part)];
+        d.partner.clear();
+        for (const std::int32_t o : d.leaving) d.partner.push_back(index_at(whole.outer_second[o]));
+        for (const std::int32_t o : d.ghost) d.partner.push_back(index_at(whole.outer_first[o]));
         std::ranges::sort(d.partner);
         const auto again = std::ranges::unique(d.partner);
         d.partner.erase(again.begin(), again.end());
-    }
+    });
 }
 
 /// Makes room for the copies behind the particles.

@@ -41,6 +41,7 @@ struct alignas(64) Subdomain {
     std::vector<std::int32_t> ghost;          ///< of its outer list the first ones: where they stand in the whole list
     std::vector<std::int32_t> leaving;        ///< pairs of its rows with a later subdomain, likewise
     std::int32_t row_begin = 0, row_end = 0;  ///< its rows in the whole outer list
+    double ghost_cost = 0;                    ///< of a sweep over the ghosts, see choose_ranges()
     std::int32_t inner_count = 0;             ///< a multiple of the width
     std::int32_t inner_ghosts = 0;            ///< the first ones of the inner list
     std::int32_t inner_rows = 0;              ///< those of its own rows, behind them
@@ -86,6 +87,8 @@ public:
 
 private:
     void choose_ranges(const Field& whole, const Columns& columns);
+    void set_ranges(const Field& whole, const Columns& columns);
+    void find_crossing_pairs(const Field& whole);
     void find_partners(const Field& whole);
     void place_copies(Field& whole, Columns& columns);
     void fill(Subdomain& subdomain, const Field& whole) const;
