@@ -129,6 +129,11 @@ threads)
     for try in first second; do
         "$here/build-thread/grainsweep" run "$folder/many.json" --db "$folder/many.db" -j "$jobs" --quiet
     done
+    sed 's/"campaign"/"execution": {"hosts": 2, "workers_per_host": 2}, "campaign"/; s/"points": 256/"points": 5000/' \
+        "$here/configs/rehearsal_small.json" >"$folder/hosts.json"
+    "$here/build-thread/grainsweep" run "$folder/hosts.json" --db "$folder/hosts.db" --quiet
+    ! command -v python3 >/dev/null ||
+        "$here/build-thread/grainsweep" run "$here/configs/program_python/heap.json" --db "$folder/heap.db" -j "$jobs" --quiet
     echo "no data race"
     ;;
 bench)

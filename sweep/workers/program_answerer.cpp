@@ -90,9 +90,10 @@ void take(ProgramReply&& reply, CaseResult& result) {
     if (outcome == Outcome::completed) result.observations = std::move(reply.observations);
 }
 
-/// How it ended, and the last lines of its standard error.
+/// How it ended, and the last lines of its standard error, or, where that is silent, of its standard output.
 std::string crash_sentence(int status, const ProgramFolder& folder) {
-    const auto log = folder.end_of("stderr.txt", log_bytes);
+    auto log = folder.end_of("stderr.txt", log_bytes);
+    if (log.empty()) log = folder.end_of("stdout.txt", log_bytes);
     return fmt::format("the program {}{}{}", end_in_words(status), log.empty() ? "" : "; it wrote: ", log);
 }
 

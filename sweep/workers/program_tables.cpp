@@ -30,34 +30,51 @@ std::string_view without_blanks(std::string_view text) {
     return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-std::optional<double> number_of(std::string_view text) {
+/// Infinite or none, too, as programs write them.
+std::optional<double> any_number_of(std::string_view text) {
     text = without_blanks(text);
     if (text.starts_with('+')) text.remove_prefix(1);
     double number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(number)) return std::nullopt;
+    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
     return number;
+}
+
+std::optional<double> number_of(std::string_view text) {
+    const auto number = any_number_of(text);
+    return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
 }  // namespace
 
 ProgramTable::ProgramTable(std::string file, std::string text, std::string separator)
     : file_(std::move(file)), text_(std::move(text)), separator_(std::move(separator)) {
-    std::string_view rest = text_;
+    std::string_view rest = text_, remark;
     if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
     while (!rest.empty()) {
         const auto end = rest.find('\n');
-        auto line = without_blanks(rest.substr(0, end));
+        const auto line = without_blanks(rest.substr(0, end));
         rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-        if (names_.empty()) {  // a head may be marked as a comment
-            while (line.starts_with('#')) line = without_blanks(line.substr(1));
-            if (!line.empty()) names_ = cells_of(line);
-        } else if (!line.empty() && !line.starts_with('#')) {
-            if (rows_.size() >= most_rows)
-                throw std::invalid_argument(fmt::format("{} has more than {} rows", file_, most_rows));
-            rows_.push_back(line);
+        if (line.empty()) continue;
+        if (line.starts_with('#')) {
+            if (names_.empty()) remark = line;
+            continue;
         }
+        if (names_.empty() && take_head(line, remark)) continue;
+        if (rows_.size() >= most_rows)
+            throw std::invalid_argument(fmt::format("{} has more than {} rows", file_, most_rows));
+        rows_.push_back(line);
     }
+    if (names_.empty()) take_head({}, remark);
+}
+
+bool ProgramTable::take_head(std::string_view line, std::string_view remark) {
+    while (remark.starts_with('#')) remark = without_blanks(remark.substr(1));
+    auto cells = cells_of(line);
+    const bool named =
+        remark.empty() || !std::ranges::all_of(cells, [](const auto& cell) { return any_number_of(cell).has_value(); });
+    names_ = named ? std::move(cells) : cells_of(remark);
+    return named;
 }
 
 std::vector<std::string> ProgramTable::cells_of(std::string_view line) const {

@@ -15,7 +15,8 @@ inline constexpr std::size_t largest_table = std::size_t{64} << 20U;
 /// Values of a series or profile.
 inline constexpr std::size_t most_values = 500'000;
 
-/// Columns with names in the first line; empty lines and those that begin with # are passed over.
+/// Columns with names: in the first line without #, or, where that has numbers only, in the last line with # before it.
+/// Empty lines and other lines that begin with # are passed over.
 class ProgramTable {
 public:
     /// `separator`: comma, semicolon, tab or blank.
@@ -26,6 +27,8 @@ public:
     [[nodiscard]] std::vector<double> column(const std::string& name) const;
 
 private:
+    /// The names of the columns, from the first line without # or the remark before it; whether it was the line.
+    bool take_head(std::string_view line, std::string_view remark);
     [[nodiscard]] std::vector<std::string> cells_of(std::string_view line) const;
     [[nodiscard]] std::size_t place_of(const std::string& column) const;
     [[nodiscard]] double number(std::size_t row, std::size_t place, const std::string& column) const;

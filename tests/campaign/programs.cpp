@@ -109,6 +109,7 @@ TEST(Programs, EveryFailureIsOneClearOutcome) {
         {"mkfifo out.json\n", "rejected: out.json is no regular file"},
         {"echo about to fail >&2; exit 3\n", "crashed: the program ended with exit code 3; it wrote: about to fail"},
         {"kill -SEGV $$\n", "crashed: the program ended by signal 11 (Segmentation fault)"},
+        {"echo ERROR: bad deck; exit 1\n", "crashed: the program ended with exit code 1; it wrote: ERROR: bad deck"},
         {"no_such_program\n", "crashed: the program ended with exit code 127; it wrote: script.sh: "},
         {"echo '{\"outcome\": \"unstable\", \"message\": \"blew up\"}' > out.json\n", "unstable: blew up"},
         {"echo '{\"outcome\": \"unstable\"}' > outcome.json\n", "unstable: the program says so"},

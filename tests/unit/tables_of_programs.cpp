@@ -1,0 +1,66 @@
+// Tables that programs leave: where the head stands, the four separators, rows from either end, and one sentence for
+// what is not there.
+#include "sweep/workers/program_tables.hpp"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <vector>
+
+using grainsweep::workers::ProgramTable;
+
+namespace {
+
+using Values = std::vector<double>;
+
+std::string refusal(const ProgramTable& table, const std::string& column, std::int64_t row = 0) {
+    try {
+        (void)table.value(column, row);
+    } catch (const std::invalid_argument& why) {
+        return why.what();
+    }
+    return "no refusal";
+}
+
+TEST(ProgramTables, SeparatorsDivideCells) {
+    EXPECT_EQ(ProgramTable("f", "t,\"rate, kg/s\"\n0,1.5\n1,2e-3\n", "comma").column("rate, kg/s"),
+              (Values{1.5, 2e-3}));
+    EXPECT_EQ(ProgramTable("f", "t;rate\n0; +1.5\n", "semicolon").column("rate"), Values{1.5});
+    EXPECT_EQ(ProgramTable("f", "t\trate\r\n0\t1.5\r\n", "tab").column("rate"), Values{1.5});
+    EXPECT_EQ(ProgramTable("f", "  t   rate\n  0 \t 1.5  \n\n", "blank").column("rate"), Values{1.5});
+}
+
+TEST(ProgramTables, RowsCountFromEitherEnd) {
+    const ProgramTable table("f", "t,v\n0,5\n1,6\n2,7", "comma");
+    EXPECT_EQ(table.value("v", 0), 5);
+    EXPECT_EQ(table.value("v", -1), 7);
+    EXPECT_EQ(table.value("v", -3), 5);
+    EXPECT_EQ(refusal(table, "v", 3), "f has 3 rows, and row 3 is asked");
+    EXPECT_EQ(refusal(table, "v", -4), "f has 3 rows, and row -4 is asked");
+}
+
+// LAMMPS and LIGGGHTS write two remarks, the second with the names.
+TEST(ProgramTables, TheLastRemarkBeforeNumbersIsTheHead) {
+    const ProgramTable table(
+        "f", "# Time-averaged data for fix weigh\n# TimeStep v_t v_out\n200 0.01 0\n400 0.02 nan\n# end\n", "blank");
+    EXPECT_EQ(table.column("v_t"), (Values{0.01, 0.02}));
+    EXPECT_EQ(table.column("TimeStep"), (Values{200, 400}));
+    EXPECT_EQ(refusal(table, "v_out", -1), "f: 'v_out' in row 1 is 'nan', which is no number");
+    EXPECT_EQ(refusal(table, "data"), "f has no column 'data'; it has TimeStep, v_t, v_out");
+    EXPECT_EQ(ProgramTable("f", "# t v\nnan 1\n", "blank").value("v", 0), 1);
+}
+
+TEST(ProgramTables, AHeadOfWordsNeedsNoRemark) {
+    EXPECT_EQ(ProgramTable("f", "# made by x 2\n\n# on a day\nt,v\n0,5\n", "comma").column("v"), Values{5});
+    EXPECT_EQ(ProgramTable("f", "\xEF\xBB\xBFt,v\n0,5\n", "comma").column("t"), Values{0});
+    EXPECT_EQ(ProgramTable("f", "1,2\n3,4\n", "comma").column("2"), Values{4});
+}
+
+TEST(ProgramTables, ATableWithoutRowsHasItsNames) {
+    EXPECT_TRUE(ProgramTable("f", "# t v\n", "blank").column("v").empty());
+    EXPECT_TRUE(ProgramTable("f", "t v\n", "blank").column("v").empty());
+    EXPECT_EQ(refusal(ProgramTable("f", "", "comma"), "v"), "f has no column 'v'; it has none");
+    EXPECT_EQ(refusal(ProgramTable("f", "#\n", "comma"), "v"), "f has no column 'v'; it has none");
+}
+
+}  // namespace
