@@ -119,8 +119,9 @@ public:
     /// Advances by `steps` time steps; stops at once when the state is no longer sound (fault()).
     virtual void run(std::int64_t steps) = 0;
     /// Uses up to `count` threads from the next run() on, the calling one among them; 0: one for each core. Where there
-    /// are too few particles for it, fewer. No bit depends on it; the double-precision engine always uses one.
-    virtual void set_threads(int count) { static_cast<void>(count); }
+    /// are too few particles for it, fewer. No bit depends on it; the double-precision engine always uses one. Returns how
+    /// many the particles that are there now are enough for.
+    virtual int set_threads(int count) { return static_cast<void>(count), 1; }
     /// New walls: wall time starts at 0, wall histories are dropped, particle histories stay; forces are
     /// recomputed once without touching histories. Throws std::invalid_argument with one sentence on walls that cannot
     /// be, or whose surface has friction or rolling friction where nothing in the Setup had.

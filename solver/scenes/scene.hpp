@@ -52,8 +52,8 @@ public:
     /// Where the slices are cut never changes the result.
     virtual void advance(double until) = 0;
     /// Up to `count` threads compute from the next advance() on, the calling one among them; 0: one for each core.
-    /// Never changes the result; a scene that always uses one takes no notice.
-    virtual void use_threads(int count) { static_cast<void>(count); }
+    /// Never changes the result; a scene that always uses one takes no notice. How many have something to do now.
+    virtual int use_threads(int count) { return static_cast<void>(count), 1; }
     /// Adds everything measured so far. Reads only.
     virtual void observe(Observations& into) const = 0;
     /// Physical time since the start, s. Grows with every advance until finished.

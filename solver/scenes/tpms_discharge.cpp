@@ -71,7 +71,7 @@ public:
     TpmsDischarge(const TpmsQuestion& question, const particles::TpmsFilling& filling, double outlet, double fraction);
 
     void advance(double until) override;
-    void use_threads(int count) override { engine_->set_threads(count); }
+    int use_threads(int count) override { return engine_->set_threads(count); }
     void observe(Observations& into) const override;
     [[nodiscard]] double time() const override { return static_cast<double>(step_) * question_.time_step; }
     [[nodiscard]] bool finished() const override;

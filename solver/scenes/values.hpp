@@ -149,6 +149,8 @@ struct Cost {
     double cpu_seconds = 0;
     double particle_steps = 0;
     std::map<std::string, double, std::less<>> phases;  ///< seconds by phase name
+    /// That computed it, a mean over the time it was advanced; NaN: it was not, or by none of ours.
+    double threads = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Inputs that make nonsense of one another although each is within its bounds: the case can be computed, and its

@@ -85,6 +85,7 @@ struct Execution {
     std::vector<std::string> launcher;  ///< argv prefix of a worker, or of a host
     std::int64_t hosts = 0;             ///< processes that run workers on a node of their own; 0: none
     std::int64_t workers_per_host = 0;  ///< 0: one per processor of this machine
+    std::int64_t threads = 0;           ///< of a case; 0: those that no other case needs
     double walltime = 0;                ///< seconds that the main program may take; 0: no limit
     double start_seconds = 300;         ///< a worker that is not ready by then is replaced; 0: no limit
     double silence_seconds = 60;        ///< so is one that says nothing for so long while it has a case; 0: no limit

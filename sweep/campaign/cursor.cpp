@@ -102,6 +102,24 @@ std::int64_t Section::whole(std::string_view key, std::int64_t standard) const {
     return cursor ? cursor->whole(row(key).bounds) : standard;
 }
 
+std::int64_t Section::whole_or_word(std::string_view key, std::int64_t standard, std::int64_t of_word) const {
+    const auto cursor = find(key);
+    if (!cursor) return standard;
+    const Key& known = row(key);
+    const auto& value = cursor->json();
+    const std::string rule =
+        fmt::format("must be {} or a whole number{}", in_words(known.words), in_words(known.bounds));
+    if (value.is_string()) {
+        const auto& word = value.get_ref<const std::string&>();
+        if (std::ranges::find(known.words, word) == known.words.end())
+            cursor->refuse(rule, nearest_word(word, known.words));
+        return of_word;
+    }
+    const bool whole = value.is_number() && value.get<double>() == std::floor(value.get<double>());
+    if (!whole || !known.bounds.contains(value.get<double>())) cursor->refuse(rule);
+    return cursor->whole(known.bounds);
+}
+
 bool Section::flag(std::string_view key, bool standard) const {
     const auto cursor = find(key);
     return cursor ? cursor->flag() : standard;

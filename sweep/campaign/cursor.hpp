@@ -59,6 +59,8 @@ public:
     // The value of a key, checked against its row of the table; `standard` where it is absent.
     [[nodiscard]] double number(std::string_view key, double standard) const;
     [[nodiscard]] std::int64_t whole(std::string_view key, std::int64_t standard) const;
+    /// The same of a key that may be a word instead, which stands for `of_word`.
+    [[nodiscard]] std::int64_t whole_or_word(std::string_view key, std::int64_t standard, std::int64_t of_word) const;
     [[nodiscard]] bool flag(std::string_view key, bool standard) const;
     [[nodiscard]] std::string word(std::string_view key, std::string_view standard) const;
     [[nodiscard]] std::vector<std::string> words(std::string_view key, const std::vector<std::string>& standard) const;

@@ -1,5 +1,6 @@
 #include "sweep/campaign/forecast.hpp"
 
+#include "sweep/campaign/program.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/designs/calibration.hpp"
 
@@ -92,6 +93,9 @@ std::vector<std::string> warnings_of(const Campaign& campaign, const Forecast& f
                                        forecast.questions, caution.first_point, caution.sentence));
     }
     for (auto& sentence : calibration_warnings(campaign)) warnings.push_back(std::move(sentence));
+    if (campaign.execution.threads > 0 && is_program(campaign.scene().name))
+        warnings.emplace_back(
+            "execution.threads has no effect on a program: program.cores says how many cores a case of it takes");
     if (auto never = never_converges(campaign); !never.empty()) warnings.push_back(std::move(never));
     return warnings;
 }

@@ -277,6 +277,15 @@ std::span<const Key> execution_keys() {
          {0, 4096},
          {},
          "0"},
+        {"threads",
+         "threads of a case, which change no bit of it; \"auto\": one, and where fewer cases are left than cores, the "
+         "cores left over go to those that run; a number: so many for every case, and by default so many times fewer "
+         "workers",
+         Kind::whole,
+         false,
+         {1, 1024},
+         {"auto"},
+         json_word("auto")},
         {"walltime",
          fmt::format("time that the main program may take, s; at least {}, or 0: until SLURM_JOB_END_TIME where that "
                      "is set",

@@ -20,7 +20,7 @@ struct Key {
     Kind kind = Kind::text;
     bool required = false;
     Interval bounds{};               ///< of whole and number
-    std::vector<std::string> words;  ///< of word and words
+    std::vector<std::string> words;  ///< of word and words; of whole: words that may stand in its place
     std::string standard;            ///< JSON text of the default; empty: none
 };
 

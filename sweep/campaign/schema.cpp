@@ -50,8 +50,14 @@ OrderedJson schema_of(const Key& key) {
             if (!key.words.empty()) schema["items"]["enum"] = key.words;
             break;
         case Key::Kind::whole:
-            schema["type"] = "integer";
-            add_bounds(schema, key.bounds);
+            if (key.words.empty()) {
+                schema["type"] = "integer";
+                add_bounds(schema, key.bounds);
+            } else {
+                OrderedJson number = {{"type", "integer"}};
+                add_bounds(number, key.bounds);
+                schema["anyOf"] = {{{"enum", key.words}}, number};
+            }
             break;
         case Key::Kind::number:
             schema["type"] = "number";

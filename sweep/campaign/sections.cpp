@@ -132,6 +132,7 @@ Execution read_execution(const Cursor& place) {
         section.at("workers").refuse("with 'hosts' it has no effect: take 'workers_per_host'");
     if (execution.hosts == 0 && section.find("workers_per_host"))
         section.at("workers_per_host").refuse("without 'hosts' it has no effect: take 'workers'");
+    execution.threads = section.whole_or_word("threads", execution.threads, 0);
     execution.walltime = read_time_limit(section, "walltime", execution.walltime, shortest_limit);
     execution.start_seconds = read_time_limit(section, "start_seconds", execution.start_seconds, shortest_limit);
     execution.silence_seconds =

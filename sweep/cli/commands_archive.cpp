@@ -153,14 +153,15 @@ std::string described_build(const campaign::Computer& by) {
 }
 
 Table attempts_table(const std::vector<store::LoggedAttempt>& attempts) {
-    Table table{
-        {"attempt", "outcome", "started", "wall_seconds", "host", "processor", "instruction_path", "build", "message"},
-        {}};
+    Table table{{"attempt", "outcome", "started", "wall_seconds", "threads", "host", "processor", "instruction_path",
+                 "build", "message"},
+                {}};
     for (const auto& attempt : attempts) {
-        table.rows.push_back(
-            {attempt.number, attempt.outcome ? std::string(to_string(*attempt.outcome)) : std::string("running"),
-             attempt.started, report::to_cell(attempt.wall_seconds), attempt.computer.host, attempt.computer.processor,
-             attempt.computer.instruction_path, described_build(attempt.computer), attempt.message});
+        table.rows.push_back({attempt.number,
+                              attempt.outcome ? std::string(to_string(*attempt.outcome)) : std::string("running"),
+                              attempt.started, report::to_cell(attempt.wall_seconds), report::to_cell(attempt.threads),
+                              attempt.computer.host, attempt.computer.processor, attempt.computer.instruction_path,
+                              described_build(attempt.computer), attempt.message});
     }
     if (std::ranges::none_of(attempts, [](const auto& one) { return one.program.has_value(); })) return table;
     // Of a program, in the place of the path that the solver's loops take.
@@ -170,7 +171,7 @@ Table attempts_table(const std::vector<store::LoggedAttempt>& attempts) {
         auto& row = table.rows[k];
         const auto& program = attempts[k].program;
         const bool versioned = program && !program->version.empty();
-        row[6] = versioned ? Table::Cell{program->version} : Table::Cell{};
+        row[7] = versioned ? Table::Cell{program->version} : Table::Cell{};
         row.insert(row.end() - 1, {program ? report::to_cell(program->peak_memory) : Table::Cell{},
                                    program ? report::to_cell(program->exit_status) : Table::Cell{}});
     }

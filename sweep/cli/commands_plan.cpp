@@ -1,5 +1,6 @@
 // plan: check and unfold a campaign; show the design and the predicted cost; run nothing.
 #include "sweep/campaign/forecast.hpp"
+#include "sweep/campaign/program.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/program_campaign.hpp"
@@ -156,6 +157,8 @@ Json json_of(const Campaign& campaign, const Outlook& outlook) {
     object["impossible"] = cost.impossible;
     object["predicted_seconds"] = cost.total_seconds;
     object["longest_seconds"] = cost.longest_seconds;
+    object["threads"] = campaign.execution.threads == 0 ? Json("auto") : Json(campaign.execution.threads);
+    if (campaign::is_program(campaign.scene().name)) object["threads"] = nullptr;
     object["factors"] = report::to_json(factors_of(campaign));
     object["fixed"] = Json::object();
     for (const auto& [name, value] : campaign.space.fixed)
@@ -181,6 +184,13 @@ void write_csv(const Campaign& campaign, const Outlook& outlook) {
     rows.begin(case_columns(campaign));
     for_each_row(campaign, outlook.cases, outlook.cases.size(), [&](const auto& row) { rows.add(row); });
     rows.end();
+}
+
+/// Of a case; empty for a program, which has cores.
+std::string threads_text(const Campaign& campaign) {
+    if (campaign::is_program(campaign.scene().name)) return {};
+    if (campaign.execution.threads == 0) return "one for each case, more where fewer cases are left than cores";
+    return fmt::format("{} for each case", campaign.execution.threads);
 }
 
 std::string seconds_text(double seconds) {
@@ -211,6 +221,8 @@ void show_text(const Campaign& campaign, const Outlook& outlook) {
                                  cost.first_point, cost.first_reason);
     std::cout << fmt::format("\npredicted  {} on one core; the longest case {}\n", seconds_text(cost.total_seconds),
                              seconds_text(cost.longest_seconds));
+    if (const auto threads = threads_text(campaign); !threads.empty())
+        std::cout << fmt::format("threads    {}\n", threads);
     if (!outlook.database.empty())
         std::cout << fmt::format("finished   {} of {} in {}\n", outlook.finished, cost.places, outlook.database);
     if (outlook.stored) {

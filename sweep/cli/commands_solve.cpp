@@ -155,7 +155,8 @@ Json json_of(const campaign::Case& question, const CaseResult& result) {
     }
     object["cost"] = {{"wall_seconds", result.cost.wall_seconds},
                       {"cpu_seconds", result.cost.cpu_seconds},
-                      {"particle_steps", result.cost.particle_steps}};
+                      {"particle_steps", result.cost.particle_steps},
+                      {"threads", report::to_json(report::to_cell(result.cost.threads))}};
     object["cost"]["phases"] = Json::object();
     for (const auto& [name, seconds] : result.cost.phases) object["cost"]["phases"][name] = seconds;
     return object;
@@ -180,6 +181,7 @@ store::Table table_of(const campaign::Case& question, const CaseResult& result) 
     add("cost", "wall_seconds", result.cost.wall_seconds);
     add("cost", "cpu_seconds", result.cost.cpu_seconds);
     add("cost", "particle_steps", result.cost.particle_steps);
+    add("cost", "threads", report::to_cell(result.cost.threads));
     for (const auto& [name, seconds] : result.cost.phases) add("cost", name, seconds);
     return table;
 }

@@ -29,7 +29,8 @@ std::vector<std::string> own_command(const std::string& command, const campaign:
 std::size_t worker_count(const campaign::Campaign& campaign, std::optional<std::int64_t> asked) {
     const auto& execution = campaign.execution;
     const auto program = campaign::known_program(campaign.scene().name);
-    const unsigned of_a_case = program ? static_cast<unsigned>(program->cores) : 1;
+    const std::int64_t threads = std::max<std::int64_t>(1, execution.threads);
+    const auto of_a_case = static_cast<unsigned>(program ? program->cores : threads);
     const bool hosted = execution.hosts > 0;
     const std::int64_t number = asked.value_or(hosted ? execution.workers_per_host : execution.workers);
     const std::size_t each =
@@ -46,6 +47,10 @@ workers::PoolOptions pool_options(const campaign::Campaign& campaign, const Work
     options.workers = workers;
     options.hosts = static_cast<std::size_t>(execution.hosts);
     if (options.hosts > 0) options.host_command = own_command("host", campaign, folders, path);
+    // A program has cores of its own; workers that a launcher starts one by one have what that gives each of them.
+    const bool apart = !options.launcher.empty() && options.hosts == 0;
+    options.threads =
+        campaign::is_program(campaign.scene().name) || (apart && execution.threads == 0) ? 1 : execution.threads;
     options.limits = {campaign.limits.wall_seconds, execution.start_seconds, execution.silence_seconds};
     // The worker of a program ends one that takes too long; this is for a worker that cannot.
     if (campaign::is_program(campaign.scene().name) && options.limits.wall > 0)

@@ -11,7 +11,7 @@
 
 namespace grainsweep::cli {
 
-/// `asked` overrides the campaign file's; with hosts, of each host. 0: all cores, as far as each case takes one.
+/// `asked` overrides the campaign file's; with hosts, of each host. 0: all cores, over those that each case takes.
 [[nodiscard]] std::size_t worker_count(const campaign::Campaign& campaign, std::optional<std::int64_t> asked);
 struct WorkerFolders {
     std::filesystem::path artefacts;  ///< shared starting states and checkpoints

@@ -126,6 +126,12 @@ void Plan::advanced(const campaign::Attempt& attempt, double share) {
     if (first) tally_.predicted_done -= share * entries_[one.question].predicted;
 }
 
+double Plan::seconds_left(const campaign::Attempt& attempt) const {
+    const auto found = under_way_.find(attempt.case_id);
+    if (found == under_way_.end() || found->second.number != attempt.number) return 0;
+    return entries_[found->second.question].predicted * (1 - found->second.share.value_or(0));
+}
+
 Plan::UnderWay::iterator Plan::find(const campaign::Attempt& attempt) {
     const auto found = under_way_.find(attempt.case_id);
     return found != under_way_.end() && found->second.number == attempt.number ? found : under_way_.end();

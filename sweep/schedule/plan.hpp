@@ -64,6 +64,8 @@ public:
     /// How many next() could return one after the other now.
     [[nodiscard]] std::size_t waiting() const;
 
+    /// Of a running attempt: those predicted, less what it has done. 0: it is not running.
+    [[nodiscard]] double seconds_left(const campaign::Attempt& attempt) const;
     /// A running attempt has come so far, 0 to 1. What it had done when first reported, from a checkpoint, was not done
     /// in this run.
     void advanced(const campaign::Attempt& attempt, double share);

@@ -46,6 +46,7 @@ Ending Scheduler::run() {
     judge_prefix(Judge::Models::awaited);  // what the archive already has may be enough
     while (!at_once_) {
         hand_out();
+        crew_.share_cores(plan_.waiting(), [this](const campaign::Attempt& one) { return plan_.seconds_left(one); });
         if (in_flight_ == 0 && !plan_.next_predicted()) break;
         if (auto event = crew_.wait(200ms)) handle(std::move(*event));
         if (judge_ != nullptr && judge_->busy()) judge_prefix();

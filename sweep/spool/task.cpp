@@ -83,6 +83,10 @@ Ending Task::run() {
             hand_out();
             look_elsewhere();
         }
+        crew_.share_cores(closed_ ? 0 : open_.size(), [this](const campaign::Attempt& one) {
+            const auto found = running_.find(one.case_id);
+            return found == running_.end() ? 0 : predicted_[found->second.place];
+        });
         if (running_.empty() && (closed_ || (open_.empty() && (elsewhere_.empty() || !waits_)))) break;
         if (auto event = crew_.wait(200ms)) handle(std::move(*event));
         watchers_.progress(tally_, running_.size());

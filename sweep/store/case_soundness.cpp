@@ -81,12 +81,18 @@ AttemptRow attempt_at(const Rows& rows) {
             .wall_seconds = rows.get<double>(6),
             .cpu_seconds = rows.get<double>(7),
             .particle_steps = rows.get<double>(8),
-            .phases = text(9)};
+            .phases = text(9),
+            .threads = rows.get<double>(12)};
 }
 
-constexpr std::string_view attempts_of_cases =
-    "SELECT case_key, number, provenance_id, started, outcome, message, wall_seconds, cpu_seconds, particle_steps, "
-    "phases, checksum, computer_id FROM attempt NOT INDEXED WHERE case_key BETWEEN ?1 AND ?2 ORDER BY case_key, number";
+/// An archive of an older form has no column `threads`.
+std::string attempts_of_cases(const Connection& db) {
+    return fmt::format(
+        "SELECT case_key, number, provenance_id, started, outcome, message, wall_seconds, cpu_seconds, particle_steps, "
+        "phases, checksum, computer_id, {} FROM attempt NOT INDEXED WHERE case_key BETWEEN ?1 AND ?2 "
+        "ORDER BY case_key, number",
+        has_threads(db) ? "threads" : "NULL");
+}
 constexpr std::string_view inputs_of_cases =
     "SELECT case_key, parameter_id, value FROM case_input NOT INDEXED WHERE case_key BETWEEN ?1 AND ?2 "
     "ORDER BY case_key, parameter_id";
@@ -202,7 +208,7 @@ std::vector<DamagedCase> scanned(const Connection& db, const Names& names, std::
                                  std::int64_t& strays) {
     std::vector<DamagedCase> damaged;
     Follower inputs(db.ask(inputs_of_cases, first, last), strays);
-    Follower attempts(db.ask(attempts_of_cases, first, last), strays);
+    Follower attempts(db.ask(attempts_of_cases(db), first, last), strays);
     Follower measured(db.ask(measured_of_cases, first, last), strays);
     auto cases = db.ask(
         "SELECT case_key, case_id, scene, revision, seed, outcome, wall_seconds, attempts, failures, checksum, "
@@ -269,7 +275,7 @@ void renew_attempt(Connection& db, std::int64_t key, std::int64_t number) {
     {
         auto rows = db.ask(
             "SELECT case_key, number, provenance_id, started, outcome, message, wall_seconds, cpu_seconds, "
-            "particle_steps, phases, checksum, computer_id FROM attempt WHERE case_key = ? AND number = ?",
+            "particle_steps, phases, checksum, computer_id, threads FROM attempt WHERE case_key = ? AND number = ?",
             key, number);
         if (rows.next() && !rows.is_null(4)) checksum = as_sql(checksum_of(attempt_at(rows)));
     }

@@ -75,8 +75,8 @@ std::uint64_t checksum_of_case(std::int64_t key, std::string_view id, std::strin
 }
 
 std::uint64_t checksum_of(const AttemptRow& attempt) {
-    return Digest()
-        .add(attempt.key)
+    Digest digest;
+    digest.add(attempt.key)
         .add(attempt.number)
         .add(attempt.provenance)
         .add(attempt.computer)
@@ -86,8 +86,9 @@ std::uint64_t checksum_of(const AttemptRow& attempt) {
         .add(attempt.wall_seconds)
         .add(attempt.cpu_seconds)
         .add(attempt.particle_steps)
-        .add(attempt.phases)
-        .value();
+        .add(attempt.phases);
+    if (!std::isnan(attempt.threads)) digest.add(attempt.threads);
+    return digest.value();
 }
 
 std::uint64_t checksum_of_place(std::int64_t point, std::int64_t replicate, std::int64_t sequence,

@@ -8,6 +8,7 @@
 #include "sweep/store/database.hpp"
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -55,6 +56,8 @@ struct AttemptRow {
     std::optional<std::string_view> message = {};
     double wall_seconds = 0, cpu_seconds = 0, particle_steps = 0;
     std::optional<std::string_view> phases = {};
+    /// NaN: not known. Then no part of the checksum, which is what it was before there was such a column.
+    double threads = std::numeric_limits<double>::quiet_NaN();
 };
 [[nodiscard]] std::uint64_t checksum_of(const AttemptRow& attempt);
 

@@ -2,6 +2,7 @@
 #include "sweep/campaign/stored_text.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/store/archive.hpp"
+#include "sweep/store/soundness.hpp"
 
 #include <fmt/format.h>
 
@@ -187,16 +188,16 @@ std::optional<campaign::Case> Store::find_case(std::string_view id_or_prefix) co
 
 namespace {
 
-/// What computed an attempt; an archive of an older form knows only what ran the campaign.
-std::string_view attempts_question(const Connection& db) {
+/// What computed an attempt; an archive of an older form knows only what ran the campaign, and not how many threads.
+std::string attempts_question(const Connection& db) {
     auto tables = db.ask("SELECT 1 FROM sqlite_schema WHERE name = 'attempt_computer'");
-    return tables.next()
-               ? "SELECT number, outcome, coalesce(message, ''), wall_seconds, started, version, \"commit\", build, "
-                 "instruction_path, processor, host FROM attempt AS t "
-                 "JOIN attempt_computer AS m ON m.computer_id = t.computer_id WHERE case_key = ? ORDER BY number"
-               : "SELECT number, outcome, coalesce(message, ''), wall_seconds, started, version, \"commit\", '', "
-                 "instruction_path, processor, host FROM attempt AS t "
-                 "JOIN provenance AS v ON v.provenance_id = t.provenance_id WHERE case_key = ? ORDER BY number";
+    const bool computers = tables.next();
+    return fmt::format(
+        "SELECT number, outcome, coalesce(message, ''), wall_seconds, started, version, \"commit\", {}, "
+        "instruction_path, processor, host, {} FROM attempt AS t JOIN {} WHERE case_key = ? ORDER BY number",
+        computers ? "build" : "''", has_threads(db) ? "threads" : "NULL",
+        computers ? "attempt_computer AS m ON m.computer_id = t.computer_id"
+                  : "provenance AS v ON v.provenance_id = t.provenance_id");
 }
 
 }  // namespace
@@ -207,14 +208,14 @@ std::vector<LoggedAttempt> Store::attempts(std::string_view case_id) const {
     if (!key) return attempts;
     auto rows = impl_->db.ask(attempts_question(impl_->db), *key);
     while (rows.next()) {
-        attempts.push_back(
-            {.number = rows.get<std::int64_t>(0),
-             .outcome = outcome_at(rows, 1),
-             .message = rows.get<std::string>(2),
-             .wall_seconds = rows.get<double>(3),
-             .started = rows.get<std::string>(4),
-             .computer = {rows.get<std::string>(5), rows.get<std::string>(6), rows.get<std::string>(7),
-                          rows.get<std::string>(8), rows.get<std::string>(9), rows.get<std::string>(10)}});
+        attempts.push_back({.number = rows.get<std::int64_t>(0),
+                            .outcome = outcome_at(rows, 1),
+                            .message = rows.get<std::string>(2),
+                            .wall_seconds = rows.get<double>(3),
+                            .started = rows.get<std::string>(4),
+                            .computer = {rows.get<std::string>(5), rows.get<std::string>(6), rows.get<std::string>(7),
+                                         rows.get<std::string>(8), rows.get<std::string>(9), rows.get<std::string>(10)},
+                            .threads = rows.get<double>(11)});
     }
     for (auto& [number, facts] : program_facts(impl_->db, *key)) {
         const auto attempt = std::ranges::find(attempts, number, &LoggedAttempt::number);

@@ -106,6 +106,11 @@ bool has_checksums(const Connection& db) {
     return rows.next();
 }
 
+bool has_threads(const Connection& db) {
+    auto rows = db.ask("SELECT 1 FROM pragma_table_info('attempt') WHERE name = 'threads'");
+    return rows.next();
+}
+
 RowSum sum_of_table(const Connection& db, std::string_view name, std::int64_t part) {
     if (name == "campaign_case") return sum_of_places(db, part);
     const auto& table = summed(name);

@@ -31,6 +31,8 @@ struct DamagedTable {
 };
 
 [[nodiscard]] bool has_checksums(const Connection& db);
+/// Whether attempts have a column `threads`: an archive that is only read may be of an older form.
+[[nodiscard]] bool has_threads(const Connection& db);
 
 /// Among the cases with these keys, in order of key. Rows of cases that are not there are counted in `strays`.
 [[nodiscard]] std::vector<DamagedCase> damaged_cases(const Connection& db, std::int64_t first = 0,

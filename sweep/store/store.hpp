@@ -46,7 +46,8 @@ struct LoggedAttempt {
     double wall_seconds = 0;  ///< NaN: running, or its main program died
     std::string started;
     campaign::Computer computer;  ///< of an archive older than these columns: what ran the campaign; no build
-    std::optional<campaign::ProgramFacts> program = {};  ///< none: a scene of the solver
+    double threads = std::numeric_limits<double>::quiet_NaN();  ///< a mean over its computing time; NaN: not known
+    std::optional<campaign::ProgramFacts> program = {};         ///< none: a scene of the solver
 };
 
 /// Rows for the commands: column names and cells (NULL, integer, real, text).

@@ -28,12 +28,13 @@ bool close_attempt(Connection& db, const OpenAttempt& open, const campaign::Case
                    .wall_seconds = result.cost.wall_seconds,
                    .cpu_seconds = result.cost.cpu_seconds,
                    .particle_steps = result.cost.particle_steps,
-                   .phases = phases};
+                   .phases = phases,
+                   .threads = result.cost.threads};
     if (!result.message.empty()) row.message = result.message;
     const auto closed = db.run(
         "UPDATE attempt SET outcome = ?1, message = ?2, wall_seconds = ?3, cpu_seconds = ?4, particle_steps = ?5, "
-        "phases = ?6, checksum = ?7 WHERE case_key = ?8 AND number = ?9 AND outcome IS NULL",
-        row.outcome, row.message, row.wall_seconds, row.cpu_seconds, row.particle_steps, row.phases,
+        "phases = ?6, threads = ?7, checksum = ?8 WHERE case_key = ?9 AND number = ?10 AND outcome IS NULL",
+        row.outcome, row.message, row.wall_seconds, row.cpu_seconds, row.particle_steps, row.phases, row.threads,
         as_sql(checksum_of(row)), row.key, row.number);
     return closed == 1;
 }

@@ -124,19 +124,35 @@ private:
     bool one_is_faster_ = false;
 };
 
-/// Advances until the scene is over, fails or is given up; true when it is over.
-bool drive(Scene& scene, const Watch& watch, const Camera& camera) {
+/// Of something over time.
+class Mean {
+public:
+    void add(double value, double seconds) {
+        sum_ += value * seconds;
+        seconds_ += seconds;
+    }
+    [[nodiscard]] double value() const {
+        return seconds_ > 0 ? sum_ / seconds_ : std::numeric_limits<double>::quiet_NaN();
+    }
+
+private:
+    double sum_ = 0, seconds_ = 0;
+};
+
+/// Advances until the scene is over, fails or is given up; true when it is over. `used`: threads.
+bool drive(Scene& scene, const Watch& watch, const Camera& camera, Mean& used) {
     Shutter shutter(camera, scene);
     ThreadChoice threads;
     double slice = first_slice;
     while (!scene.finished() && scene.health().stable()) {
         const auto start = Clock::now();
         const bool cut = shutter.next() < scene.time() + slice;
-        scene.use_threads(threads.next());
+        const int count = scene.use_threads(threads.next());
         const double work = scene.particle_steps();
         scene.advance(cut ? shutter.next() : scene.time() + slice);
         const double took = std::max(seconds_since(start), 1e-6);
         threads.note(scene.particle_steps() - work, took);
+        used.add(count, took);
         if (!cut) slice *= std::clamp(slice_seconds / took, 0.25, 4.0);
         shutter.look(scene);
         if (!watch(scene)) return false;
@@ -249,7 +265,9 @@ std::optional<campaign::CaseResult> compute(const campaign::Case& question, std:
                 remark = fmt::format("computed from the beginning: its checkpoint was refused ({})", error.what());
             }
         }
-        if (!drive(*scene, watch, camera)) return std::nullopt;
+        Mean used;
+        if (!drive(*scene, watch, camera, used)) return std::nullopt;
+        result.cost.threads = used.value();
         result.cost.particle_steps = scene->particle_steps();
         result.cost.phases = scene->phase_seconds();
         if (const Health health = scene->health(); !health.stable()) {

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -80,6 +81,12 @@ public:
 
     /// So many cases wait: workers are started for them as far as there may be more. They take cases once ready.
     virtual void expect(std::size_t cases) = 0;
+    /// So many cases wait still, after what could be handed out was. Cores that are left over then may go to cases that
+    /// run, those with most left of their predicted seconds first; a crew that knows of none takes no notice.
+    using SecondsLeft = std::function<double(const campaign::Attempt&)>;
+    virtual void share_cores(std::size_t waiting, const SecondsLeft& left) {
+        static_cast<void>(waiting), static_cast<void>(left);
+    }
     /// Where a case can go now, if anywhere. Short cases queue up behind a running one. Good until wait().
     [[nodiscard]] virtual std::optional<Place> place_for(double predicted_seconds) = 0;
     virtual void give(const Place& place, const campaign::Attempt& attempt, const campaign::Case& question) = 0;

@@ -1,5 +1,6 @@
 #include "sweep/workers/desk.hpp"
 
+#include "solver/scenes/scene.hpp"
 #include "sweep/workers/line_buffer.hpp"
 #include "sweep/workers/worker_state.hpp"
 
@@ -158,6 +159,8 @@ void Desk::take(std::string_view line) {
     try {
         ToWorker message = decode_to_worker(line);
         if (std::holds_alternative<Stop>(message)) return end(Ending::asked, "given back before it was finished");
+        if (const auto* threads = std::get_if<Threads>(&message))
+            return allow_threads(static_cast<int>(threads->count));
         auto* run = std::get_if<Run>(&message);
         if (run == nullptr) return;
         const std::lock_guard lock(mutex_);

@@ -68,6 +68,8 @@ Done to_done(const Json& object) {
     const Json& cost = object.at("cost");
     done.result.cost = {number_or_nan(cost.at("wall")), number_or_nan(cost.at("cpu")), number_or_nan(cost.at("steps")),
                         cost.at("phases").get<std::map<std::string, double, std::less<>>>()};
+    if (const auto threads = cost.find("threads"); threads != cost.end())
+        done.result.cost.threads = number_or_nan(*threads);  // a spool may hold older answers, without
     done.checkpointed = object.at("checkpointed").get<bool>();
     if (const auto program = object.find("program"); program != object.end()) {
         auto& facts = done.result.program.emplace();
@@ -76,6 +78,12 @@ Done to_done(const Json& object) {
         if (!program->at("status").is_null()) facts.exit_status = program->at("status").get<std::int64_t>();
     }
     return done;
+}
+
+Threads to_threads(const Json& value) {
+    if (!value.is_number_integer() || value < 1 || value > most_threads)
+        throw std::invalid_argument("no number of threads");
+    return {value.get<std::int64_t>()};
 }
 
 Json from_ready(const Ready& ready) {
@@ -108,6 +116,9 @@ Json parse(std::string_view text) {
 
 std::string encode(const ToWorker& message) {
     return std::visit(Overloaded{[](const Run& run) { return in_form(run); },
+                                 [](const Threads& threads) {
+                                     return line({{"threads", threads.count}});
+                                 },
                                  [](const Lease&) {
                                      return line({{"lease", true}});
                                  },
@@ -141,6 +152,7 @@ ToWorker decode_to_worker(std::string_view text) {
     if (auto run = run_in_form(text)) return std::move(*run);
     const Json object = parse(text);
     try {
+        if (object.contains("threads")) return to_threads(object.at("threads"));
         if (object.contains("lease")) return Lease{};
         if (object.contains("stop")) return Stop{};
         const Json& run = object.at("run");

@@ -1,15 +1,16 @@
 // The protocol between main program and worker, on one page.
 //
-// One JSON object per line, at most longest_line bytes, flushed. The main program writes Run, Lease, Stop to the
-// worker's standard input; the worker writes Ready, Begun, Alive, Done, GiveBack to its standard output. End of file in
-// either direction means that the other side is gone. Heartbeats stay short: some launchers delay lines above 1 kB.
+// One JSON object per line, at most longest_line bytes, flushed. The main program writes Run, Threads, Lease, Stop to
+// the worker's standard input; the worker writes Ready, Begun, Alive, Done, GiveBack to its standard output. End of file
+// in either direction means that the other side is gone. Heartbeats stay short: some launchers delay lines above 1 kB.
 //
 //   main program
 //          {"run": {"attempt": 2, "id": "...", "scene": "...", "revision": 1, "seed": 7, "inputs": {...}}}
+//          {"threads": 2}       so many may compute the case from its next slice on, and those after it; at first 1
 //          {"lease": true}      it lives; a worker that gets no message for long gives back what it has and ends
 //          {"stop": true}       no more cases; finish soon or give back, then end
 //   worker
-//          {"ready": {"protocol": 2, "version": "...", "commit": "...", "build": "...", "path": "avx2", ...}}
+//          {"ready": {"protocol": 3, "version": "...", "commit": "...", "build": "...", "path": "avx2", ...}}
 //          {"begun": {"id": "...", "attempt": 2, "resumed": false}}     the next of the cases it was given
 //          {"alive": {"id": "...", "attempt": 2, "progress": 0.4}}      every second that the case makes headway
 //          {"done": {"id": "...", "attempt": 2, "outcome": "completed", ...}}
@@ -56,17 +57,23 @@
 namespace grainsweep::workers {
 
 /// Grows whenever a message changes its meaning.
-inline constexpr std::int64_t protocol_number = 2;
+inline constexpr std::int64_t protocol_number = 3;
 /// Bytes of a line. A million samples of a series do not fit; what does not fit is `rejected` by its worker.
 inline constexpr std::size_t longest_line = std::size_t{16} << 20U;
+
+/// Of one case.
+inline constexpr std::int64_t most_threads = 4096;
 
 struct Run {
     std::int64_t attempt = 1;
     campaign::Case question;
 };
+struct Threads {
+    std::int64_t count = 1;
+};
 struct Lease {};
 struct Stop {};
-using ToWorker = std::variant<Run, Lease, Stop>;
+using ToWorker = std::variant<Run, Threads, Lease, Stop>;
 
 struct Ready {
     std::int64_t protocol = protocol_number;

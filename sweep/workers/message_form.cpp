@@ -201,8 +201,8 @@ bool read_cost(Reader& line, Cost& cost) {
         return line.real(seconds) && add(cost.phases, std::move(name), seconds);
     };
     return line.raw(R"({"cpu":)") && line.real(cost.cpu_seconds) && line.raw(R"(,"phases":)") && line.object(phase) &&
-           line.raw(R"(,"steps":)") && line.real(cost.particle_steps) && line.raw(R"(,"wall":)") &&
-           line.real(cost.wall_seconds) && line.raw("}");
+           line.raw(R"(,"steps":)") && line.real(cost.particle_steps) && line.raw(R"(,"threads":)") &&
+           line.real_or_null(cost.threads) && line.raw(R"(,"wall":)") && line.real(cost.wall_seconds) && line.raw("}");
 }
 
 /// Of an attempt that a program answered; nothing where there is nothing.
@@ -262,7 +262,8 @@ std::string in_form(const Done& done) {
     const auto real = [&](double number) { line.real(number); };
     line.whole(attempt.number).raw(R"(,"checkpointed":)").flag(done.checkpointed);
     line.raw(R"(,"cost":{"cpu":)").real(cost.cpu_seconds).raw(R"(,"phases":)").object(cost.phases, real);
-    line.raw(R"(,"steps":)").real(cost.particle_steps).raw(R"(,"wall":)").real(cost.wall_seconds);
+    line.raw(R"(,"steps":)").real(cost.particle_steps).raw(R"(,"threads":)").real(cost.threads);
+    line.raw(R"(,"wall":)").real(cost.wall_seconds);
     line.raw(R"(},"id":)").text(attempt.case_id).raw(R"(,"message":)").text(message);
     line.raw(R"(,"observations":{"scalars":)").object(observations.scalars, real);
     line.raw(R"(,"series":)").object(observations.series, [&](const std::vector<Sample>& samples) {

@@ -2,6 +2,7 @@
 
 #include "sweep/workers/awake_clock.hpp"
 #include "sweep/workers/child.hpp"
+#include "sweep/workers/core_sharing.hpp"
 #include "sweep/workers/departures.hpp"
 #include "sweep/workers/fruitless_launches.hpp"
 #include "sweep/workers/hosts.hpp"
@@ -15,6 +16,7 @@
 #include <csignal>
 #include <deque>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 namespace grainsweep::workers {
@@ -44,6 +46,12 @@ std::vector<std::string> command_of(const PoolOptions& options) {
     return argv;
 }
 
+/// For the campaign: one for each worker, of this machine no more than it has.
+std::size_t cores_of_a_node(const PoolOptions& options) {
+    if (options.hosts > 0) return options.workers / options.hosts;
+    return std::min<std::size_t>(options.workers, std::max(1U, std::thread::hardware_concurrency()));
+}
+
 bool was_killed(int status) {
     return ending_signal(status) == SIGKILL || ending_signal(status) == SIGTERM;
 }
@@ -52,7 +60,11 @@ bool was_killed(int status) {
 
 struct Pool::Impl {
     explicit Impl(PoolOptions o)
-        : options(std::move(o)), argv(command_of(options)), signals(io, SIGINT, SIGTERM, SIGUSR1), fruitless(argv) {
+        : options(std::move(o)),
+          argv(command_of(options)),
+          signals(io, SIGINT, SIGTERM, SIGUSR1),
+          sharing(options.threads, cores_of_a_node(options)),
+          fruitless(argv) {
         await_signal();
         if (options.hosts == 0) return;
         HostPlan plan{options.launcher, options.hosts, options.workers / options.hosts, options.limits};
@@ -277,6 +289,7 @@ struct Pool::Impl {
     std::deque<PoolEvent> events;
     AwakeClock clock;
     std::optional<Hosts> hosts;
+    CoreSharing sharing;
     FruitlessLaunches fruitless;
     int events_before_reading = 0;
     double leased = 0, looked = 0;
@@ -307,6 +320,10 @@ void Pool::expect(std::size_t cases) {
     }
 }
 
+void Pool::share_cores(std::size_t waiting, const SecondsLeft& left) {
+    impl_->sharing.share(impl_->workers, waiting, left);
+}
+
 std::optional<Place> Pool::place_for(double predicted_seconds) {
     if (!impl_->events.empty()) return std::nullopt;  // what is known already may end the run
     const auto& workers = impl_->workers;
@@ -325,6 +342,7 @@ std::optional<Place> Pool::place_for(double predicted_seconds) {
 void Pool::give(const Place& place, const campaign::Attempt& attempt, const campaign::Case& question) {
     const auto& worker = impl_->workers.at(place.worker);
     worker->state.give(attempt, impl_->clock.now());
+    impl_->sharing.begin(*worker);
     Impl::send(*worker, Run{attempt.number, question});
 }
 

@@ -5,6 +5,7 @@
 #include "sweep/workers/crew.hpp"
 #include "sweep/workers/worker_state.hpp"
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -20,7 +21,10 @@ struct PoolOptions {
     /// a word of the launcher is the host's number, from 1 on.
     std::size_t hosts = 0;
     std::vector<std::string> host_command;  ///< executable, "host", its arguments
-    TimeLimits limits;                      ///< in this process's running time
+    /// Threads of every case; 0: one, and the cores of a node that no case needs go to those that run there. A node has
+    /// as many cores for the campaign as workers.
+    std::int64_t threads = 1;
+    TimeLimits limits;  ///< in this process's running time
     Expected expected;
 };
 
@@ -35,6 +39,7 @@ public:
     ~Pool() override;
 
     void expect(std::size_t cases) override;
+    void share_cores(std::size_t waiting, const SecondsLeft& left) override;
     [[nodiscard]] std::optional<Place> place_for(double predicted_seconds) override;
     void give(const Place& place, const campaign::Attempt& attempt, const campaign::Case& question) override;
     [[nodiscard]] std::optional<PoolEvent> wait(std::chrono::milliseconds at_most) override;

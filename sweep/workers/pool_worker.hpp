@@ -24,6 +24,7 @@ struct PoolWorker {
     LineBuffer lines{longest_line};
     double beat = -beats_apart;  ///< when a heartbeat was last passed on
     bool stop_sent = false, remarked = false;
+    std::int64_t threads = 1;  ///< of its case, as it was last told
 
     [[nodiscard]] std::string name() const;
     /// What it had in hands, and the reason why it is gone with what it wrote last.

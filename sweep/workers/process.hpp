@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -42,6 +43,8 @@ public:
     [[nodiscard]] virtual bool lost_with_host() const { return false; }
     /// It began a case: what started it works.
     virtual void was_fruitful() {}
+    /// Processes of one node have cores in common; 0: the node of this one.
+    [[nodiscard]] virtual std::size_t node() const { return 0; }
     /// Tells it from others.
     [[nodiscard]] virtual std::string id() const = 0;
     /// The last it wrote to standard error, as far as known.

@@ -81,6 +81,7 @@ public:
     [[nodiscard]] std::string end() const override;
     [[nodiscard]] bool lost_with_host() const override { return !host_end_.empty(); }
     void was_fruitful() override { host_->of_use_ = true; }
+    [[nodiscard]] std::size_t node() const override { return host_->number(); }
     [[nodiscard]] std::string id() const override;
     [[nodiscard]] const std::string& log() override { return log_; }
 

@@ -93,6 +93,8 @@ void settle(store::Store& store, const campaign::Case& question, std::int64_t at
 
 void take_back_to_schema(int version, const std::filesystem::path& file) {
     store::Connection db(file, store::Connection::Access::write);
+    db.execute("ALTER TABLE attempt DROP COLUMN threads; PRAGMA user_version = 7");  // 8
+    if (version == 7) return;
     db.execute(  // 7
         "DROP TABLE program; DROP TABLE program_content; DROP TABLE attempt_program; PRAGMA user_version = 6");
     if (version == 6) return;

@@ -33,6 +33,9 @@ public:
         if (retired || waiting_.size() >= room_) return std::nullopt;
         return workers::Place{0, computer};
     }
+    void share_cores(std::size_t waiting, const SecondsLeft& left) override {
+        shared.emplace_back(waiting, waiting_.empty() ? 0 : left(waiting_.front()));
+    }
     void give(const workers::Place&, const campaign::Attempt& attempt, const campaign::Case&) override {
         started.push_back(attempt);
         waiting_.push_back(attempt);
@@ -40,14 +43,16 @@ public:
     [[nodiscard]] std::optional<workers::PoolEvent> wait(std::chrono::milliseconds) override {
         if (waiting_.empty()) return std::nullopt;
         auto event = script_(waiting_.front());
-        // An interrupt answers no case.
-        if (!std::holds_alternative<workers::Interrupted>(event)) waiting_.pop_front();
+        // An interrupt answers no case, nor does a heartbeat.
+        if (!std::holds_alternative<workers::Interrupted>(event) && !std::holds_alternative<workers::Heartbeat>(event))
+            waiting_.pop_front();
         return event;
     }
     void retire() override { retired = true; }
     void dismiss() override { dismissed = true; }
 
     std::vector<campaign::Attempt> started;
+    std::vector<std::pair<std::size_t, double>> shared;  ///< cases that waited; seconds left of the first that ran
     std::size_t expected = 0;
     std::shared_ptr<const campaign::Computer> computer =
         std::make_shared<const campaign::Computer>(campaign::Computer{"1", "c", "b", "avx2", "p", "its host"});
@@ -114,6 +119,21 @@ TEST_F(SchedulerLoop, RecordsEveryAnswer) {
     EXPECT_EQ(crew.started.size(), 10U);
     EXPECT_EQ(stored("completed"), 10);
     EXPECT_TRUE(crew.retired);
+}
+
+TEST_F(SchedulerLoop, CoresAreSharedByWhatWaitsAndWhatIsLeft) {
+    bool told = false;
+    ScriptedCrew crew(
+        [&](const auto& attempt) -> workers::PoolEvent {
+            if (!std::exchange(told, true)) return workers::Heartbeat{attempt, 0.25};
+            return completed(attempt);
+        },
+        3);
+    EXPECT_EQ(run(crew), Ending::finished);
+    ASSERT_GE(crew.shared.size(), 11U);
+    EXPECT_EQ(crew.shared.front(), (std::pair<std::size_t, double>(7, 1.0)));
+    EXPECT_EQ(crew.shared[1].second, 0.75) << "a quarter is done";
+    EXPECT_EQ(crew.shared.back().first, 0U);
 }
 
 // The recorder enters the rest between the answers, on a thread of its own.

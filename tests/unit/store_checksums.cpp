@@ -69,6 +69,13 @@ TEST_F(StoreChecksums, WhatIsAsWrittenIsSound) {
     EXPECT_EQ(dump_of(Store(file, Store::Mode::read)), whole);
 }
 
+TEST_F(StoreChecksums, AnotherNumberOfThreadsIsFoundAndNoneIsAsBeforeItWasKept) {
+    damage("UPDATE attempt SET threads = 2 WHERE case_key = 2");
+    EXPECT_EQ(verified().size(), 1u);
+    damage("UPDATE attempt SET threads = NULL WHERE case_key = 2");
+    EXPECT_TRUE(verified().empty());
+}
+
 TEST_F(StoreChecksums, ANumberThatChangedIsNamed) {
     damage(
         "UPDATE observation SET value = value + 1e-13 WHERE case_key = 2 AND observable_id = "

@@ -85,7 +85,8 @@ TEST_F(StoreResults, AnAnswerComesBackBitForBit) {
     given.cost = {.wall_seconds = 1.5,
                   .cpu_seconds = 1.25,
                   .particle_steps = 3e9,
-                  .phases = {{"contact", 0.75}, {"rebuild", 1e-7}}};
+                  .phases = {{"contact", 0.75}, {"rebuild", 1e-7}},
+                  .threads = 1.75};
     store.group([&] {
         store.begin(given.attempt);
         EXPECT_TRUE(store.finish(given));
@@ -106,6 +107,16 @@ TEST_F(StoreResults, AnAnswerComesBackBitForBit) {
     EXPECT_EQ(got->cost.cpu_seconds, 1.25);
     EXPECT_EQ(got->cost.particle_steps, 3e9);
     EXPECT_EQ(got->cost.phases, given.cost.phases);
+    EXPECT_EQ(store.attempts(one.id).at(0).threads, 1.75);
+}
+
+TEST_F(StoreResults, ThreadsThatWereNotNotedAreNull) {
+    store.group([&] {
+        store.begin({one.id, 1});
+        EXPECT_TRUE(store.finish(answer(one, 1)));
+    });
+    EXPECT_TRUE(std::isnan(store.attempts(one.id).at(0).threads));
+    EXPECT_EQ(store.query("SELECT threads FROM attempt").rows.at(0).at(0), store::Table::Cell{});
 }
 
 TEST_F(StoreResults, AnUndefinedScalarIsNull) {

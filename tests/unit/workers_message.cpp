@@ -34,7 +34,7 @@ TEST(Message, AnAnswerSurvivesTheTripToTheLastBit) {
     done.result.message = "speed 3e9 m/s at \xff\n";
     done.result.observations.scalars = {{"mfr", 0.1 + 0.2}, {"undefined", nan}};
     done.result.observations.series["flux"] = {{1.0 / 3, nan, 5e-324}, {nan, 2, 1.7976931348623157e308}};
-    done.result.cost = {1.5, 1.25, 1e9, {{"settle", 0.5}}};
+    done.result.cost = {1.5, 1.25, 1e9, {{"settle", 0.5}}, 1.75};
     done.checkpointed = true;
     const auto back = std::get<Done>(decode_to_boss(encode(done)));
     EXPECT_EQ(back.result.attempt, done.result.attempt);
@@ -48,7 +48,23 @@ TEST(Message, AnAnswerSurvivesTheTripToTheLastBit) {
     EXPECT_EQ(series[0].value, 5e-324);
     EXPECT_EQ(series[1].value, 1.7976931348623157e308);
     EXPECT_EQ(back.result.cost.phases.at("settle"), 0.5);
+    EXPECT_EQ(back.result.cost.threads, 1.75);
     EXPECT_TRUE(back.checkpointed);
+}
+
+TEST(Message, AnAnswerFromBeforeThreadsWereNotedIsRead) {
+    std::string line = encode(Done{});
+    const auto at = line.find(R"("threads":null,)");
+    ASSERT_NE(at, std::string::npos);
+    line.erase(at, std::string_view(R"("threads":null,)").size());
+    EXPECT_TRUE(std::isnan(std::get<Done>(decode_to_boss(line)).result.cost.threads));
+}
+
+TEST(Message, NumbersOfThreadsAreWholeAndPossible) {
+    EXPECT_EQ(std::get<Threads>(decode_to_worker(encode(Threads{7}))).count, 7);
+    for (const char* line : {R"({"threads":0})", R"({"threads":-1})", R"({"threads":1.5})", R"({"threads":"2"})",
+                             R"({"threads":null})", R"({"threads":5000})", R"({"threads":1e30})"})
+        EXPECT_THROW((void)decode_to_worker(line), std::invalid_argument) << line;
 }
 
 // The form that is written is read without a document; with a space in it, as a document. Both say the same.

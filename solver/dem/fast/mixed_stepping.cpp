@@ -88,9 +88,10 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
     drift_.inner = 0;
 }
 
-void MixedEngine::set_threads(int count) {
+int MixedEngine::set_threads(int count) {
     threads_.most = count;
     subdomains_.use(threads_);
+    return subdomains_.wanted(field_.count);
 }
 
 /// After a change of the number of threads, or a restored state; all other changes come with new lists.

@@ -48,7 +48,7 @@ public:
     MixedEngine(const Setup& setup, Method::Path path, double skin, double rest_speed, Threads threads);
 
     void run(std::int64_t steps) override;
-    void set_threads(int count) override;
+    int set_threads(int count) override;
     void set_walls(std::vector<Wall> walls) override;
     void remove(std::span<const std::int32_t> ids) override;
     [[nodiscard]] std::size_t size() const override { return static_cast<std::size_t>(field_.count); }

@@ -13,7 +13,7 @@ public:
     Experiment(const Study& study, std::uint64_t seed, const dem::Method& method);
 
     void advance(double until) override;
-    void use_threads(int count) override { engine_->set_threads(count); }
+    int use_threads(int count) override { return engine_->set_threads(count); }
     void observe(Observations& into) const override;
     [[nodiscard]] double time() const override { return study_.time_step * static_cast<double>(step_); }
     [[nodiscard]] bool finished() const override { return step_ == study_.last_step(); }

@@ -22,9 +22,9 @@ public:
     Experiment(const Study& study, std::uint64_t seed, const dem::Method& method, Artefacts& artefacts);
 
     void advance(double until) override;
-    void use_threads(int count) override {
+    int use_threads(int count) override {
         method_.threads = count;  // of the engines of later layers
-        engine_->set_threads(count);
+        return engine_->set_threads(count);
     }
     void observe(Observations& into) const override;
     [[nodiscard]] double time() const override {

@@ -1,0 +1,125 @@
+// One case on several threads within a campaign: the answers are those of one thread, whatever the number is and
+// however it changes on the way.
+#include "tests/support/process.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <string>
+#include <thread>
+
+using namespace grainsweep::test;
+using nlohmann::json;
+using testing::HasSubstr;
+
+namespace {
+
+// Particles enough for two threads; the last case takes several times as long as the others.
+json drum(const json& execution) {
+    return {{"campaign", "drum"},
+            {"scene", "rotating_drum"},
+            {"factors", {{{"name", "turning_time"}, {"levels", {0.002, 0.004, 0.2}}}}},
+            {"fixed",
+             {{"particles", 8200},
+              {"drum_diameter", 0.2},
+              {"length", 0.08},
+              {"measured_time", 0.002},
+              {"frame_interval", 0.002}}},
+            {"design", {{"kind", "lattice"}}},
+            {"execution", execution}};
+}
+
+class Drum : public testing::Test {
+protected:
+    void run(const std::string& name, const json& execution, const std::vector<std::string>& more = {}) {
+        folder.write(name + ".json", drum(execution).dump());
+        std::vector<std::string> command = {"run", name + ".json", "--db", name + ".db", "--quiet"};
+        command.insert(command.end(), more.begin(), more.end());
+        const auto ended = run_program(command, folder.path());
+        EXPECT_EQ(ended.code, 0) << ended.err;
+    }
+    [[nodiscard]] std::string dump(const std::string& name) const {
+        return run_program({"dump", name + ".db"}, folder.path()).out;
+    }
+    [[nodiscard]] json ask(const std::string& name, const std::string& sql) const {
+        const auto ended = run_program({"query", name + ".db", sql, "--format", "json"}, folder.path());
+        EXPECT_EQ(ended.code, 0) << ended.err;
+        return json::parse(ended.out).at(0).front();
+    }
+
+    Folder folder;
+};
+
+TEST_F(Drum, TheAnswersAreThoseOfOneThread) {
+    run("one", {{"threads", 1}}, {"-j", "2"});
+    const auto expected = dump("one");
+    EXPECT_GT(expected.size(), 1000U);
+    EXPECT_EQ(ask("one", "SELECT max(threads) FROM attempt"), 1);
+    run("auto_1", {{"threads", "auto"}}, {"-j", "1"});
+    EXPECT_TRUE(dump("auto_1") == expected);
+    EXPECT_EQ(ask("auto_1", "SELECT max(threads) FROM attempt"), 1) << "-j 1 is one core";
+    run("auto_2", json::object(), {"-j", "2"});
+    EXPECT_TRUE(dump("auto_2") == expected);
+    if (std::thread::hardware_concurrency() > 1) {
+        EXPECT_GT(ask("auto_2", "SELECT max(threads) FROM attempt"), 1) << "the last case had a core to spare";
+    }
+    run("three", {{"threads", 3}}, {"-j", "1"});
+    EXPECT_TRUE(dump("three") == expected);
+    EXPECT_GT(ask("three", "SELECT min(threads) FROM attempt"), 1);
+    run("hosted", {{"hosts", 1}, {"workers_per_host", 2}});
+    EXPECT_TRUE(dump("hosted") == expected);
+    EXPECT_GT(ask("hosted", "SELECT max(threads) FROM attempt"), 1) << "a host has a core for each of its workers";
+    const auto worked = run_program({"work", "three.json", "--spool", "spool", "--quiet"}, folder.path());
+    EXPECT_EQ(worked.code, 0) << worked.err;
+    EXPECT_EQ(run_program({"collect", "spooled.db", "spool", "--quiet"}, folder.path()).code, 0);
+    EXPECT_TRUE(dump("spooled") == expected);
+    EXPECT_GT(ask("spooled", "SELECT max(threads) FROM attempt"), 1);
+}
+
+/// Lets a run come to its first checkpoint and kills its main program.
+void run_and_kill(const Folder& folder, const std::string& config) {
+    Process run(program_command({"run", config, "--db", "hit.db", "--quiet", "-j", "1"}), folder.path());
+    const auto saved = [&] {
+        std::error_code absent;
+        for (const auto& entry : std::filesystem::directory_iterator(folder / "hit.artefacts", absent))
+            if (entry.path().extension() == ".artefact") return true;
+        return false;
+    };
+    while (run.running() && !saved()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    run.signal(SIGKILL);
+    run.wait();
+}
+
+TEST_F(Drum, ACaseGoesOnWithAnotherNumberOfThreads) {
+    run("calm", {{"threads", 1}});
+    const json launcher = {"/bin/sh", "-c", "exec \"$@\" --checkpoint-seconds 0.01", "sh"};
+    folder.write("two.json", drum({{"threads", 2}, {"launcher", launcher}}).dump());
+    folder.write("three.json", drum({{"threads", 3}, {"launcher", launcher}}).dump());
+    run_and_kill(folder, "two.json");
+    run_and_kill(folder, "three.json");
+    run("hit", {{"threads", 1}});
+    EXPECT_TRUE(dump("hit") == dump("calm"));
+}
+
+TEST_F(Drum, ExplainAndPlanSayHowManyThreadsACaseHas) {
+    run("two", {{"threads", 2}});
+    const std::string id = ask("two", "SELECT case_id FROM drum WHERE point = 2");
+    const auto explained = run_program({"explain", "two.db", id, "--format", "json"}, folder.path());
+    EXPECT_GT(json::parse(explained.out).at("attempts").at(0).at("threads"), 1);
+    EXPECT_EQ(json::parse(run_program({"plan", "two.json", "--format", "json"}, folder.path()).out).at("threads"), 2);
+    EXPECT_THAT(run_program({"plan", "two.json"}, folder.path()).out, HasSubstr("threads    2 for each case"));
+}
+
+TEST_F(Drum, ACaseInDoublePrecisionHasOne) {
+    json config = drum({{"threads", 2}});
+    config["fixed"].merge_patch({{"particles", 50}, {"precision", "double"}});
+    folder.write("double.json", config.dump());
+    EXPECT_EQ(run_program({"run", "double.json", "--db", "double.db", "--quiet"}, folder.path()).code, 0);
+    EXPECT_EQ(ask("double", "SELECT max(threads) FROM attempt"), 1);
+}
+
+}  // namespace
