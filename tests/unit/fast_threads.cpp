@@ -108,6 +108,30 @@ dem::Setup among_triangles() {
     return s;
 }
 
+/// Powder tumbling in a drum of triangles, many of which a sphere is near, and out of its ends.
+dem::Setup in_a_drum_of_triangles(double spread) {
+    dem::Setup s = test::boxed_lattice(6, 0.5, spread, 8);
+    s.time_step = 4e-6;
+    dem::Vec3 middle{};
+    const auto share = 1 / static_cast<double>(s.spheres.size());
+    for (const dem::Sphere& p : s.spheres)
+        for (std::size_t a = 0; a < 3; ++a) middle[a] += share * p.position[a];
+    for (dem::Sphere& p : s.spheres)
+        for (std::size_t a = 0; a < 3; ++a) p.position[a] -= middle[a];
+    s.domain = {{-0.02, -0.02, -0.02}, {0.02, 0.02, 0.02}, {}};
+    const dem::Rotation turns{.axis = {1, 0, 0}, .speed = 40};
+    s.walls = {{dem::Mesh(tests::surface_of(tests::drum(24, 5.5e-3, 6e-3))), {turns}}};
+    return s;
+}
+
+/// A cloud that flies apart, fast, out of an open box: lists are made anew all the time, with fewer particles each.
+dem::Setup flying_apart(double spread) {
+    dem::Setup s = test::thrown_lattice(6, 3.0, spread, 2);
+    s.domain.periodic = {true, false, false};
+    for (std::size_t a = 1; a < 3; ++a) s.domain.low[a] -= 1e-5, s.domain.high[a] += 1e-5;
+    return s;
+}
+
 std::vector<dem::Wall> drum() {
     const dem::Rotation turns{.axis = {0, 1, 0}, .speed = 20};
     return {{dem::Cylinder{.point = {2e-3, 0, 1e-3}, .axis = {0, 1, 0}, .radius = 5e-3}, {turns}},
@@ -126,6 +150,11 @@ std::vector<Case> cases() {
     }
     all.push_back({"obstacles", frozen, 250});
     all.push_back({"triangles", among_triangles(), 400});
+    for (const double spread : {0.0, 0.4}) {
+        const std::string sizes = spread > 0 ? ", many sizes" : "";
+        all.push_back({"a drum of triangles" + sizes, in_a_drum_of_triangles(spread), 500});
+        all.push_back({"flying apart" + sizes, flying_apart(spread), 400});
+    }
     return all;
 }
 
@@ -173,6 +202,32 @@ TEST(FastThreads, TheirNumberChangesNoByteOfACheckpoint) {
             EXPECT_EQ(alone->fault(), "") << c.name;
             EXPECT_GE(alone->work().rebuilds, 2) << c.name;
             EXPECT_EQ(alone->work().resting_steps > 0, c.rest_speed > 0) << c.name;
+        }
+}
+
+/// Lists that are made anew at nearly every step, while spheres leave and are taken out.
+TEST(FastThreads, RebuildsAreTheSame) {
+    for (const auto path : paths())
+        for (const double spread : {0.0, 0.4}) {
+            const dem::Setup setup = flying_apart(spread);
+            constexpr double skin = 2e-5;
+            const auto alone = make_mixed_engine(setup, path, skin);
+            std::vector<std::unique_ptr<dem::Engine>> together;
+            for (const int threads : {2, 3, 7})
+                together.push_back(make_mixed_engine(setup, path, skin, 0, small_parts(threads)));
+            for (int round = 0; round < 4; ++round) {
+                const std::vector<std::int32_t> gone = {round, 40 + round, 41 + round, 200 - round};
+                alone->run(50);
+                alone->remove(gone);
+                for (const auto& engine : together) {
+                    engine->run(50);
+                    engine->remove(gone);
+                    ASSERT_TRUE(bytes_of(*engine) == bytes_of(*alone)) << "round " << round;
+                }
+            }
+            EXPECT_EQ(alone->fault(), "");
+            EXPECT_GE(alone->work().rebuilds, 20);
+            EXPECT_LT(alone->size(), setup.spheres.size() - 20);
         }
 }
 

@@ -87,10 +87,15 @@ void Columns::hold_particles(std::size_t particles, std::size_t wall_count) {
 
 void PairColumns::hold_pairs(std::size_t pairs) {
     const std::size_t n = pairs + spare;
-    outer_first.hold(n), outer_second.hold(n), outer_reach.hold(n), outer_touching.hold(n);
+    hold_outer(pairs);
     inner_first.hold(n), inner_second.hold(n), inner_source.hold(n), inner_reach.hold(n);
     touching.hold(n), touching_next.hold(n);
     for (int a = 0; a < histories; ++a) history[a].hold(n), history_next[a].hold(n);
+}
+
+void PairColumns::hold_outer(std::size_t pairs) {
+    const std::size_t n = pairs + spare;
+    outer_first.hold(n), outer_second.hold(n), outer_reach.hold(n), outer_touching.hold(n);
 }
 
 void Columns::hold_lists(std::size_t pairs) {

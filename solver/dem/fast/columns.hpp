@@ -69,6 +69,8 @@ struct PairColumns {
     void bind_pairs(Field& f) const;
     /// Makes room for `pairs` in both lists.
     void hold_pairs(std::size_t pairs);
+    /// Makes room for `pairs` in the outer list alone.
+    void hold_outer(std::size_t pairs);
     /// What a sweep wrote becomes what the next one reads.
     void swap_histories(Field& f);
 };
@@ -85,6 +87,7 @@ struct Columns : PairColumns {
     Column<std::int32_t> column[3];
     Column<float> column_radius, column_mobile;
     Column<std::int32_t> cell_start, cell_of, place;  ///< place: where a particle went, -1: removed
+    Column<std::int32_t> cell_counts;                 ///< of each part in turn
     Column<std::int32_t> advanced, advanced_before;   ///< where some are held, see Field
     Column<std::int32_t> owner;  ///< old contact of an outer pair, plus one; negative: first and second changed places
 

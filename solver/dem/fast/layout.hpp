@@ -128,8 +128,8 @@ struct WallSegment {
 struct alignas(32) Tally {
     float velocity_high[8];
     float velocity_low[8];
-    float overlap;       ///< of pairs, over the smaller diameter
-    float wall_overlap;  ///< over the diameter
+    float overlap;           ///< of pairs, over the smaller diameter
+    float wall_overlap;      ///< over the diameter
     std::int64_t unused[3];  ///< fills a saved tally up; 0
 };
 
@@ -181,8 +181,9 @@ struct Field {
     float* column_radius;
     float* column_mobile;  ///< 1 mobile, 0 frozen
     std::int32_t* cell_start;
-    std::int32_t cells[3];  ///< along fast, middle and slow axis
-    std::int32_t wraps[3];  ///< 1: periodic
+    std::int32_t cells[3];              ///< along fast, middle and slow axis
+    std::int32_t wraps[3];              ///< 1: periodic
+    std::int32_t cell_begin, cell_end;  ///< those whose particles' pairs a search looks for
     std::int32_t outer_capacity;
 
     // Walls.
@@ -215,8 +216,8 @@ struct Kernels {
     /// Pieces of a wall that particles touch, into the columns of touches from `at` on, in the order of the list.
     /// Returns their number.
     std::int32_t (*pieces)(const Field&, std::int32_t wall, const PieceList&, std::int32_t at);
-    /// Outer list of pairs closer than `skin` beyond contact. Returns the count needed; more than
-    /// outer_capacity: nothing beyond was written.
+    /// Outer list of pairs closer than `skin` beyond contact, of the first particles in a range of cells, and their
+    /// rows. Returns the count needed; more than outer_capacity: nothing beyond was written.
     std::int64_t (*search)(const Field&, float skin);
     /// Inner list from the outer one: gap below `skin`, or touching. Returns the padded count.
     std::int32_t (*refresh)(const Field&, float skin);

@@ -65,18 +65,27 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
                 largest_skin_);
         const std::int32_t before = field_.count;
         join_lists();
+        const Parts parts = subdomains_.parts();
         rebuild(field_, columns_, *kernels_, space_, walls_, removed, needs_.resting ? &resting_ : nullptr,
-                drift_.steps);
+                drift_.steps, parts);
         touches_.reorder(field_, columns_);
-        touches_.list(field_, walls_, space_.scale, static_cast<double>(space_.skin));
-        columns_.forces.clear(size());  // what was carried over belongs to the old order
+        touches_.list(field_, walls_, space_.scale, static_cast<double>(space_.skin), parts);
+        parts.run_shares(field_.count, [this](Range range) {  // what was carried over belongs to the old order
+            std::fill(field_.forces + range.begin, field_.forces + range.end, Force{});
+        });
         if (field_.count < before) watch_.restart_balance();
         list_advanced();
+        mobile_ = parts
+                      .counted(field_.count,
+                               [this](Range range) {
+                                   return static_cast<std::int32_t>(
+                                       std::count_if(field_.records + range.begin, field_.records + range.end,
+                                                     [](const Record& r) { return r.inverse_mass > 0; }));
+                               })
+                      .back();
         subdomains_.cut_up(field_, columns_, false);
         drift_.outer = 0;
         drift_.steps = 0;
-        mobile_ = 0;
-        for (std::int32_t i = 0; i < field_.count; ++i) mobile_ += field_.records[i].inverse_mass > 0 ? 1 : 0;
         ++work_.rebuilds;
     }
     inner_skin_ = static_cast<float>(
@@ -127,7 +136,7 @@ void MixedEngine::stand_walls() {
 
 /// Forces of the walls. `moves`: as part of a step.
 void MixedEngine::press_walls(bool moves) {
-    touches_.find(field_, columns_, walls_, *kernels_, space_.scale, drift_.outer);
+    touches_.find(field_, columns_, walls_, *kernels_, space_.scale, drift_.outer, subdomains_.parts());
     kernels_->walls(field_, tally_);
     watch_.add_wall_work(walls_.book(field_.wall_sums, moves));
     if (!moves) return;

@@ -10,6 +10,7 @@
 
 namespace grainsweep::dem::fast {
 
+class Parts;
 class Resting;
 class Walls;
 
@@ -22,9 +23,10 @@ struct ListSpace {
 
 /// Removes particles beyond open faces and those listed in `ids`, sorts the rest by cell, makes the outer list and
 /// the wall lists and carries all histories over. The inner list is left to refresh.
-/// `resting`: decides anew which particles rest, `steps` steps after the last rebuild; null where none may.
+/// `resting`: decides anew which particles rest, `steps` steps after the last rebuild; null where none may. `parts`:
+/// their number changes nothing.
 void rebuild(Field& field, Columns& columns, const Kernels& kernels, const ListSpace& space, const Walls& walls,
-             std::span<const std::int32_t> ids, Resting* resting, std::int64_t steps);
+             std::span<const std::int32_t> ids, Resting* resting, std::int64_t steps, const Parts& parts);
 
 /// Makes the inner list from the outer one; histories stay as they are, in the same order.
 /// `marked`: outer_touching already says which outer pairs touch.

@@ -68,50 +68,52 @@ std::int64_t search(const Field& f, float skin) {
     Runs runs;
     I lane_places = lane_numbers();
     for (int d = 1; d < places_per_index; d *= 2) lane_places = lane_places + lane_places;
-    for (std::int32_t z = 0; z < f.cells[2]; ++z)
-        for (std::int32_t y = 0; y < f.cells[1]; ++y)
-            for (std::int32_t x = 0; x < f.cells[0]; ++x) {
-                const std::int32_t cell = (z * f.cells[1] + y) * f.cells[0] + x;
-                const std::int32_t end = f.cell_start[cell + 1];
-                if (f.cell_start[cell] == end) continue;
-                following(f, x, y, z, runs);
-                for (std::int32_t i = f.cell_start[cell]; i < end; ++i) {
-                    f.row[i] = static_cast<std::int32_t>(n);
-                    const I xi = broadcast(f.column[0][i]), yi = broadcast(f.column[1][i]),
-                            zi = broadcast(f.column[2][i]);
-                    const I own = broadcast(i * places_per_index);
-                    const F radius = broadcast(f.column_radius[i]), mobile = broadcast(f.column_mobile[i]);
-                    const auto scan = [&](std::int32_t from, std::int32_t to) __attribute__((always_inline)) {
-                        for (std::int32_t j = from; j < to; j += width) {
-                            const F dx = single(xi - load(f.column[0] + j)) * broadcast(c.unit_single[0]),
-                                    dy = single(yi - load(f.column[1] + j)) * broadcast(c.unit_single[1]),
-                                    dz = single(zi - load(f.column[2] + j)) * broadcast(c.unit_single[2]);
-                            const F sum = radius + load(f.column_radius + j);
-                            const F cut = sum + broadcast(skin);
-                            const M close =
-                                fma(dx, dx, fma(dy, dy, dz * dz)) < cut * cut * broadcast(rounding_allowance);
-                            const M moves = broadcast(0.0f) < mobile + load(f.column_mobile + j);
-                            unsigned found = bits(close & moves);
-                            if (to - j < width) found &= (1u << (to - j)) - 1;
-                            const int k = __builtin_popcount(found);
-                            if (n + 2 * width <= f.outer_capacity) {
-                                store(f.outer_second + n,
-                                      compress(lane_places + broadcast(j * places_per_index), found));
-                                store(f.outer_first + n, own);
-                                if constexpr (unequal) store(f.outer_reach + n, compress(sum, found));
-                            }
-                            n += k;
-                        }
-                    };
-                    // the rest of the own cell runs on into the next one where that is a neighbour
-                    int first = 0;
-                    std::int32_t own_end = end;
-                    if (runs.count > 0 && runs.begin[0] == end) own_end = runs.end[first++];
-                    scan(i + 1, own_end);
-                    for (int r = first; r < runs.count; ++r) scan(runs.begin[r], runs.end[r]);
+    const std::int32_t nx = f.cells[0], ny = f.cells[1];
+    std::int32_t x = f.cell_begin % nx, y = f.cell_begin / nx % ny, z = f.cell_begin / nx / ny;
+    const auto next = [&] {
+        if (++x < nx) return;
+        x = 0;
+        if (++y < ny) return;
+        y = 0;
+        ++z;
+    };
+    for (std::int32_t cell = f.cell_begin; cell < f.cell_end; ++cell, next()) {
+        const std::int32_t end = f.cell_start[cell + 1];
+        if (f.cell_start[cell] == end) continue;
+        following(f, x, y, z, runs);
+        for (std::int32_t i = f.cell_start[cell]; i < end; ++i) {
+            f.row[i] = static_cast<std::int32_t>(n);
+            const I xi = broadcast(f.column[0][i]), yi = broadcast(f.column[1][i]), zi = broadcast(f.column[2][i]);
+            const I own = broadcast(i * places_per_index);
+            const F radius = broadcast(f.column_radius[i]), mobile = broadcast(f.column_mobile[i]);
+            const auto scan = [&](std::int32_t from, std::int32_t to) __attribute__((always_inline)) {
+                for (std::int32_t j = from; j < to; j += width) {
+                    const F dx = single(xi - load(f.column[0] + j)) * broadcast(c.unit_single[0]),
+                            dy = single(yi - load(f.column[1] + j)) * broadcast(c.unit_single[1]),
+                            dz = single(zi - load(f.column[2] + j)) * broadcast(c.unit_single[2]);
+                    const F sum = radius + load(f.column_radius + j);
+                    const F cut = sum + broadcast(skin);
+                    const M close = fma(dx, dx, fma(dy, dy, dz * dz)) < cut * cut * broadcast(rounding_allowance);
+                    const M moves = broadcast(0.0f) < mobile + load(f.column_mobile + j);
+                    unsigned found = bits(close & moves);
+                    if (to - j < width) found &= (1u << (to - j)) - 1;
+                    const int k = __builtin_popcount(found);
+                    if (n + 2 * width <= f.outer_capacity) {
+                        store(f.outer_second + n, compress(lane_places + broadcast(j * places_per_index), found));
+                        store(f.outer_first + n, own);
+                        if constexpr (unequal) store(f.outer_reach + n, compress(sum, found));
+                    }
+                    n += k;
                 }
-            }
-    f.row[f.count] = static_cast<std::int32_t>(n);
+            };
+            // the rest of the own cell runs on into the next one where that is a neighbour
+            int first = 0;
+            std::int32_t own_end = end;
+            if (runs.count > 0 && runs.begin[0] == end) own_end = runs.end[first++];
+            scan(i + 1, own_end);
+            for (int r = first; r < runs.count; ++r) scan(runs.begin[r], runs.end[r]);
+        }
+    }
     restore_denormals(denormals);
     return n;
 }

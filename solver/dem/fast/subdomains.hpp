@@ -19,6 +19,7 @@
 
 #include "solver/dem/fast/columns.hpp"
 #include "solver/dem/fast/layout.hpp"
+#include "solver/dem/fast/parts.hpp"
 #include "solver/dem/fast/threads.hpp"
 #include "solver/threads/thread_pool.hpp"
 
@@ -56,6 +57,8 @@ struct alignas(64) Subdomain {
     [[nodiscard]] Place place_of(std::int32_t particle) const;
     /// After the inner list was made.
     void count_inner(const Field& view);
+    /// How many pairs of a part of its inner list touch.
+    [[nodiscard]] std::int32_t touching_in(std::int32_t from, std::int32_t count, std::int32_t width) const;
     /// Copies the records of its partners: all, or those that a sweep over the inner list meets.
     void copy_partners(Record* records, bool all) const;
 };
@@ -77,6 +80,9 @@ public:
     void cut_up(Field& whole, Columns& columns, bool listed);
     /// The whole lists are used from here on; they must have been joined.
     void drop() { subdomains_.clear(); }
+    /// For what is no sweep, while the lists of the subdomains are not needed: after they were joined, until they are
+    /// cut anew.
+    [[nodiscard]] Parts parts() const;
     /// Writes inner list, touching pairs and histories of all subdomains to the whole lists, where they are not yet.
     void join(const Field& whole, const Columns& columns) const;
 
@@ -94,6 +100,7 @@ private:
     void fill(Subdomain& subdomain, const Field& whole) const;
     void fill_inner(Subdomain& subdomain, const Field& whole) const;
     [[nodiscard]] std::int32_t contacts_before(const Field& whole, std::int32_t pair) const;
+    void join_part(const Field& whole, int part, std::int32_t pairs, std::int32_t contacts) const;
     void merge(Tally& tally) const;
 
     const Kernels* kernels_;

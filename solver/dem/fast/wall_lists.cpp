@@ -14,17 +14,44 @@ struct Mobile {
     std::vector<Vec3> position;
     std::vector<double> radius;
 
-    Mobile(const Field& f, const Scale& scale) {
+    Mobile(const Field& f, const Scale& scale, const Parts& parts) {
         const auto n = static_cast<std::size_t>(f.count);
-        index.reserve(n);
         position.resize(n);
         radius.resize(n);
-        for (std::size_t i = 0; i < n; ++i) {
-            if (!(f.records[i].inverse_mass > 0)) continue;
-            index.push_back(static_cast<std::uint32_t>(i));
-            position[i] = position_of(f.records[i], scale);
-            radius[i] = static_cast<double>(f.records[i].radius) * scale.length;
-        }
+        const auto is_mobile = [&](std::int32_t i) { return f.records[i].inverse_mass > 0; };
+        const std::vector<std::int32_t> before = parts.counted(f.count, [&](Range range) {
+            std::int32_t count = 0;
+            for (std::int32_t i = range.begin; i < range.end; ++i) count += is_mobile(i) ? 1 : 0;
+            return count;
+        });
+        index.resize(static_cast<std::size_t>(before.back()));
+        parts.run([&](int part) {
+            auto at = static_cast<std::size_t>(before[static_cast<std::size_t>(part)]);
+            const Range range = parts.share(part, f.count);
+            for (std::int32_t i = range.begin; i < range.end; ++i) {
+                if (!is_mobile(i)) continue;
+                const auto k = static_cast<std::size_t>(i);
+                index[at++] = static_cast<std::uint32_t>(i);
+                position[k] = position_of(f.records[i], scale);
+                radius[k] = static_cast<double>(f.records[i].radius) * scale.length;
+            }
+        });
+    }
+
+    /// Those within `reach` of a wall, in order.
+    std::vector<std::uint32_t> near(const MovingWall& wall, double reach, const Parts& parts) const {
+        std::vector<std::vector<WallTouch>> within(static_cast<std::size_t>(parts.count()));
+        const auto share = [&](int part) { return parts.share(part, static_cast<std::int32_t>(index.size())); };
+        parts.run([&](int part) {
+            const Range range = share(part);
+            const std::span mine(index.begin() + range.begin, index.begin() + range.end);
+            wall.find(mine, position, {0, radius}, reach, within[static_cast<std::size_t>(part)]);
+        });
+        std::vector<std::uint32_t> all;
+        for (int part = 0; part < parts.count(); ++part)
+            for (const WallTouch& touch : within[static_cast<std::size_t>(part)])
+                all.push_back(index[static_cast<std::size_t>(share(part).begin) + touch.entry]);
+        return all;
     }
 };
 
@@ -49,13 +76,12 @@ Vec3 position_of(const Record& record, const Scale& scale) {
 }
 
 void list_wall_contacts(Field& f, Columns& c, const Kernels& kernels, const ListSpace& space, const Walls& walls,
-                        bool keep) {
+                        bool keep, const Parts& parts) {
     std::int32_t n = 0;
     const std::int32_t old_count = keep && f.wall_count > 0 ? f.segments[f.wall_count - 1].end : 0;
     const std::vector<Place> old_particle(f.wall_particle, f.wall_particle + old_count);
-    const Mobile mobile(walls.count() > 0 ? f : Field{}, space.scale);
+    const Mobile mobile(walls.count() > 0 ? f : Field{}, space.scale, parts);
     const double near = static_cast<double>(space.skin + f.constants.beyond_wall) * (1 + 1e-5) * space.scale.length;
-    std::vector<WallTouch> within;
     for (std::size_t w = 0; w < walls.count(); ++w) {
         const WallSegment old = f.segments[w];
         const auto old_slot = slots_by_particle(f, c, keep ? old : WallSegment{}, old_particle);
@@ -67,9 +93,8 @@ void list_wall_contacts(Field& f, Columns& c, const Kernels& kernels, const List
             for (int a = 0; a < c.histories; ++a)
                 c.wall_history_next[a][k] = from == none ? 0 : c.wall_history[a][static_cast<std::size_t>(from)];
         };
-        within.clear();
-        if (walls.is_single(w)) walls[w].find(mobile.index, mobile.position, {0, mobile.radius}, near, within);
-        for (const WallTouch& touch : within) add(mobile.index[touch.entry], old_slot[mobile.index[touch.entry]]);
+        if (walls.is_single(w))
+            for (const std::uint32_t i : mobile.near(walls[w], near, parts)) add(i, old_slot[i]);
         while ((n - begin) % kernels.width != 0) add(static_cast<std::size_t>(f.count) + 2, none);
         f.segments[w] = {begin, n};
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "solver/dem/fast/columns.hpp"
+#include "solver/dem/fast/parts.hpp"
 #include "solver/dem/fast/rebuild.hpp"
 #include "solver/dem/fast/walls.hpp"
 
@@ -10,7 +11,7 @@ namespace grainsweep::dem::fast {
 /// Walls that may be touched in one place; of the others wall_touches.hpp knows. `keep`: histories follow their
 /// contacts, by columns.place; else they start at zero.
 void list_wall_contacts(Field& field, Columns& columns, const Kernels& kernels, const ListSpace& space,
-                        const Walls& walls, bool keep);
+                        const Walls& walls, bool keep, const Parts& parts);
 
 /// Calls visit(particle, slot) for the listed particles of a wall; of one that may be touched in several places for
 /// those that touch it, with the slot of the first contact.

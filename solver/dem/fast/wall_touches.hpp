@@ -15,6 +15,7 @@
 
 #include "solver/dem/fast/checkpoint.hpp"
 #include "solver/dem/fast/columns.hpp"
+#include "solver/dem/fast/parts.hpp"
 #include "solver/dem/fast/walls.hpp"
 
 namespace grainsweep::dem::fast {
@@ -24,10 +25,10 @@ public:
     /// New walls: nothing is touched yet.
     void begin(Field& field, Columns& columns, const Walls& walls, const Scale& scale);
     /// The particles that may touch each wall until they have moved by `reach` against it, in largest diameters.
-    void list(const Field& field, const Walls& walls, const Scale& scale, double reach);
+    void list(const Field& field, const Walls& walls, const Scale& scale, double reach, const Parts& parts);
     /// Where the walls are touched now; contacts keep their memories. `drift`: moved since the lists were made.
     void find(Field& field, Columns& columns, const Walls& walls, const Kernels& kernels, const Scale& scale,
-              double drift);
+              double drift, const Parts& parts);
     /// A wall without an inside pushes on what has passed it. A centre that did so in the step that ended at `time`, by
     /// what find() found: it is no farther from the wall than `moved`, the most by which anything moved against it.
     struct Passage {
@@ -73,13 +74,37 @@ private:
         std::size_t begin, end;
     };
 
+    /// What one part of a search needs beside the columns.
+    struct Scratch {
+        std::vector<std::int32_t> from;
+        std::vector<std::uint32_t> of_one;
+        std::vector<geometry::Closest> places;
+        std::vector<WallTouch> before, now;
+        WallSegment found;  // its contacts
+    };
+    /// What all parts of a search read, and the columns that they write into.
+    struct Search {
+        const PieceWall* pieces;
+        const MovingWall* wall;
+        const Field* field;
+        Columns* columns;
+        const Scale* scale;
+        std::size_t old_end;  // of the wall's contacts in before_
+        // Of each place in the columns: which of its part's particles, and which piece, was found there.
+        std::int32_t* entry;
+        std::uint32_t* piece;
+    };
+
     void write_pieces(const Walls& walls, const Scale& scale);
-    static std::int64_t refresh(PieceWall& p, const Field& f, const MovingWall& wall, const Scale& scale, double drift);
-    std::int32_t settle(const PieceWall& p, const MovingWall& wall, const Field& f, Columns& c, const Scale& scale,
-                        WallSegment old, std::int32_t begin, std::int32_t found);
-    std::int32_t ask_shape(const MovingWall& wall, const Field& f, Columns& c, const Scale& scale, Place particle,
-                           std::int32_t at);
-    void inherit(const MovingWall& wall, Columns& c, Spread before, std::int32_t begin, std::int32_t end);
+    static void refresh(PieceWall& p, Range entries, const Field& f, const MovingWall& wall, const Scale& scale,
+                        double drift);
+    void find_part(const Search& search, Range entries, std::size_t old_begin, const Kernels& kernels, Scratch& own,
+                   std::int32_t at) const;
+    std::int32_t settle(const Search& search, Range entries, std::size_t old_begin, Scratch& own, std::int32_t begin,
+                        std::int32_t found) const;
+    static std::int32_t ask_shape(const Search& search, Scratch& own, Place particle, std::int32_t at);
+    void inherit(const Search& search, Scratch& own, Spread before, std::int32_t begin, std::int32_t end) const;
+    std::int32_t close_gaps(Columns& c, std::int32_t at, const Parts& parts);
     void publish(Field& field, Columns& columns) const;
 
     std::vector<PieceWall> pieced_;
@@ -87,10 +112,8 @@ private:
     // Of one call.
     std::vector<Before> before_;
     std::vector<std::int32_t> entry_;
-    std::vector<std::uint32_t> piece_, of_one_;
-    std::vector<geometry::Closest> places_;
-    std::vector<WallTouch> touches_before_, touches_now_;
-    std::vector<std::int32_t> from_;
+    std::vector<std::uint32_t> piece_;
+    std::vector<Scratch> scratch_;  // of each part
 };
 
 }  // namespace grainsweep::dem::fast

@@ -1,0 +1,49 @@
+// What a list of pairs holds besides pairs: bits of those that touch, and what fills its last vector up.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "solver/dem/fast/layout.hpp"
+
+namespace grainsweep::dem::fast {
+
+inline std::int32_t index_at(Place place) {
+    return static_cast<std::int32_t>(place / places_per_index);
+}
+inline Place place_at(std::int32_t index) {
+    return static_cast<Place>(index * places_per_index);
+}
+
+inline bool bit_at(const std::uint16_t* bits, std::int32_t k, std::int32_t width) {
+    return (static_cast<unsigned>(bits[k / width]) >> static_cast<unsigned>(k % width) & 1U) != 0;
+}
+inline void set_bit(std::uint16_t* bits, std::int32_t k, std::int32_t width) {
+    bits[k / width] = static_cast<std::uint16_t>(bits[k / width] | 1U << static_cast<unsigned>(k % width));
+}
+
+/// Pairs of a sorted list whose first particle comes before this one.
+inline std::int32_t pairs_before(const Place* first, std::int32_t count, std::int32_t particle) {
+    return static_cast<std::int32_t>(std::lower_bound(first, first + count, place_at(particle)) - first);
+}
+
+/// Inner pairs without those that fill the last vector up.
+inline std::int32_t true_pairs(const Field& f) {
+    std::int32_t k = f.inner_count;
+    while (k > 0 && f.inner_first[k - 1] == place_at(f.filler)) --k;
+    return k;
+}
+
+/// Ends an inner list as the refresh kernel does.
+inline std::int32_t fill_up(const Field& f, std::int32_t count, std::int32_t width) {
+    const std::int32_t padded = (count + width - 1) / width * width;
+    for (std::int32_t k = count; k < padded + 2 * tile; ++k) {
+        f.inner_first[k] = place_at(f.filler);
+        f.inner_second[k] = place_at(f.filler + 1);
+        f.inner_reach[k] = 0;
+        f.inner_source[k] = 0;
+    }
+    return padded;
+}
+
+}  // namespace grainsweep::dem::fast
