@@ -4,8 +4,9 @@
 //
 // Two engines of the same case, one thread and N (2), take turns window by window. `speedup` is the ratio of their
 // cheapest windows, `speedup_mean` that of all, lists made anew included, in elapsed time: on a machine that does
-// something else besides, both are too small. `same`: both end with the same checkpoint. --large adds a bed of a
-// million spheres and what a sphere takes of memory.
+// something else besides, both are too small. `same`: both end with the same checkpoint. Bytes per particle: what the
+// process grew by with each engine. --large adds the full-size Schwarz-P cell of configs/gupta_full_cells.json without
+// cohesion, as its powder begins to fall, and a bed of a million spheres; --scene full_cell or settled_1M runs one.
 #include <sched.h>
 #include <unistd.h>
 
@@ -22,7 +23,10 @@
 #include <vector>
 
 #include "solver/dem/fast/mixed_engine.hpp"
+#include "solver/particles/packing.hpp"
+#include "solver/particles/tpms_filling.hpp"
 #include "tests/support/granular_beds.hpp"
+#include "tests/support/tpms_cells.hpp"
 
 using namespace grainsweep;
 using dem::fast::make_mixed_engine;
@@ -112,6 +116,14 @@ void compare(const Options& o, const std::string& scene, const dem::Setup& setup
     std::fflush(stdout);
 }
 
+/// With the scene's defaults: a cell of 100 diameters, a shell of 4, packed to 0.62.
+dem::Setup full_cell() {
+    constexpr double edge = 100, thickness = 4, closest = 0.9;
+    const auto packing = particles::random_close_packing({.edge = edge, .fraction = 0.62, .seed = 1});
+    const geometry::TpmsShell shell(geometry::TpmsCell::schwarz_p, +1, edge, thickness);
+    return test::cell_of(particles::fill_tpms(packing, shell, closest), edge, 0, 0);
+}
+
 Options read_options(int argc, char** argv) {
     Options o;
     for (int i = 1; i < argc; ++i) {
@@ -140,7 +152,8 @@ int main(int argc, char** argv) {
         if (wanted(name)) compare(o, name, setup());
     };
     dem::Setup bed, chute;
-    if (wanted("settled_20k") || wanted("settled_180k") || o.large) bed = test::settled_bed({});
+    const auto chosen = [&](const char* name) { return o.scene == name || (o.large && o.scene.empty()); };
+    if (wanted("settled_20k") || wanted("settled_180k") || chosen("settled_1M")) bed = test::settled_bed({});
     if (wanted("chute_20k") || wanted("chute_180k")) chute = test::flowing(test::settled_bed({}), 26, 0.02);
     run("small_chute_2k", [] { return test::flowing(test::small_chute(1), 26, test::small_chute_time); });
     run("settled_20k", [&] { return bed; });
@@ -157,6 +170,7 @@ int main(int argc, char** argv) {
     }
     run("settled_180k", [&] { return test::replicated(bed, 3, 3); });
     run("chute_180k", [&] { return test::replicated(chute, 3, 3); });
-    if (o.large) compare(o, "settled_1M", test::replicated(bed, 7, 7));
+    if (chosen("full_cell")) compare(o, "full_cell", full_cell());
+    if (chosen("settled_1M")) compare(o, "settled_1M", test::replicated(bed, 7, 7));
     return 0;
 }
