@@ -45,17 +45,25 @@ public:
         solids_.start(cloud_.position);
     }
 
+    /// Threads that compute a step from now on; no bit depends on their number.
+    void use(const Slabs& slabs) {
+        slabs_ = slabs;
+        fluid_.use(slabs);
+        space_.use(slabs);
+        deposit_.use(slabs);
+        solids_.use(slabs);
+        interaction_.use(slabs);
+    }
+
     void step() {
         const double dt = fluid_.time_step();
         const double s = vibration_.at(fluid_.time() + 0.5 * dt);
-        stencils_.clear();
-        for (std::size_t p = 0; p < cloud_.size(); ++p) stencils_.push_back(stencil(p));
+        find_stencils();
         find_source(s, dt);
         fluid_.step(source_, solids_.fraction());
         fluid_.midpoint(velocity_, acceleration_);
-        const FaceVectors& flux = solids_.flux();
-        space_.interstitial(velocity_, flux, solids_.fraction(), between_);
-        flux_before_ = flux;
+        space_.interstitial(velocity_, solids_.flux(), solids_.fraction(), between_);
+        keep_flux();
         interaction_.move(cloud_, motion_, walls_, solids_, stencils_, Around{*this, s}, transmitted_);
         solids_.place(cloud_.position);
         interaction_.settle(cloud_, walls_, solids_);
@@ -142,21 +150,44 @@ private:
         const Sphere& sphere = motion_.sphere();
         const auto axis = static_cast<std::size_t>(sphere.direction);
         const double drive = (sphere.density_ratio - 1) * sphere.acceleration * vibration;
-        FaceDeposit::clear(source_);
+        FaceDeposit::clear(source_, slabs_);
         budget_ = {0, static_cast<double>(cloud_.size()) * sphere.volume() * drive};
-        for (std::size_t p = 0; p < cloud_.size(); ++p) {
-            Vec3 force;
-            for (std::size_t d = 0; d < 3; ++d) force[d] = sphere.volume() * transmitted_[p][d];
-            force[axis] += sphere.volume() * drive;
-            budget_.given += force[axis];
-            stencils_[p].scatter(force, source_);
-        }
+        const auto force = [&](std::size_t p) {
+            Vec3 all;
+            for (std::size_t d = 0; d < 3; ++d) all[d] = sphere.volume() * transmitted_[p][d];
+            all[axis] += sphere.volume() * drive;
+            return all;
+        };
+        for (std::size_t p = 0; p < cloud_.size(); ++p) budget_.given += force(p)[axis];
+        cuts_.make(cloud_.size(), fluid_.grid().cells(2) + 2, slabs_,
+                   [&](std::size_t p) { return stencils_[p].planes(); });
+        cuts_.each(slabs_,
+                   [&](std::size_t p, const flow::Planes& own) { stencils_[p].scatter(force(p), source_, own); });
         deposit_.spread(source_);
         const FaceVectors& flux = solids_.flux();
-        for (std::size_t d = 0; d < 3; ++d)
-            for (std::size_t m = 0; m < source_[d].size(); ++m)
-                source_[d].values()[m] += (flux[d].values()[m] - flux_before_[d].values()[m]) / dt;
+        each_value([&](std::size_t d, std::ptrdiff_t m) {
+            source_[d].data()[m] += (flux[d].data()[m] - flux_before_[d].data()[m]) / dt;
+        });
         space_.add_excess(fluid_.velocity(), flux, solids_.fraction(), source_);
+    }
+
+    void find_stencils() {
+        stencils_.resize(cloud_.size());
+        slabs_.over(0, static_cast<std::ptrdiff_t>(cloud_.size()) - 1, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+            for (auto p = static_cast<std::size_t>(first); p <= static_cast<std::size_t>(last); ++p)
+                stencils_[p] = stencil(p);
+        });
+    }
+    void keep_flux() {
+        each_value([&](std::size_t d, std::ptrdiff_t m) { flux_before_[d].data()[m] = solids_.flux()[d].data()[m]; });
+    }
+    template <class Body>
+    void each_value(Body body) const {
+        slabs_.over(0, static_cast<std::ptrdiff_t>(source_[0].size()) - 1,
+                    [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+                        for (std::size_t d = 0; d < 3; ++d)
+                            for (auto m = first; m <= last; ++m) body(d, m);
+                    });
     }
 
     flow::Flow<Heat> fluid_;
@@ -174,6 +205,8 @@ private:
     FaceVectors velocity_, acceleration_;
     FaceVectors between_ = flow::face_vectors(fluid_.grid());  // velocity of the fluid between the particles
     std::vector<Stencil<Kernel>> stencils_;
+    PlaneCuts cuts_;
+    Slabs slabs_;
 };
 
 }  // namespace grainsweep::coupling

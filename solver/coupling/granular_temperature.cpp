@@ -8,10 +8,20 @@ namespace grainsweep::coupling {
 namespace {
 
 template <class Body>
-void each_cell(const flow::Grid& grid, Body body) {
-    for (int k = 1; k <= grid.cells(2); ++k)
-        for (int j = 1; j <= grid.cells(1); ++j)
-            for (int i = 1; i <= grid.cells(0); ++i) body(i, j, k);
+void each_cell(const flow::Grid& grid, const Slabs& slabs, Body body) {
+    slabs.over(1, grid.cells(2), [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+        for (int k = static_cast<int>(first); k <= static_cast<int>(last); ++k)
+            for (int j = 1; j <= grid.cells(1); ++j)
+                for (int i = 1; i <= grid.cells(0); ++i) body(i, j, k);
+    });
+}
+
+/// Every value of a field, ghosts included.
+template <class Body>
+void each_value(const flow::Field& field, const Slabs& slabs, Body body) {
+    slabs.over(0, static_cast<std::ptrdiff_t>(field.size()) - 1, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+        for (auto m = first; m <= last; ++m) body(m);
+    });
 }
 
 }  // namespace
@@ -19,7 +29,7 @@ void each_cell(const flow::Grid& grid, Body body) {
 void Straining::measure(const flow::Grid& grid, const flow::Field& fraction,
                         const std::array<flow::Field, 3>& mean_velocity, double thinnest) {
     const double* const a = fraction.data();
-    each_cell(grid, [&](int i, int j, int k) {
+    each_cell(grid, slabs_, [&](int i, int j, int k) {
         const auto here = fraction.index(i, j, k);
         shear.data()[here] = 0;
         expansion.data()[here] = 0;
@@ -54,14 +64,14 @@ AlgebraicTemperature::AlgebraicTemperature(const flow::Grid& grid, const Granula
 }
 
 void AlgebraicTemperature::advance(const SolidsVolume& solids, const Straining& straining, double /*dt*/) {
-    each_cell(grid_, [&](int i, int j, int k) {
+    each_cell(grid_, slabs_, [&](int i, int j, int k) {
         const double a = solids.fraction()(i, j, k);
         values_(i, j, k) = a > bounds_.thinnest
                                ? std::max(bounds_.least, grains_.balance(a, straining.shear(i, j, k),
                                                                          straining.expansion(i, j, k), bounds_.most))
                                : bounds_.least;
     });
-    fill_ghosts(values_, grid_, solids.edges());
+    fill_ghosts(values_, grid_, solids.edges(), slabs_);
 }
 
 TransportedTemperature::TransportedTemperature(const flow::Grid& grid, const Granular& grains,
@@ -101,12 +111,12 @@ double TransportedTemperature::gain_by_neighbours(const SolidsVolume& solids, in
 void TransportedTemperature::advance(const SolidsVolume& solids, const Straining& straining, double dt) {
     if (!started_) fraction_ = solids.fraction();
     started_ = true;
-    fill_ghosts(values_, grid_, solids.edges());
-    for (std::size_t m = 0; m < values_.size(); ++m) {
-        const double a = fraction_.values()[m];
-        conductivity_.values()[m] = a > bounds_.thinnest ? grains_.conductivity(a) * std::sqrt(values_.values()[m]) : 0;
-    }
-    each_cell(grid_, [&](int i, int j, int k) {
+    fill_ghosts(values_, grid_, solids.edges(), slabs_);
+    each_value(values_, slabs_, [&](std::ptrdiff_t m) {
+        const double a = fraction_.data()[m];
+        conductivity_.data()[m] = a > bounds_.thinnest ? grains_.conductivity(a) * std::sqrt(values_.data()[m]) : 0;
+    });
+    each_cell(grid_, slabs_, [&](int i, int j, int k) {
         const double a = solids.fraction()(i, j, k);
         double& next = next_(i, j, k);
         if (!(a > bounds_.thinnest)) {
@@ -126,8 +136,8 @@ void TransportedTemperature::advance(const SolidsVolume& solids, const Straining
         next = std::clamp(energy / (1.5 * grains_.density_ratio * a + dt * sink), bounds_.least, bounds_.most);
     });
     std::swap(values_, next_);
-    fill_ghosts(values_, grid_, solids.edges());
-    fraction_ = solids.fraction();
+    fill_ghosts(values_, grid_, solids.edges(), slabs_);
+    each_value(values_, slabs_, [&](std::ptrdiff_t m) { fraction_.data()[m] = solids.fraction().data()[m]; });
 }
 
 void TransportedTemperature::rest(const SolidsVolume& solids) {

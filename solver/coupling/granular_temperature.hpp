@@ -25,9 +25,14 @@ struct Straining {
     flow::Field shear, expansion;
 
     explicit Straining(const flow::Grid& grid) : shear(grid), expansion(grid) {}
+    /// Threads that compute from now on; no bit depends on their number.
+    void use(const Slabs& slabs) { slabs_ = slabs; }
     /// One-sided beside cells thinner than `thinnest`, which have too few particles for a mean velocity.
     void measure(const flow::Grid& grid, const flow::Field& fraction, const std::array<flow::Field, 3>& mean_velocity,
                  double thinnest);
+
+private:
+    Slabs slabs_;
 };
 
 struct TemperatureBounds {
@@ -39,6 +44,8 @@ struct TemperatureBounds {
 class AlgebraicTemperature {
 public:
     AlgebraicTemperature(const flow::Grid& grid, const Granular& grains, const TemperatureBounds& bounds);
+    /// Threads that compute from now on; no bit depends on their number.
+    void use(const Slabs& slabs) { slabs_ = slabs; }
     void advance(const SolidsVolume& solids, const Straining& straining, double dt);
     void rest(const SolidsVolume&) {}
     [[nodiscard]] const flow::Field& values() const { return values_; }
@@ -50,11 +57,14 @@ private:
     Granular grains_;
     TemperatureBounds bounds_;
     flow::Field values_;
+    Slabs slabs_;
 };
 
 class TransportedTemperature {
 public:
     TransportedTemperature(const flow::Grid& grid, const Granular& grains, const TemperatureBounds& bounds);
+    /// Threads that compute from now on; no bit depends on their number.
+    void use(const Slabs& slabs) { slabs_ = slabs; }
     /// From the fraction before to that of `solids`, whose flux joins them.
     void advance(const SolidsVolume& solids, const Straining& straining, double dt);
     /// A step in which no cell has collisions.
@@ -75,6 +85,7 @@ private:
     flow::Field fraction_;      // of the step before
     flow::Field conductivity_;  // k
     bool started_ = false;
+    Slabs slabs_;
 };
 
 }  // namespace grainsweep::coupling

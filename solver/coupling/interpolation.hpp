@@ -21,6 +21,7 @@
 #include "solver/coupling/spreading.hpp"
 #include "solver/flow/transport.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <utility>
@@ -83,6 +84,7 @@ struct Solenoidal {
 template <class Kernel>
 class Stencil {
 public:
+    Stencil() = default;
     Stencil(const flow::Grid& grid, const std::array<bool, 3>& periodic, const Vec3& x) {
         for (int d = 0; d < 3; ++d) {
             const auto m = static_cast<std::size_t>(d);
@@ -92,13 +94,14 @@ public:
         }
     }
 
-    /// Calls body(index of the node in the field, weight) for every node of component D.
+    /// Calls body(index of the node in the field, weight) for every node of component D in these planes.
     template <int D, class Body>
-    void visit(const flow::Field& shape, Body body) const {
+    void visit(const flow::Field& shape, Body body, const flow::Planes& planes = {}) const {
         const auto& wx = along<D, 0>();
         const auto& wy = along<D, 1>();
         const auto& wz = along<D, 2>();
-        for (int c = 0; c < wz.count; ++c)
+        const int end = std::min(wz.count, planes.last - wz.first + 1);
+        for (int c = std::max(0, planes.first - wz.first); c < end; ++c)
             for (int b = 0; b < wy.count; ++b) {
                 const double row = wz.weight[static_cast<std::size_t>(c)] * wy.weight[static_cast<std::size_t>(b)];
                 const auto start = shape.index(wx.first, wy.first + b, wz.first + c);
@@ -110,17 +113,25 @@ public:
         return {component<0>(field[0]), component<1>(field[1]), component<2>(field[2])};
     }
 
-    /// Adds `amount` of component d onto the nodes, ghosts included (fold_ghosts brings those inside).
-    void scatter(const Vec3& amount, flow::FaceVectors& onto) const {
-        deposit<0>(amount[0], onto[0]);
-        deposit<1>(amount[1], onto[1]);
-        deposit<2>(amount[2], onto[2]);
+    /// Adds `amount` of component d onto the nodes, ghosts included (fold_ghosts brings those inside), in these planes.
+    void scatter(const Vec3& amount, flow::FaceVectors& onto, const flow::Planes& planes = {}) const {
+        deposit<0>(amount[0], onto[0], planes);
+        deposit<1>(amount[1], onto[1], planes);
+        deposit<2>(amount[2], onto[2], planes);
     }
 
     template <int D>
-    void deposit(double amount, flow::Field& onto) const {
+    void deposit(double amount, flow::Field& onto, const flow::Planes& planes = {}) const {
         double* const values = onto.data();
-        visit<D>(onto, [&](std::ptrdiff_t at, double weight) { values[at] += weight * amount; });
+        visit<D>(
+            onto, [&](std::ptrdiff_t at, double weight) { values[at] += weight * amount; }, planes);
+    }
+
+    /// The planes its nodes lie in, of any component.
+    [[nodiscard]] flow::Planes planes() const {
+        const auto& own = own_[2];
+        const auto& across = across_[2];
+        return {std::min(own.first, across.first), std::max(own.first + own.count, across.first + across.count) - 1};
     }
 
 private:
@@ -150,7 +161,7 @@ private:
 
 /// The transpose of flow::fill_ghosts without its constants: adds what lies on ghosts to the values they copy, so that
 /// scatter and fold_ghosts are together the transpose of fill_ghosts and gather. What falls on a wall the wall takes.
-void fold_ghosts(flow::Field& field, const flow::Grid& grid, const flow::Edges& edges);
+void fold_ghosts(flow::Field& field, const flow::Grid& grid, const flow::Edges& edges, const Slabs& slabs = {});
 
 /// Edges of the three components of a field that passes no wall and does not change along a wall's normal.
 [[nodiscard]] std::array<flow::Edges, 3> frictionless_edges(flow::Sides sides);
@@ -163,7 +174,10 @@ public:
     /// width, hats: see spreading.hpp.
     FaceDeposit(const flow::Grid& grid, const flow::Sides& sides, double width, Hats hats = Hats::linear);
 
-    static void clear(flow::FaceVectors& faces);
+    /// Threads that compute from now on; no bit depends on their number.
+    void use(const Slabs& slabs) { slabs_ = slabs; }
+
+    static void clear(flow::FaceVectors& faces, const Slabs& slabs = {});
     /// Extensive deposit, ghosts included -> per volume of each face's control volume.
     void spread(flow::FaceVectors& faces);
     /// A field on the faces spread as deposits are, ghosts filled as its transpose folds them: what particles gather
@@ -175,6 +189,7 @@ private:
     std::array<flow::Edges, 3> edges_;
     std::vector<Spreading> spreading_;
     Spreading::Scratch scratch_;
+    Slabs slabs_;
 };
 
 /// The axes along which a box is periodic.

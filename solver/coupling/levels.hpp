@@ -20,6 +20,7 @@
 #include "solver/bytes.hpp"
 #include "solver/coupling/cloud.hpp"
 #include "solver/coupling/motion.hpp"
+#include "solver/coupling/plane_cuts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -94,31 +95,45 @@ public:
            double kernel_width, Hats hats = Hats::linear)
         : sphere_(sphere),
           deposit_(grid, sides, kernel_width, hats),
+          planes_(grid.cells(2) + 2),
           rate_(particles, Vec3{}),
           source_(flow::face_vectors(grid)) {
         if constexpr (Form::per_fluid_volume) solid_ = flow::face_vectors(grid);
     }
 
+    /// Threads that compute from now on; no bit depends on their number.
+    void use(const Slabs& slabs) {
+        slabs_ = slabs;
+        deposit_.use(slabs);
+    }
+
     /// Acceleration of the fluid by the particles with these stencils, at vibration s.
     template <class Stencils>
     const flow::FaceVectors& source(const Stencils& stencils, double vibration) {
-        FaceDeposit::clear(source_);
+        FaceDeposit::clear(source_, slabs_);
         budget_ = {0, static_cast<double>(rate_.size()) * sphere_.volume() * (sphere_.density_ratio - 1) *
                           sphere_.acceleration * vibration};
-        for (std::size_t p = 0; p < rate_.size(); ++p) {
-            const Vec3 force = Form::force_on_fluid(sphere_, rate_[p], vibration);
-            budget_.given += force[static_cast<std::size_t>(sphere_.direction)];
-            stencils[p].scatter(force, source_);
-        }
+        for (const Vec3& rate : rate_)
+            budget_.given +=
+                Form::force_on_fluid(sphere_, rate, vibration)[static_cast<std::size_t>(sphere_.direction)];
+        cuts_.make(rate_.size(), planes_, slabs_, [&](std::size_t p) { return stencils[p].planes(); });
+        cuts_.each(slabs_, [&](std::size_t p, const flow::Planes& own) {
+            stencils[p].scatter(Form::force_on_fluid(sphere_, rate_[p], vibration), source_, own);
+        });
         deposit_.spread(source_);
         if constexpr (Form::per_fluid_volume) {
-            FaceDeposit::clear(solid_);
+            FaceDeposit::clear(solid_, slabs_);
             const double v = sphere_.volume();
-            for (const auto& stencil : stencils) stencil.scatter({v, v, v}, solid_);
+            cuts_.each(slabs_, [&](std::size_t p, const flow::Planes& own) {
+                stencils[p].scatter({v, v, v}, solid_, own);
+            });
             deposit_.spread(solid_);
-            for (std::size_t d = 0; d < 3; ++d)
-                for (std::size_t m = 0; m < source_[d].size(); ++m)
-                    source_[d].values()[m] /= std::max(1 - solid_[d].values()[m], least_fluid);
+            slabs_.over(0, static_cast<std::ptrdiff_t>(source_[0].size()) - 1,
+                        [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+                            for (std::size_t d = 0; d < 3; ++d)
+                                for (auto m = first; m <= last; ++m)
+                                    source_[d].data()[m] /= std::max(1 - solid_[d].data()[m], least_fluid);
+                        });
         }
         return source_;
     }
@@ -134,6 +149,9 @@ public:
 private:
     Sphere sphere_;
     FaceDeposit deposit_;
+    int planes_;
+    PlaneCuts cuts_;
+    Slabs slabs_;
     MomentumBudget budget_;
     std::vector<Vec3> rate_;  // dV_p/dt of the last step
     flow::FaceVectors source_;

@@ -19,6 +19,9 @@ class PackingLimit {
 public:
     PackingLimit(const flow::Grid& grid, const flow::Sides& sides, double limit);
 
+    /// Threads that compute from now on; no bit depends on their number.
+    void use(const Slabs& slabs) { slabs_ = slabs; }
+
     /// `solids` holds the fraction of `positions` before and after. Returns the number of sweeps: 0 where no cell is
     /// over the limit by more than 0.1 %, at most `most_sweeps`.
     int restore(std::vector<Vec3>& positions, const Walls& walls, SolidsVolume& solids);
@@ -29,7 +32,11 @@ private:
     flow::Grid grid_;
     std::array<flow::Edges, 3> edges_;
     double limit_;
+    // Of the particles at the faces of component d, in planes first ... last.
+    void find_shift(int d, const flow::Field& fraction, int first, int last);
+
     flow::FaceVectors shift_;
+    Slabs slabs_;
 };
 
 }  // namespace grainsweep::coupling

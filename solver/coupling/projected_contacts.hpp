@@ -50,6 +50,8 @@ private:
 class ProjectedContacts {
 public:
     ProjectedContacts(const Sphere& sphere, const Walls& walls);
+    /// Threads that compute from now on; no bit depends on their number.
+    void use(const Slabs& slabs) { slabs_ = slabs; }
 
     template <class Motion, class Stencils, class Around>
     void move(Cloud& cloud, const Motion& motion, const Walls&, SolidsVolume&, const Stencils&, const Around& around,
@@ -58,7 +60,7 @@ public:
         surroundings_.resize(cloud.size());
         march_all(
             cloud, motion, around.vibration, [&](std::size_t p) { return surroundings_[p] = around(p); },
-            [](std::size_t, const Vec3&) {});
+            [](std::size_t, const Vec3&) {}, slabs_);
         const auto tau = [&](std::size_t p) { return motion.step_relaxation(before_[p], surroundings_[p]); };
         separate(cloud, motion.time_step(), tau, transmitted);
     }
@@ -105,6 +107,7 @@ private:
     std::vector<Vec3> before_, force_;
     std::vector<double> stiffness_;  // f/dx of the particles asked for, else 0
     std::vector<Surroundings> surroundings_;
+    Slabs slabs_;
 };
 
 }  // namespace grainsweep::coupling

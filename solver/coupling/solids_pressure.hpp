@@ -22,18 +22,19 @@ namespace grainsweep::coupling {
 /// besides the fluid's.
 template <class Motion, class Around, class Push>
 void advance_free(Cloud& cloud, const Motion& motion, const Walls& walls, const Around& around, Push push,
-                  std::vector<Vec3>& transmitted) {
+                  std::vector<Vec3>& transmitted, const Slabs& slabs) {
     const double inertia = motion.sphere().density_ratio / motion.time_step();
     const auto pushed = [&](std::size_t p) {
         Surroundings here = around(p);
         here.other = transmitted[p] = push(p);
         return here;
     };
-    march_all(cloud, motion, around.vibration, pushed, [&](std::size_t p, const Vec3& before) {
+    const auto moved = [&](std::size_t p, const Vec3& before) {
         Vec3& v = cloud.velocity[p];
         for (std::size_t d = 0; d < 3; ++d) transmitted[p][d] -= inertia * (v[d] - before[d]);
         walls.apply(cloud.position[p], v);
-    });
+    };
+    march_all(cloud, motion, around.vibration, pushed, moved, slabs);
 }
 
 template <class Temperature>
@@ -59,6 +60,16 @@ public:
             for (int i = 1; i <= grid.cells(d); ++i) smallest_ = std::min(smallest_, grid[d].width(i));
     }
 
+    /// Threads that compute from now on; no bit depends on their number.
+    void use(const Slabs& slabs) {
+        slabs_ = slabs;
+        deposit_.use(slabs);
+        limit_.use(slabs);
+        packed_.use(slabs);
+        temperature_.use(slabs);
+        straining_.use(slabs);
+    }
+
     /// Advances every particle; `around(p)` is the fluid at stencils[p].
     /// transmitted[p]: the stress less the inertia of the particle, per volume.
     template <class Motion, class Stencils, class Around>
@@ -73,7 +84,7 @@ public:
             for (double& component : force) component = std::clamp(component, -most, most);
             return force;
         };
-        advance_free(cloud, motion, walls, around, push, transmitted);
+        advance_free(cloud, motion, walls, around, push, transmitted, slabs_);
     }
 
     /// After walls: the packing limit. `solids` is left at the final positions.
@@ -110,27 +121,37 @@ private:
         straining_.measure(grid_, solids.fraction(), mean_velocity_, thinnest_);
         temperature_.advance(solids, straining_, dt);
         const flow::Field& fraction = solids.fraction();
-        for (std::size_t m = 0; m < fraction.size(); ++m) {
-            const double a = fraction.values()[m];
-            pressure_.values()[m] = a > thinnest_ ? grains_.pressure(a) * temperature_.values().values()[m] : 0;
-        }
-        FaceDeposit::clear(stress_);
-        for (const auto& stencil : stencils) stencil.scatter({volume_, volume_, volume_}, stress_);
+        slabs_.over(
+            0, static_cast<std::ptrdiff_t>(fraction.size()) - 1, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+                for (auto m = first; m <= last; ++m) {
+                    const double a = fraction.data()[m];
+                    pressure_.data()[m] = a > thinnest_ ? grains_.pressure(a) * temperature_.values().data()[m] : 0;
+                }
+            });
+        FaceDeposit::clear(stress_, slabs_);
+        cuts_.make(stencils.size(), grid_.cells(2) + 2, slabs_, [&](std::size_t p) { return stencils[p].planes(); });
+        cuts_.each(slabs_, [&](std::size_t p, const flow::Planes& own) {
+            stencils[p].scatter({volume_, volume_, volume_}, stress_, own);
+        });
         deposit_.spread(stress_);
-        for (int d = 0; d < 3; ++d) {
-            flow::Field& stress = stress_[static_cast<std::size_t>(d)];
-            const auto stride = stress.stride(d);
-            for (int k = 1; k <= grid_.cells(2); ++k)
-                for (int j = 1; j <= grid_.cells(1); ++j)
-                    for (int i = 1; i <= grid_.cells(0); ++i) {
-                        const auto here = stress.index(i, j, k);
-                        const double difference = pressure_.data()[here] - pressure_.data()[here - stride];
-                        const int face = d == 0 ? i : d == 1 ? j : k;
-                        double& value = stress.data()[here];
-                        value = difference == 0 || !(value > 0) ? 0 : -difference / (grid_[d].spacing(face) * value);
-                    }
-        }
+        slabs_.over(1, grid_.cells(2), [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+            for (int d = 0; d < 3; ++d) find_stress_along(d, static_cast<int>(first), static_cast<int>(last));
+        });
         deposit_.spread_transposed(stress_);
+    }
+    // From the fraction on the faces in stress_; in planes first ... last.
+    void find_stress_along(int d, int first, int last) {
+        flow::Field& stress = stress_[static_cast<std::size_t>(d)];
+        const auto stride = stress.stride(d);
+        for (int k = first; k <= last; ++k)
+            for (int j = 1; j <= grid_.cells(1); ++j)
+                for (int i = 1; i <= grid_.cells(0); ++i) {
+                    const auto here = stress.index(i, j, k);
+                    const double difference = pressure_.data()[here] - pressure_.data()[here - stride];
+                    const int face = d == 0 ? i : d == 1 ? j : k;
+                    double& value = stress.data()[here];
+                    value = difference == 0 || !(value > 0) ? 0 : -difference / (grid_[d].spacing(face) * value);
+                }
     }
 
     flow::Grid grid_;
@@ -147,6 +168,8 @@ private:
     std::array<flow::Field, 3> mean_velocity_;
     flow::Field pressure_;
     flow::FaceVectors stress_;
+    PlaneCuts cuts_;
+    Slabs slabs_;
     bool stressed_ = false;
     bool stepped_ = false;  // what the start took is no step
     std::int64_t limited_ = 0;
@@ -154,15 +177,19 @@ private:
 
 /// Particles that do nothing to each other: the volume they take from the fluid alone.
 struct NoInteraction {
+    void use(const Slabs& slabs) { slabs_ = slabs; }
     template <class Motion, class Stencils, class Around>
     void move(Cloud& cloud, const Motion& motion, const Walls& walls, SolidsVolume&, const Stencils&,
               const Around& around, std::vector<Vec3>& transmitted) {
         advance_free(
-            cloud, motion, walls, around, [](std::size_t) { return Vec3{}; }, transmitted);
+            cloud, motion, walls, around, [](std::size_t) { return Vec3{}; }, transmitted, slabs_);
     }
     void settle(Cloud&, const Walls&, SolidsVolume&) {}
     void save(std::vector<std::byte>&) const {}
     void restore(std::span<const std::byte>&) {}
+
+private:
+    Slabs slabs_;
 };
 
 }  // namespace grainsweep::coupling

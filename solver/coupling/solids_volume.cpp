@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace grainsweep::coupling {
@@ -11,11 +12,16 @@ std::size_t at(int i) {
     return static_cast<std::size_t>(i);
 }
 
+/// Sums over eight cells: their shares of a particle and places in the field, those in these planes.
 template <class Body>
-void each_cell(const flow::Grid& grid, Body body) {
-    for (int k = 1; k <= grid.cells(2); ++k)
-        for (int j = 1; j <= grid.cells(1); ++j)
-            for (int i = 1; i <= grid.cells(0); ++i) body(i, j, k);
+void each_share(const std::array<AxisWeights<2>, 3>& w, const std::array<std::array<std::ptrdiff_t, 2>, 3>& cell,
+                const std::array<bool, 2>& in_planes, double volume, Body body) {
+    for (std::size_t c = 0; c < 2; ++c) {
+        if (!in_planes[c]) continue;
+        for (std::size_t b = 0; b < 2; ++b)
+            for (std::size_t a = 0; a < 2; ++a)
+                body(cell[0][a] + cell[1][b] + cell[2][c], volume * (w[2].weight[c] * w[1].weight[b] * w[0].weight[a]));
+    }
 }
 
 }  // namespace
@@ -54,53 +60,80 @@ void SolidsVolume::start(std::span<const Vec3> positions) {
     placed_before_ = placed_;
 }
 
-void SolidsVolume::place(std::span<const Vec3> positions) {
-    placed_.position.assign(positions.begin(), positions.end());
-    placed_.weights.clear();
-    std::fill(fraction_.values().begin(), fraction_.values().end(), 0.0);
-    for (const Vec3& x : positions) {
-        std::array<AxisWeights<2>, 3>& w = placed_.weights.emplace_back();
-        std::array<std::array<std::ptrdiff_t, 2>, 3> cell{};  // offsets
-        for (int d = 0; d < 3; ++d) {
-            const double along = x[at(d)];
-            w[at(d)] = Trilinear::across(grid_[d], edges_[at(d)].periodic, along, Trilinear::find(grid_[d], along));
-            for (int a = 0; a < 2; ++a) cell[at(d)][at(a)] = inside(d, w[at(d)].first + a) * fraction_.stride(d);
-        }
-        double* const fraction = fraction_.data();
-        for (std::size_t c = 0; c < 2; ++c)
-            for (std::size_t b = 0; b < 2; ++b)
-                for (std::size_t a = 0; a < 2; ++a)
-                    fraction[cell[0][a] + cell[1][b] + cell[2][c]] +=
-                        particle_volume_ * (w[2].weight[c] * w[1].weight[b] * w[0].weight[a]);
+flow::Planes SolidsVolume::planes_of(const AxisWeights<2>& along_z) const {
+    const int low = inside(2, along_z.first);
+    const int high = inside(2, along_z.first + 1);
+    return {std::min(low, high), std::max(low, high)};
+}
+
+// Which cells a particle lies in along each axis.
+void SolidsVolume::locate(std::size_t p) {
+    for (int d = 0; d < 3; ++d) {
+        const double along = placed_.position[p][at(d)];
+        placed_.weights[p][at(d)] =
+            Trilinear::across(grid_[d], edges_[at(d)].periodic, along, Trilinear::find(grid_[d], along));
     }
-    over_cells_.densities(fraction_, scratch_);
-    fill_ghosts(fraction_, grid_, edges_);
+}
+
+template <class Body>
+void SolidsVolume::deposit(Body body) {
+    cuts_.make(placed_.weights.size(), grid_.cells(2) + 2, slabs_,
+               [&](std::size_t p) { return planes_of(placed_.weights[p][2]); });
+    cuts_.each(slabs_, [&](std::size_t p, const flow::Planes& own) {
+        const std::array<AxisWeights<2>, 3>& w = placed_.weights[p];
+        std::array<std::array<std::ptrdiff_t, 2>, 3> cell{};  // offsets
+        std::array<bool, 2> in_planes{};
+        for (int d = 0; d < 3; ++d)
+            for (int a = 0; a < 2; ++a) {
+                const int place = inside(d, w[at(d)].first + a);
+                cell[at(d)][at(a)] = place * fraction_.stride(d);
+                if (d == 2) in_planes[at(a)] = own.first <= place && place <= own.last;
+            }
+        each_share(w, cell, in_planes, particle_volume_, [&](std::ptrdiff_t to, double share) { body(p, to, share); });
+    });
+}
+
+void SolidsVolume::place(std::span<const Vec3> positions) {
+    placed_.position.resize(positions.size());
+    placed_.weights.resize(positions.size());
+    slabs_.over(0, static_cast<std::ptrdiff_t>(positions.size()) - 1, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+        for (auto p = static_cast<std::size_t>(first); p <= static_cast<std::size_t>(last); ++p) {
+            placed_.position[p] = positions[p];
+            locate(p);
+        }
+    });
+    clear(fraction_);
+    double* const fraction = fraction_.data();
+    deposit([=](std::size_t, std::ptrdiff_t to, double share) { fraction[to] += share; });
+    over_cells_.densities(fraction_, scratch_, slabs_);
+    fill_ghosts(fraction_, grid_, edges_, slabs_);
+}
+
+void SolidsVolume::clear(flow::Field& field) const {
+    slabs_.over(0, static_cast<std::ptrdiff_t>(field.size()) - 1, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+        std::fill(field.data() + first, field.data() + last + 1, 0.0);
+    });
 }
 
 void SolidsVolume::mean(std::span<const Vec3> property, std::array<flow::Field, 3>& into) {
-    for (auto& field : into) std::fill(field.values().begin(), field.values().end(), 0.0);
-    for (std::size_t p = 0; p < property.size(); ++p) {
-        const std::array<AxisWeights<2>, 3>& w = placed_.weights[p];
-        std::array<std::array<std::ptrdiff_t, 2>, 3> cell{};  // offsets
-        for (int d = 0; d < 3; ++d)
-            for (int a = 0; a < 2; ++a) cell[at(d)][at(a)] = inside(d, w[at(d)].first + a) * fraction_.stride(d);
-        for (std::size_t c = 0; c < 2; ++c)
-            for (std::size_t b = 0; b < 2; ++b)
-                for (std::size_t a = 0; a < 2; ++a) {
-                    const double share = particle_volume_ * (w[2].weight[c] * w[1].weight[b] * w[0].weight[a]);
-                    const auto to = cell[0][a] + cell[1][b] + cell[2][c];
-                    for (std::size_t d = 0; d < 3; ++d) into[d].data()[to] += share * property[p][d];
-                }
-    }
+    for (auto& field : into) clear(field);
+    const std::array<double*, 3> sums{into[0].data(), into[1].data(), into[2].data()};
+    deposit([&](std::size_t p, std::ptrdiff_t to, double share) {
+        for (std::size_t d = 0; d < 3; ++d) sums[d][to] += share * property[p][d];
+    });
     for (auto& field : into) {
-        over_cells_.densities(field, scratch_);
-        each_cell(grid_, [&](int i, int j, int k) {
-            const double phi = fraction_(i, j, k);
-            double& value = field(i, j, k);
-            value = phi > 0 ? value / phi : 0;
+        over_cells_.densities(field, scratch_, slabs_);
+        slabs_.over(1, grid_.cells(2), [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+            for (int k = static_cast<int>(first); k <= static_cast<int>(last); ++k)
+                for (int j = 1; j <= grid_.cells(1); ++j)
+                    for (int i = 1; i <= grid_.cells(0); ++i) {
+                        const double phi = fraction_(i, j, k);
+                        double& value = field(i, j, k);
+                        value = phi > 0 ? value / phi : 0;
+                    }
         });
-        fill_ghosts(field, grid_, edges_);
     }
+    fill_ghosts({{into[0], edges_}, {into[1], edges_}, {into[2], edges_}}, grid_, slabs_);
 }
 
 void SolidsVolume::fill(int d, std::size_t p, Shares& shares) const {
@@ -135,7 +168,7 @@ void SolidsVolume::fill(int d, std::size_t p, Shares& shares) const {
 
 // Net share that has passed the face below each cell, one after the other along D.
 template <int D>
-void SolidsVolume::carry_along(const std::array<Shares, 3>& shares, double scale) {
+void SolidsVolume::carry_along(const std::array<Shares, 3>& shares, double scale, const flow::Planes& planes) {
     constexpr int A = D == 0 ? 1 : 0;
     constexpr int B = D == 2 ? 1 : 2;
     const Shares& own = shares[D];
@@ -149,32 +182,62 @@ void SolidsVolume::carry_along(const std::array<Shares, 3>& shares, double scale
             const double sb = shares[B].before[b];
             const double db = shares[B].change[b];
             const double across = scale * (sa * sb + 0.5 * (da * sb + sa * db) + da * db / 3);
-            const auto line = inside(A, shares[A].first + static_cast<int>(a)) * flux_[D].stride(A) +
-                              inside(B, shares[B].first + static_cast<int>(b)) * flux_[D].stride(B);
+            const int place_b = inside(B, shares[B].first + static_cast<int>(b));
+            if (B == 2 && (place_b < planes.first || place_b > planes.last)) continue;
+            const auto line =
+                inside(A, shares[A].first + static_cast<int>(a)) * flux_[D].stride(A) + place_b * flux_[D].stride(B);
             double passed = 0;
             for (std::size_t c = 0; c + 1 < own.before.size(); ++c) {
                 passed -= own.change[c] * across;
-                flux[line + inside(D, own.first + static_cast<int>(c) + 1) * stride] += passed;
+                const int place = inside(D, own.first + static_cast<int>(c) + 1);
+                if (D == 2 && (place < planes.first || place > planes.last)) continue;
+                flux[line + place * stride] += passed;
             }
         }
 }
 
+flow::Planes SolidsVolume::planes_between(std::size_t p) const {
+    const int from = placed_before_.weights[p][2].first;
+    const int to = placed_.weights[p][2].first;
+    const int low = std::min(from, to);
+    const int high = std::max(from, to) + 1;
+    if (edges_[2].periodic) return {0, grid_.cells(2) + 1};
+    return {low - 1, high + 1};  // shares beyond a wall are folded into its cell
+}
+
 void SolidsVolume::carry(double dt) {
-    FaceDeposit::clear(flux_);
-    std::array<Shares, 3> shares;
-    for (std::size_t p = 0; p < placed_.position.size(); ++p) {
+    FaceDeposit::clear(flux_, slabs_);
+    cuts_.make(placed_.position.size(), grid_.cells(2) + 2, slabs_, [&](std::size_t p) { return planes_between(p); });
+    const double scale = particle_volume_ / dt;
+    cuts_.each(slabs_, [&](std::size_t p, const flow::Planes& own) {
+        thread_local std::array<Shares, 3> shares;  // keeps its memory
         for (int d = 0; d < 3; ++d) fill(d, p, shares[at(d)]);
-        const double scale = particle_volume_ / dt;
-        carry_along<0>(shares, scale);
-        carry_along<1>(shares, scale);
-        carry_along<2>(shares, scale);
-    }
-    placed_before_ = placed_;
-    for (int d = 0; d < 3; ++d) over_faces_[at(d)].densities(flux_[at(d)], scratch_);
+        carry_along<0>(shares, scale, own);
+        carry_along<1>(shares, scale, own);
+        carry_along<2>(shares, scale, own);
+    });
+    slabs_.over(0, static_cast<std::ptrdiff_t>(placed_.position.size()) - 1,
+                [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+                    for (auto p = static_cast<std::size_t>(first); p <= static_cast<std::size_t>(last); ++p) {
+                        placed_before_.position[p] = placed_.position[p];
+                        placed_before_.weights[p] = placed_.weights[p];
+                    }
+                });
+    for (int d = 0; d < 3; ++d) over_faces_[at(d)].densities(flux_[at(d)], scratch_, slabs_);
 }
 
 double SolidsVolume::largest_fraction() const {
-    return *std::max_element(fraction_.values().begin(), fraction_.values().end());
+    const double* const values = fraction_.data();
+    std::vector<double> largest(static_cast<std::size_t>(slabs_.count()), values[0]);
+    slabs_.each([&](int slab) {
+        const auto size = static_cast<std::ptrdiff_t>(fraction_.size());
+        double most = -std::numeric_limits<double>::infinity();
+        for (auto m = size * slab / slabs_.count(); m < size * (slab + 1) / slabs_.count(); ++m)
+            most = values[m] > most ? values[m] : most;  // what is no number is passed over
+        largest[static_cast<std::size_t>(slab)] = most;
+    });
+    if (std::isnan(values[0])) return values[0];
+    return *std::max_element(largest.begin(), largest.end());
 }
 
 }  // namespace grainsweep::coupling

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "solver/coupling/interpolation.hpp"
+#include "solver/coupling/plane_cuts.hpp"
 
 #include <span>
 #include <vector>
@@ -22,6 +23,9 @@ class SolidsVolume {
 public:
     /// kernel_width: see spreading.hpp.
     SolidsVolume(const flow::Grid& grid, const flow::Sides& sides, double particle_volume, double kernel_width);
+
+    /// Threads that compute from now on; no bit depends on their number.
+    void use(const Slabs& slabs) { slabs_ = slabs; }
 
     /// phi_p of particles that start from `positions` (inside the box), ghosts filled.
     void start(std::span<const Vec3> positions);
@@ -54,9 +58,16 @@ private:
         std::vector<double> before, change;
     };
     [[nodiscard]] int inside(int d, int cell) const;  // folded at walls, wrapped along periodic axes
+    [[nodiscard]] flow::Planes planes_of(const AxisWeights<2>& along_z) const;
+    [[nodiscard]] flow::Planes planes_between(std::size_t p) const;  // where it was last carried to, and is now
+    void locate(std::size_t p);
+    // body(p, place in the field, volume of p there), of each place in the order of the particles.
+    template <class Body>
+    void deposit(Body body);
+    void clear(flow::Field& field) const;
     void fill(int d, std::size_t p, Shares& shares) const;
     template <int D>
-    void carry_along(const std::array<Shares, 3>& shares, double scale);
+    void carry_along(const std::array<Shares, 3>& shares, double scale, const flow::Planes& planes);
 
     flow::Grid grid_;
     flow::Edges edges_;
@@ -67,6 +78,8 @@ private:
     Placement placed_before_, placed_;  // when last carried; now
     flow::Field fraction_;
     flow::FaceVectors flux_;
+    PlaneCuts cuts_;
+    Slabs slabs_;
 };
 
 }  // namespace grainsweep::coupling

@@ -89,7 +89,8 @@ Eigen::MatrixXd levelling_matrix(const flow::Axis& axis, bool periodic, Nodes no
 }
 
 Spreading::Spreading(const flow::Grid& grid, const std::array<bool, 3>& periodic, const std::array<Nodes, 3>& nodes,
-                     double width, Hats hats) {
+                     double width, Hats hats)
+    : planes_(grid.cells(2)) {
     for (int d = 0; d < 3; ++d) {
         const auto at = static_cast<std::size_t>(d);
         const Eigen::MatrixXd kernel = spreading_matrix(grid[d], periodic[at], nodes[at], width);
@@ -103,18 +104,21 @@ Spreading::Spreading(const flow::Grid& grid, const std::array<bool, 3>& periodic
     }
 }
 
-void Spreading::densities(flow::Field& field, Scratch& scratch) const {
-    apply(from_deposits_, field, scratch);
+void Spreading::densities(flow::Field& field, Scratch& scratch, const Slabs& slabs) const {
+    apply(from_deposits_, field, scratch, slabs);
 }
 
-void Spreading::spread(flow::Field& field, Scratch& scratch) const {
-    apply(from_densities_, field, scratch);
+void Spreading::spread(flow::Field& field, Scratch& scratch, const Slabs& slabs) const {
+    apply(from_densities_, field, scratch, slabs);
 }
 
-void Spreading::apply(const std::array<flow::AxisProduct, 3>& kernels, flow::Field& field, Scratch& scratch) {
-    kernels[0].apply(field, scratch[0]);
-    kernels[1].apply(scratch[0], scratch[1]);
-    kernels[2].apply(scratch[1], field);
+void Spreading::apply(const std::array<flow::AxisProduct, 3>& kernels, flow::Field& field, Scratch& scratch,
+                      const Slabs& slabs) const {
+    slabs.over(1, planes_, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+        kernels[0].apply(field, scratch[0], static_cast<int>(first), static_cast<int>(last));
+        kernels[1].apply(scratch[0], scratch[1], static_cast<int>(first), static_cast<int>(last));
+    });
+    kernels[2].apply(scratch[1], field, slabs);
 }
 
 }  // namespace grainsweep::coupling

@@ -58,14 +58,16 @@ public:
               double width, Hats hats = Hats::linear);
 
     /// Extensive deposits, none on ghosts -> densities. Ghosts are left alone, here and below.
-    void densities(flow::Field& field, Scratch& scratch) const;
+    void densities(flow::Field& field, Scratch& scratch, const Slabs& slabs = {}) const;
     /// Densities -> densities, the transpose of `densities` against deposits: sum of deposit . spread(u) is that of
     /// densities(deposit) . u over the volume.
-    void spread(flow::Field& field, Scratch& scratch) const;
+    void spread(flow::Field& field, Scratch& scratch, const Slabs& slabs = {}) const;
 
 private:
-    static void apply(const std::array<flow::AxisProduct, 3>& kernels, flow::Field& field, Scratch& scratch);
+    void apply(const std::array<flow::AxisProduct, 3>& kernels, flow::Field& field, Scratch& scratch,
+               const Slabs& slabs) const;
 
+    int planes_;  // inner ones
     std::array<flow::AxisProduct, 3> from_deposits_, from_densities_;
 };
 

@@ -35,6 +35,9 @@ public:
     /// under an impact at the slip speed it causes, and whose contacts do not outlast a step.
     [[nodiscard]] static double stiffness(const Sphere& sphere, double overlap, double time_step);
 
+    /// Threads that compute from now on; no bit depends on their number.
+    void use(const Slabs& slabs) { slabs_ = slabs; }
+
     /// Advances every particle; `around(p)` is the fluid at its place, around.rotation(x) half its vorticity.
     /// transmitted[p]: force of the contacts less the inertia of the particle, per volume.
     template <class Motion, class Stencils, class Around>
@@ -43,7 +46,7 @@ public:
         begin(cloud);
         march_all(
             cloud, motion, around.vibration, [&](std::size_t p) { return surroundings_[p] = around(p); },
-            [](std::size_t, const Vec3&) {});
+            [](std::size_t, const Vec3&) {}, slabs_);
         find_active(cloud);
         for (Active& one : active_) {
             one.tau = motion.relaxation(surroundings_[one.particle].velocity, velocity_[one.particle]);
@@ -94,6 +97,7 @@ private:
     std::vector<std::uint32_t> slot_;  // per particle, index among the active ones + 1, or 0
     std::vector<Contact> contacts_;
     std::vector<Contact> remembered_;
+    Slabs slabs_;
 };
 
 }  // namespace grainsweep::coupling

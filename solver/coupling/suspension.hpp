@@ -29,12 +29,18 @@ public:
           velocity_(flow::face_vectors(fluid_.grid())),
           acceleration_(velocity_) {}
 
+    /// Threads that compute a step from now on; no bit depends on their number.
+    void use(const Slabs& slabs) {
+        slabs_ = slabs;
+        fluid_.use(slabs);
+        if constexpr (Level::acts_on_fluid) level_.use(slabs);
+    }
+
     void step() {
         const double dt = fluid_.time_step();
         const double s = vibration_.at(fluid_.time() + 0.5 * dt);
         if constexpr (Level::acts_on_fluid) {
-            stencils_.clear();
-            for (std::size_t p = 0; p < cloud_.size(); ++p) stencils_.push_back(stencil(p));
+            find_stencils();
             fluid_.step(level_.source(stencils_, s));
         } else {
             fluid_.step();
@@ -53,7 +59,8 @@ public:
                 [&](std::size_t p, const Vec3& before) {
                     const Vec3& v = cloud_.velocity[p];
                     level_.remember(p, {(v[0] - before[0]) / dt, (v[1] - before[1]) / dt, (v[2] - before[2]) / dt});
-                });
+                },
+                slabs_);
         } else if constexpr (Level::mirrored) {
             march(
                 cloud_, motion_, walls_, s, order,
@@ -65,10 +72,11 @@ public:
                     Level::turn(predicted(p), around);
                     return around;
                 },
-                unheeded);
+                unheeded, slabs_);
         } else {
             march(
-                cloud_, motion_, walls_, s, order, [&](std::size_t p) { return stencil(p); }, gathered, unheeded);
+                cloud_, motion_, walls_, s, order, [&](std::size_t p) { return stencil(p); }, gathered, unheeded,
+                slabs_);
         }
     }
 
@@ -103,6 +111,14 @@ private:
         return {fluid_.grid(), walls_.periodic, predicted(p)};
     }
 
+    void find_stencils() {
+        stencils_.resize(cloud_.size());
+        slabs_.over(0, static_cast<std::ptrdiff_t>(cloud_.size()) - 1, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+            for (auto p = static_cast<std::size_t>(first); p <= static_cast<std::size_t>(last); ++p)
+                stencils_[p] = stencil(p);
+        });
+    }
+
     flow::Flow<Heat> fluid_;
     flow::Vibration vibration_;
     Motion<Drag> motion_;
@@ -111,6 +127,7 @@ private:
     Level level_;
     flow::FaceVectors velocity_, acceleration_;
     VisitOrder order_;
+    Slabs slabs_;
     std::vector<Stencil<Kernel>> stencils_;  // levels that act on the fluid only
 };
 

@@ -29,14 +29,13 @@ AxisProduct::AxisProduct(const Grid& grid, int direction, const Eigen::MatrixXd&
     }
 }
 
-void AxisProduct::apply(const Field& from, Field& to) const {
+void AxisProduct::apply(const Field& from, Field& to, int first, int last) const {
     const std::ptrdiff_t n = n_[static_cast<std::size_t>(direction_)];
-    const int across = direction_ == 2 ? 1 : 2;  // the axis of the outer loop
     const std::ptrdiff_t from_row = from.stride(direction_ == 0 ? 1 : direction_);
     const std::ptrdiff_t to_row = to.stride(direction_ == 0 ? 1 : direction_);
-    for (int q = 1; q <= n_[static_cast<std::size_t>(across)]; ++q) {
-        const double* source = from.data() + from.index(1, 1, 1) + (q - 1) * from.stride(across);
-        double* target = to.data() + to.index(1, 1, 1) + (q - 1) * to.stride(across);
+    for (int q = first; q <= last; ++q) {
+        const double* source = from.data() + from.index(1, 1, 1) + (q - 1) * from.stride(across());
+        double* target = to.data() + to.index(1, 1, 1) + (q - 1) * to.stride(across());
         for (const Block& b : blocks_) {
             if (direction_ == 0) {
                 dense_product(n_[1], b.rows, b.columns, source + b.column, from_row,
@@ -47,6 +46,12 @@ void AxisProduct::apply(const Field& from, Field& to) const {
             }
         }
     }
+}
+
+void AxisProduct::apply(const Field& from, Field& to, const Slabs& slabs) const {
+    slabs.over(1, n_[static_cast<std::size_t>(across())], [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+        apply(from, to, static_cast<int>(first), static_cast<int>(last));
+    });
 }
 
 double AxisProduct::kept() const {

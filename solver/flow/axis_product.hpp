@@ -6,6 +6,7 @@
 #pragma once
 
 #include "solver/flow/field.hpp"
+#include "solver/threads/slabs.hpp"
 
 #include <Eigen/Core>
 
@@ -23,7 +24,11 @@ public:
     AxisProduct(const Grid& grid, int direction, const Eigen::MatrixXd& matrix, double negligible = 1e-17);
 
     /// Inner values of `to` from those of `from`, another field; ghosts are left alone.
-    void apply(const Field& from, Field& to) const;
+    void apply(const Field& from, Field& to, const Slabs& slabs = {}) const;
+    /// Only the lines with places first ... last on the axis across(), from 1 on.
+    void apply(const Field& from, Field& to, int first, int last) const;
+    /// The axis whose places the lines are taken by: z, or y for lines along z.
+    [[nodiscard]] int across() const { return direction_ == 2 ? 1 : 2; }
     /// Share of the matrix that is multiplied.
     [[nodiscard]] double kept() const;
 

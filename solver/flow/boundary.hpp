@@ -5,8 +5,10 @@
 #pragma once
 
 #include "solver/flow/field.hpp"
+#include "solver/threads/slabs.hpp"
 
 #include <array>
+#include <initializer_list>
 #include <variant>
 
 namespace grainsweep::flow {
@@ -58,6 +60,15 @@ using Edges = std::array<Edge, 3>;
 }
 
 /// Writes every ghost value, edges and corners included, and the zero of normal velocities on walls.
-void fill_ghosts(Field& field, const Grid& grid, const Edges& edges);
+void fill_ghosts(Field& field, const Grid& grid, const Edges& edges, const Slabs& slabs = {});
+void fill_ghosts(FaceVectors& faces, const Grid& grid, const std::array<Edges, 3>& edges, const Slabs& slabs = {});
+
+/// A field and how it continues beyond the sides.
+struct Bordered {
+    Field& field;
+    const Edges& edges;
+};
+/// The same of several fields at once.
+void fill_ghosts(std::initializer_list<Bordered> fields, const Grid& grid, const Slabs& slabs);
 
 }  // namespace grainsweep::flow

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace grainsweep::flow {
@@ -48,6 +49,12 @@ private:
     std::ptrdiff_t row_ = 0;
     std::ptrdiff_t plane_ = 0;
     std::vector<double> values_;
+};
+
+/// Planes k = first ... last of a field; as far as it has them.
+struct Planes {
+    int first = 0;
+    int last = std::numeric_limits<int>::max() / 2;
 };
 
 /// A vector on the faces: component d is on the faces of direction d.

@@ -141,20 +141,20 @@ void Flow<Heat>::step(const FaceVectors& acceleration, const Field& occupied) {
 
 // right_ = dt (convection + diffusion + forces - grad p) for component d; leaves C^n in convection_[0].
 template <class Heat>
-void Flow<Heat>::assemble(int d, const FaceVectors* acceleration, const Field* occupied) {
+void Flow<Heat>::assemble(int d, const FaceVectors* acceleration, const Field* occupied, const Planes& planes) {
     const auto m = at(d);
     Field& now = convection_[0][m];
-    momentum_transport(d, velocity_, weights_[m], cells_, setup_.viscosity, now, change_);
+    momentum_transport(d, velocity_, weights_[m], cells_, setup_.viscosity, now, change_, planes);
     const auto& first = weights_[m].first;
     if (acceleration != nullptr)
-        right_ = (*acceleration)[m];
+        set_planes(right_, planes, [given = (*acceleration)[m].data()](std::ptrdiff_t place) { return given[place]; });
     else
-        std::fill(right_.values().begin(), right_.values().end(), 0.0);
+        set_planes(right_, planes, [](std::ptrdiff_t) { return 0.0; });
     const double middle = time() + 0.5 * setup_.time_step;
-    heat_.add_force(d, middle, right_);
-    if (occupied != nullptr) heat_.remove_force(d, middle, *occupied, right_);
+    heat_.add_force(d, middle, right_, planes);
+    if (occupied != nullptr) heat_.remove_force(d, middle, *occupied, right_, planes);
     const auto [now_weight, before_weight] = convection_weights(steps_ == 0);
-    each_row(right_, first, cells_, [&, nw = now_weight, bw = before_weight](std::ptrdiff_t row, int j, int k) {
+    each_row(right_, first, cells_, planes, [&, nw = now_weight, bw = before_weight](std::ptrdiff_t row, int j, int k) {
         assemble_row({right_.data() + row, now.data() + row, convection_[1][m].data() + row, change_.data() + row,
                       pressure_.data() + row, d == 0 ? inverse_spacing_[0].data() : nullptr,
                       d == 0 ? 0.0 : inverse_spacing_[m][at(d == 1 ? j : k)], right_.stride(d), first[0], cells_[0], nw,
@@ -165,27 +165,36 @@ void Flow<Heat>::assemble(int d, const FaceVectors* acceleration, const Field* o
 // Velocity -> its divergence-free part; leaves the potential in increment_ (ghosts filled) and div in divergence_.
 template <class Heat>
 void Flow<Heat>::project() {
-    divergence(velocity_, cell_weights_, cells_, divergence_);
     const double dt = setup_.time_step;
+    divergence_.resize(setup_.grid.total_cells());
     potential_.resize(divergence_.size());
-    for (std::size_t m = 0; m < divergence_.size(); ++m) potential_[m] = divergence_[m] / dt;
-    poisson_.solve(potential_);
-    const double* from = potential_.data();
-    each_row(increment_, {1, 1, 1}, cells_, [&](std::ptrdiff_t row, int, int) {
-        std::copy_n(from, cells_[0], increment_.data() + row + 1);
-        from += cells_[0];
-    });
-    fill_ghosts(increment_, setup_.grid, pressure_edges_);
-    for (int d = 0; d < 3; ++d) {
-        Field& v = velocity_[at(d)];
-        const auto& first = weights_[at(d)].first;
-        each_row(v, first, cells_, [&](std::ptrdiff_t row, int j, int k) {
-            const double scale = d == 0 ? dt : dt * inverse_spacing_[at(d)][at(d == 1 ? j : k)];
-            correct_row(v.data() + row, increment_.data() + row, v.stride(d),
-                        d == 0 ? inverse_spacing_[0].data() : nullptr, scale, first[0], cells_[0]);
+    each_slab(slabs_, cells_, [&](const Planes& planes) {
+        divergence(velocity_, cell_weights_, cells_, divergence_, planes);
+        each_row(increment_, {1, 1, 1}, cells_, planes, [&](std::ptrdiff_t, int j, int k) {
+            const auto start = compact_row(cells_, j, k);
+            for (auto m = start; m < start + cells_[0]; ++m)
+                potential_[static_cast<std::size_t>(m)] = divergence_[static_cast<std::size_t>(m)] / dt;
         });
-        fill_ghosts(v, setup_.grid, edges_[at(d)]);
-    }
+    });
+    poisson_.solve(potential_, slabs_);
+    each_slab(slabs_, cells_, [&](const Planes& planes) {
+        each_row(increment_, {1, 1, 1}, cells_, planes, [&](std::ptrdiff_t row, int j, int k) {
+            std::copy_n(potential_.data() + compact_row(cells_, j, k), cells_[0], increment_.data() + row + 1);
+        });
+    });
+    fill_ghosts(increment_, setup_.grid, pressure_edges_, slabs_);
+    each_slab(slabs_, cells_, [&](const Planes& planes) {
+        for (int d = 0; d < 3; ++d) {
+            Field& v = velocity_[at(d)];
+            const auto& first = weights_[at(d)].first;
+            each_row(v, first, cells_, planes, [&](std::ptrdiff_t row, int j, int k) {
+                const double scale = d == 0 ? dt : dt * inverse_spacing_[at(d)][at(d == 1 ? j : k)];
+                correct_row(v.data() + row, increment_.data() + row, v.stride(d),
+                            d == 0 ? inverse_spacing_[0].data() : nullptr, scale, first[0], cells_[0]);
+            });
+        }
+    });
+    fill_ghosts(velocity_, setup_.grid, edges_, slabs_);
 }
 
 // Projects the initial velocity and finds the pressure of the initial state: lap p = div(C + nu lap V + buoyancy).
@@ -199,9 +208,9 @@ void Flow<Heat>::start() {
     for (int d = 0; d < 3; ++d) {
         const auto m = at(d);
         momentum_transport(d, initial, weights_[m], cells_, setup_.viscosity, convection_[0][m], change_);
-        heat_.add_force(d, 0, rate[m]);
+        heat_.add_force(d, 0, rate[m], {});
         const auto& first = weights_[m].first;
-        each_row(right_, first, cells_, [&](std::ptrdiff_t row, int, int) {
+        each_row(right_, first, cells_, {}, [&](std::ptrdiff_t row, int, int) {
             for (int i = first[0]; i <= cells_[0]; ++i)
                 rate[m].data()[row + i] += convection_[0][m].data()[row + i] + change_.data()[row + i];
         });
@@ -218,50 +227,65 @@ void Flow<Heat>::start() {
 template <class Heat>
 void Flow<Heat>::advance(const FaceVectors* acceleration, const Field* occupied) {
     if (steps_ == 0) start();
-    heat_.step(velocity_, steps_ == 0);
+    heat_.step(velocity_, steps_ == 0, slabs_);
     std::swap(convection_[0], convection_[1]);
     for (int d = 0; d < 3; ++d) {
         const auto m = at(d);
-        assemble(d, acceleration, occupied);
-        diffusion_[m].solve(right_, change_);
+        each_slab(slabs_, cells_, [&](const Planes& planes) { assemble(d, acceleration, occupied, planes); });
+        diffusion_[m].solve(right_, change_, slabs_);
         const auto& first = weights_[m].first;
-        each_row(right_, first, cells_, [&](std::ptrdiff_t row, int, int) {
-            add_row(previous_[m].data() + row, velocity_[m].data() + row, change_.data() + row, first[0], cells_[0]);
+        each_slab(slabs_, cells_, [&](const Planes& planes) {
+            each_row(right_, first, cells_, planes, [&](std::ptrdiff_t row, int, int) {
+                add_row(previous_[m].data() + row, velocity_[m].data() + row, change_.data() + row, first[0],
+                        cells_[0]);
+            });
         });
     }
     std::swap(velocity_, previous_);
-    for (int d = 0; d < 3; ++d) fill_ghosts(velocity_[at(d)], setup_.grid, edges_[at(d)]);
+    fill_ghosts(velocity_, setup_.grid, edges_, slabs_);
     project();
-    const double* div = divergence_.data();
     const double half_viscosity = 0.5 * setup_.viscosity;
-    each_row(pressure_, {1, 1, 1}, cells_, [&](std::ptrdiff_t row, int, int) {
-        double* const p = pressure_.data() + row;
-        const double* const q = increment_.data() + row;
-        for (int i = 1; i <= cells_[0]; ++i) p[i] += q[i] - half_viscosity * *div++;
+    each_slab(slabs_, cells_, [&](const Planes& planes) {
+        each_row(pressure_, {1, 1, 1}, cells_, planes, [&](std::ptrdiff_t row, int j, int k) {
+            double* const p = pressure_.data() + row;
+            const double* const q = increment_.data() + row;
+            const double* const div = divergence_.data() + compact_row(cells_, j, k);
+            for (int i = 1; i <= cells_[0]; ++i) p[i] += q[i] - half_viscosity * div[i - 1];
+        });
     });
-    fill_ghosts(pressure_, setup_.grid, pressure_edges_);
+    fill_ghosts(pressure_, setup_.grid, pressure_edges_, slabs_);
     ++steps_;
 }
 
 template <class Heat>
 void Flow<Heat>::midpoint(FaceVectors& velocity, FaceVectors& acceleration) const {
     const auto [now, before] = convection_weights(steps_ <= 1);
-    for (std::size_t d = 0; d < 3; ++d) {
-        midpoint_values(velocity_[d].size(), velocity_[d].data(), previous_[d].data(), convection_[0][d].data(),
-                        convection_[1][d].data(), 1 / setup_.time_step, now, before, velocity[d].data(),
-                        acceleration[d].data());
-        // Beyond the walls the acceleration continues as the velocity does, from a wall that does not accelerate.
-        Edges still = edges_[d];
-        for (Edge& edge : still)
+    // Beyond the walls the acceleration continues as the velocity does, from a wall that does not accelerate.
+    auto still = edges_;
+    for (Edges& edges : still)
+        for (Edge& edge : edges)
             for (Ghost& ghost : edge.ghost) ghost.constant = 0;
-        fill_ghosts(velocity[d], setup_.grid, edges_[d]);
-        fill_ghosts(acceleration[d], setup_.grid, still);
-    }
+    each_slab(slabs_, cells_, [&, w = now, w_before = before](const Planes& planes) {
+        const Field& shape = velocity_[0];
+        const auto start = shape.index(0, 0, planes.first);
+        const auto size = static_cast<std::size_t>(shape.index(0, 0, planes.last + 1) - start);
+        for (std::size_t d = 0; d < 3; ++d)
+            midpoint_values(size, velocity_[d].data() + start, previous_[d].data() + start,
+                            convection_[0][d].data() + start, convection_[1][d].data() + start, 1 / setup_.time_step, w,
+                            w_before, velocity[d].data() + start, acceleration[d].data() + start);
+    });
+    fill_ghosts({{velocity[0], edges_[0]},
+                 {velocity[1], edges_[1]},
+                 {velocity[2], edges_[2]},
+                 {acceleration[0], still[0]},
+                 {acceleration[1], still[1]},
+                 {acceleration[2], still[2]}},
+                setup_.grid, slabs_);
 }
 
 template <class Heat>
 double Flow<Heat>::largest_divergence() const {
-    std::vector<double> values;
+    std::vector<double> values(setup_.grid.total_cells());
     divergence(velocity_, cell_weights_, cells_, values);
     double largest = 0;
     for (const double value : values) largest = std::max(largest, std::abs(value));

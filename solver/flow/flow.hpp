@@ -54,6 +54,9 @@ public:
         heat_.set(temperature);
     }
 
+    /// Threads that compute a step from now on; no bit depends on their number.
+    void use(const Slabs& slabs) { slabs_ = slabs; }
+
     /// One time step; `acceleration` (ghosts ignored) holds at the middle of the step.
     void step();
     void step(const FaceVectors& acceleration);
@@ -95,7 +98,7 @@ public:
 private:
     void start();
     void advance(const FaceVectors* acceleration, const Field* occupied);
-    void assemble(int d, const FaceVectors* acceleration, const Field* occupied);
+    void assemble(int d, const FaceVectors* acceleration, const Field* occupied, const Planes& planes);
     void project();
 
     FlowSetup setup_;
@@ -114,6 +117,7 @@ private:
     Field pressure_, increment_, right_, change_;
     std::vector<double> divergence_, potential_;
     std::int64_t steps_ = 0;
+    Slabs slabs_;
 };
 
 extern template class Flow<NoHeat>;

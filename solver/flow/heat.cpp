@@ -57,48 +57,52 @@ void HeatState<Boussinesq>::start() {
     middle_ = temperature_;
 }
 
-void HeatState<Boussinesq>::step(const FaceVectors& velocity, bool first) {
+void HeatState<Boussinesq>::step(const FaceVectors& velocity, bool first, const Slabs& slabs) {
     std::swap(convection_[0], convection_[1]);
-    scalar_transport(velocity, temperature_, weights_, cells_, heat_.diffusivity, convection_[0], right_);
     const auto [now, before] = convection_weights(first);
     const double dt = time_step_;
-    each_row(right_, {1, 1, 1}, cells_, [&](std::ptrdiff_t row, int, int) {
-        double* const r = right_.data() + row;
-        const double* const c = convection_[0].data() + row;
-        const double* const old = convection_[1].data() + row;
-        for (int i = 1; i <= cells_[0]; ++i) r[i] = dt * (now * c[i] + before * old[i] + r[i]);
+    each_slab(slabs, cells_, [&, w = now, w_before = before](const Planes& planes) {
+        scalar_transport(velocity, temperature_, weights_, cells_, heat_.diffusivity, convection_[0], right_, planes);
+        each_row(right_, {1, 1, 1}, cells_, planes, [&](std::ptrdiff_t row, int, int) {
+            double* const r = right_.data() + row;
+            const double* const c = convection_[0].data() + row;
+            const double* const old = convection_[1].data() + row;
+            for (int i = 1; i <= cells_[0]; ++i) r[i] = dt * (w * c[i] + w_before * old[i] + r[i]);
+        });
     });
-    diffusion_.solve(right_, change_);
-    each_row(right_, {1, 1, 1}, cells_, [&](std::ptrdiff_t row, int, int) {
-        double* const theta = temperature_.data() + row;
-        double* const middle = middle_.data() + row;
-        const double* const change = change_.data() + row;
-        for (int i = 1; i <= cells_[0]; ++i) {
-            middle[i] = theta[i] + 0.5 * change[i];
-            theta[i] += change[i];
-        }
+    diffusion_.solve(right_, change_, slabs);
+    each_slab(slabs, cells_, [&](const Planes& planes) {
+        each_row(right_, {1, 1, 1}, cells_, planes, [&](std::ptrdiff_t row, int, int) {
+            double* const theta = temperature_.data() + row;
+            double* const middle = middle_.data() + row;
+            const double* const change = change_.data() + row;
+            for (int i = 1; i <= cells_[0]; ++i) {
+                middle[i] = theta[i] + 0.5 * change[i];
+                theta[i] += change[i];
+            }
+        });
     });
-    fill_ghosts(temperature_, grid_, edges_);
-    fill_ghosts(middle_, grid_, edges_);
+    fill_ghosts({{temperature_, edges_}, {middle_, edges_}}, grid_, slabs);
 }
 
-void HeatState<Boussinesq>::add_force(int d, double time, Field& acceleration) const {
+void HeatState<Boussinesq>::add_force(int d, double time, Field& acceleration, const Planes& planes) const {
     if (d != heat_.direction) return;
     const double strength = heat_.buoyancy * heat_.vibration.at(time);
     const auto& lower = face_lower_[at(d)];
-    each_row(acceleration, {1, 1, 1}, cells_, [&](std::ptrdiff_t row, int j, int k) {
+    each_row(acceleration, {1, 1, 1}, cells_, planes, [&](std::ptrdiff_t row, int j, int k) {
         add_interpolated_row(acceleration.data() + row, middle_.data() + row, middle_.stride(d),
                              d == 0 ? lower.data() : nullptr, d == 1 ? lower[at(j)] : lower[at(k)], strength, 1,
                              cells_[0]);
     });
 }
 
-void HeatState<Boussinesq>::remove_force(int d, double time, const Field& occupied, Field& acceleration) const {
+void HeatState<Boussinesq>::remove_force(int d, double time, const Field& occupied, Field& acceleration,
+                                         const Planes& planes) const {
     if (d != heat_.direction) return;
     const double strength = heat_.buoyancy * heat_.vibration.at(time);
     const auto& lower = face_lower_[at(d)];
     const auto s = acceleration.stride(d);
-    each_row(acceleration, {1, 1, 1}, cells_, [&](std::ptrdiff_t row, int j, int k) {
+    each_row(acceleration, {1, 1, 1}, cells_, planes, [&](std::ptrdiff_t row, int j, int k) {
         const double* const share = occupied.data() + row;
         const double* const theta = middle_.data() + row;
         double* const a = acceleration.data() + row;

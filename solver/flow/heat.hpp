@@ -44,9 +44,9 @@ class HeatState<NoHeat> {
 public:
     HeatState(const Grid&, const Sides&, double, const NoHeat&) {}
     void start() {}
-    void step(const FaceVectors&, bool) {}
-    void add_force(int, double, Field&) const {}
-    void remove_force(int, double, const Field&, Field&) const {}
+    void step(const FaceVectors&, bool, const Slabs&) {}
+    void add_force(int, double, Field&, const Planes&) const {}
+    void remove_force(int, double, const Field&, Field&, const Planes&) const {}
     void save(std::vector<std::byte>&) const {}
     void restore(std::span<const std::byte>&) {}
 };
@@ -56,11 +56,11 @@ class HeatState<Boussinesq> {
 public:
     HeatState(const Grid& grid, const Sides& sides, double time_step, const Boussinesq& heat);
     void start();  ///< makes theta^{n+1/2} = theta^n and fills ghosts
-    void step(const FaceVectors& velocity, bool first);
+    void step(const FaceVectors& velocity, bool first, const Slabs& slabs);
     /// Adds the buoyancy acceleration B theta^{n+1/2} s(time) to component d.
-    void add_force(int d, double time, Field& acceleration) const;
+    void add_force(int d, double time, Field& acceleration, const Planes& planes) const;
     /// Subtracts the same of the share `occupied` of each cell, ghosts filled.
-    void remove_force(int d, double time, const Field& occupied, Field& acceleration) const;
+    void remove_force(int d, double time, const Field& occupied, Field& acceleration, const Planes& planes) const;
     void save(std::vector<std::byte>& into) const;
     void restore(std::span<const std::byte>& from);
 

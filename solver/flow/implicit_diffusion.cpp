@@ -54,9 +54,9 @@ ImplicitDiffusion::ImplicitDiffusion(const Grid& grid, const Edges& edges, doubl
     }
 }
 
-void ImplicitDiffusion::sweep_y(Field& field) const {
+void ImplicitDiffusion::sweep_y(Field& field, int first, int last) const {
     const Sweep& s = sweeps_[1];
-    for (int k = 1; k <= n_[2]; ++k) {
+    for (int k = first; k <= last; ++k) {
         for (int j = s.first; j <= n_[1]; ++j) {
             const auto m = static_cast<std::size_t>(j);
             double* const row = field.data() + field.index(1, j, k);
@@ -69,9 +69,9 @@ void ImplicitDiffusion::sweep_y(Field& field) const {
     }
 }
 
-void ImplicitDiffusion::sweep_z(Field& field) const {
+void ImplicitDiffusion::sweep_z(Field& field, int first, int last) const {
     const Sweep& s = sweeps_[2];
-    for (int j = 1; j <= n_[1]; ++j) {
+    for (int j = first; j <= last; ++j) {
         for (int k = s.first; k <= n_[2]; ++k) {
             const auto m = static_cast<std::size_t>(k);
             double* const row = field.data() + field.index(1, j, k);
@@ -84,18 +84,21 @@ void ImplicitDiffusion::sweep_z(Field& field) const {
     }
 }
 
-void ImplicitDiffusion::solve(Field& right, Field& solution) {
+void ImplicitDiffusion::solve(Field& right, Field& solution, const Slabs& slabs) {
     for (const int d : {1, 2}) {
         if (by_matrix_[static_cast<std::size_t>(d)]) {
-            inverse_[static_cast<std::size_t>(d)].apply(right, scratch_);
+            inverse_[static_cast<std::size_t>(d)].apply(right, scratch_, slabs);
             std::swap(right, scratch_);
-        } else if (d == 1) {
-            sweep_y(right);
-        } else {
-            sweep_z(right);
+            continue;
         }
+        slabs.over(1, n_[d == 1 ? 2 : 1], [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+            if (d == 1)
+                sweep_y(right, static_cast<int>(first), static_cast<int>(last));
+            else
+                sweep_z(right, static_cast<int>(first), static_cast<int>(last));
+        });
     }
-    inverse_[0].apply(right, solution);
+    inverse_[0].apply(right, solution, slabs);
 }
 
 }  // namespace grainsweep::flow

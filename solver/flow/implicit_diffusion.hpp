@@ -18,15 +18,15 @@ public:
     ImplicitDiffusion(const Grid& grid, const Edges& edges, double a);
 
     /// Solves for indices 1 ... n; `right` is used as scratch, ghosts of `solution` are left alone.
-    void solve(Field& right, Field& solution);
+    void solve(Field& right, Field& solution, const Slabs& slabs = {});
 
 private:
     struct Sweep {
         std::vector<double> low, inverse_pivot, high_over_pivot;  // index as the field's
         int first = 1;
     };
-    void sweep_y(Field& field) const;
-    void sweep_z(Field& field) const;
+    void sweep_y(Field& field, int first, int last) const;  // lines in these planes k
+    void sweep_z(Field& field, int first, int last) const;  // lines at these places j
 
     std::array<int, 3> n_;
     std::array<bool, 3> by_matrix_{};

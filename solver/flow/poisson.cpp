@@ -46,27 +46,43 @@ Poisson::Poisson(const Grid& grid, const Sides& sides)
             }
 }
 
-void Poisson::transform(Way way, const std::vector<double>& from, std::vector<double>& to, int direction) const {
+void Poisson::transform(Way way, const std::vector<double>& from, std::vector<double>& to, int direction,
+                        std::ptrdiff_t first, std::ptrdiff_t last) const {
     const auto [nx, ny, nz] = n_;
     const auto& matrix = (way == Way::forward ? forward_ : back_)[static_cast<std::size_t>(direction)];
     if (direction == 0) {
-        dense_product(nz * ny, nx, nx, from.data(), nx, matrix.data(), nx, to.data(), nx);
+        const std::ptrdiff_t start = first * ny * nx;
+        dense_product((last - first + 1) * ny, nx, nx, from.data() + start, nx, matrix.data(), nx, to.data() + start,
+                      nx);
     } else if (direction == 1) {
-        for (std::ptrdiff_t k = 0; k < nz; ++k)
+        for (std::ptrdiff_t k = first; k <= last; ++k)
             dense_product(ny, nx, ny, matrix.data(), ny, from.data() + k * ny * nx, nx, to.data() + k * ny * nx, nx);
     } else {
-        dense_product(nz, ny * nx, nz, matrix.data(), nz, from.data(), ny * nx, to.data(), ny * nx);
+        const std::ptrdiff_t start = first * nx;
+        dense_product(nz, (last - first + 1) * nx, nz, matrix.data(), nz, from.data() + start, ny * nx,
+                      to.data() + start, ny * nx);
     }
 }
 
-void Poisson::solve(std::vector<double>& values) {
-    transform(Way::forward, values, scratch_, 0);
-    transform(Way::forward, scratch_, values, 1);
-    transform(Way::forward, values, scratch_, 2);
-    for (std::size_t m = 0; m < scratch_.size(); ++m) scratch_[m] *= inverse_eigenvalue_[m];
-    transform(Way::back, scratch_, values, 2);
-    transform(Way::back, values, scratch_, 1);
-    transform(Way::back, scratch_, values, 0);
+void Poisson::solve(std::vector<double>& values, const Slabs& slabs) {
+    const auto [nx, ny, nz] = n_;
+    slabs.over(0, nz - 1, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+        transform(Way::forward, values, scratch_, 0, first, last);
+        transform(Way::forward, scratch_, values, 1, first, last);
+    });
+    slabs.over(0, ny - 1, [&, width = nx, depth = nz, plane = nx * ny](std::ptrdiff_t first, std::ptrdiff_t last) {
+        transform(Way::forward, values, scratch_, 2, first, last);
+        for (std::ptrdiff_t k = 0; k < depth; ++k) {
+            double* const part = scratch_.data() + k * plane;
+            const double* const inverse = inverse_eigenvalue_.data() + k * plane;
+            for (std::ptrdiff_t m = first * width; m < (last + 1) * width; ++m) part[m] *= inverse[m];
+        }
+        transform(Way::back, scratch_, values, 2, first, last);
+    });
+    slabs.over(0, nz - 1, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+        transform(Way::back, values, scratch_, 1, first, last);
+        transform(Way::back, scratch_, values, 0, first, last);
+    });
 }
 
 }  // namespace grainsweep::flow

@@ -17,11 +17,13 @@ public:
     Poisson(const Grid& grid, const Sides& sides);
 
     /// In place: values (nz, ny, nx), x fastest, without ghosts: r -> q.
-    void solve(std::vector<double>& values);
+    void solve(std::vector<double>& values, const Slabs& slabs = {});
 
 private:
     enum class Way { forward, back };
-    void transform(Way way, const std::vector<double>& from, std::vector<double>& to, int direction) const;
+    // Part first ... last, from 0 on, of the planes, or along z of the places on y.
+    void transform(Way way, const std::vector<double>& from, std::vector<double>& to, int direction,
+                   std::ptrdiff_t first, std::ptrdiff_t last) const;
 
     std::array<std::ptrdiff_t, 3> n_;
     // Row-major n x n. Along x the field stands on the left of the product, so there the matrices are transposed.

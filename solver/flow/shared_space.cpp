@@ -105,48 +105,70 @@ SharedSpace::SharedSpace(const Grid& grid, const Sides& sides, double viscosity)
 }
 
 void SharedSpace::fluid_flux(const FaceVectors& mixture, const FaceVectors& particle_flux, FaceVectors& flux) const {
-    for (std::size_t d = 0; d < 3; ++d) {
-        for (std::size_t m = 0; m < flux[d].size(); ++m)
-            flux[d].values()[m] = mixture[d].values()[m] - particle_flux[d].values()[m];
-        fill_ghosts(flux[d], grid_, edges_[d]);
-    }
+    each_slab(slabs_, cells_, [&](const Planes& planes) {
+        for (std::size_t d = 0; d < 3; ++d)
+            set_planes(flux[d], planes,
+                       [all = mixture[d].data(), particles = particle_flux[d].data()](std::ptrdiff_t m) {
+                           return all[m] - particles[m];
+                       });
+    });
+    fill_ghosts(flux, grid_, edges_, slabs_);
 }
 
 void SharedSpace::interstitial(const FaceVectors& mixture, const FaceVectors& particle_flux, const Field& solids,
                                FaceVectors& velocity) const {
     fluid_flux(mixture, particle_flux, velocity);
-    for (int d = 0; d < 3; ++d) {
-        Field& v = velocity[at(d)];
-        const auto& weights = weights_[at(d)];
-        for (int k = weights.first[2]; k <= cells_[2]; ++k)
-            for (int j = weights.first[1]; j <= cells_[1]; ++j)
-                for (int i = weights.first[0]; i <= cells_[0]; ++i) {
-                    const auto here = solids.index(i, j, k);
-                    const double phi_p = 0.5 * (solids.data()[here] + solids.data()[here - solids.stride(d)]);
-                    v.data()[here] /= std::max(1 - phi_p, least_fluid);
-                }
-        fill_ghosts(v, grid_, edges_[at(d)]);
-    }
+    each_slab(slabs_, cells_, [&](const Planes& planes) {
+        for (int d = 0; d < 3; ++d) {
+            const auto& first = weights_[at(d)].first;
+            each_row(solids, first, cells_, planes, [&](std::ptrdiff_t row, int, int) {
+                double* const v = velocity[at(d)].data() + row;
+                const double* const here = solids.data() + row;
+                const double* const below = here - solids.stride(d);
+                for (int i = first[0]; i <= cells_[0]; ++i)
+                    v[i] /= std::max(1 - 0.5 * (here[i] + below[i]), least_fluid);
+            });
+        }
+    });
+    fill_ghosts(velocity, grid_, edges_, slabs_);
 }
 
 void SharedSpace::add_excess(const FaceVectors& mixture, const FaceVectors& particle_flux, const Field& solids,
                              FaceVectors& acceleration) {
     fluid_flux(mixture, particle_flux, flux_);
     interstitial(mixture, particle_flux, solids, velocity_);
-    for (int d = 0; d < 3; ++d) add_excess_of(d, mixture, solids, acceleration[at(d)]);
+    rows_.resize(static_cast<std::size_t>(slabs_.count()));
+    for (auto& of_slab : rows_)
+        for (int d = 0; d < 3; ++d) prepare(d, of_slab[at(d)]);
+    slabs_.each([&](int slab) {
+        const int n = cells_[2];
+        const Planes planes{1 + n * slab / slabs_.count(), n * (slab + 1) / slabs_.count()};
+        for (int d = 0; d < 3; ++d)
+            add_excess_of(d, mixture, solids, acceleration[at(d)], planes, rows_[at(slab)][at(d)]);
+    });
 }
 
-// Each flux is found once: a row's high side along y and z is the next row's low side.
-void SharedSpace::add_excess_of(int d, const FaceVectors& mixture, const Field& solids, Field& acceleration) {
+// Values of component d lie at faces along d, at centres across it.
+void SharedSpace::prepare(int d, FluxRows& rows) const {
+    const auto length = at(cells_[0]) + 2;
+    rows.gap_x.assign(1, 0);
+    for (int i = 1; i <= cells_[0] + 1; ++i)
+        rows.gap_x.push_back(d == 0 ? inverse_width_[0][at(i - 1)] : inverse_spacing_[0][at(i)]);
+    for (auto* row : {&rows.x_low, &rows.y_low, &rows.y_high, &rows.z_high}) row->resize(length);
+    rows.z_low.resize(length * (at(cells_[1]) + 2));  // a plane of rows
+}
+
+// Each flux is found once: a row's high side along y and z is the next row's low side; of a
+// slab of planes the first low sides along z are found as the high sides of the slab below are.
+void SharedSpace::add_excess_of(int d, const FaceVectors& mixture, const Field& solids, Field& acceleration,
+                                const Planes& planes, FluxRows& rows_of_slab) const {
     const auto m = at(d);
     const Weights& w = weights_[m];
     const Field& shape = mixture[m];
-    // Values of component d lie at faces along d, at centres across it.
     const auto gap = [&](int e, int i) {  // below value i along e
         return e == d ? inverse_width_[at(e)][at(i - 1)] : inverse_spacing_[at(e)][at(i)];
     };
-    std::vector<double> gap_x{0};
-    for (int i = 1; i <= cells_[0] + 1; ++i) gap_x.push_back(gap(0, i));
+    auto& [gap_x, x_low, y_low, y_high, z_low, z_high] = rows_of_slab;
     // The low sides along E of the row (j, k), up to i = last.
     const auto find = [&]<int E>(std::integral_constant<int, E>, int j, int k, int last, double* flux) {
         const auto start = shape.index(0, j, k);
@@ -172,20 +194,18 @@ void SharedSpace::add_excess_of(int d, const FaceVectors& mixture, const Field& 
     constexpr std::integral_constant<int, 1> along_y;
     constexpr std::integral_constant<int, 2> along_z;
     const auto length = at(cells_[0]) + 2;
-    std::vector<double> x(length);
-    std::vector<double> y_low(length);
-    std::vector<double> y_high(length);
-    std::vector<double> z_low(length * (at(cells_[1]) + 2));  // a plane of rows
-    std::vector<double> z_high(length);
-    for (int j = w.first[1]; j <= cells_[1]; ++j) find(along_z, j, w.first[2], cells_[0], &z_low[at(j) * length]);
-    for (int k = w.first[2]; k <= cells_[2]; ++k) {
+    const int first = std::max(w.first[2], planes.first);
+    const int end = std::min(cells_[2], planes.last);
+    if (first > end) return;
+    for (int j = w.first[1]; j <= cells_[1]; ++j) find(along_z, j, first, cells_[0], &z_low[at(j) * length]);
+    for (int k = first; k <= end; ++k) {
         find(along_y, w.first[1], k, cells_[0], y_low.data());
         for (int j = w.first[1]; j <= cells_[1]; ++j) {
-            find(along_x, j, k, cells_[0] + 1, x.data());
+            find(along_x, j, k, cells_[0] + 1, x_low.data());
             find(along_y, j + 1, k, cells_[0], y_high.data());
             find(along_z, j, k + 1, cells_[0], z_high.data());
             double* const below = &z_low[at(j) * length];
-            balance_row(acceleration.data() + shape.index(0, j, k), x.data(), w.inverse_width[0].data(), y_low.data(),
+            balance_row(acceleration.data() + shape.index(0, j, k), x_low.data(), w.inverse_width[0].data(), y_low.data(),
                         y_high.data(), w.inverse_width[1][at(j)], below, z_high.data(), w.inverse_width[2][at(k)],
                         w.first[0], cells_[0]);
             std::swap(y_low, y_high);

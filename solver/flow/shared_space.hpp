@@ -27,6 +27,9 @@ public:
 
     SharedSpace(const Grid& grid, const Sides& sides, double viscosity);
 
+    /// Threads that compute from now on; no bit depends on their number.
+    void use(const Slabs& slabs) { slabs_ = slabs; }
+
     /// V = (J - j)/phi on the faces, ghosts filled. j without ghosts; phi_p with (fill_ghosts, pressure_edges).
     void interstitial(const FaceVectors& mixture, const FaceVectors& particle_flux, const Field& solids,
                       FaceVectors& velocity) const;
@@ -36,7 +39,13 @@ public:
                     FaceVectors& acceleration);
 
 private:
-    void add_excess_of(int d, const FaceVectors& mixture, const Field& solids, Field& acceleration);
+    // Rows of fluxes of a slab of one component.
+    struct FluxRows {
+        std::vector<double> gap_x, x_low, y_low, y_high, z_low, z_high;
+    };
+    void prepare(int d, FluxRows& rows) const;
+    void add_excess_of(int d, const FaceVectors& mixture, const Field& solids, Field& acceleration,
+                       const Planes& planes, FluxRows& rows) const;
     void fluid_flux(const FaceVectors& mixture, const FaceVectors& particle_flux, FaceVectors& flux) const;
 
     Grid grid_;
@@ -46,6 +55,8 @@ private:
     std::array<Weights, 3> weights_;
     std::array<std::vector<double>, 3> inverse_width_, inverse_spacing_;  // of cells; between centres, at faces
     FaceVectors velocity_, flux_;                                         // V and phi V
+    std::vector<std::array<FluxRows, 3>> rows_;                           // of each slab
+    Slabs slabs_;
 };
 
 }  // namespace grainsweep::flow

@@ -173,40 +173,35 @@ Weights::Weights(const Grid& grid, const Edges& edges) {
 }
 
 void momentum_transport(int d, const FaceVectors& velocity, const Weights& weights, const std::array<int, 3>& cells,
-                        double viscosity, Field& convection, Field& diffusion) {
+                        double viscosity, Field& convection, Field& diffusion, const Planes& planes) {
     const Field& own = velocity[static_cast<std::size_t>(d)];
     const auto kernel = d == 0 ? momentum_row<0> : d == 1 ? momentum_row<1> : momentum_row<2>;
-    for (int k = weights.first[2]; k <= cells[2]; ++k)
-        for (int j = weights.first[1]; j <= cells[1]; ++j) {
-            const auto start = own.index(0, j, k);
-            kernel(convection.data() + start, diffusion.data() + start,
-                   {own.data() + start, rows_at(velocity, start), own.stride(1), own.stride(2), weights.first[0],
-                    cells[0], viscosity},
-                   row_weights(weights, d, j, k));
-        }
+    each_row(own, weights.first, cells, planes, [&](std::ptrdiff_t start, int j, int k) {
+        kernel(convection.data() + start, diffusion.data() + start,
+               {own.data() + start, rows_at(velocity, start), own.stride(1), own.stride(2), weights.first[0], cells[0],
+                viscosity},
+               row_weights(weights, d, j, k));
+    });
 }
 
 void scalar_transport(const FaceVectors& velocity, const Field& scalar, const Weights& weights,
-                      const std::array<int, 3>& cells, double diffusivity, Field& convection, Field& diffusion) {
-    for (int k = 1; k <= cells[2]; ++k)
-        for (int j = 1; j <= cells[1]; ++j) {
-            const auto start = scalar.index(0, j, k);
-            scalar_row(convection.data() + start, diffusion.data() + start,
-                       {scalar.data() + start, rows_at(velocity, start), scalar.stride(1), scalar.stride(2), cells[0],
-                        diffusivity},
-                       row_weights(weights, 0, j, k));
-        }
+                      const std::array<int, 3>& cells, double diffusivity, Field& convection, Field& diffusion,
+                      const Planes& planes) {
+    each_row(scalar, {1, 1, 1}, cells, planes, [&](std::ptrdiff_t start, int j, int k) {
+        scalar_row(convection.data() + start, diffusion.data() + start,
+                   {scalar.data() + start, rows_at(velocity, start), scalar.stride(1), scalar.stride(2), cells[0],
+                    diffusivity},
+                   row_weights(weights, 0, j, k));
+    });
 }
 
 void divergence(const FaceVectors& velocity, const Weights& cell_weights, const std::array<int, 3>& cells,
-                std::vector<double>& result) {
+                std::vector<double>& result, const Planes& planes) {
     const Field& shape = velocity[0];
-    result.resize(static_cast<std::size_t>(cells[0]) * at(cells[1]) * at(cells[2]));
-    double* row = result.data();
-    for (int k = 1; k <= cells[2]; ++k)
-        for (int j = 1; j <= cells[1]; ++j, row += cells[0])
-            divergence_row(rows_at(velocity, shape.index(0, j, k)), shape.stride(1), shape.stride(2),
-                           row_weights(cell_weights, 0, j, k), cells[0], row);
+    each_row(shape, {1, 1, 1}, cells, planes, [&](std::ptrdiff_t start, int j, int k) {
+        divergence_row(rows_at(velocity, start), shape.stride(1), shape.stride(2), row_weights(cell_weights, 0, j, k),
+                       cells[0], result.data() + compact_row(cells, j, k));
+    });
 }
 
 }  // namespace grainsweep::flow

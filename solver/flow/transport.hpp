@@ -26,14 +26,15 @@ struct Weights {
 
 /// convection = -div(V v_d), diffusion = nu lap v_d on the unknown faces of direction d. Ghosts must be filled.
 void momentum_transport(int d, const FaceVectors& velocity, const Weights& weights, const std::array<int, 3>& cells,
-                        double viscosity, Field& convection, Field& diffusion);
+                        double viscosity, Field& convection, Field& diffusion, const Planes& planes = {});
 
 /// convection = -div(V theta), diffusion = kappa lap theta on the cells. Ghosts must be filled.
 void scalar_transport(const FaceVectors& velocity, const Field& scalar, const Weights& weights,
-                      const std::array<int, 3>& cells, double diffusivity, Field& convection, Field& diffusion);
+                      const std::array<int, 3>& cells, double diffusivity, Field& convection, Field& diffusion,
+                      const Planes& planes = {});
 
-/// div V on the cells, compact (nz, ny, nx).
+/// div V on the cells, compact (nz, ny, nx), which `result` has room for.
 void divergence(const FaceVectors& velocity, const Weights& cell_weights, const std::array<int, 3>& cells,
-                std::vector<double>& result);
+                std::vector<double>& result, const Planes& planes = {});
 
 }  // namespace grainsweep::flow

@@ -1,0 +1,61 @@
+// Many particles add to the same field at once, and every value gets what it gets in the order of the particles,
+// however many threads there are: each owns some planes of the field, goes through all particles and adds what falls on
+// its own. The planes are cut so that about as many particles fall to each.
+#pragma once
+
+#include "solver/flow/field.hpp"
+#include "solver/threads/slabs.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace grainsweep::coupling {
+
+class PlaneCuts {
+public:
+    /// touched(p): the planes that particle p adds to, of a field that has so many.
+    template <class Touched>
+    void make(std::size_t particles, int planes, const Slabs& slabs, Touched touched) {
+        particles_ = particles;
+        if (slabs.count() == 1) return;
+        touched_.resize(particles);
+        slabs.over(0, static_cast<std::ptrdiff_t>(particles) - 1, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+            for (auto p = first; p <= last; ++p)
+                touched_[static_cast<std::size_t>(p)] = touched(static_cast<std::size_t>(p));
+        });
+        counts_.assign(static_cast<std::size_t>(planes), 0);
+        for (const auto& range : touched_) ++counts_[static_cast<std::size_t>(std::clamp(range.first, 0, planes - 1))];
+        const auto parts = static_cast<std::size_t>(slabs.count());
+        cuts_.assign(parts + 1, planes);
+        cuts_[0] = 0;
+        std::size_t before = 0, part = 1;
+        for (int k = 0; k < planes && part < parts; ++k) {
+            before += counts_[static_cast<std::size_t>(k)];
+            while (part < parts && before * parts >= particles * part) cuts_[part++] = k + 1;
+        }
+    }
+
+    /// Calls add(p, own) for particles in their order; what it adds outside of the planes `own` is to be left out.
+    template <class Add>
+    void each(const Slabs& slabs, Add add) const {
+        if (slabs.count() == 1) {
+            for (std::size_t p = 0; p < particles_; ++p) add(p, flow::Planes{});
+            return;
+        }
+        slabs.each([&](int slab) {
+            const auto s = static_cast<std::size_t>(slab);
+            const flow::Planes own{cuts_[s], cuts_[s + 1] - 1};
+            for (std::size_t p = 0; p < particles_; ++p)
+                if (touched_[p].first <= own.last && touched_[p].last >= own.first) add(p, own);
+        });
+    }
+
+private:
+    std::size_t particles_ = 0;
+    std::vector<flow::Planes> touched_;
+    std::vector<std::size_t> counts_;  // particles by their first plane
+    std::vector<int> cuts_;            // where the planes of each slab begin, and the end
+};
+
+}  // namespace grainsweep::coupling
