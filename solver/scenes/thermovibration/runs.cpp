@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <numbers>
 #include <numeric>
+#include <thread>
 
 namespace grainsweep::thermovibration {
 namespace {
@@ -73,6 +74,12 @@ std::string fault(const coupling::SolidsVolume& solids, const flow::Grid& grid, 
                     return text("particles fill %.3g of the cell at (%.4g, %.4g, %.4g), t = %.6g L^2/alpha",
                                 fraction(i, j, k), grid[0].centre(i), grid[1].centre(j), grid[2].centre(k), time);
     return {};
+}
+
+int threads_for(const flow::Grid& grid, int count) {
+    constexpr std::size_t least_cells = 10'000;
+    const auto most = static_cast<std::size_t>(count > 0 ? count : std::max(1U, std::thread::hardware_concurrency()));
+    return static_cast<int>(std::clamp<std::size_t>(grid.total_cells() / least_cells, 1, most));
 }
 
 std::int64_t watch_interval(std::int64_t steps_per_period) {

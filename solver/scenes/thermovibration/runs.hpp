@@ -30,6 +30,10 @@ using Drag = coupling::SchillerNaumann;
 /// about eight, with no divisor in common with those of a period, so that all phases of the vibration come up in turn.
 [[nodiscard]] std::int64_t watch_interval(std::int64_t steps_per_period);
 
+/// How many of `count` threads (0: one for each core) have enough to do: with fewer cells for each of them, waiting for
+/// one another costs more than it saves.
+[[nodiscard]] int threads_for(const flow::Grid& grid, int count);
+
 /// Together: the coupled system, a Suspension or a DenseSuspension.
 template <class Together>
 class Live final : public Scene {
@@ -41,6 +45,11 @@ public:
 
     void advance(double until) override {
         while (time() < until && !finished() && fault_.empty()) step();
+    }
+    int use_threads(int count) override {
+        const int wanted = threads_for(suspension_.fluid().grid(), count);
+        if (wanted != slabs_.count()) suspension_.use(slabs_ = Slabs(wanted));
+        return wanted;
     }
     void observe(Observations& into) const override { record_.observe(into); }
     [[nodiscard]] double time() const override { return suspension_.fluid().time(); }
@@ -112,6 +121,7 @@ private:
     FlowMeans means_;  // of the last window, as far as it has come
     BudgetMeans budget_;
     Together suspension_;
+    Slabs slabs_;
     std::int64_t watch_ = watch_interval(question_.window());
     std::string fault_;
 };
@@ -125,6 +135,8 @@ class SpinUp {
 public:
     explicit SpinUp(const Question& question);
 
+    /// Threads that compute a step from now on; no bit depends on their number.
+    void use(const Slabs& slabs) { fluid_.use(slabs); }
     void step();
     [[nodiscard]] double time() const { return fluid_.time(); }
     [[nodiscard]] bool periodic() const { return stage_ == Stage::stored; }
@@ -176,6 +188,12 @@ public:
             else
                 step();
         }
+    }
+    int use_threads(int count) override {
+        const int wanted = threads_for(grid_, count);
+        if (wanted != slabs_.count()) slabs_ = Slabs(wanted);
+        if (spin_up_) spin_up_->use(slabs_);
+        return wanted;
     }
     void observe(Observations& into) const override { record_.observe(into); }
     /// The time the flow took to become periodic, if it was found here, and the time of the particles since.
@@ -298,7 +316,7 @@ private:
                 if constexpr (Level::mirrored) Level::turn(middle(p), around);
                 return around;
             },
-            [](std::size_t, const coupling::Vec3&) {});
+            [](std::size_t, const coupling::Vec3&) {}, slabs_);
         ++steps_;
         const double now = static_cast<double>(steps_) * dt;
         fault_ = fault(cloud_, dt, 1.0 / static_cast<double>(question_.cells), now);
@@ -315,6 +333,7 @@ private:
     coupling::VisitOrder order_;
     Record record_;
     coupling::PeriodicFlow flow_;
+    Slabs slabs_;
     std::optional<SpinUp> spin_up_;  // only while the flow is not yet known
     std::int64_t steps_ = 0;         // of the particles
     double spun_ = 0;
