@@ -67,18 +67,20 @@ void expect_same_bits(const std::string& what, Make make) {
 
 /// A cube, closed or periodic along y and z, with particles that fill a part of it densely.
 struct Box {
-    bool closed = true;
+    bool closed;
     Grid grid;
     Sides sides;
     coupling::Walls walls;
 
-    explicit Box(bool is_closed, int n = 8) : closed(is_closed) {
-        const Axis x = Axis::clustered(n, -0.5, 0.5, 1.5);
-        const Axis across = closed ? x : Axis::uniform(n, -0.5, 0.5);
-        grid = {{x, across, across}};
+    explicit Box(bool is_closed)
+        : closed(is_closed),
+          grid{{axis(true), axis(is_closed), axis(is_closed)}},
+          walls{{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, {false, !is_closed, !is_closed}, sphere().radius(), 1} {
         const std::array<Side, 2> wall{NoSlip{}, NoSlip{}}, round{Periodic{}, Periodic{}};
         sides = {wall, closed ? wall : round, closed ? wall : round};
-        walls = {{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, {false, !closed, !closed}, sphere().radius(), 1};
+    }
+    static Axis axis(bool clustered) {
+        return clustered ? Axis::clustered(8, -0.5, 0.5, 1.5) : Axis::uniform(8, -0.5, 0.5);
     }
     static coupling::Sphere sphere() { return {1.65, 2e-4, 18, 1.72e7, 1}; }
     static double time_step() { return 2 * std::numbers::pi / 2.33e4 / 16; }
@@ -162,7 +164,7 @@ TEST_P(CouplingThreads, DenseParticles) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Boxes, CouplingThreads, testing::Bool(),
-                         [](const auto& info) { return info.param ? "closed" : "periodic"; });
+                         [](const auto& box) { return box.param ? "closed" : "periodic"; });
 
 TEST(CouplingThreadsScene, ACaseHasTheBitsOfOneThreadHoweverManyItHas) {
     const SceneInfo& info = *find_scene("thermovibration");
