@@ -26,7 +26,7 @@ using namespace grainsweep::flow;
 
 namespace {
 
-constexpr std::size_t particles = 3150;
+constexpr std::size_t spheres = 3150;
 constexpr double kernel_width = 0.03;
 
 struct Options {
@@ -86,11 +86,9 @@ struct Cavity {
     double time_step = 2 * std::numbers::pi / 2.33e4 / 32;
     coupling::Sphere sphere{1.65, 3.1e-6, 18, 1.72e9, 1};
     coupling::Walls walls{{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, {}, sphere.radius(), 1};
-    coupling::Cloud cloud = coupling::random_cloud(particles, walls, stats::Stream(1, 1));
+    coupling::Cloud cloud = coupling::random_cloud(spheres, walls, stats::Stream(1, 1));
 
-    explicit Cavity(int cells) {
-        const Axis axis = Axis::uniform(cells, -0.5, 0.5);
-        grid = {{axis, axis, axis}};
+    explicit Cavity(const Axis& axis) : grid{{axis, axis, axis}} {
         heat.sides[2] = {Isothermal{-0.5}, Isothermal{0.5}};
         heat.buoyancy = -18 * 3.04e5;
         heat.vibration = {2.33e4, 0};
@@ -128,18 +126,18 @@ int main(int argc, char** argv) {
         if (name == "--threads") o.threads = std::max(1, std::atoi(argv[i + 1]));
         if (name == "--windows") o.windows = std::max(1, std::atoi(argv[i + 1]));
     }
-    const Cavity cavity(o.cells);
+    const Cavity cavity(Axis::uniform(o.cells, -0.5, 0.5));
     const auto& c = cavity;
     compare(o, "flow", [&] { return c.fluid(); });
     compare(o, "one_way", [&] { return c.dilute(coupling::OneWay{}); });
     compare(o, "two_way", [&] {
-        return c.dilute(coupling::TwoWay<coupling::ForceForm>(c.grid, c.sides, c.sphere, particles, kernel_width));
+        return c.dilute(coupling::TwoWay<coupling::ForceForm>(c.grid, c.sides, c.sphere, spheres, kernel_width));
     });
     compare(o, "ddpm", [&] { return c.pressed<coupling::AlgebraicTemperature>(); });
     compare(o, "ddpm_ktgf", [&] { return c.pressed<coupling::TransportedTemperature>(); });
     const double stiffness = coupling::SpringContacts::stiffness(c.sphere, 0.01, c.time_step);
     compare(o, "cfd_dem_spring", [&] {
-        return c.dense(coupling::SpringContacts(c.sphere, c.walls, {stiffness, 0.9, 0.3}, particles));
+        return c.dense(coupling::SpringContacts(c.sphere, c.walls, {stiffness, 0.9, 0.3}, spheres));
     });
     compare(o, "cfd_dem_projection", [&] { return c.dense(coupling::ProjectedContacts(c.sphere, c.walls)); });
     return 0;
