@@ -1,5 +1,7 @@
 #include "solver/threads/thread_pool.hpp"
 
+#include <system_error>
+
 namespace grainsweep {
 
 namespace {
@@ -24,7 +26,10 @@ ThreadPool::ThreadPool(int threads)
       spins_(threads <= static_cast<int>(std::thread::hardware_concurrency())),
       parts_(std::make_unique<Part[]>(static_cast<std::size_t>(threads))) {
     threads_.reserve(static_cast<std::size_t>(threads));
-    for (int k = 1; k < threads; ++k) threads_.emplace_back([this, k] { serve(k); });
+    try {
+        for (int k = 1; k < threads; ++k) threads_.emplace_back([this, k] { serve(k); });
+    } catch (const std::system_error&) {  // the system gives no more: those that there are do all parts
+    }
 }
 
 ThreadPool::~ThreadPool() {

@@ -15,7 +15,7 @@ namespace grainsweep {
 /// calling thread does alone what the others do not come to do.
 class ThreadPool {
 public:
-    /// At least one; starts one fewer.
+    /// At least one; starts one fewer, or as many as the system gives: the parts are as many all the same.
     explicit ThreadPool(int threads);
     ThreadPool(const ThreadPool&) = delete;
     ThreadPool& operator=(const ThreadPool&) = delete;
