@@ -26,11 +26,15 @@ std::vector<std::string> own_command(const std::string& command, const campaign:
 
 }  // namespace
 
+unsigned threads_of_a_case(const campaign::Campaign& campaign) {
+    const bool program = campaign::is_program(campaign.scene().name);
+    return program ? 1 : static_cast<unsigned>(std::max<std::int64_t>(1, campaign.execution.threads));
+}
+
 std::size_t worker_count(const campaign::Campaign& campaign, std::optional<std::int64_t> asked) {
     const auto& execution = campaign.execution;
     const auto program = campaign::known_program(campaign.scene().name);
-    const std::int64_t threads = std::max<std::int64_t>(1, execution.threads);
-    const auto of_a_case = static_cast<unsigned>(program ? program->cores : threads);
+    const auto of_a_case = program ? static_cast<unsigned>(program->cores) : threads_of_a_case(campaign);
     const bool hosted = execution.hosts > 0;
     const std::int64_t number = asked.value_or(hosted ? execution.workers_per_host : execution.workers);
     const std::size_t each =

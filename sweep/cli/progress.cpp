@@ -57,8 +57,8 @@ std::string duration(double seconds) {
     return fmt::format("{} d {} h", s / 86400, s % 86400 / 3600);
 }
 
-ProgressLine::ProgressLine(bool quiet, std::size_t workers)
-    : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), workers_(std::max<std::size_t>(workers, 1)) {}
+ProgressLine::ProgressLine(bool quiet, std::size_t cores)
+    : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), cores_(std::max<std::size_t>(cores, 1)) {}
 
 ProgressLine::~ProgressLine() {
     if (line_open_) show("\n");
@@ -111,7 +111,7 @@ std::string ProgressLine::describe(const schedule::Progress& progress, Clock::ti
     // prediction as it is.
     const double done = tally.predicted_done;
     const bool telling = done > 0.02 * (done + tally.predicted_left);
-    const double pace = telling ? elapsed / done : 1 / static_cast<double>(workers_);
+    const double pace = telling ? elapsed / done : 1 / static_cast<double>(cores_);
     const double left = std::max(0.0, tally.predicted_left) * pace;
 
     const auto full = static_cast<std::size_t>(share * bar_width);

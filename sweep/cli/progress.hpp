@@ -10,8 +10,8 @@ namespace grainsweep::cli {
 
 class ProgressLine {
 public:
-    /// quiet: notes only. `workers` divides the predicted time left.
-    ProgressLine(bool quiet, std::size_t workers);
+    /// quiet: notes only. `cores` divide the predicted time left.
+    ProgressLine(bool quiet, std::size_t cores);
     ~ProgressLine();
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
@@ -26,7 +26,7 @@ private:
     void erase();
 
     bool quiet_, terminal_;
-    std::size_t workers_;
+    std::size_t cores_;
     Clock::time_point began_ = Clock::now();
     Clock::time_point shown_{};
     bool line_open_ = false;

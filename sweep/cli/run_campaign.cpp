@@ -269,7 +269,7 @@ public:
         refuse_what_cannot_start(campaign_, request, database_);
         artefacts_ =
             request.artefacts.empty() ? folder_beside(database_, of_artefacts) : fs::absolute(request.artefacts);
-        line_.emplace(request.quiet, workers_);
+        line_.emplace(request.quiet, workers_ * threads_of_a_case(campaign_));
         if (request.spool.empty()) walltime_ = walltime_of(campaign_);
         store_.emplace(database_, store::Store::Mode::create,
                        request.network_disk ? store::Store::Disk::network : store::Store::Disk::found_out);

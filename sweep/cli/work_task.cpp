@@ -123,7 +123,7 @@ WorkReport work_on(const WorkRequest& request) {
     const spool::Spool spool(std::filesystem::absolute(request.spool),
                              {beside, spool::hash_of_cases(cases), campaign.text});
     const std::size_t workers = worker_count(campaign, request.workers);
-    ProgressLine line(request.quiet, workers);
+    ProgressLine line(request.quiet, workers * threads_of_a_case(campaign));
     for (const auto& warning : campaign::warnings_of(campaign, forecast)) line.note("warning: " + warning);
 
     spool::TaskRules rules{share, campaign.limits.attempts, request.lease, walltime_of(campaign)};
@@ -142,8 +142,8 @@ WorkReport work_on(const WorkRequest& request) {
         artefacts.remove(workers::checkpoint_key(id, this_computer()));
     };
     // Tasks come and go: each has a folder of its own for the cases of a program.
-    const auto cases_here = std::filesystem::absolute(request.spool) /
-                            fmt::format("cases-{}-{}", this_computer().host, ::getpid());
+    const auto cases_here =
+        std::filesystem::absolute(request.spool) / fmt::format("cases-{}-{}", this_computer().host, ::getpid());
     const StagedProgram staged(campaign::known_program(campaign.scene().name), cases_here);
     workers::Pool pool(pool_options(campaign, {spool.artefacts(), cases_here}, workers, request.path));
     spool::Task task(spool, cases, forecast.seconds, pool, std::move(rules), std::move(watchers));
