@@ -341,6 +341,18 @@ GRAINSWEEP_LANES Force* force_at(Force* f, Place p) {
 GRAINSWEEP_LANES void prefetch(const void* p) {
     __builtin_prefetch(p);
 }
+/// Past the caches; p at a multiple of the vector's size.
+GRAINSWEEP_LANES void stream(float* p, F a) {
+    hn::Stream(a.v, singles, p);
+}
+/// What was streamed is seen by other threads from here on.
+GRAINSWEEP_LANES void flush_streams() {
+#if HWY_ARCH_X86
+    _mm_sfence();
+#else
+    __atomic_thread_fence(__ATOMIC_RELEASE);
+#endif
+}
 
 }  // namespace
 }  // namespace grainsweep::dem::fast

@@ -144,6 +144,7 @@ struct Field {
     std::int32_t filler;  ///< index of the two records that fill vectors of pairs up
 
     std::int32_t read_ahead;  ///< 1: the particles do not fit the caches near the core, fetch them early
+    std::int32_t streams;     ///< 1: nor the caches far from it, new histories are written past all of them
 
     Record* records;
     Residual* residuals;

@@ -14,6 +14,8 @@ namespace {
 /// Beyond these records no longer fit the nearer caches and are fetched ahead of their use; below, asking costs more
 /// than it gains.
 constexpr std::size_t many_particles = 40000;
+/// Beyond these a step's histories have left the last cache before the next step reads them.
+constexpr std::size_t very_many_particles = 120000;
 
 }  // namespace
 
@@ -60,6 +62,7 @@ void MixedEngine::load(const Setup& setup) {
     field_.count = spheres_at_start_ = static_cast<std::int32_t>(n);
     field_.skips = needs_.skips ? 1 : 0;
     field_.read_ahead = n > many_particles ? 1 : 0;
+    field_.streams = n > very_many_particles ? 1 : 0;
     const Scale& s = space_.scale;
     const bool all_periodic = setup.domain.periodic[0] && setup.domain.periodic[1] && setup.domain.periodic[2];
     box_includes_rest_ = !all_periodic || needs_.frozen || needs_.resting;

@@ -23,6 +23,7 @@ struct alignas(64) Packed {
     Place first[tile + 2 * width];
     Place second[tile + 2 * width];
     std::int32_t offset[3][tile + 2 * width];
+    float memory[histories_at_most][tile + 2 * width];  ///< only where histories are streamed
     float outcome[tile / width + 1][9][width];
 };
 
@@ -36,8 +37,9 @@ struct Progress {
     std::int64_t met;      ///< of these, those already evaluated
 };
 
-/// Sifts batches until a tile is full or the list at its end.
-template <class Kernel>
+/// Sifts batches until a tile is full or the list at its end. `streams`: histories wait in the buffers until meet() has
+/// evaluated them and writes them past the caches; otherwise they go where they stay, and are evaluated there.
+template <class Kernel, bool streams>
 GRAINSWEEP_PHASE void sift(const Field& f, std::int32_t batches, Packed& p, Progress& progress) {
     const Constants& c = f.constants;
     const F ux = broadcast(c.unit_single[0]), uy = broadcast(c.unit_single[1]), uz = broadcast(c.unit_single[2]);
@@ -51,7 +53,7 @@ GRAINSWEEP_PHASE void sift(const Field& f, std::int32_t batches, Packed& p, Prog
             if constexpr (Kernel::histories > 0)
                 for (int a = 0; a < Kernel::histories; ++a) {
                     prefetch(f.history[a] + s.read + 256);
-                    prefetch(f.history_next[a] + s.written + 256);
+                    if constexpr (!streams) prefetch(f.history_next[a] + s.written + 256);
                 }
         }
         I ix, iy, iz;
@@ -67,13 +69,15 @@ GRAINSWEEP_PHASE void sift(const Field& f, std::int32_t batches, Packed& p, Prog
         store(p.offset[2] + s.packed, compress(iz, now));
         const int count = __builtin_popcount(now);
         if constexpr (Kernel::histories > 0) {
+            const auto keep_history = [&](int a, F memory) {
+                store(streams ? p.memory[a] + s.packed : f.history_next[a] + s.written, memory);
+            };
             const unsigned before = f.touching[s.batch];
             if (before == now)  // most vectors keep their contacts
-                for (int a = 0; a < Kernel::histories; ++a)
-                    store(f.history_next[a] + s.written, load(f.history[a] + s.read));
+                for (int a = 0; a < Kernel::histories; ++a) keep_history(a, load(f.history[a] + s.read));
             else
                 for (int a = 0; a < Kernel::histories; ++a)
-                    store(f.history_next[a] + s.written, compress(expand(load(f.history[a] + s.read), before), now));
+                    keep_history(a, compress(expand(load(f.history[a] + s.read), before), now));
             f.touching_next[s.batch] = static_cast<std::uint16_t>(now);
             s.read += __builtin_popcount(before);
             s.written += count;
@@ -102,7 +106,7 @@ GRAINSWEEP_LANES F sum_of_turning_masses(const Record* records, const Place* fir
 }
 
 /// Force and torques of the packed pairs, into the outcome rows; histories from stream index `at` on.
-template <class Kernel>
+template <class Kernel, bool streams>
 GRAINSWEEP_PHASE void meet(const Field& f, const typename Kernel::Laws& laws, Packed& p, int batches, std::int64_t at,
                            Tally& t) {
     const Constants& c = f.constants;
@@ -170,9 +174,15 @@ GRAINSWEEP_PHASE void meet(const Field& f, const typename Kernel::Laws& laws, Pa
             m.rolling_inertia = inverse(sum_of_turning_masses(f.records, first, second));
         }
         F memory[Kernel::histories + 1];
-        load_memory<Kernel>(f.history_next, at + b * width, memory);
+        if constexpr (streams)
+            for (int a = 0; a < Kernel::histories; ++a) memory[a] = load(p.memory[a] + b * width);
+        else
+            load_memory<Kernel>(f.history_next, at + b * width, memory);
         const auto [force, turn, rolling] = respond(laws, m, memory);
-        store_memory<Kernel>(f.history_next, at + b * width, memory);
+        if constexpr (streams)
+            for (int a = 0; a < Kernel::histories; ++a) stream(f.history_next[a] + at + b * width, memory[a]);
+        else
+            store_memory<Kernel>(f.history_next, at + b * width, memory);
         store(p.outcome[b][0], force.x);
         store(p.outcome[b][1], force.y);
         store(p.outcome[b][2], force.z);
@@ -307,30 +317,32 @@ GRAINSWEEP_LANES void fill_up(const Field& f, Packed& p, int packed) {
 }
 
 /// Moves what a tile left over to the front.
+template <class Kernel, bool streams>
 GRAINSWEEP_LANES void keep_rest(Packed& p, int from) {
+    if constexpr (streams)
+        for (int a = 0; a < Kernel::histories; ++a) store(p.memory[a], load(p.memory[a] + from));
     store(p.first, load(p.first + from));
     store(p.second, load(p.second + from));
     for (auto& offset : p.offset) store(offset, load(offset + from));
 }
 
-template <class Kernel>
-void sweep(const Field& f, bool advancing, Tally& t) {
-    const auto denormals = flush_denormals();
+template <class Kernel, bool streams>
+void sweep_pairs(const Field& f, bool advancing, Tally& t) {
     Packed p;
     Progress at{};
     at.done = f.begin;
     const typename Kernel::Laws laws(f.constants.laws);
     const std::int32_t batches = f.inner_count / width;
     for (bool last = false; !last;) {
-        sift<Kernel>(f, batches, p, at);
+        sift<Kernel, streams>(f, batches, p, at);
         last = at.packed < tile;
         if (last) fill_up(f, p, at.packed);
         const int full = (last ? at.packed + width - 1 : at.packed) / width;
-        meet<Kernel>(f, laws, p, full, at.met, t);
+        meet<Kernel, streams>(f, laws, p, full, at.met, t);
         scatter<Kernel>(f, p, full);
         at.met += full * width;
         at.packed = last ? 0 : at.packed - full * width;
-        keep_rest(p, full * width);
+        keep_rest<Kernel, streams>(p, full * width);
         if (!advancing) continue;
         // pairs still to come begin with the first one left over, or the next one listed
         const Place next = at.packed > 0 ? p.first[0] : f.inner_first[static_cast<std::int64_t>(at.batch) * width];
@@ -340,6 +352,16 @@ void sweep(const Field& f, bool advancing, Tally& t) {
         advance_range<Kernel>(f, at.done, until, t);
         at.done = until;
     }
+    if constexpr (streams) flush_streams();
+}
+
+template <class Kernel>
+void sweep(const Field& f, bool advancing, Tally& t) {
+    const auto denormals = flush_denormals();
+    if (Kernel::histories > 0 && f.streams != 0)
+        sweep_pairs<Kernel, (Kernel::histories > 0)>(f, advancing, t);
+    else
+        sweep_pairs<Kernel, false>(f, advancing, t);
     restore_denormals(denormals);
 }
 
