@@ -19,7 +19,7 @@ namespace grainsweep {
 namespace {
 
 /// Half of the particles on average, until Beverloo's law has let out what is asked for, or to the end.
-double estimate_cost(const Inputs& inputs) {
+double cost_of_discharge(const Inputs& inputs) {
     const auto s = hopper::study_of(inputs);
     const double n = static_cast<double>(s.particles);
     const double rate = observables::beverloo_rate(s.opening, s.diameter, 0.57, s.gravity);
@@ -49,7 +49,7 @@ SceneInfo hopper_scene() {
         return std::make_unique<hopper::Experiment>(hopper::study_of(inputs, &files), seed,
                                                     hopper::question::powder.method(inputs));
     };
-    info.estimate_cost = estimate_cost;
+    info.estimate_cost = cost_of_discharge;
     info.warnings = hopper::warnings_of;
     info.proven_answer = [](const Inputs&) -> std::optional<ProvenAnswer> { return std::nullopt; };
     return info;

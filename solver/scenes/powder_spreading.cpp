@@ -32,7 +32,7 @@ Pace pace_of(const dem::Method& method) {
     }
 }
 
-double estimate_cost(const Inputs& inputs) {
+double cost_of_spreading(const Inputs& inputs) {
     const auto s = spreading::study_of(inputs);
     const auto [settling, sweeping] = pace_of(spreading::question::powder.method(inputs));
     const double each = settling * static_cast<double>(s.settle_steps) + sweeping * static_cast<double>(s.sweep_steps);
@@ -71,7 +71,7 @@ SceneInfo powder_spreading_scene() {
         return std::make_unique<spreading::Experiment>(spreading::study_of(inputs, &files), seed,
                                                        spreading::question::powder.method(inputs), artefacts);
     };
-    info.estimate_cost = estimate_cost;
+    info.estimate_cost = cost_of_spreading;
     info.warnings = spreading::warnings_of;
     // No gap is proven to pass nothing over the whole range of stiffness, cohesion and speed: soft particles are
     // squeezed through gaps below their diameter.

@@ -213,7 +213,7 @@ std::unique_ptr<Scene> make(const Inputs& inputs, std::uint64_t seed, Artefacts&
 // ms per fluid step, half of that on half the grid; 0.4 ms per sweep of the particles; 1 ms to spread their force on
 // the fluid; for their volume and contacts 0.9 ms more per 3150 particles, and 7 ms (ddpm) or 2.5 ms (cfd_dem) on the
 // grid.
-double estimate_cost(const Inputs& inputs) {
+double cost_of_vibration(const Inputs& inputs) {
     const Question question(inputs);
     const double size = static_cast<double>(question.cells) / 40;
     const double cube = size * size * size * (0.7 + 0.3 * size);
@@ -259,7 +259,7 @@ SceneInfo thermovibration_scene() {
     info.accuracy = {
         {"fast", accuracy(20, 1.5, 16)}, {"balanced", accuracy(28, 1.5, 24)}, {"reference", accuracy(48, 1.5, 64)}};
     info.maker = make;
-    info.estimate_cost = estimate_cost;
+    info.estimate_cost = cost_of_vibration;
     info.warnings = thermovibration::warnings_of;
     info.proven_answer = proven_answer;
     return info;

@@ -291,7 +291,7 @@ Snapshot TpmsDischarge::snapshot() const {
 }
 
 /// Processor seconds: particle steps of the mobile spheres on average in the box, and the packing.
-double estimate_cost(const Inputs& inputs) {
+double cost_of_cell(const Inputs& inputs) {
     const TpmsQuestion question(inputs, 1);
     const double spheres = 1.18 * std::pow(question.edge, 3);
     const double steps = question.end_time * question.free_fall_time() / question.time_step;
@@ -331,7 +331,7 @@ SceneInfo tpms_discharge_scene() {
             std::numbers::pi / 6 * static_cast<double>(packing.positions.size()) / std::pow(question.edge, 3);
         return std::make_unique<TpmsDischarge>(question, filling, outlet, fraction);
     };
-    info.estimate_cost = estimate_cost;
+    info.estimate_cost = cost_of_cell;
     info.warnings = tpms_discharge_warnings;
     info.proven_answer = [](const Inputs&) -> std::optional<ProvenAnswer> { return std::nullopt; };
     return info;

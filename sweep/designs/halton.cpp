@@ -41,7 +41,7 @@ std::vector<RadicalInverse> inverses_of(const DesignRequest& request, std::uint6
     return inverses;
 }
 
-PointSet sample(const DesignRequest& request) {
+PointSet halton_points(const DesignRequest& request) {
     const auto sequences = static_cast<std::size_t>(request.count("sequences"));
     if (sequences > 1 && request.word("scramble") != "random")
         throw std::invalid_argument("several sequences need \"scramble\": \"random\": '" + request.word("scramble") +
@@ -99,7 +99,7 @@ DesignInfo halton_design() {
         .extends = true,
         .independent_sequences = true,
         .size = points_asked,
-        .sample = sample};
+        .sample = halton_points};
 }
 
 }  // namespace grainsweep::designs

@@ -9,7 +9,7 @@
 namespace grainsweep::designs {
 namespace {
 
-PointSet sample(const DesignRequest& request) {
+PointSet latin_hypercube_points(const DesignRequest& request) {
     const std::int64_t points = request.count("points");
     const std::size_t d = request.dimensions();
     PointSet set{.dimensions = d, .sequences = 1, .coordinates = room_for(points, d), .rows = {}};
@@ -38,7 +38,7 @@ DesignInfo latin_hypercube_design() {
             .extends = false,
             .independent_sequences = false,
             .size = points_asked,
-            .sample = sample};
+            .sample = latin_hypercube_points};
 }
 
 }  // namespace grainsweep::designs

@@ -66,7 +66,7 @@ std::int64_t size(const DesignRequest& request) {
     return product_of(levels_of(request));
 }
 
-PointSet sample(const DesignRequest& request) {
+PointSet lattice_points(const DesignRequest& request) {
     const std::size_t d = request.dimensions();
     const auto levels = levels_of(request);
     const std::int64_t points = product_of(levels);
@@ -114,7 +114,7 @@ DesignInfo lattice_design() {
             .independent_sequences = false,
             .beginning = Beginning::corner,
             .size = size,
-            .sample = sample};
+            .sample = lattice_points};
 }
 
 }  // namespace grainsweep::designs

@@ -13,7 +13,7 @@ const Rows& rows_of(const DesignRequest& request) {
     return *rows;
 }
 
-PointSet sample(const DesignRequest& request) {
+PointSet listed_points(const DesignRequest& request) {
     const Rows& rows = rows_of(request);
     for (std::size_t p = 0; p < rows.size(); ++p) {
         const std::size_t width = rows[p].size();
@@ -45,7 +45,7 @@ DesignInfo list_design() {
             .independent_sequences = false,
             .beginning = Beginning::listed,
             .size = [](const DesignRequest& request) { return static_cast<std::int64_t>(rows_of(request).size()); },
-            .sample = sample};
+            .sample = listed_points};
 }
 
 }  // namespace grainsweep::designs

@@ -19,7 +19,7 @@ std::int64_t size(const DesignRequest& request) {
     return request.count("trajectories") * static_cast<std::int64_t>(block_of(request.dimensions()));
 }
 
-PointSet sample(const DesignRequest& request) {
+PointSet morris_points(const DesignRequest& request) {
     const std::int64_t trajectories = request.count("trajectories");
     const std::int64_t grid = request.count("grid");
     if (grid % 2 != 0)
@@ -79,7 +79,7 @@ DesignInfo morris_design() {
         .purpose = Purpose::morris,
         .size = size,
         .block = block_of,
-        .sample = sample};
+        .sample = morris_points};
 }
 
 }  // namespace grainsweep::designs

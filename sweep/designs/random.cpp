@@ -5,7 +5,7 @@
 namespace grainsweep::designs {
 namespace {
 
-PointSet sample(const DesignRequest& request) {
+PointSet random_points(const DesignRequest& request) {
     const std::int64_t points = request.count("points");
     const std::size_t d = request.dimensions();
     PointSet set{.dimensions = d, .sequences = 1, .coordinates = room_for(points, d), .rows = {}};
@@ -32,7 +32,7 @@ DesignInfo random_design() {
             .independent_sequences = false,
             .independent_points = true,
             .size = points_asked,
-            .sample = sample};
+            .sample = random_points};
 }
 
 }  // namespace grainsweep::designs

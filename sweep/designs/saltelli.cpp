@@ -22,7 +22,7 @@ std::int64_t size(const DesignRequest& request) {
     return request.count("base_points") * static_cast<std::int64_t>(block_of(request.dimensions()));
 }
 
-PointSet sample(const DesignRequest& request) {
+PointSet saltelli_points(const DesignRequest& request) {
     const std::int64_t base_rows = request.count("base_points");
     const std::size_t d = request.dimensions();
     const std::size_t block = block_of(d);
@@ -67,7 +67,7 @@ DesignInfo saltelli_design() {
             .purpose = Purpose::saltelli,
             .size = size,
             .block = block_of,
-            .sample = sample};
+            .sample = saltelli_points};
 }
 
 }  // namespace grainsweep::designs
