@@ -79,7 +79,7 @@ build_program() {
     local tests=OFF
     [ -e "$here/build/tests" ] && tests=ON
     (cd "$here" && configure release -DGRAINSWEEP_TESTS=$tests)
-    [ -x "$here/build/grainsweep" ] || echo "building (about two minutes on two cores)" >&2
+    [ -x "$here/build/grainsweep" ] || echo "building (about four minutes on two cores)" >&2
     quiet "building" cmake --build "$here/build" -j "$jobs" --target grainsweep command_documents
 }
 
@@ -102,11 +102,22 @@ test)
     install_missing "${program_packages[@]}" "${test_packages[@]}"
     (cd "$here" && configure release -DGRAINSWEEP_TESTS=ON)
     cmake --build "$here/build" -j "$jobs"
-    (cd "$here" && ctest --preset release -j "$jobs" -LE slow)
-    # The unit tests once more under the address and undefined-behaviour sanitizers, in parts that even out; a few that fit
-    # hundreds of models, up to a minute each there, walk paths that others walk, too.
+    # The tests wait a lot, for signals and for limits of time: what they leave of the processor builds the unit tests once
+    # more, under the address and undefined-behaviour sanitizers.
     (cd "$here" && configure sanitize -DGRAINSWEEP_TESTS=ON)
-    cmake --build "$here/build-sanitize" -j "$jobs" --target test_unit
+    sanitized=$(mktemp)
+    nice -n 10 ninja -C "$here/build-sanitize" -j "$jobs" test_unit >"$sanitized" 2>&1 &
+    building=$!
+    trap 'kill "$building" 2>/dev/null || true' EXIT
+    (cd "$here" && ctest --preset release -j "$jobs" -LE slow)
+    if ! wait "$building"; then
+        cat "$sanitized" >&2
+        exit 1
+    fi
+    trap - EXIT
+    rm -f "$sanitized"
+    # They run in parts that even out; a few that fit hundreds of models, up to a minute each there, walk paths that others
+    # walk, too.
     many_fits=ResponseModel.LearnsKnownFunctions:ResponseModel.ALearnedMapFindsTheDirectionThatMatters
     many_fits+=:ModelIndices.IshigamiFromFewerPointsThanADesignForIt
     many_fits+=:CalibrationWaves.ACurveOfManyPointsIsNoMoreCertainThanWhatItLeavesOut
