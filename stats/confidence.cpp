@@ -1,10 +1,12 @@
 #include "stats/confidence.hpp"
 
 #include <boost/math/distributions/students_t.hpp>
+#include <boost/math/special_functions/erf.hpp>
 
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numbers>
 
 namespace grainsweep::stats {
 namespace {
@@ -22,7 +24,19 @@ double squared_deviations(std::span<const double> values) {
 
 double student_factor(std::int64_t freedom) {
     if (freedom < 1) return std::numeric_limits<double>::quiet_NaN();
-    return boost::math::quantile(boost::math::students_t(static_cast<double>(freedom)), 0.975);
+    return student_quantile(static_cast<double>(freedom), 0.975);
+}
+
+double student_quantile(double freedom, double probability) {
+    return boost::math::quantile(boost::math::students_t(freedom), probability);
+}
+
+double student_probability(double freedom, double quantile) {
+    return boost::math::cdf(boost::math::students_t(freedom), quantile);
+}
+
+double normal_quantile(double probability) {
+    return -std::numbers::sqrt2 * boost::math::erfc_inv(2 * probability);
 }
 
 double student_half_width(std::span<const double> values) {

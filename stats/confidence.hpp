@@ -9,6 +9,13 @@ namespace grainsweep::stats {
 /// t_{freedom, 0.975}: half-widths in standard errors. NaN below one degree of freedom.
 [[nodiscard]] double student_factor(std::int64_t freedom);
 
+/// Quantile of Student's distribution of `freedom` > 0 degrees, finite; probability in (0, 1).
+[[nodiscard]] double student_quantile(double freedom, double probability);
+/// Its distribution function.
+[[nodiscard]] double student_probability(double freedom, double quantile);
+/// Quantile of the normal distribution of mean 0 and standard deviation 1; probability in (0, 1).
+[[nodiscard]] double normal_quantile(double probability);
+
 /// Student-t 95 % half-width of the mean of independent, equally distributed values:
 /// t_{R-1, 0.975} s / sqrt(R), s with divisor R - 1. NaN for fewer than two values or any NaN.
 [[nodiscard]] double student_half_width(std::span<const double> values);

@@ -2,8 +2,7 @@
 
 #include "stats/confidence.hpp"
 #include "stats/response/state.hpp"
-
-#include <boost/random/sobol.hpp>
+#include "stats/sobol_sequence.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -29,11 +28,9 @@ struct Base {
 };
 
 Base base_of(std::size_t d) {
-    boost::random::sobol sequence(2 * d);
+    SobolSequence sequence(2 * d);
     Base base{{}, {}, d};
-    const auto next = [&] {
-        return static_cast<double>(sequence()) / static_cast<double>(boost::random::sobol::max());
-    };
+    const auto next = [&] { return sequence.next_fraction(); };
     for (std::size_t j = 0; j < 2 * d; ++j) (void)next();
     for (std::size_t i = 0; i < base_points; ++i) {
         for (std::size_t j = 0; j < d; ++j) base.a.push_back(next());

@@ -1,8 +1,7 @@
 #include "stats/process_window.hpp"
 
-#include <boost/math/distributions/students_t.hpp>
-#include <boost/math/special_functions/erf.hpp>
-#include <boost/random/sobol.hpp>
+#include "stats/confidence.hpp"
+#include "stats/sobol_sequence.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +30,7 @@ double spread(const Prediction& p, Judged judged) {
 /// Distribution function of a prediction in its standard errors: Student's, normal where freedom is infinite.
 double cdf(double u, double freedom) {
     if (std::isinf(u)) return u > 0 ? 1 : 0;
-    return std::isfinite(freedom) ? boost::math::cdf(boost::math::students_t(freedom), u) : normal_cdf(u);
+    return std::isfinite(freedom) ? student_probability(freedom, u) : normal_cdf(u);
 }
 
 /// P(low <= y <= high) of a prediction; a certain one is inside or it is not.
@@ -118,14 +117,13 @@ std::vector<double> probability_within(std::span<const ModelAt> models, std::spa
 /// By Sobol points, cells centred.
 SampledErrors::SampledErrors(std::span<const double> freedom) : models_(freedom.size()) {
     if (freedom.empty()) throw std::invalid_argument("process window: no model");
-    boost::random::sobol sequence(models_);
-    const double cells = static_cast<double>(boost::random::sobol::max()) + 1;
+    SobolSequence sequence(models_);
+    constexpr double cells = 0x1p64;
     for (std::size_t i = 0; i < integration_points * models_; ++i) {
-        const double drawn = (static_cast<double>(sequence()) + 0.5 * cells / integration_points) / cells;
+        const double drawn = (static_cast<double>(sequence.next()) + 0.5 * cells / integration_points) / cells;
         const double u = std::min(drawn, 1 - 0x1p-53);
         const double f = freedom[i % models_];
-        errors_.push_back(std::isfinite(f) ? boost::math::quantile(boost::math::students_t(f), u)
-                                           : -std::numbers::sqrt2 * boost::math::erfc_inv(2 * u));
+        errors_.push_back(std::isfinite(f) ? student_quantile(f, u) : normal_quantile(u));
     }
 }
 

@@ -4,8 +4,6 @@
 #include "stats/response/fit.hpp"
 #include "stats/response/state.hpp"
 
-#include <boost/math/distributions/students_t.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -65,14 +63,10 @@ std::optional<Refusal> reason_to_refuse(Rows points, std::span<const double> val
     return std::nullopt;
 }
 
-double student_quantile(std::int64_t freedom, double probability) {
-    return boost::math::quantile(boost::math::students_t(static_cast<double>(freedom)), probability);
-}
-
 /// Half-width of a 95 % interval in standard errors.
 double half_width_factor(double freedom) {
     if (!std::isfinite(freedom)) return 1.959963984540054;
-    return boost::math::quantile(boost::math::students_t(freedom), 0.975);
+    return student_quantile(freedom, 0.975);
 }
 
 /// Leave-one-out figures and the local noise, which rests on them.
@@ -87,7 +81,7 @@ void assess(ResponseModel::State& state) {
     q.rests_on = static_cast<std::size_t>(k.size());
     const double spread = std::sqrt((k.values.array() - k.values.mean()).square().mean());
     q.leave_one_out_error = std::sqrt(out.residual.array().square().mean()) / spread;
-    q.coverage_50 = (scores < student_quantile(state.noise.freedom(), 0.75)).cast<double>().mean();
+    q.coverage_50 = (scores < student_quantile(static_cast<double>(state.noise.freedom()), 0.75)).cast<double>().mean();
     q.coverage_95 = (scores < student_factor(state.noise.freedom())).cast<double>().mean();
     q.noise_share = std::min(1.0, k.h.noise() * local.mean() / (spread * spread));
     q.learned_map = !k.h.shear.isIdentity(0);

@@ -2,9 +2,9 @@
 
 #include "stats/random.hpp"
 #include "stats/response/kriging.hpp"
+#include "stats/sobol_sequence.hpp"
 
 #include <nlopt.h>
-#include <boost/random/sobol.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -81,12 +81,12 @@ std::vector<Eigen::VectorXd> starting_points(Eigen::Index d, std::size_t count) 
     high(d) = 2;
     low(d + 1) = std::log(0.001);
     high(d + 1) = std::log(0.3);
-    boost::random::sobol sequence(static_cast<std::size_t>(size));
+    SobolSequence sequence(static_cast<std::size_t>(size));
     std::vector<Eigen::VectorXd> points;
     for (std::size_t s = 0; s < count; ++s) {
         Eigen::VectorXd at(size);
         for (Eigen::Index j = 0; j < size; ++j) {
-            const double u = static_cast<double>(sequence()) / static_cast<double>(boost::random::sobol::max());
+            const double u = sequence.next_fraction();
             at(j) = low(j) + u * (high(j) - low(j));
         }
         points.push_back(std::move(at));

@@ -5,9 +5,8 @@
 // random: Owen's (1995) nested uniform scrambling. Binary digit l is flipped by a random bit addressed by
 // (seed, sequence, factor, the digits before it), so points extend and sequences are independent.
 #include "stats/random.hpp"
+#include "stats/sobol_sequence.hpp"
 #include "sweep/designs/kinds.hpp"
-
-#include <boost/random/sobol.hpp>
 
 #include <stdexcept>
 
@@ -29,14 +28,14 @@ std::uint64_t owen_scrambled(std::uint64_t fraction, std::uint64_t key) {
     return scrambled;
 }
 
-PointSet sample(const DesignRequest& request) {
+PointSet sobol_points(const DesignRequest& request) {
     const auto sequences = static_cast<std::size_t>(request.count("sequences"));
     const bool random = request.word("scramble") == "random";
     if (sequences > 1 && !random)
         throw std::invalid_argument(
             "several sequences need \"scramble\": \"random\": unscrambled ones are all the same");
     const std::size_t d = request.dimensions();
-    constexpr std::size_t most = boost::random::default_sobol_table::max_dimension;
+    const std::size_t most = stats::SobolSequence::most_dimensions();
     if (d > most)
         throw std::invalid_argument("there are direction numbers for " + std::to_string(most) + " factors, not " +
                                     std::to_string(d));
@@ -47,12 +46,12 @@ PointSet sample(const DesignRequest& request) {
     for (std::size_t s = 0; s < sequences; ++s)
         for (std::size_t j = 0; j < d; ++j) keys[s * d + j] = draw_key(request.seed, DrawPurpose::sobol, s, j);
 
-    boost::random::sobol engine(d);  // starts behind the point of index 0
+    stats::SobolSequence engine(d);  // starts behind the point of index 0
     std::vector<std::uint64_t> fractions(d, 0);
     for (std::size_t p = 0; p < set.size(); ++p) {
         const std::size_t sequence = p % sequences;
         if (p >= sequences && sequence == 0)
-            for (auto& fraction : fractions) fraction = engine() >> (64U - digits);
+            for (auto& fraction : fractions) fraction = engine.next() >> (64U - digits);
         for (std::size_t j = 0; j < d; ++j) {
             const std::uint64_t x = random ? owen_scrambled(fractions[j], keys[sequence * d + j]) : fractions[j];
             set.coordinates[p * d + j] = static_cast<double>(x) * 0x1.0p-53;
@@ -88,7 +87,7 @@ DesignInfo sobol_design() {
             .extends = true,
             .independent_sequences = true,
             .size = points_asked,
-            .sample = sample};
+            .sample = sobol_points};
 }
 
 }  // namespace grainsweep::designs

@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
-#include <regex>
 #include <span>
+#include <string_view>
 #include <system_error>
 
 namespace grainsweep::report {
@@ -47,9 +47,13 @@ void VtkSeries::begin() {
     if (error) throw store::BrokenWorld(fmt::format("cannot make {}: {}", folder_.string(), error.message()));
     std::ifstream stream(collection(), std::ios::binary);
     const std::string older{std::istreambuf_iterator<char>(stream), {}};
-    const std::regex entry("file=\"([^\"/]+\\.vt[pir])\"");
-    for (std::sregex_iterator found(older.begin(), older.end(), entry), end; found != end; ++found) {
-        const std::string file = (*found)[1];
+    constexpr std::string_view before = "file=\"";
+    for (std::size_t at = older.find(before); at != std::string::npos; at = older.find(before, at)) {
+        at += before.size();
+        const std::size_t end = older.find_first_of("\"/", at);
+        if (end == std::string::npos || older[end] != '"') continue;
+        const std::string file = older.substr(at, end - at);
+        if (!file.ends_with(".vtp") && !file.ends_with(".vti") && !file.ends_with(".vtr")) continue;
         const bool own = std::filesystem::is_regular_file(std::filesystem::symlink_status(folder_ / file, error));
         if (own && file.starts_with(name_ + "_")) std::filesystem::remove(folder_ / file, error);
     }
