@@ -116,13 +116,17 @@ test)
     fi
     trap - EXIT
     rm -f "$sanitized"
-    # They run in parts that even out; a few that fit hundreds of models, up to a minute each there, walk paths that others
-    # walk, too.
-    many_fits=ResponseModel.LearnsKnownFunctions:ResponseModel.ALearnedMapFindsTheDirectionThatMatters
-    many_fits+=:ModelIndices.IshigamiFromFewerPointsThanADesignForIt
-    many_fits+=:CalibrationWaves.ACurveOfManyPointsIsNoMoreCertainThanWhatItLeavesOut
-    many_fits+=:CalibrationWaves.TargetsThatContradictEachOtherOrLieOutOfReachAreKnown
-    export GTEST_FILTER=-$many_fits GTEST_TOTAL_SHARDS=$((8 * jobs))
+    # They run in parts that even out; those that fit models by the hundred or write large pages, up to a minute each
+    # there, walk paths that others walk, too.
+    long=ResponseModel.LearnsKnownFunctions:ResponseModel.ALearnedMapFindsTheDirectionThatMatters
+    long+=:ModelIndices.IshigamiFromFewerPointsThanADesignForIt
+    long+=:CalibrationWaves.ACurveOfManyPointsIsNoMoreCertainThanWhatItLeavesOut
+    long+=:CalibrationWaves.TargetsThatContradictEachOtherOrLieOutOfReachAreKnown
+    long+=:CalibrationWaves.ScatterOfRunsWidensThePosterior:CalibrationWaves.OfLinearResponsesHasTheGaussianPosterior
+    long+=:CalibrationWaves.KeepsAwayFromWhereCasesFail:CalibrationWaves.EveryTargetIsAskedUnderItsOwnCondition
+    long+=:Page.SaysWhereWhiskersComeFromAndWhatIsUnexplained:Page.HoldsEveryCaseAsItIsStored
+    long+=:Study.ScatterOfBinnedMeansIsNoBend:Study.MainEffectsOfASampleCoverTheTruthAsOftenAsTheySay
+    export GTEST_FILTER=-$long GTEST_TOTAL_SHARDS=$((8 * jobs))
     seq 0 $((8 * jobs - 1)) | xargs -P "$jobs" -I '{}' \
         env 'GTEST_SHARD_INDEX={}' "$here/build-sanitize/tests/test_unit" --gtest_brief=1
     ;;

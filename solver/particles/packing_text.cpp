@@ -2,9 +2,9 @@
 #include "solver/bytes.hpp"
 #include "solver/particles/near_pairs.hpp"
 #include "solver/particles/packing.hpp"
+#include "solver/plain_text.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -23,19 +23,6 @@ struct PackingHeader {
     std::uint64_t count = 0;
 };
 
-std::string shortest(double x) {
-    std::array<char, 32> text{};
-    const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), x);
-    return {text.data(), end};
-}
-
-std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view blank = " \t\r";
-    const auto first = text.find_first_not_of(blank);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(blank) - first + 1);
-}
-
 [[noreturn]] void refuse(std::size_t line, const std::string& what) {
     throw std::invalid_argument("packing, line " + std::to_string(line) + ": " + what);
 }
@@ -46,9 +33,9 @@ std::optional<std::array<double, 3>> three_numbers(std::string_view line) {
     for (std::size_t k = 0; k < 3; ++k) {
         const auto comma = k < 2 ? line.find(',') : line.size();
         if (comma == std::string_view::npos) return std::nullopt;
-        const std::string_view word = trimmed(line.substr(0, comma));
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x[k]);
-        if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
+        const auto number = any_number_in(trimmed(line.substr(0, comma)));
+        if (!number) return std::nullopt;
+        x[k] = *number;
         line.remove_prefix(std::min(comma + 1, line.size()));
     }
     return x;
@@ -57,9 +44,9 @@ std::optional<std::array<double, 3>> three_numbers(std::string_view line) {
 }  // namespace
 
 std::string packing_key(const PackingRequest& request) {
-    return "packing\nalgorithm=" + std::to_string(algorithm_revision) + "\nedge=" + shortest(request.edge) +
-           "\nfraction=" + shortest(request.fraction) + "\nseed=" + std::to_string(request.seed) +
-           "\ntolerance=" + shortest(request.tolerance) + "\n";
+    return "packing\nalgorithm=" + std::to_string(algorithm_revision) + "\nedge=" + shortest_text(request.edge) +
+           "\nfraction=" + shortest_text(request.fraction) + "\nseed=" + std::to_string(request.seed) +
+           "\ntolerance=" + shortest_text(request.tolerance) + "\n";
 }
 
 std::vector<std::byte> encode(const Packing& packing) {
@@ -106,7 +93,7 @@ Packing read_packing(std::string_view csv, double edge) {
         if (!x) refuse(number, "'" + std::string(line.substr(0, 60)) + "' is not three numbers with commas between");
         for (const double c : *x)
             if (!(c >= 0 && c < edge))
-                refuse(number, "a centre at " + shortest(c) + " is outside the cube of " + shortest(edge) +
+                refuse(number, "a centre at " + shortest_text(c) + " is outside the cube of " + shortest_text(edge) +
                                    " diameters (coordinates are in diameters)");
         packing.positions.push_back(*x);
         line_of.push_back(number);
@@ -117,7 +104,7 @@ Packing read_packing(std::string_view csv, double edge) {
     for_each_near_pair(packing.positions, 1, [&](std::size_t i, std::size_t j, double r) {
         if (1 - r > most_overlap)
             refuse(line_of[j], "the sphere overlaps that of line " + std::to_string(line_of[i]) + " by " +
-                                   shortest(1 - r) + " diameters; at most 0.05 is allowed");
+                                   shortest_text(1 - r) + " diameters; at most 0.05 is allowed");
         packing.largest_overlap = std::max(packing.largest_overlap, 1 - r);
     });
     return packing;

@@ -1,10 +1,10 @@
 #include "solver/particles/size_table.hpp"
 
+#include "solver/plain_text.hpp"
+
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -28,32 +28,11 @@ struct Line {
     double diameter = 0, fraction = 0;
 };
 
-std::string shortest(double x) {
-    std::array<char, 32> text{};
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), x).ptr;
-    return {text.data(), end};
-}
-
 [[noreturn]] void refuse(const std::string& what) {
     throw std::invalid_argument("sizes" + what);
 }
 [[noreturn]] void refuse(std::size_t line, const std::string& what) {
     refuse(", line " + std::to_string(line) + ": " + what);
-}
-
-std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view blank = " \t\r";
-    const auto first = text.find_first_not_of(blank);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(blank) - first + 1);
-}
-
-std::optional<double> number(std::string_view word) {
-    word = trimmed(word);
-    double x = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
-    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(x)) return std::nullopt;
-    return x;
 }
 
 const Header& header_of(std::string_view line) {
@@ -70,17 +49,17 @@ const Header& header_of(std::string_view line) {
 
 Line line_of(std::string_view text, std::size_t at, const std::vector<Line>& before) {
     const auto comma = std::min(text.find(','), text.size());
-    const auto diameter = number(text.substr(0, comma));
-    const auto fraction = number(text.substr(std::min(comma + 1, text.size())));
+    const auto diameter = number_in(trimmed(text.substr(0, comma)));
+    const auto fraction = number_in(trimmed(text.substr(std::min(comma + 1, text.size()))));
     if (!diameter || !fraction)
         refuse(at, "'" + std::string(text.substr(0, 60)) + "' is not two numbers with a comma between");
     if (!(*diameter >= smallest_diameter && *diameter <= largest_diameter))
-        refuse(at, "a diameter of " + shortest(*diameter) + " lies outside 1e-8 to 0.1 m (diameters are in m)");
+        refuse(at, "a diameter of " + shortest_text(*diameter) + " lies outside 1e-8 to 0.1 m (diameters are in m)");
     if (!before.empty() && !(*diameter > before.back().diameter))
-        refuse(at, "diameters must grow from line to line, and " + shortest(*diameter) + " follows " +
-                       shortest(before.back().diameter));
+        refuse(at, "diameters must grow from line to line, and " + shortest_text(*diameter) + " follows " +
+                       shortest_text(before.back().diameter));
     if (!(*fraction >= 0 && *fraction <= 1 + tolerance))
-        refuse(at, "a share of " + shortest(*fraction) + " lies outside 0 to 1");
+        refuse(at, "a share of " + shortest_text(*fraction) + " lies outside 0 to 1");
     return {*diameter, *fraction};
 }
 
@@ -90,8 +69,8 @@ double total_of(const Header& header, const std::vector<Line>& lines) {
     for (std::size_t k = 0; k < lines.size(); ++k) {
         sum += header.cumulative ? 0 : lines[k].fraction;
         if (header.cumulative && k > 0 && lines[k].fraction < lines[k - 1].fraction)
-            refuse(": shares below a diameter must not fall, and " + shortest(lines[k].fraction) + " follows " +
-                   shortest(lines[k - 1].fraction));
+            refuse(": shares below a diameter must not fall, and " + shortest_text(lines[k].fraction) + " follows " +
+                   shortest_text(lines[k - 1].fraction));
     }
     if (!header.cumulative) return sum;
     if (lines.size() < 2 || lines.front().fraction != 0)
@@ -133,7 +112,7 @@ SizeTable SizeTable::read(std::string_view csv) {
     }
     if (header == nullptr || lines.empty()) refuse(": there is no diameter");
     const double total = total_of(*header, lines);
-    if (std::abs(total - 1) > tolerance) refuse(": the shares add up to " + shortest(total) + ", not to 1");
+    if (std::abs(total - 1) > tolerance) refuse(": the shares add up to " + shortest_text(total) + ", not to 1");
 
     SizeTable table;
     const Even even = header->by_volume ? Even::volume : Even::number;

@@ -1,5 +1,6 @@
 // "calibration": what was measured, under which conditions. Takes the place of "design": conditions become factors with
 // levels, and the waves are a design of their own.
+#include "solver/plain_text.hpp"
 #include "sweep/campaign/csv_text.hpp"
 #include "sweep/campaign/sections.hpp"
 #include "sweep/campaign/wrong_question.hpp"
@@ -9,7 +10,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -59,13 +59,11 @@ std::map<std::string, std::size_t> read_condition(const Cursor& inputs, Paramete
 }
 
 double number_in(const Cursor& file, std::size_t record, const std::string& cell) {
-    double x = 0;
-    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), x);
-    if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(x))
-        file.refuse(fmt::format("record {} has {} where a number is expected", record, shown(cell)));
-    if (std::abs(x) > largest)
+    const auto x = grainsweep::number_in(cell);
+    if (!x) file.refuse(fmt::format("record {} has {} where a number is expected", record, shown(cell)));
+    if (std::abs(*x) > largest)
         file.refuse(fmt::format("record {} has {}; a number of at most {} is expected", record, cell, largest));
-    return x;
+    return *x;
 }
 
 /// Lines "where,value[,error]" below a header; a target for each.

@@ -1,19 +1,11 @@
 #include "sweep/campaign/csv_record.hpp"
 
+#include "solver/plain_text.hpp"
+
 #include <algorithm>
 #include <cstddef>
 
 namespace grainsweep::campaign {
-
-namespace {
-
-std::string_view trimmed(std::string_view cell) {
-    constexpr std::string_view blank = " \t";
-    const auto first = cell.find_first_not_of(blank);
-    return first == std::string_view::npos ? "" : cell.substr(first, cell.find_last_not_of(blank) - first + 1);
-}
-
-}  // namespace
 
 CsvRecord take_csv_record(std::string_view& rest) {
     CsvRecord record(1);

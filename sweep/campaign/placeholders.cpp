@@ -1,5 +1,7 @@
 #include "sweep/campaign/placeholders.hpp"
 
+#include "solver/plain_text.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,12 +16,6 @@ bool is_letter(char c) {
 
 bool is_word_sign(char c) {
     return is_letter(c) || (c >= '0' && c <= '9');
-}
-
-std::string_view trimmed(std::string_view text) {
-    const auto first = text.find_first_not_of(" \t");
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
 /// The name that begins the text and ends before `end`; empty: none.

@@ -1,6 +1,7 @@
 #include "sweep/designs/calibration.hpp"
 
 #include "stats/calibration.hpp"
+#include "stats/several_responses.hpp"
 #include "sweep/designs/kinds.hpp"
 
 #include <algorithm>
@@ -128,7 +129,10 @@ private:
         for (std::size_t t = 0; t < result_.targets.size(); ++t) {
             for (std::size_t i = 0; i < rows; ++i) values_[t].push_back(*answer(t, i));
             for (std::size_t i = 0; i < values_[t].size(); ++i) failed[i] = failed[i] || !std::isfinite(values_[t][i]);
-            auto fitted = stats::fit_response({result_.settings, d_}, values_[t]);
+        }
+        auto fits = stats::fit_responses({result_.settings, d_}, values_);
+        for (std::size_t t = 0; t < result_.targets.size(); ++t) {
+            auto& fitted = fits[t];
             if (auto* model = std::get_if<stats::ResponseModel>(&fitted)) {
                 wave.model_error.push_back(model->quality().leave_one_out_error);
                 wave.refusals.emplace_back();

@@ -1,5 +1,6 @@
 #include "sweep/designs/measured_targets.hpp"
 
+#include "solver/plain_text.hpp"
 #include "sweep/designs/curve_place.hpp"
 
 #include <algorithm>
@@ -11,15 +12,7 @@
 #include <utility>
 
 namespace grainsweep::designs {
-namespace {
-
-std::string shortest_text(double x) {
-    std::array<char, 32> text{};
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), x).ptr;
-    return {text.data(), end};
-}
-
-}  // namespace
+namespace {}  // namespace
 
 std::vector<double> covariance_of(std::span<const MeasuredTarget> targets) {
     const std::size_t m = targets.size();
@@ -66,10 +59,9 @@ std::vector<MeasuredTarget> targets_in(std::string_view text) {
         words >> target.observable >> numbers[0] >> numbers[1] >> numbers[2];
         double* const fields[] = {&target.value, &target.error, &target.discrepancy};
         for (std::size_t k = 0; k < numbers.size(); ++k) {
-            const auto& word = numbers[k];
-            const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), *fields[k]);
-            if (error != std::errc{} || end != word.data() + word.size())
-                throw std::invalid_argument("a target is no measurement: '" + one + "'");
+            const auto number = any_number_in(numbers[k]);
+            if (!number) throw std::invalid_argument("a target is no measurement: '" + one + "'");
+            *fields[k] = *number;
         }
         for (std::string word; words >> word;) {
             const bool curve = word.starts_with('#');

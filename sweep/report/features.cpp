@@ -1,11 +1,11 @@
 #include "sweep/report/features.hpp"
 
+#include "solver/plain_text.hpp"
 #include "sweep/store/expression.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -16,13 +16,6 @@ namespace {
 
 constexpr std::string_view features_path = "$.model.features";
 constexpr double logarithm_from = 2.5;  // high/low
-
-std::optional<double> number_in(std::string_view text) {
-    double number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(number)) return std::nullopt;
-    return number;
-}
 
 /// The levels as numbers, exact where the identity of the campaign has them; none where one is a word.
 std::optional<std::vector<double>> numbers_of(const FactorColumn& column, const campaign::StatedFactor& stated) {

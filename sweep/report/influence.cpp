@@ -1,5 +1,6 @@
 #include "sweep/report/influence.hpp"
 
+#include "solver/plain_text.hpp"
 #include "stats/confidence.hpp"
 #include "stats/trend.hpp"
 #include "sweep/report/effects.hpp"
@@ -9,7 +10,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <initializer_list>
 #include <limits>
@@ -85,10 +85,9 @@ void take_out_scatter(FactorInfluence& factor, const stats::VarianceSplit& split
 std::vector<double> numbers_of(const std::vector<std::string>& levels) {
     std::vector<double> numbers;
     for (const auto& level : levels) {
-        double x = 0;
-        const auto [end, error] = std::from_chars(level.data(), level.data() + level.size(), x);
-        if (error != std::errc{} || end != level.data() + level.size()) return {};
-        numbers.push_back(x);
+        const auto x = any_number_in(level);
+        if (!x) return {};
+        numbers.push_back(*x);
     }
     return numbers;
 }

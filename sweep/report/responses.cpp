@@ -1,5 +1,6 @@
 #include "sweep/report/responses.hpp"
 
+#include "solver/plain_text.hpp"
 #include "solver/scenes/scene.hpp"
 #include "stats/random.hpp"
 #include "sweep/campaign/identity.hpp"
@@ -10,7 +11,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -52,10 +52,8 @@ std::string level_text(const Cell& cell) {
 /// What makes two levels the same, whichever type a view or an identity gives them: numbers by value, files by
 /// contents.
 std::string key_of_level(std::string_view word) {
-    double number = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    const bool whole = error == std::errc() && end == word.data() + word.size();
-    return whole ? campaign::shortest(number) : std::string(word);
+    const auto number = any_number_in(word);
+    return number ? campaign::shortest(*number) : std::string(word);
 }
 
 std::string key_of_cell(const Cell& cell) {

@@ -1,5 +1,6 @@
 #include "sweep/workers/program_tables.hpp"
 
+#include "solver/plain_text.hpp"
 #include "sweep/campaign/csv_record.hpp"
 #include "sweep/workers/worker_state.hpp"
 
@@ -9,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -23,21 +23,11 @@ namespace {
 constexpr std::size_t most_columns = 10'000, most_rows = 10'000'000;
 constexpr std::size_t longest_searched = 4096;  // the search recurs once per character
 
-std::string_view without_blanks(std::string_view text) {
-    constexpr std::string_view blanks = " \t\r";
-    const auto first = text.find_first_not_of(blanks);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
-
-/// Infinite or none, too, as programs write them.
+/// With a sign, infinite or none, too, as programs write them.
 std::optional<double> any_number_of(std::string_view text) {
-    text = without_blanks(text);
+    text = trimmed(text);
     if (text.starts_with('+')) text.remove_prefix(1);
-    double number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return number;
+    return any_number_in(text);
 }
 
 std::optional<double> number_of(std::string_view text) {
@@ -53,7 +43,7 @@ ProgramTable::ProgramTable(std::string file, std::string text, std::string separ
     if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
     while (!rest.empty()) {
         const auto end = rest.find('\n');
-        const auto line = without_blanks(rest.substr(0, end));
+        const auto line = trimmed(rest.substr(0, end));
         rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
         if (line.empty()) continue;
         if (line.starts_with('#')) {
@@ -69,7 +59,7 @@ ProgramTable::ProgramTable(std::string file, std::string text, std::string separ
 }
 
 bool ProgramTable::take_head(std::string_view line, std::string_view remark) {
-    while (remark.starts_with('#')) remark = without_blanks(remark.substr(1));
+    while (remark.starts_with('#')) remark = trimmed(remark.substr(1));
     auto cells = cells_of(line);
     const bool named =
         remark.empty() || !std::ranges::all_of(cells, [](const auto& cell) { return any_number_of(cell).has_value(); });
@@ -83,11 +73,11 @@ std::vector<std::string> ProgramTable::cells_of(std::string_view line) const {
     const char between = separator_ == "semicolon" ? ';' : '\t';
     while (cells.size() < most_columns) {
         if (separator_ == "blank") {
-            line = without_blanks(line);
+            line = trimmed(line);
             if (line.empty()) break;
         }
         const auto end = separator_ == "blank" ? line.find_first_of(" \t") : line.find(between);
-        cells.emplace_back(without_blanks(line.substr(0, end)));
+        cells.emplace_back(trimmed(line.substr(0, end)));
         if (end == std::string_view::npos) break;
         line.remove_prefix(end + 1);
     }

@@ -1,117 +1,17 @@
 // The loop with a scripted crew: no process, no clock.
-#include "sweep/schedule/scheduler.hpp"
-
-#include "solver/scenes/scene.hpp"
-#include "sweep/campaign/campaign.hpp"
-#include "sweep/schedule/judge.hpp"
-#include "tests/support/process.hpp"
+#include "tests/support/scheduler_loop.hpp"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <deque>
-#include <functional>
-#include <numeric>
 #include <utility>
 #include <vector>
 
-using namespace grainsweep;
-using namespace grainsweep::schedule;
-using campaign::Outcome;
-
+namespace grainsweep::tests {
 namespace {
 
-/// Answers with whatever the script says; y = number of cases handed out so far.
-class ScriptedCrew final : public workers::Crew {
-public:
-    using Script = std::function<workers::PoolEvent(const campaign::Attempt&)>;
-    explicit ScriptedCrew(Script script, std::size_t room = 1) : script_(std::move(script)), room_(room) {}
-
-    void expect(std::size_t cases) override { expected = cases; }
-    [[nodiscard]] std::optional<workers::Place> place_for(double) override {
-        if (retired || waiting_.size() >= room_) return std::nullopt;
-        return workers::Place{0, computer};
-    }
-    void share_cores(std::size_t waiting, const SecondsLeft& left) override {
-        shared.emplace_back(waiting, waiting_.empty() ? 0 : left(waiting_.front()));
-    }
-    void give(const workers::Place&, const campaign::Attempt& attempt, const campaign::Case&) override {
-        started.push_back(attempt);
-        waiting_.push_back(attempt);
-    }
-    [[nodiscard]] std::optional<workers::PoolEvent> wait(std::chrono::milliseconds) override {
-        if (waiting_.empty()) return std::nullopt;
-        auto event = script_(waiting_.front());
-        // An interrupt answers no case, nor does a heartbeat.
-        if (!std::holds_alternative<workers::Interrupted>(event) && !std::holds_alternative<workers::Heartbeat>(event))
-            waiting_.pop_front();
-        return event;
-    }
-    void retire() override { retired = true; }
-    void dismiss() override { dismissed = true; }
-
-    std::vector<campaign::Attempt> started;
-    std::vector<std::pair<std::size_t, double>> shared;  ///< cases that waited; seconds left of the first that ran
-    std::size_t expected = 0;
-    std::shared_ptr<const campaign::Computer> computer =
-        std::make_shared<const campaign::Computer>(campaign::Computer{"1", "c", "b", "avx2", "p", "its host"});
-    bool retired = false, dismissed = false;
-
-private:
-    Script script_;
-    std::size_t room_;
-    std::deque<campaign::Attempt> waiting_;
-};
-
-workers::Finished completed(const campaign::Attempt& attempt, double y = 1) {
-    campaign::CaseResult result;
-    result.attempt = attempt;
-    result.observations.scalars["y"] = y;
-    return {result, false};
-}
-
-class SchedulerLoop : public testing::Test {
-protected:
-    SchedulerLoop() : store(folder / "loop.db", store::Store::Mode::create) {
-        campaign.name = "loop";
-        campaign.space.scene = find_scene("rehearsal");
-        campaign.space.factors = {{"x1", campaign::Between{0, 1}}};
-        campaign.design = "random";
-        for (int point = 0; point < 10; ++point) {
-            Inputs inputs = campaign.scene().defaults();
-            inputs["x1"] = 0.1 * point;
-            placed.push_back({campaign::make_case(campaign.scene(), inputs, 1), point, 0, 0});
-        }
-    }
-
-    Ending run(ScriptedCrew& crew, Rules rules = {}, Watchers watchers = {}, Judge* judge = nullptr,
-               std::size_t at_once = 1000, Walltime walltime = {}) {
-        const auto states = store.enrol(campaign, placed, {}, at_once);
-        std::vector<History> histories;
-        for (const auto& state : states) histories.push_back({state.attempts, state.failures, state.outcome});
-        const auto question = [this](std::uint32_t i) { return placed[i].question; };
-        Plan plan({question, histories, predicted(), {}, {}}, rules);
-        store::Recorder recorder(store);
-        Scheduler scheduler("loop", plan, crew, recorder, judge, std::move(watchers), std::move(walltime));
-        return scheduler.run();
-    }
-
-    [[nodiscard]] std::vector<double> predicted() const {
-        return seconds.empty() ? std::vector<double>(placed.size(), 1.0) : seconds;
-    }
-
-    std::int64_t stored(const std::string& outcome) {
-        const auto table = store.query("SELECT count(*) FROM loop WHERE outcome = '" + outcome + "'");
-        return std::get<std::int64_t>(table.rows.at(0).at(0));
-    }
-
-    test::Folder folder;
-    campaign::Campaign campaign;
-    std::vector<campaign::PlacedCase> placed;
-    std::vector<double> seconds;  ///< predicted; empty: 1 of each
-    store::Store store;
-};
+using namespace schedule;
+using campaign::Outcome;
 
 TEST_F(SchedulerLoop, RecordsEveryAnswer) {
     ScriptedCrew crew([](const auto& attempt) { return completed(attempt); }, 3);
@@ -373,69 +273,6 @@ TEST_F(SchedulerLoop, CheckpointsAreForgottenOnlyAfterTheResultIsOnDisk) {
     EXPECT_EQ(forgotten, std::vector<std::string>{placed[4].question.id});
 }
 
-/// A crew whose cases take what is predicted, and the time that is left of `whole` seconds.
-class TimedCrew {
-public:
-    TimedCrew(std::vector<double> seconds, double whole, bool cases_go_on)
-        : seconds_(std::move(seconds)), left_(whole), whole_(whole), cases_go_on_(cases_go_on) {}
-    [[nodiscard]] ScriptedCrew crew(const std::vector<campaign::PlacedCase>& placed) {
-        return ScriptedCrew([&](const auto& attempt) -> workers::PoolEvent {
-            const auto at = std::ranges::find(placed, attempt.case_id, [](const auto& one) { return one.question.id; });
-            const double takes = seconds_.at(static_cast<std::size_t>(at - placed.begin()));
-            const double spent = std::min(takes, left_);
-            left_ -= spent;
-            if (spent < takes) return workers::GivenBack{attempt, "given back before it was finished", spent, true};
-            return completed(attempt);
-        });
-    }
-    [[nodiscard]] Walltime walltime() {
-        return {[this] { return left_; }, whole_, cases_go_on_, 0.5};
-    }
-
-private:
-    std::vector<double> seconds_;
-    double left_, whole_;
-    bool cases_go_on_;
-};
-
-TEST_F(SchedulerLoop, NothingIsBegunThatCannotFinishInTime) {
-    seconds = {1, 1, 1, 8, 1, 1, 1, 1, 1, 1};
-    TimedCrew timed(seconds, 7, false);
-    auto crew = timed.crew(placed);
-    EXPECT_EQ(run(crew, {}, {}, nullptr, 1000, timed.walltime()), Ending::out_of_time);
-    EXPECT_EQ(stored("completed"), 7) << "what fits is computed, what does not is left out";
-    EXPECT_EQ(stored("abandoned"), 0);
-    TimedCrew next(seconds, 10, false);
-    auto again = next.crew(placed);
-    EXPECT_EQ(run(again, {}, {}, nullptr, 1000, next.walltime()), Ending::finished);
-}
-
-TEST_F(SchedulerLoop, WhatFitsIntoNoRunIsSaid) {
-    seconds = {1, 1, 1, 12, 1, 1, 1, 1, 1, 1};
-    TimedCrew timed(seconds, 10, false);
-    auto crew = timed.crew(placed);
-    EXPECT_EQ(run(crew, {}, {}, nullptr, 1000, timed.walltime()), Ending::too_long);
-    EXPECT_EQ(stored("completed"), 9);
-}
-
-TEST_F(SchedulerLoop, ACaseThatGoesOnLaterIsBegunWhereAPartOfItFits) {
-    seconds = {1, 1, 1, 12, 1, 1, 1, 1, 1, 1};
-    TimedCrew timed(seconds, 10, true);
-    auto crew = timed.crew(placed);
-    EXPECT_EQ(run(crew, {}, {}, nullptr, 1000, timed.walltime()), Ending::out_of_time);
-    EXPECT_TRUE(crew.retired);
-    EXPECT_EQ(store.attempts(placed[3].question.id).size(), 1U) << "it is given back unfinished";
-}
-
-TEST_F(SchedulerLoop, NoPartIsBegunForLessThanItsSavingTakes) {
-    seconds = std::vector<double>(10, 1);
-    TimedCrew timed(seconds, 3.4, true);
-    auto crew = timed.crew(placed);
-    EXPECT_EQ(run(crew, {}, {}, nullptr, 1000, timed.walltime()), Ending::out_of_time);
-    EXPECT_EQ(stored("completed"), 3);
-    EXPECT_EQ(crew.started.size(), 3U);
-}
-
 TEST_F(SchedulerLoop, ARequestOfASystemIsNoInterruptOfTheUser) {
     ScriptedCrew crew([asked = false](const auto& attempt) mutable -> workers::PoolEvent {
         if (!std::exchange(asked, true)) return workers::Interrupted{false, true};
@@ -446,3 +283,4 @@ TEST_F(SchedulerLoop, ARequestOfASystemIsNoInterruptOfTheUser) {
 }
 
 }  // namespace
+}  // namespace grainsweep::tests

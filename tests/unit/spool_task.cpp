@@ -1,6 +1,7 @@
 // The loop of a task with a scripted crew: no process, and what it leaves in the spool.
 #include "sweep/spool/task.hpp"
 #include "tests/support/archive.hpp"
+#include "tests/support/scripted_crew.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,41 +20,7 @@ namespace {
 using campaign::Outcome;
 using schedule::Ending;
 
-class CrewByScript final : public workers::Crew {
-public:
-    using Script = std::function<workers::PoolEvent(const campaign::Attempt&)>;
-    explicit CrewByScript(Script script, std::size_t room = 1) : script_(std::move(script)), room_(room) {}
-
-    void expect(std::size_t) override {}
-    [[nodiscard]] std::optional<workers::Place> place_for(double) override {
-        if (retired || waiting.size() >= room_) return std::nullopt;
-        return workers::Place{0, computer_};
-    }
-    void give(const workers::Place&, const campaign::Attempt& attempt, const campaign::Case&) override {
-        started.push_back(attempt);
-        waiting.push_back(attempt);
-    }
-    [[nodiscard]] std::optional<workers::PoolEvent> wait(std::chrono::milliseconds) override {
-        idle();
-        if (waiting.empty()) return std::nullopt;
-        auto event = script_(waiting.front());
-        if (!std::holds_alternative<workers::Interrupted>(event)) waiting.pop_front();
-        return event;
-    }
-    void retire() override { retired = true; }
-    void dismiss() override { dismissed = true; }
-
-    std::vector<campaign::Attempt> started;
-    std::deque<campaign::Attempt> waiting;
-    std::function<void()> idle = [] {};
-    bool retired = false, dismissed = false;
-
-private:
-    Script script_;
-    std::size_t room_;
-    std::shared_ptr<const campaign::Computer> computer_ =
-        std::make_shared<const campaign::Computer>(campaign::Computer{"1", "c", "b", "avx2", "p", "its host"});
-};
+using tests::ScriptedCrew;
 
 class SpoolTask : public testing::Test {
 protected:
@@ -69,7 +36,7 @@ protected:
         result.observations.scalars["y"] = 1;
         return workers::Finished{result, false};
     }
-    Ending run(CrewByScript& crew, TaskRules rules = {}) {
+    Ending run(ScriptedCrew& crew, TaskRules rules = {}) {
         rules.lease = std::min(rules.lease, 2.0);
         Task task(spool, cases, std::vector<double>(cases.size(), 1.0), crew, std::move(rules), {});
         const auto ending = task.run();
@@ -92,19 +59,19 @@ protected:
 };
 
 TEST_F(SpoolTask, AnswersEveryCase) {
-    CrewByScript crew(answered, 2);
+    ScriptedCrew crew(answered, 2);
     EXPECT_EQ(run(crew), Ending::finished);
     EXPECT_EQ(tally.computed, 5U);
     EXPECT_TRUE(crew.retired);
     for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(outcome(i, 1), Outcome::completed);
-    CrewByScript again(answered);
+    ScriptedCrew again(answered);
     EXPECT_EQ(run(again), Ending::finished);
     EXPECT_TRUE(again.started.empty()) << "all have an answer";
     EXPECT_EQ(tally.answered, 5U);
 }
 
 TEST_F(SpoolTask, AFailureIsTriedAgainAsOftenAsAllTasksMay) {
-    CrewByScript crew([&](const auto& attempt) -> workers::PoolEvent {
+    ScriptedCrew crew([&](const auto& attempt) -> workers::PoolEvent {
         if (attempt.case_id != id(2)) return answered(attempt);
         workers::Lost lost;
         lost.running = attempt;
@@ -116,10 +83,10 @@ TEST_F(SpoolTask, AFailureIsTriedAgainAsOftenAsAllTasksMay) {
     EXPECT_EQ(outcome(2, 1), Outcome::crashed);
     EXPECT_EQ(outcome(2, 2), Outcome::crashed);
     EXPECT_FALSE(spool.read({id(2), 3}));
-    CrewByScript again(answered);
+    ScriptedCrew again(answered);
     EXPECT_EQ(run(again, {.share = {}, .attempts = 2}), Ending::finished);
     EXPECT_TRUE(again.started.empty()) << "other tasks know that it is given up";
-    CrewByScript more(answered);
+    ScriptedCrew more(answered);
     EXPECT_EQ(run(more, {.share = {}, .attempts = 3}), Ending::finished);
     ASSERT_EQ(more.started.size(), 1U) << "where more tries are allowed there is one";
     EXPECT_EQ(more.started[0].number, 3);
@@ -127,7 +94,7 @@ TEST_F(SpoolTask, AFailureIsTriedAgainAsOftenAsAllTasksMay) {
 
 TEST_F(SpoolTask, WhatIsGivenBackIsTakenAgainUnderAnotherNumber) {
     bool given_back = false;
-    CrewByScript crew([&](const auto& attempt) -> workers::PoolEvent {
+    ScriptedCrew crew([&](const auto& attempt) -> workers::PoolEvent {
         if (!std::exchange(given_back, true)) return workers::GivenBack{attempt, "by a signal", 1, false, false};
         return answered(attempt);
     });
@@ -139,7 +106,7 @@ TEST_F(SpoolTask, WhatIsGivenBackIsTakenAgainUnderAnotherNumber) {
 
 TEST_F(SpoolTask, WhatWasNeverBegunIsFreeAgain) {
     bool lost_once = false;
-    CrewByScript crew(
+    ScriptedCrew crew(
         [&](const auto& attempt) -> workers::PoolEvent {
             if (std::exchange(lost_once, true)) return answered(attempt);
             workers::Lost lost;
@@ -159,7 +126,7 @@ TEST_F(SpoolTask, WhatWasNeverBegunIsFreeAgain) {
 TEST_F(SpoolTask, TasksThatLiveAreNotWaitedFor) {
     const TaskFile other(spool, 2);
     ASSERT_TRUE(spool.claim({id(4), 1}, other.name()));
-    CrewByScript crew(answered);
+    ScriptedCrew crew(answered);
     crew.idle = [&] {
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
         std::filesystem::last_write_time(spool.task(other.name()), std::filesystem::file_time_type::clock::now());
@@ -176,14 +143,14 @@ TEST_F(SpoolTask, WhatATaskLeftBehindIsTakenOver) {
         gone = other.name();
         ASSERT_TRUE(spool.claim({id(1), 1}, gone));
     }
-    CrewByScript crew(answered);
+    ScriptedCrew crew(answered);
     EXPECT_EQ(run(crew), Ending::finished);
     EXPECT_EQ(outcome(1, 2), Outcome::completed);
 }
 
 TEST_F(SpoolTask, NothingIsClaimedThatDoesNotFitIntoTheTimeLeft) {
     double left = 2.5;
-    CrewByScript crew([&](const auto& attempt) {
+    ScriptedCrew crew([&](const auto& attempt) {
         left -= 1;
         return answered(attempt);
     });
@@ -197,7 +164,7 @@ TEST_F(SpoolTask, NothingIsClaimedThatDoesNotFitIntoTheTimeLeft) {
 }
 
 TEST_F(SpoolTask, AStopLeavesNoClaim) {
-    CrewByScript crew([&, asked = false](const auto& attempt) mutable -> workers::PoolEvent {
+    ScriptedCrew crew([&, asked = false](const auto& attempt) mutable -> workers::PoolEvent {
         if (!std::exchange(asked, true)) return workers::Interrupted{false, true};
         return workers::GivenBack{attempt, "given back before it was finished", 1, true, false};
     });

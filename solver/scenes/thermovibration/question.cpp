@@ -2,10 +2,10 @@
 
 #include "solver/coupling/projected_contacts.hpp"
 #include "solver/coupling/spring_contacts.hpp"
+#include "solver/plain_text.hpp"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -24,12 +24,6 @@ std::string word(const Inputs& inputs, const char* name) {
 }
 
 constexpr std::int64_t most_substeps = 20000;
-
-std::string shortest(double x) {
-    std::array<char, 32> text{};
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), x).ptr;
-    return {text.data(), end};
-}
 
 }  // namespace
 
@@ -63,15 +57,15 @@ Question::Question(const Inputs& inputs)
       end_time(number(inputs, "end_time")),
       sampling_cells(count(inputs, "sampling_cells")) {
     if (particles > 0 && sphere().radius() > 0.1)
-        throw std::invalid_argument("stokes = " + shortest(stokes) + " makes particles of radius " +
-                                    shortest(sphere().radius()) +
+        throw std::invalid_argument("stokes = " + shortest_text(stokes) + " makes particles of radius " +
+                                    shortest_text(sphere().radius()) +
                                     " L; point particles need a radius of at most 0.1 L (stokes <= 0.0022)");
     if (mirrored() && cells % 2 != 0)
         throw std::invalid_argument("cells = " + std::to_string(cells) +
                                     " has no plane in the middle; symmetry = mirror needs an even number");
     const double filled = static_cast<double>(particles) * sphere().volume();
     if (dense() && filled > 0.6)
-        throw std::invalid_argument("particles = " + std::to_string(particles) + " fill " + shortest(filled) +
+        throw std::invalid_argument("particles = " + std::to_string(particles) + " fill " + shortest_text(filled) +
                                     " of the cube; at most 0.6 can be filled (fewer, or a smaller stokes)");
     if (coupling == "cfd_dem" && contact == "spring") {
         const coupling::SpringContacts contacts(sphere(), walls(), spring(), 0);
@@ -82,7 +76,7 @@ Question::Question(const Inputs& inputs)
                 "; let overlap or collision_restitution be larger, or resolve contacts by projection (contact)");
     }
     if (end_time < 0.5 * step() * static_cast<double>(window()))
-        throw std::invalid_argument("end_time = " + shortest(end_time) + " is less than half of " +
+        throw std::invalid_argument("end_time = " + shortest_text(end_time) + " is less than half of " +
                                     (steady_force() ? "a time step" : "a period of vibration (2 pi/frequency)"));
 }
 
@@ -161,10 +155,11 @@ coupling::Cloud Question::cloud(std::uint64_t seed) const {
 }
 
 std::string Question::flow_key() const {
-    return "thermovibration periodic flow 3; cells=" + std::to_string(cells) + "; clustering=" + shortest(clustering) +
-           "; frequency=" + shortest(frequency) + "; prandtl=" + shortest(prandtl) +
-           "; rayleigh=" + shortest(rayleigh) + "; start_phase=" + shortest(start_phase) +
-           "; steps_per_period=" + std::to_string(steps_per_period) + "; symmetry=" + (mirrored() ? "mirror" : "none");
+    return "thermovibration periodic flow 3; cells=" + std::to_string(cells) +
+           "; clustering=" + shortest_text(clustering) + "; frequency=" + shortest_text(frequency) +
+           "; prandtl=" + shortest_text(prandtl) + "; rayleigh=" + shortest_text(rayleigh) +
+           "; start_phase=" + shortest_text(start_phase) + "; steps_per_period=" + std::to_string(steps_per_period) +
+           "; symmetry=" + (mirrored() ? "mirror" : "none");
 }
 
 }  // namespace grainsweep::thermovibration

@@ -1,0 +1,32 @@
+#include "stats/several_responses.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <future>
+#include <optional>
+#include <thread>
+#include <utility>
+
+namespace grainsweep::stats {
+
+std::vector<std::variant<ResponseModel, Refusal>> fit_responses(Rows points,
+                                                                std::span<const std::vector<double>> values,
+                                                                const ResponseModelOptions& options) {
+    std::vector<std::optional<std::variant<ResponseModel, Refusal>>> fits(values.size());
+    std::atomic<std::size_t> next = 0;
+    const auto fit_what_is_left = [&] {
+        for (std::size_t k = next++; k < values.size(); k = next++) fits[k] = fit_response(points, values[k], options);
+    };
+    std::vector<std::future<void>> threads;  // whose destructors wait, and which hand on what is thrown
+    const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+    for (std::size_t k = 1; k < std::min(cores, values.size()); ++k)
+        threads.push_back(std::async(std::launch::async, fit_what_is_left));
+    fit_what_is_left();
+    for (auto& thread : threads) thread.get();
+    std::vector<std::variant<ResponseModel, Refusal>> all;
+    for (auto& fit : fits) all.push_back(std::move(fit.value()));
+    return all;
+}
+
+}  // namespace grainsweep::stats

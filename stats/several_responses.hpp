@@ -1,0 +1,17 @@
+// Response models of several responses of the same points, fitted side by side.
+#pragma once
+
+#include "stats/response_model.hpp"
+
+#include <span>
+#include <variant>
+#include <vector>
+
+namespace grainsweep::stats {
+
+/// fit_response() of every row of `values`, in their order, on as many threads as the machine has cores. A fit knows
+/// nothing of the others: the same bits as one after another. Throws what fit_response() throws.
+[[nodiscard]] std::vector<std::variant<ResponseModel, Refusal>> fit_responses(
+    Rows points, std::span<const std::vector<double>> values, const ResponseModelOptions& options = {});
+
+}  // namespace grainsweep::stats
