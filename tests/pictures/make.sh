@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Makes the pictures of README and docs anew: runs the program and opens its pages in headless Chromium.
-#   tests/pictures/make.sh [NAME]...       all, or some of: spreading cell bands report
+#   tests/pictures/make.sh [NAME]...       all, or some of:
+#                                          spreading cell bands report drum heap roller hopper profile layers
 # PROGRAM (build/grainsweep) and CHROMIUM (chromium) may be given in the environment. The pictures go to docs/pictures,
-# less than 150 kB each. Two minutes of computing.
+# less than 150 kB each. Five minutes of computing.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 program=${PROGRAM:-$here/build/grainsweep}
@@ -62,12 +63,63 @@ p.show(59); }</script></body>#" bands.html
     shoot bands.html bands 900 640 0.85
 }
 
-if [ $# -eq 0 ]; then set -- spreading cell bands report; fi
+# One case of each of the configs of drum, heap, roller and hopper, late in it.
+drum() {
+    "$program" solve "$here/configs/drum_speeds.json" --set rpm=24.42 --set friction=0.6 --watch drum.html
+    shoot "drum.html#t=0.95" drum 900 640 0.85
+}
+heap() {
+    "$program" solve "$here/configs/heap_friction.json" --set friction=0.7 --set rolling_friction=0.3 --watch heap.html
+    shoot "heap.html#t=0.98" heap 900 640 0.85
+}
+roller() {
+    "$program" solve "$here/configs/roller_or_blade.json" --set tool=roller --set speed=0.3 --set gap=0.006 --watch roller.html
+    shoot "roller.html#t=0.6" roller 900 640 0.85
+}
+hopper() {
+    "$program" solve "$here/configs/hopper_beverloo.json" --set opening_size=0.037 --watch hopper.html
+    shoot "hopper.html#t=0.7" hopper 900 640 0.85
+}
+
+# A tool from an STL file: a bar whose front face slopes forward, so that it presses the powder down. mm.
+profile() {
+    awk 'BEGIN {
+        split("0 0 -3 4 -3 25 5 25 5 0", at, " ")  # x, z of five corners, from the edge on, clockwise seen along y
+        n = 5
+        print "solid profile"
+        for (k = 0; k < n; ++k) {
+            m = (k + 1) % n
+            facet(k, 0, m, 100, m, 0); facet(k, 0, k, 100, m, 100)
+        }
+        for (k = 1; k + 1 < n; ++k) { facet(0, 0, k, 0, k + 1, 0); facet(0, 100, k + 1, 100, k, 100) }
+        print "endsolid profile"
+    }
+    function corner(k, y) { printf "vertex %g %g %g\n", at[2 * k + 1], y, at[2 * k + 2] }
+    function facet(a, ya, b, yb, c, yc) {
+        print "facet normal 0 0 0\nouter loop"; corner(a, ya); corner(b, yb); corner(c, yc); print "endloop\nendfacet"
+    }' >profile.stl
+    cat >profile.json <<'JSON'
+{"campaign": "profile", "scene": "powder_spreading",
+ "factors": [{"name": "speed", "between": [0.1, 0.8]}],
+ "fixed": {"tool": "profile.stl", "gap": 0.006, "friction": 0.3, "rolling_friction": 0.1, "base": "rough", "layer_area": 6e-4},
+ "design": {"kind": "halton", "points": 8}}
+JSON
+    "$program" solve profile.json --set speed=0.3 --watch profile.html
+    shoot "profile.html#t=0.6" profile 900 640 0.85
+}
+
+# Four layers, one on the other, while the last is spread.
+layers() {
+    "$program" solve "$here/configs/layers_ten.json" --set surface_energy=1e-4 --set layers=4 --watch layers.html
+    shoot "layers.html#t=0.93" layers 900 640 0.85
+}
+
+if [ $# -eq 0 ]; then set -- spreading cell bands report drum heap roller hopper profile layers; fi
 for name in "$@"; do
     case $name in
-        spreading | cell | bands | report) "$name" ;;
+        spreading | cell | bands | report | drum | heap | roller | hopper | profile | layers) "$name" ;;
         *)
-            echo "no picture '$name': there are spreading cell bands report" >&2
+            echo "no picture '$name': there are spreading cell bands report drum heap roller hopper profile layers" >&2
             exit 2
             ;;
     esac
