@@ -211,51 +211,53 @@ int window(const WindowArguments& arguments, Format format) {
 }
 
 Command window_command() {
-    return {"window", "the process window: where a condition holds, the best setting there, what to run next",
-            [](Parser& parser, const Format& format) -> Action {
-                const auto arguments = std::make_shared<WindowArguments>();
-                declare_subject(parser, arguments->database, arguments->campaign);
-                parser
-                    .add_option("--where", arguments->request.where,
-                                "the condition over observables and factors: \"mfr >= 0.35 and empty_share <= 0.1\"")
-                    ->type_name("CONDITION");
-                parser.add_option("--maximize", arguments->maximise, "the observable that shall be largest")
-                    ->type_name("NAME");
-                parser.add_option("--minimize", arguments->minimise, "the observable that shall be smallest")
-                    ->type_name("NAME");
-                parser
-                    .add_option("--risk", arguments->request.risk,
-                                "probability, at most, that the condition does not hold in the window")
-                    ->capture_default_str();
-                parser.add_flag("--single", arguments->single,
-                                "the condition is for every single run; default: for the mean of many");
-                parser.add_option("--next", arguments->next, "so many cases to run next")
-                    ->type_name("N")
-                    ->check(whole_number(0, 1000));
-                parser
-                    .add_option("--next-file", arguments->next_file,
-                                "a campaign file of the next cases, to be written; to be run into the same database")
-                    ->type_name("FILE.json");
-                parser.add_flag("--run", arguments->run,
-                                "run batches of next cases (--next N each, 8 without it) into the database until the "
-                                "best setting is known to --width; the same command again goes on");
-                parser
-                    .add_option(
-                        "--width", arguments->width,
-                        "of --run: the 95 % half-width that the objective's mean at the best setting shall have")
-                    ->type_name("WIDTH");
-                parser.add_option("--max-cases", arguments->max_cases, "of --run: run at most N cases; default: 100")
-                    ->type_name("N")
-                    ->check(whole_number(1));
-                parser.add_option("-j", arguments->workers, "of --run: workers; 0: all cores")
-                    ->check(whole_number(0, 4096));
-                parser
-                    .add_option("-o,--output", arguments->output,
-                                "a page with the window drawn: the best setting, maps and curves with their bands")
-                    ->type_name("FILE.html");
-                return [arguments, &format] { return window(*arguments, format); };
-            },
-            false};
+    return {
+        "window", "the process window: where a condition holds, the best setting there, what to run next",
+        [](Parser& parser, const Format& format) -> Action {
+            const auto arguments = std::make_shared<WindowArguments>();
+            declare_subject(parser, arguments->database, arguments->campaign);
+            parser
+                .add_option("--where", arguments->request.where,
+                            "the condition over observables and factors: \"mfr >= 0.35 and empty_share <= 0.1\"")
+                ->type_name("CONDITION");
+            parser
+                .add_option("--maximize", arguments->maximise, "the observable, or the factor, that shall be largest")
+                ->type_name("NAME");
+            parser
+                .add_option("--minimize", arguments->minimise, "the observable, or the factor, that shall be smallest")
+                ->type_name("NAME");
+            parser
+                .add_option("--risk", arguments->request.risk,
+                            "probability, at most, that the condition does not hold in the window")
+                ->capture_default_str();
+            parser.add_flag("--single", arguments->single,
+                            "the condition is for every single run; default: for the mean of many");
+            parser.add_option("--next", arguments->next, "so many cases to run next")
+                ->type_name("N")
+                ->check(whole_number(0, 1000));
+            parser
+                .add_option("--next-file", arguments->next_file,
+                            "a campaign file of the next cases, to be written; to be run into the same database")
+                ->type_name("FILE.json");
+            parser.add_flag("--run", arguments->run,
+                            "run batches of next cases (--next N each, 8 without it) into the database until the "
+                            "best setting is known to --width; the same command again goes on");
+            parser
+                .add_option("--width", arguments->width,
+                            "of --run: the 95 % half-width that the objective's mean at the best setting shall have")
+                ->type_name("WIDTH");
+            parser.add_option("--max-cases", arguments->max_cases, "of --run: run at most N cases; default: 100")
+                ->type_name("N")
+                ->check(whole_number(1));
+            parser.add_option("-j", arguments->workers, "of --run: workers; 0: all cores")
+                ->check(whole_number(0, 4096));
+            parser
+                .add_option("-o,--output", arguments->output,
+                            "a page with the window drawn: the best setting, maps and curves with their bands")
+                ->type_name("FILE.html");
+            return [arguments, &format] { return window(*arguments, format); };
+        },
+        false};
 }
 
 }  // namespace

@@ -83,6 +83,10 @@ Standing standing_of(const WindowRun& run, report::WindowRequest request, std::i
     const auto cases = report::read_model_cases(store, run.campaign);
     request.next = static_cast<std::size_t>(std::max<std::int64_t>(0, std::min(run.batch, most)));
     const auto window = report::window_of(store, cases, request);
+    if (window.objective_is_factor)
+        throw campaign::wrong_question(
+            "--run", request.objective,
+            "is a factor, whose value is set, not measured: --width is for an observable to maximize or minimize");
     Standing standing;
     standing.campaign = cases.campaign.name;
     standing.cases = window.models.front().model.quality().cases;

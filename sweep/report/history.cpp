@@ -124,9 +124,8 @@ void warn(History& history, const Responses& responses, const ResponseColumn& re
     }
     const auto& design = responses.design();
     if (design.grows) {
-        history.warnings.push_back(
-            fmt::format("the points of a {} gather where its answers say so: their moments describe no range",
-                        record.design));
+        history.warnings.push_back(fmt::format(
+            "the points of a {} gather where its answers say so: their moments describe no range", record.design));
     } else if (design.beginning == designs::Beginning::corner) {
         history.warnings.push_back(fmt::format(
             "a {} has no errors and cannot be judged from inside: compare campaigns of growing levels", record.design));

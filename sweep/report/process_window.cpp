@@ -26,7 +26,7 @@ public:
         names_ = cases.observable_names();
         for (const auto& name : cases.factor_names()) names_.push_back(name);
         if (!request.where.empty()) condition_ = Condition::read(request.where, names_);
-        if (!request.objective.empty()) add_model(index_of_objective());
+        if (!request.objective.empty()) find_objective();
         if (condition_)
             for (const auto name : condition_->compared())
                 if (name < cases.observables.size()) add_model(name);
@@ -53,7 +53,13 @@ public:
                 judged[i].defined.push_back(defined[i]);
             }
         }
-        for (auto& one : judged) one.probability = probability(one);
+        for (auto& one : judged) {
+            one.probability = probability(one);
+            if (factor_)
+                one.objective = {.mean = one.setting[*factor_], .mean_error = 0, .scatter = 0};
+            else if (modelled_objective())
+                one.objective = one.predictions.front();
+        }
         return judged;
     }
 
@@ -66,19 +72,34 @@ public:
     }
     /// The objective less one standard error: the largest mean alone is as often an error as a peak.
     [[nodiscard]] double cautious(const Judgement& one) const {
-        const auto& objective = one.predictions[0];
-        return (request_->maximise ? 1 : -1) * objective.mean - objective.mean_error;
+        return (request_->maximise ? 1 : -1) * one.objective.mean - one.objective.mean_error;
     }
     [[nodiscard]] bool meets(const Judgement& one) const { return one.probability >= 1 - request_->risk; }
 
     [[nodiscard]] const std::optional<Condition>& condition() const { return condition_; }
     [[nodiscard]] const std::vector<ObservableModel>& models() const { return models_; }
     [[nodiscard]] std::size_t name_of_model(std::size_t model) const { return name_of_model_[model]; }
+    [[nodiscard]] bool objective_is_factor() const { return factor_.has_value(); }
+    /// The objective is an observable: that of the first model.
+    [[nodiscard]] bool modelled_objective() const { return !request_->objective.empty() && !factor_; }
 
 private:
-    [[nodiscard]] std::size_t index_of_objective() const {
-        const auto& column = cases_->observable(request_->objective);
-        return static_cast<std::size_t>(&column - cases_->observables.data());
+    /// An observable goes before a factor of the same name, as in the condition.
+    void find_objective() {
+        const auto& name = request_->objective;
+        const auto place = static_cast<std::size_t>(std::ranges::find(names_, name) - names_.begin());
+        const auto observables = cases_->observables.size();
+        if (place < observables || place == names_.size()) {
+            const auto& column = cases_->observable(name);  // an unknown name is refused here
+            add_model(static_cast<std::size_t>(&column - cases_->observables.data()));
+            return;
+        }
+        const auto* const option = request_->maximise ? "--maximize" : "--minimize";
+        if (cases_->factors[place - observables].is_word())
+            throw campaign::wrong_question(option, name, "is a factor whose levels are words: none is the largest");
+        if (!condition_)
+            throw campaign::wrong_question(option, name, "is a factor: it needs a condition by --where that limits it");
+        factor_ = place - observables;
     }
 
     void add_model(std::size_t name) {
@@ -91,7 +112,7 @@ private:
 
     /// P(condition and objective defined | those of the mask undefined).
     [[nodiscard]] double probability_given(const Judgement& one, std::size_t undefined) const {
-        const bool objective_lost = !request_->objective.empty() && (undefined & 1U) != 0;
+        const bool objective_lost = modelled_objective() && (undefined & 1U) != 0;
         if (objective_lost) return 0;
         if (!condition_) return 1;
         std::vector<double> values(names_.size(), std::numeric_limits<double>::quiet_NaN());
@@ -125,6 +146,7 @@ private:
     std::span<const ObservableModel> learned_;
     std::vector<std::string> names_;
     std::optional<Condition> condition_;
+    std::optional<std::size_t> factor_;  ///< the objective, where it is one
     std::vector<ObservableModel> models_;
     std::vector<std::size_t> name_of_model_;
     std::optional<stats::SampledErrors> errors_;  ///< none: there is no model
@@ -161,7 +183,8 @@ void find_front(Window& window, const Question& question, const WindowRequest& r
                 std::span<const Judgement> judged) {
     if (request.objective.empty() || !question.condition()) return;
     int direction = 0;
-    for (std::size_t k = 1; k < window.models.size() && direction == 0; ++k) {
+    const std::size_t others = question.modelled_objective() ? 1 : 0;
+    for (std::size_t k = others; k < window.models.size() && direction == 0; ++k) {
         direction = question.condition()->direction(question.name_of_model(k));
         if (direction != 0) window.against = k;
     }
@@ -171,9 +194,9 @@ void find_front(Window& window, const Question& question, const WindowRequest& r
     std::vector<std::size_t> usable;
     for (std::size_t i = 0; i < judged.size(); ++i) {
         const auto& defined = judged[i].defined;
-        if (std::min(defined[0], defined[*window.against]) < 1 - request.risk) continue;
+        if (std::min(defined.front(), defined[*window.against]) < 1 - request.risk) continue;
         usable.push_back(i);
-        first.push_back(judged[i].predictions[0].mean);
+        first.push_back(judged[i].objective.mean);
         second.push_back(judged[i].predictions[*window.against].mean);
     }
     const auto front = stats::trade_off_front(first, request.maximise, second, window.against_maximised);
@@ -184,12 +207,24 @@ void find_front(Window& window, const Question& question, const WindowRequest& r
     }
 }
 
-std::vector<double> gains(std::span<const Judgement> judged, const WindowRequest& request) {
+/// P (x_j - x_j*) of the header; where nothing is in the window yet, P.
+std::vector<double> gains_of_factor(const Question& question, std::span<const Judgement> judged, double sign) {
+    std::optional<double> best;
+    for (const auto& one : judged)
+        if (question.meets(one)) best = std::max(best.value_or(sign * one.objective.mean), sign * one.objective.mean);
+    std::vector<double> gain;
+    for (const auto& one : judged)
+        gain.push_back(one.probability * (best ? std::max(sign * one.objective.mean - *best, 0.0) : 1));
+    return gain;
+}
+
+std::vector<double> gains(const Question& question, std::span<const Judgement> judged, const WindowRequest& request) {
+    if (question.objective_is_factor()) return gains_of_factor(question, judged, request.maximise ? 1 : -1);
     std::vector<stats::Prediction> objective;
     std::vector<double> probability;
     for (const auto& one : judged) {
         probability.push_back(one.probability);
-        if (!request.objective.empty()) objective.push_back(one.predictions[0]);
+        if (!request.objective.empty()) objective.push_back(one.objective);
     }
     if (!objective.empty()) return stats::expected_improvement(objective, probability, request.maximise);
     for (double& p : probability) p = std::min(p, 1 - p);  // where the condition is least decided
@@ -198,7 +233,7 @@ std::vector<double> gains(std::span<const Judgement> judged, const WindowRequest
 
 /// Cases to run next: the largest gain, added to the models with its predicted responses, then the next.
 std::vector<Judgement> next_of(const Question& question, const WindowRequest& request, std::vector<Judgement> judged) {
-    auto gain = gains(judged, request);
+    auto gain = gains(question, judged, request);
     std::vector<std::size_t> order(judged.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return gain[a] > gain[b]; });
@@ -211,7 +246,7 @@ std::vector<Judgement> next_of(const Question& question, const WindowRequest& re
     std::set<Setting> taken;
     while (chosen.size() < request.next) {
         const auto now = question.judge_by(models, settings);
-        gain = gains(now, request);
+        gain = gains(question, now, request);
         for (std::size_t i = 0; i < now.size(); ++i)
             if (taken.contains(settings[i])) gain[i] = 0;
         const auto best = static_cast<std::size_t>(std::ranges::max_element(gain) - gain.begin());
@@ -260,6 +295,7 @@ Window window_of(const store::Store& store, const ModelCases& cases, const Windo
         throw campaign::wrong_question("window", "", "the campaign's `where` leaves no setting of the box");
     Window window;
     window.models = question.models();
+    window.objective_is_factor = question.objective_is_factor();
     for (const auto& point : points) window.searched.push_back(point.setting);
     auto judged = question.judge(window.searched);
 

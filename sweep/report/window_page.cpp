@@ -44,11 +44,15 @@ double range_of(std::span<const Judgement> judged, double (*of)(const Judgement&
     return high > low ? high - low : 0;
 }
 
+bool modelled_objective(const WindowRequest& request, const Window& window) {
+    return !request.objective.empty() && !window.objective_is_factor;
+}
+
 double probability_of(const Judgement& one) {
     return one.probability;
 }
 double objective_of(const Judgement& one) {
-    return one.predictions.front().mean;
+    return one.objective.mean;
 }
 
 /// Factors by how much they matter, see the header.
@@ -108,6 +112,7 @@ Json map_of(const ModelCases& cases, const WindowRequest& request, const Window&
             settings.back()[b] = y;
         }
     const auto judged = judge_settings(cases, request, window, settings);
+    const bool modelled = modelled_objective(request, window);
     Json value = {{"across", a},
                   {"up", b},
                   {"across_edges", cell_edges(cases.factors[a], points_of_curve)},
@@ -115,12 +120,11 @@ Json map_of(const ModelCases& cases, const WindowRequest& request, const Window&
                   {"columns", across.size()},
                   {"rows", up.size()},
                   {"probability", Json::array()},
-                  {"objective", request.objective.empty() ? Json(nullptr) : Json::array()}};
+                  {"objective", modelled ? Json::array() : Json(nullptr)}};
     for (std::size_t i = 0; i < settings.size(); ++i) {
         const bool there = !admits || admits(settings[i]);
         value["probability"].push_back(there ? json_number(judged[i].probability) : Json(nullptr));
-        if (!request.objective.empty())
-            value["objective"].push_back(there ? json_number(judged[i].predictions.front().mean) : Json(nullptr));
+        if (modelled) value["objective"].push_back(there ? json_number(judged[i].objective.mean) : Json(nullptr));
     }
     return value;
 }
@@ -133,15 +137,15 @@ Json window_page_data(const ModelCases& cases, const WindowRequest& request, con
     std::vector<FactorCurve> curves;
     for (std::size_t j = 0; j < cases.factors.size(); ++j)
         curves.push_back(curve_through(cases, request, window, centre.setting, j));
-    const bool objective = !request.objective.empty();
+    const bool objective = !request.objective.empty(), modelled = modelled_objective(request, window);
     double whole_range = 0;
-    if (objective) {
+    if (modelled) {
         const auto& model = window.models.front();
         const auto means = model.model.means({model.case_features, model.features.names.size()});
         const auto [low, high] = std::ranges::minmax(means);
         whole_range = high - low;
     }
-    const auto order = order_of(curves, objective, whole_range);
+    const auto order = order_of(curves, modelled, whole_range);
     Json value = {{"campaigns", {{{"name", cases.campaign.name}}}},
                   {"campaign", cases.campaign.name},
                   {"scene", cases.campaign.scene},

@@ -43,9 +43,9 @@ store::Table settings_table(const ModelCases& cases, const Window& window, std::
 Json json_of(const ModelCases& cases, const WindowRequest& request, const Window& window, const Judgement& one) {
     Json object = {{"inputs", inputs_json(cases.factors, one.setting)}};
     if (!request.objective.empty()) {
-        object["mean"] = json_number(one.predictions[0].mean);
-        object["mean_error"] = json_number(one.predictions[0].mean_error);
-        object["scatter"] = json_number(one.predictions[0].scatter);
+        object["mean"] = json_number(one.objective.mean);
+        object["mean_error"] = json_number(one.objective.mean_error);
+        object["scatter"] = json_number(one.objective.scatter);
     }
     object["probability"] = json_number(one.probability);
     object["observables"] = Json::object();
@@ -104,7 +104,9 @@ Json window_json(const ModelCases& cases, const WindowRequest& request, const Wi
         return one ? json_of(cases, request, window, *one) : Json(nullptr);
     };
     Json objective = nullptr;
-    if (!request.objective.empty()) objective = {{"observable", request.objective}, {"maximize", request.maximise}};
+    if (!request.objective.empty())
+        objective = {{window.objective_is_factor ? "factor" : "observable", request.objective},
+                     {"maximize", request.maximise}};
     Json models = Json::array();
     for (const auto& model : window.models) models.push_back(model_json(model));
     return {{"campaign", cases.campaign.name},

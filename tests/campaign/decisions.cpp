@@ -254,6 +254,11 @@ TEST(Window, RefusesInOneSentence) {
               std::string::npos);
     EXPECT_NE(ran.refusal({"window", "c.db", "--maximize", "y", "--run", "--width", "inf"}).find("a positive number"),
               std::string::npos);
+    EXPECT_NE(ran.refusal({"window", "c.db", "--maximize", "x1"}).find("is a factor: it needs a condition"),
+              std::string::npos);
+    EXPECT_NE(ran.refusal({"window", "c.db", "--where", "y > 0.1", "--maximize", "x1", "--run", "--width", "0.1"})
+                  .find("got x1; is a factor, whose value is set"),
+              std::string::npos);
     std::string many = "y > 0.1";
     for (int k = 0; k < 9000; ++k) many += " and y > 0.1";
     const auto refused = ran.refusal({"window", "c.db", "--where", many});

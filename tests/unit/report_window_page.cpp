@@ -2,6 +2,7 @@
 #include "sweep/report/process_window.hpp"
 #include "sweep/report/response_models.hpp"
 #include "sweep/report/window_page.hpp"
+#include "sweep/report/window_tables.hpp"
 #include "tests/support/answered.hpp"
 
 #include <gmock/gmock.h>
@@ -58,6 +59,39 @@ TEST_F(WindowPage, MapsTheTwoFactorsThatMatterMostThroughTheBestSetting) {
             EXPECT_NEAR(map["probability"][j * 41 + i], x1 <= 0.5 && y >= -0.2 ? 1 : 0, 0.02) << x1 << ' ' << x2;
             EXPECT_NEAR(map["objective"][j * 41 + i], y, 0.03);
         }
+}
+
+/// The largest x1 with y <= 0.3: x1 = 0.8, at x2 = 1.
+TEST_F(WindowPage, AFactorMayBeTheObjective) {
+    const auto known = cases();
+    request.where = "y <= 0.3";
+    request.objective = "x1";
+    const auto window = window_of(store, known, request);
+    ASSERT_TRUE(window.objective_is_factor);
+    ASSERT_TRUE(window.best);
+    EXPECT_NEAR(window.best->setting[0], 0.8, 0.02);
+    EXPECT_NEAR(window.best->setting[1], 1, 0.02);
+    EXPECT_GE(window.best->probability, 0.95);
+    EXPECT_EQ(window.best->objective.mean, window.best->setting[0]);
+    EXPECT_EQ(window.best->objective.mean_error, 0);
+    ASSERT_EQ(window.models.size(), 1U);
+    for (const auto& one : window.next) EXPECT_GT(one.setting[0], window.best->setting[0]) << "no gain below";
+    ASSERT_EQ(window.against, 0U);
+    for (std::size_t k = 1; k < window.front.size(); ++k) {
+        EXPECT_GT(window.front[k].setting[0], window.front[k - 1].setting[0]);
+        EXPECT_GT(window.front[k].predictions[0].mean, window.front[k - 1].predictions[0].mean);
+    }
+    const auto json = window_json(known, request, window);
+    EXPECT_EQ(json["objective"], nlohmann::ordered_json({{"factor", "x1"}, {"maximize", true}}));
+    EXPECT_EQ(json["best"]["mean"], window.best->setting[0]);
+    const auto data = window_page_data(known, request, window, {});
+    EXPECT_TRUE(data["map"]["objective"].is_null()) << "it would be the factor's own axis";
+    request.maximise = false;
+    request.where = "y >= 0.3";
+    const auto least = window_of(store, known, request);
+    ASSERT_TRUE(least.best);
+    EXPECT_NEAR(least.best->setting[0], 0.3, 0.02);
+    EXPECT_NEAR(least.best->setting[1], 0, 0.02);
 }
 
 TEST_F(WindowPage, CurvesHoldBandsOfTheMeanAndOfARun) {
