@@ -2,8 +2,9 @@
 # Makes the pictures of README and docs anew: runs the program and opens its pages in headless Chromium.
 #   tests/pictures/make.sh [NAME]...       all, or some of:
 #                                          spreading cell bands report drum heap roller hopper profile layers
+#                                          window
 # PROGRAM (build/grainsweep) and CHROMIUM (chromium) may be given in the environment. The pictures go to docs/pictures,
-# less than 150 kB each. Five minutes of computing.
+# less than 150 kB each. Ten minutes of computing.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 program=${PROGRAM:-$here/build/grainsweep}
@@ -39,6 +40,16 @@ report() {
     sed 's#</head>#<style>main > section[id]:not(\#response):not(\#effects):not(\#explore), details {display: none}</style></head>#' \
         whole.html >report.html
     shoot report.html report 1300 1930 0.6
+}
+
+# The process window of the tutorial in docs/calibration.md.
+window() {
+    local condition="packing_fraction >= 0.42 and empty_share <= 0.03 and layer_roughness <= 0.6"
+    "$program" run "$here/configs/cellulose_window.json" --quiet
+    "$program" window cellulose_window.db --where "$condition" --maximize speed --next 8 --next-file next.json
+    "$program" run next.json --db cellulose_window.db --quiet
+    "$program" window cellulose_window.db --campaign cellulose_window --where "$condition" --maximize speed -o window.html
+    shoot window.html window 1200 1320 0.6
 }
 
 # Powder under the blade, halfway through the sweep.
@@ -114,12 +125,14 @@ layers() {
     shoot "layers.html#t=0.93" layers 900 640 0.85
 }
 
-if [ $# -eq 0 ]; then set -- spreading cell bands report drum heap roller hopper profile layers; fi
+if [ $# -eq 0 ]; then set -- spreading cell bands report drum heap roller hopper profile layers window; fi
 for name in "$@"; do
     case $name in
-        spreading | cell | bands | report | drum | heap | roller | hopper | profile | layers) "$name" ;;
+        spreading | cell | bands | report | drum | heap | roller | hopper | profile | layers | window)
+            "$name"
+            ;;
         *)
-            echo "no picture '$name': there are spreading cell bands report drum heap roller hopper profile layers" >&2
+            echo "no picture '$name': there are spreading cell bands report drum heap roller hopper profile layers window" >&2
             exit 2
             ;;
     esac
