@@ -183,3 +183,13 @@ TEST(RotatingDrum, CountsFollowFromTheFill) {
     inputs["end_friction"] = -0.5;
     EXPECT_THROW((void)make(inputs), std::invalid_argument);
 }
+
+TEST(RotatingDrum, APeriodOfThreeDiametersIsLongEnough) {
+    auto inputs = small_drum();
+    inputs["diameter"] = 0.0015;
+    inputs["drum_diameter"] = 0.006;  // four, as narrow as drums may be
+    inputs["length"] = 0.0045;        // 3 * 0.0015 is greater by rounding
+    EXPECT_NO_THROW(make(inputs));
+    inputs["length"] = 0.00449;
+    EXPECT_THROW(make(inputs), std::invalid_argument);
+}

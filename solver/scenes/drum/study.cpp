@@ -12,6 +12,7 @@
 namespace grainsweep::drum {
 namespace {
 
+using kit::at_least;
 using kit::require;
 using kit::sentence;
 
@@ -26,7 +27,7 @@ double drum_volume(const Study& s) {
 
 void check_size(const Study& s) {
     const double largest = s.sizes.largest() * s.diameter;
-    require(2 * s.radius >= narrowest_drum * largest,
+    require(at_least(2 * s.radius, narrowest_drum * largest),
             sentence("drum_diameter of %.4g m is less than %.0f of the largest particles, %.4g m wide", 2 * s.radius,
                      narrowest_drum, largest));
     if (s.has_plates)
@@ -35,7 +36,7 @@ void check_size(const Study& s) {
                          "m wide",
                          s.length, largest));
     else
-        require(s.length >= narrowest_period * largest,
+        require(at_least(s.length, narrowest_period * largest),
                 sentence("a period of %.4g m (length) is less than %.0f of the largest particles, %.4g m wide",
                          s.length, narrowest_period, largest));
     const double columns = 2 * std::ceil(s.radius / s.occupancy_cell);

@@ -13,6 +13,7 @@
 namespace grainsweep::heap {
 namespace {
 
+using kit::at_least;
 using kit::require;
 using kit::sentence;
 
@@ -87,7 +88,7 @@ Study study_of(const Inputs& inputs, const Files* files) {
     s.gravity = q::gravity(inputs);
     s.rough = q::floor(inputs) == q::Floor::rough;
     s.particles = q::particles(inputs);
-    require(2 * s.tube_radius >= narrowest * largest(s),
+    require(at_least(2 * s.tube_radius, narrowest * largest(s)),
             sentence("tube_diameter of %.4g m is less than %.0f of the largest particles, %.4g m wide",
                      2 * s.tube_radius, narrowest, largest(s)));
     s.fill_height = std::min(random_height(s), lattice_of(s).height()) + largest(s) + tube_gap * s.diameter;

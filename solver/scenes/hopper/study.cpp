@@ -12,6 +12,7 @@
 namespace grainsweep::hopper {
 namespace {
 
+using kit::at_least;
 using kit::require;
 using kit::sentence;
 
@@ -27,13 +28,13 @@ double largest(const Study& s) {
 }
 
 void check_size(const Study& s) {
-    require(2 * s.half_width >= narrowest * largest(s),
+    require(at_least(2 * s.half_width, narrowest * largest(s)),
             sentence("container_diameter of %.4g m is less than %.0f of the largest particles, %.4g m wide",
                      2 * s.half_width, narrowest, largest(s)));
     require(s.opening < 2 * s.half_width, sentence("opening_size of %.4g m is not less than container_diameter, %.4g m",
                                                    s.opening, 2 * s.half_width));
     require(!(s.conical && s.slot), "a conical hopper has a round opening: a slot needs the shape 'flat'");
-    require(!s.slot || s.slot_length >= narrowest * largest(s),
+    require(!s.slot || at_least(s.slot_length, narrowest * largest(s)),
             sentence("a period of %.4g m (slot_length) is less than %.0f of the largest particles, %.4g m wide",
                      s.slot_length, narrowest, largest(s)));
 }

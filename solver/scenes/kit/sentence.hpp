@@ -15,6 +15,11 @@ namespace grainsweep::kit {
     return buffer.data();
 }
 
+/// a >= b up to rounding: 0.0045 is three times 0.0015, though 3 * 0.0015 is greater.
+[[nodiscard]] inline bool at_least(double a, double b) {
+    return a >= b * (1 - 1e-12);
+}
+
 /// Throws std::invalid_argument with the sentence where something does not hold.
 inline void require(bool holds, const std::string& words) {
     if (!holds) throw std::invalid_argument(words);
