@@ -36,15 +36,17 @@ struct Scatter {
 
 /// The values of each run there, by case and quantity.
 std::map<std::string, Scatter> reference_runs() {
-    std::ifstream file(tests::reference("walls/ensembles.csv"));
     std::map<std::string, Scatter> runs;
-    for (std::string line; std::getline(file, line);) {
-        std::vector<std::string> cells;
-        std::istringstream row(line);
-        for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
-        if (cells.size() < 7 || cells[0].rfind("roller", 0) != 0) continue;
-        std::istringstream values(cells[6]);
-        for (double x = 0; values >> x;) runs[cells[0] + " " + cells[3]].add(x);
+    for (const char* name : {"walls/ensembles.csv", "walls/ensembles_more_seeds.csv"}) {
+        std::ifstream file(tests::reference(name));
+        for (std::string line; std::getline(file, line);) {
+            std::vector<std::string> cells;
+            std::istringstream row(line);
+            for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+            if (cells.size() < 7 || cells[0].rfind("roller", 0) != 0) continue;
+            std::istringstream values(cells[6]);
+            for (double x = 0; values >> x;) runs[cells[0] + " " + cells[3]].add(x);
+        }
     }
     return runs;
 }
