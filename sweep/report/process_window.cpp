@@ -89,12 +89,11 @@ private:
         const auto& name = request_->objective;
         const auto place = static_cast<std::size_t>(std::ranges::find(names_, name) - names_.begin());
         const auto observables = cases_->observables.size();
-        if (place < observables || place == names_.size()) {
-            const auto& column = cases_->observable(name);  // an unknown name is refused here
-            add_model(static_cast<std::size_t>(&column - cases_->observables.data()));
-            return;
-        }
+        if (place < observables) return add_model(place);
         const auto* const option = request_->maximise ? "--maximize" : "--minimize";
+        if (place == names_.size())
+            throw campaign::wrong_question(option, name, "is neither observable nor factor of the campaign",
+                                           campaign::nearest_word(name, names_));
         if (cases_->factors[place - observables].is_word())
             throw campaign::wrong_question(option, name, "is a factor whose levels are words: none is the largest");
         if (!condition_)

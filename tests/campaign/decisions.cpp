@@ -254,6 +254,9 @@ TEST(Window, RefusesInOneSentence) {
               std::string::npos);
     EXPECT_NE(ran.refusal({"window", "c.db", "--maximize", "y", "--run", "--width", "inf"}).find("a positive number"),
               std::string::npos);
+    EXPECT_NE(ran.refusal({"window", "c.db", "--maximize", "x22"})
+                  .find("neither observable nor factor of the campaign. Did you mean 'x2'?"),
+              std::string::npos);
     EXPECT_NE(ran.refusal({"window", "c.db", "--maximize", "x1"}).find("is a factor: it needs a condition"),
               std::string::npos);
     EXPECT_NE(ran.refusal({"window", "c.db", "--where", "y > 0.1", "--maximize", "x1", "--run", "--width", "0.1"})
