@@ -1,19 +1,17 @@
 // A roller against LIGGGHTS 3.8 (tests/reference/walls, section 4 "roller"): 3000 spheres, three spins, forty seeds
 // each, since the scatter between runs, 0.005 to 0.014 from sets of ten, decides; minutes: slow_spreading.
 #include "solver/scenes/scene.hpp"
-#include "tests/support/places.hpp"
+#include "tests/support/reference_table.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <numbers>
 #include <sstream>
 #include <string>
-#include <vector>
 
 using namespace grainsweep;
 
@@ -38,14 +36,11 @@ struct Scatter {
 std::map<std::string, Scatter> reference_runs() {
     std::map<std::string, Scatter> runs;
     for (const char* name : {"walls/ensembles.csv", "walls/ensembles_more_seeds.csv"}) {
-        std::ifstream file(tests::reference(name));
-        for (std::string line; std::getline(file, line);) {
-            std::vector<std::string> cells;
-            std::istringstream row(line);
-            for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
-            if (cells.size() < 7 || cells[0].rfind("roller", 0) != 0) continue;
-            std::istringstream values(cells[6]);
-            for (double x = 0; values >> x;) runs[cells[0] + " " + cells[3]].add(x);
+        const grainsweep::testing::ReferenceTable table(name);
+        for (std::size_t row = 0; row < table.size(); ++row) {
+            if (!table.cell(row, "case").starts_with("roller")) continue;
+            std::istringstream values(table.cell(row, "values"));
+            for (double x = 0; values >> x;) runs[table.cell(row, "case") + " " + table.cell(row, "quantity")].add(x);
         }
     }
     return runs;
