@@ -90,9 +90,9 @@ struct ContactForce {
     Vec3 rolling_moment{};    ///< N m on `first` besides that of the forces, minus that on `second`
 };
 
-/// What the particles do to a wall, as of the last step: the reaction to their forces, moments and torques, so that
-/// momentum and angular momentum are conserved. The work is that of the force on the material of the wall at the
-/// closest point, with the velocity that the laws see.
+/// What the particles do to a wall, as of the last step of a run (after a fault: of walls that move): the reaction to
+/// their forces, moments and torques, so that momentum and angular momentum are conserved. The work is that of the
+/// force on the material of the wall at the closest point, with the velocity that the laws see.
 struct WallLoad {
     Vec3 force{};     ///< on the wall, N
     Vec3 torque{};    ///< on the wall about the point asked for, N m
@@ -119,8 +119,8 @@ public:
     /// Advances by `steps` time steps; stops at once when the state is no longer sound (fault()).
     virtual void run(std::int64_t steps) = 0;
     /// Uses up to `count` threads from the next run() on, the calling one among them; 0: one for each core. Where there
-    /// are too few particles for it, fewer. No bit depends on it; the double-precision engine always uses one. Returns how
-    /// many the particles that are there now are enough for.
+    /// are too few particles for it, fewer. No bit depends on it; the double-precision engine always uses one. Returns
+    /// how many the particles that are there now are enough for.
     virtual int set_threads(int count) { return static_cast<void>(count), 1; }
     /// New walls: wall time starts at 0, wall histories are dropped, particle histories stay; forces are
     /// recomputed once without touching histories. Throws std::invalid_argument with one sentence on walls that cannot

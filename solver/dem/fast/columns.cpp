@@ -73,7 +73,7 @@ void Columns::bind(Field& f) const {
 }
 
 void Columns::hold_particles(std::size_t particles, std::size_t wall_count) {
-    const std::size_t n = particles + 4 + spare;
+    const std::size_t n = particles + fillers + spare;
     records.hold(n), records_next.hold(n);
     residuals.hold(n), residuals_next.hold(n);
     forces.hold(n);

@@ -251,14 +251,26 @@ GRAINSWEEP_LANES M lanes_in(unsigned m) {
     const std::uint64_t b = m;
     return {hn::LoadMaskBits(singles, reinterpret_cast<const std::uint8_t*>(&b))};
 }
+/// Some of the lanes, as the instructions that move them want them: by AVX-512 a mask, by others bits.
+struct Chosen {
+    M mask;
+    unsigned bits;
+    GRAINSWEEP_LANES explicit Chosen(M m) : mask(m), bits(fast::bits(m)) {}
+};
 // Moving lanes to the front, those whose bit is set, with rubbish behind them; and the inverse, with zero elsewhere.
 // The tables are ours: those of Highway 1.0 are local to its functions, and GCC copies them at every use.
 #if HWY_CAP_GE512
-GRAINSWEEP_LANES F compress(F a, unsigned m) {
-    return {hn::Compress(a.v, hn::Mask<decltype(singles)>{static_cast<__mmask16>(m)})};
+template <class Lanes>
+GRAINSWEEP_LANES Lanes compress(Lanes a, M m) {
+    return {hn::Compress(a.v, hn::RebindMask(hn::DFromV<decltype(a.v)>{}, m.v))};
 }
-GRAINSWEEP_LANES I compress(I a, unsigned m) {
-    return {hn::Compress(a.v, hn::Mask<decltype(integers)>{static_cast<__mmask16>(m)})};
+template <class Lanes>
+GRAINSWEEP_LANES Lanes compress(Lanes a, unsigned m) {
+    return compress(a, lanes_in(m));
+}
+template <class Lanes>
+GRAINSWEEP_LANES Lanes compress(Lanes a, Chosen c) {
+    return compress(a, c.mask);
 }
 GRAINSWEEP_LANES F expand(F a, unsigned m) {
     return {Vector<float, width>{_mm512_maskz_expand_ps(static_cast<__mmask16>(m), a.v.raw)}};
@@ -314,6 +326,10 @@ GRAINSWEEP_LANES Lanes moved(Lanes a, const LaneTables::Bytes& order) {
 template <class Lanes>
 GRAINSWEEP_LANES Lanes compress(Lanes a, unsigned m) {
     return moved(a, lane_tables.front[m]);
+}
+template <class Lanes>
+GRAINSWEEP_LANES Lanes compress(Lanes a, Chosen c) {
+    return compress(a, c.bits);
 }
 GRAINSWEEP_LANES F expand(F a, unsigned m) {
     const F spread = moved(a, lane_tables.spread[m]);

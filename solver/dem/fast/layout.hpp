@@ -28,6 +28,9 @@ constexpr std::int32_t spare = 2 * tile + 64;
 using Place = std::uint32_t;
 constexpr std::int32_t places_per_index = 8;
 
+/// Records behind those of the particles, which fill vectors up.
+constexpr std::int32_t fillers = 3;
+
 /// One particle as the pair loop reads it: one cache line.
 struct alignas(64) Record {
     std::int32_t position[3];
@@ -88,6 +91,7 @@ struct alignas(16) PlacedWall {
     std::int32_t imaged;                             ///< 1: it has periodic images
     std::int32_t turned;                             ///< 1: its numbers are those of its body frame
     std::int32_t turns;                              ///< 1: its material turns
+    std::int32_t summed;                             ///< 1: its sums are asked for, otherwise it is at rest
     double origin[3];                                ///< what the following, and the numbers, are relative to
     double middle[3], period[3], inverse_period[3];  ///< of images; 0 along axes that have none
     double rows[3][3];                               ///< of the turn from its body frame
@@ -113,8 +117,8 @@ struct PieceList {
     std::uint32_t* piece;  ///< out
 };
 
-/// What the particles did to a wall in one step: sums of their forces (to be reversed), of the torques of these about
-/// its pivot, and of forces times the velocity of the wall's material.
+/// What the particles did to a wall in one step, where it is summed up: sums of their forces (to be reversed), of the
+/// torques of these about its pivot, and of forces times the velocity of the wall's material.
 struct WallSums {
     double force[3], torque[3], power;
 };
@@ -136,8 +140,8 @@ struct alignas(32) Tally {
 /// Raw view of everything a kernel touches. Owners live in files compiled for the baseline.
 struct Field {
     Constants constants;
-    /// Particles present. Behind them in `records`: two far apart ones that fill vectors of pairs up, one that fills
-    /// vectors of wall contacts up, and one at rest without mass, spin and size, the partner in these.
+    /// Particles present. Behind them in `records`: two far apart ones that fill vectors of pairs up, and one that
+    /// fills vectors of wall contacts up.
     std::int32_t count;
     /// Particles whose pairs the lists hold, and which a sweep advances: all, or those of a subdomain (subdomains.hpp).
     std::int32_t begin, end;

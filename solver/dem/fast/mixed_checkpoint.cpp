@@ -31,7 +31,7 @@ void MixedEngine::pass(Self& self, Archive& archive) {
     pass_walls(self, archive);
     if (self.resting_.wanted()) Resting::pass(self.resting_, archive);
     auto& c = self.columns_;
-    const auto particles = static_cast<std::size_t>(self.field_.count) + 4;
+    const auto particles = static_cast<std::size_t>(self.field_.count) + fillers;
     archive.column(c.records, particles);
     archive.column(c.residuals, particles);
     archive.column(c.forces, particles);
@@ -172,7 +172,7 @@ void MixedEngine::require_possible() const {
     }
     for (std::size_t k = 0; k < static_cast<std::size_t>(end); ++k)
         require(c.wall_particle[k] % places_per_index == 0 &&
-                c.wall_particle[k] / places_per_index < static_cast<Place>(n) + 3);
+                c.wall_particle[k] / places_per_index < static_cast<Place>(n) + fillers);
 }
 
 /// Behind a list's end entries are read ahead and never count; let them lead to something, too.

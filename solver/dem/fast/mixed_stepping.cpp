@@ -42,6 +42,7 @@ void MixedEngine::run(std::int64_t steps) {
         const bool checked = watch_.due(work_.steps);  // at the full step: no particle is advanced before
         advanced = s + 1 < steps && !checked;
         begin_tally();
+        walls_.sum_up(s + 1 == steps);
         press_walls(true);
         sweep_pairs(advanced, false);
         peak_overlap_ = std::max(peak_overlap_, overlap());
@@ -233,6 +234,7 @@ void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
     make_lists(removed);
     begin_tally();
     field_.history_step = 0;
+    walls_.sum_up(true);
     press_walls(false);
     sweep_pairs(false, true);
     field_.history_step = 1;

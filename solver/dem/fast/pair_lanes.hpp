@@ -63,37 +63,39 @@ GRAINSWEEP_LANES V odd_blocks(V a, V b) {
 }
 #endif
 
-/// Position of first minus position of second.
-GRAINSWEEP_LANES void load_offsets(const Record* r, const Place* first, const Place* second, I& x, I& y, I& z) {
-    const Tag<std::int32_t, 4> whole;
-    const auto offset = [&](int q) {
-        return hn::Sub(hn::Load(whole, record_at(r, first[q])->position),
-                       hn::Load(whole, record_at(r, second[q])->position));
-    };
+/// Rows 0-2 of four integers each: what `of` says of lane q.
+template <class Of>
+GRAINSWEEP_LANES void load_integers(const Of& of, I& x, I& y, I& z) {
     Vector<std::int32_t, width> a[4];
-    for (int e = 0; e < 4; ++e) a[e] = blocks(offset, e);
+    for (int e = 0; e < 4; ++e) a[e] = blocks(of, e);
     I out[4];
     transpose_blocks(a, out);
     x = out[0];
     y = out[1];
     z = out[2];
 }
+GRAINSWEEP_LANES Vector<std::int32_t, 4> position_at(const Record* r, Place k) {
+    return hn::Load(Tag<std::int32_t, 4>{}, record_at(r, k)->position);
+}
+GRAINSWEEP_LANES void load_positions(const Record* r, const Place* particle, I& x, I& y, I& z) {
+    load_integers([&](int q) { return position_at(r, particle[q]); }, x, y, z);
+}
+/// Position of first minus position of second.
+GRAINSWEEP_LANES void load_offsets(const Record* r, const Place* first, const Place* second, I& x, I& y, I& z) {
+    load_integers([&](int q) { return hn::Sub(position_at(r, first[q]), position_at(r, second[q])); }, x, y, z);
+}
 
-/// Rows 0-3: velocity differences and sum of inverse masses; rows 4-7: sums of spins and of radii.
-GRAINSWEEP_LANES void load_motion(const Record* r, const Place* first, const Place* second, F* rows) {
-    alignas(32) static constexpr float signs[8] = {-1, -1, -1, 1, 1, 1, 1, 1};
+/// Rows 0-7 of eight numbers each: what `of` says of lane q.
+template <class Of>
+GRAINSWEEP_LANES void load_eights(const Of& of, F* rows) {
 #if HWY_CAP_GE256
-    const F8 sign = load8(signs);
-    const auto pair = [&](int q) {
-        return fma(load8(record_at(r, second[q])->velocity), sign, load8(record_at(r, first[q])->velocity)).v;
-    };
     V z[8];
     F half[2][4];
     for (int e = 0; e < 8; ++e) {
 #if HWY_CAP_GE512
-        z[e] = joined(pair(e), pair(8 + e));
+        z[e] = joined(of(e).v, of(8 + e).v);
 #else
-        z[e] = pair(e);
+        z[e] = of(e).v;
 #endif
     }
     transpose_blocks(z, half[0]);
@@ -103,15 +105,39 @@ GRAINSWEEP_LANES void load_motion(const Record* r, const Place* first, const Pla
         rows[4 + c].v = odd_blocks(half[0][c].v, half[1][c].v);
     }
 #else
-    const F4 sign = load4(signs);
-    V v[4], w[4];
+    V low[4], high[4];
     for (int e = 0; e < 4; ++e) {
-        v[e] = hn::MulAdd(block(r, second[e], 1), sign.v, block(r, first[e], 1));
-        w[e] = hn::Add(block(r, first[e], 2), block(r, second[e], 2));
+        const F8 eight = of(e);
+        low[e] = eight.lo.v;
+        high[e] = eight.hi.v;
     }
-    transpose_blocks(v, rows);
-    transpose_blocks(w, rows + 4);
+    transpose_blocks(low, rows);
+    transpose_blocks(high, rows + 4);
 #endif
+}
+/// Rows 0-3: velocities and inverse masses; rows 4-7: spins and radii.
+GRAINSWEEP_LANES void load_motion(const Record* r, const Place* particle, F* rows) {
+    load_eights([&](int q) { return load8(record_at(r, particle[q])->velocity); }, rows);
+}
+/// Rows 0-3: velocity differences and sum of inverse masses; rows 4-7: sums of spins and of radii.
+GRAINSWEEP_LANES void load_motion(const Record* r, const Place* first, const Place* second, F* rows) {
+    alignas(32) static constexpr float signs[8] = {-1, -1, -1, 1, 1, 1, 1, 1};
+    const auto pair = [&](int q) {
+        const float *one = record_at(r, first[q])->velocity, *other = record_at(r, second[q])->velocity;
+#if HWY_CAP_GE256
+        return fma(load8(other), load8(signs), load8(one));
+#else
+        return F8{fma(load4(other), load4(signs), load4(one)), load4(one + 4) + load4(other + 4)};
+#endif
+    };
+    load_eights(pair, rows);
+}
+GRAINSWEEP_LANES F load_radii(const Record* r, const Place* particle) {
+    V a[4];
+    for (int e = 0; e < 4; ++e) a[e] = blocks([&](int q) { return block(r, particle[q], 2); }, e);
+    F rows[4];
+    transpose_blocks(a, rows);
+    return rows[3];
 }
 
 /// Rows 0-2: sums of radius times spin; row 3: difference of radii.

@@ -196,7 +196,7 @@ void carry_histories(Field& f, Columns& c, const Kernels& kernels, const Parts& 
 }  // namespace
 
 void place_fillers(Field& f) {
-    for (std::int32_t k = 0; k < 3; ++k) {
+    for (std::int32_t k = 0; k < fillers; ++k) {
         Record r{};
         r.inverse_mass = 1;
         r.inverse_radius = 1;
@@ -206,7 +206,6 @@ void place_fillers(Field& f) {
         if (k == 2) r.radius = r.radius_again = -1e6F;  // out of reach of every wall
         f.records[f.count + k] = r;
     }
-    f.records[f.count + 3] = Record{};
     f.begin = 0;
     f.end = f.filler = f.count;
 }

@@ -147,7 +147,8 @@ std::int32_t take_out(const Field& f, Columns& c, const ListSpace& space, std::s
         }
         return stay;
     });
-    for (std::int32_t k = f.count; k < f.count + 3; ++k) c.place[static_cast<std::size_t>(k)] = -1;  // the fillers
+    for (std::int32_t k = f.count; k < f.count + fillers; ++k)
+        c.place[static_cast<std::size_t>(k)] = -1;
     return kept.back();
 }
 

@@ -141,7 +141,7 @@ void Subdomains::find_partners(const Field& whole) {
 /// Makes room for the copies behind the particles.
 void Subdomains::place_copies(Field& whole, Columns& columns) {
     const auto even = [](std::size_t n) { return n + n % 2; };  // two forces share a cache line
-    std::size_t next = even(static_cast<std::size_t>(whole.count) + 4);
+    std::size_t next = even(static_cast<std::size_t>(whole.count) + fillers);
     for (const auto& subdomain : subdomains_) {
         subdomain->filler = static_cast<std::int32_t>(next);
         next = even(next + 2 + subdomain->partner.size());

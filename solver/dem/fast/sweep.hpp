@@ -23,8 +23,8 @@ struct alignas(64) Packed {
     Place first[tile + 2 * width];
     Place second[tile + 2 * width];
     std::int32_t offset[3][tile + 2 * width];
-    float memory[histories_at_most][tile + 2 * width];  ///< only where histories are streamed
     float outcome[tile / width + 1][9][width];
+    float memory[histories_at_most][tile + 2 * width];  ///< only where histories are streamed
 };
 
 /// How far a sweep has come.
@@ -61,12 +61,13 @@ GRAINSWEEP_PHASE void sift(const Field& f, std::int32_t batches, Packed& p, Prog
         const F x = single(ix) * ux, y = single(iy) * uy, z = single(iz) * uz;
         F reach = broadcast(c.candidate_squared);
         if constexpr (Kernel::unequal) reach = load(f.inner_reach + k);
-        const unsigned now = bits(fma(x, x, fma(y, y, z * z)) < reach);
-        store(p.first + s.packed, compress(load(first), now));
-        store(p.second + s.packed, compress(load(second), now));
-        store(p.offset[0] + s.packed, compress(ix, now));
-        store(p.offset[1] + s.packed, compress(iy, now));
-        store(p.offset[2] + s.packed, compress(iz, now));
+        const Chosen near(fma(x, x, fma(y, y, z * z)) < reach);
+        const unsigned now = near.bits;
+        store(p.first + s.packed, compress(load(first), near));
+        store(p.second + s.packed, compress(load(second), near));
+        store(p.offset[0] + s.packed, compress(ix, near));
+        store(p.offset[1] + s.packed, compress(iy, near));
+        store(p.offset[2] + s.packed, compress(iz, near));
         const int count = __builtin_popcount(now);
         if constexpr (Kernel::histories > 0) {
             const auto keep_history = [&](int a, F memory) {
@@ -77,7 +78,7 @@ GRAINSWEEP_PHASE void sift(const Field& f, std::int32_t batches, Packed& p, Prog
                 for (int a = 0; a < Kernel::histories; ++a) keep_history(a, load(f.history[a] + s.read));
             else
                 for (int a = 0; a < Kernel::histories; ++a)
-                    keep_history(a, compress(expand(load(f.history[a] + s.read), before), now));
+                    keep_history(a, compress(expand(load(f.history[a] + s.read), before), near));
             f.touching_next[s.batch] = static_cast<std::uint16_t>(now);
             s.read += __builtin_popcount(before);
             s.written += count;
@@ -238,18 +239,18 @@ GRAINSWEEP_LANES Stepper stepper(const Constants& c, const Tally& t) {
             load8(t.velocity_low), load4(c.inverse_unit)};
 }
 
-template <class Kernel>
-GRAINSWEEP_LANES void advance_one(const Field& f, std::int32_t i, Stepper& s) {
-    Record& r = f.records[i];
+/// `may_be_held`: particles without inverse mass get no gravity.
+template <class Kernel, bool may_be_held>
+GRAINSWEEP_LANES void advance_one(Record& r, Force& force, Residual& left_over, Stepper& s) {
     const F8 inverse_mass = broadcast8(r.inverse_mass);
-    F8 change = load8(f.forces[i].force) * s.turning;
+    F8 change = load8(force.force) * s.turning;
     if constexpr (Kernel::unequal) {
         const F4 inverse_radius = broadcast4(r.inverse_radius);
         change = change * join(broadcast4(1.0f), inverse_radius * inverse_radius);
     }
     F8 gravity = s.gravity;
-    if constexpr (Kernel::holds) gravity = where_positive(inverse_mass, gravity);
-    const F8 residue = load8(f.residuals[i].position);
+    if constexpr (may_be_held) gravity = where_positive(inverse_mass, gravity);
+    const F8 residue = load8(left_over.position);
     change = fma(change, inverse_mass, gravity) + join(high(residue), broadcast4(0.0f));
     const F8 old = load8(r.velocity);
     const F8 now = old + change;
@@ -264,13 +265,13 @@ GRAINSWEEP_LANES void advance_one(const Field& f, std::int32_t i, Stepper& s) {
         }
         waiting = high(lost) * broadcast4(inertia);
     }
-    store8(f.forces[i].force, join(broadcast4(0.0f), waiting));
+    store8(force.force, join(broadcast4(0.0f), waiting));
     s.high = max(now, s.high);
     s.low = min(now, s.low);
     const F4 travel = fma(low(now), s.inverse_unit, low(residue));
     const I4 units = rounded(travel);
     const I4 position = load4(r.position) + units;
-    store8(f.residuals[i].position, join(travel - single(units), low(lost)));
+    store8(left_over.position, join(travel - single(units), low(lost)));
     store4(r.position, position);
     store8(r.velocity, now);
     if constexpr (Kernel::unequal) {
@@ -284,16 +285,23 @@ GRAINSWEEP_LANES void advance_one(const Field& f, std::int32_t i, Stepper& s) {
 template <class Kernel>
 GRAINSWEEP_PHASE void advance_range(const Field& f, std::int32_t from, std::int32_t to, Tally& t) {
     Stepper s = stepper(f.constants, t);
+    // in variables: behind a store of lanes the compiler would read them from the field again
+    Record* const records = f.records;
+    Force* const forces = f.forces;
+    Residual* const residuals = f.residuals;
+    const bool read_ahead = f.read_ahead != 0;
     if (Kernel::holds && f.skips != 0) {
-        for (std::int32_t k = f.advanced_before[from]; k < f.advanced_before[to]; ++k) {
-            const std::int32_t i = f.advanced[k];
-            if (f.read_ahead != 0) prefetch(f.residuals + i + 64);
-            advance_one<Kernel>(f, i, s);
+        const std::int32_t* const advanced = f.advanced;
+        const std::int32_t end = f.advanced_before[to];
+        for (std::int32_t k = f.advanced_before[from]; k < end; ++k) {
+            const std::int32_t i = advanced[k];
+            if (read_ahead) prefetch(residuals + i + 64);
+            advance_one<Kernel, false>(records[i], forces[i], residuals[i], s);
         }
     } else {
         for (std::int32_t i = from; i < to; ++i) {
-            if (f.read_ahead != 0) prefetch(f.residuals + i + 64);
-            advance_one<Kernel>(f, i, s);
+            if (read_ahead) prefetch(residuals + i + 64);
+            advance_one<Kernel, Kernel::holds>(records[i], forces[i], residuals[i], s);
         }
     }
     store8(t.velocity_high, s.high);

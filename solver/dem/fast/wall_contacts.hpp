@@ -1,6 +1,6 @@
 // Contacts with walls: the pair law with R* = R, m* = m. What is touched where is found in double precision
-// (wall_places.hpp); the partner of a particle is then a record without mass, spin and size, and the laws are those of
-// the wall's surface. Torque arm R - d/2.
+// (wall_places.hpp); the laws are those of the wall's surface. Torque arm R - d/2. A wall that is not summed up is at
+// rest: neither its velocity nor the places where it is touched are needed.
 // Included by the files of the instruction paths; internal linkage on purpose.
 #pragma once
 
@@ -42,38 +42,38 @@ GRAINSWEEP_LANES void add_to(double* total, V3 a) {
 }
 
 /// Fills the last vector up with a particle that never touches.
+template <class Kernel>
 GRAINSWEEP_LANES void fill_up(const Field& f, WallTile& t, int packed) {
-    for (int q = packed; q < packed + width; ++q) {
-        t.particle[q] = static_cast<Place>((f.count + 2) * places_per_index);
-        t.overlap[q] = -1;
-        for (int a = 0; a < 3; ++a) t.normal[a][q] = t.velocity[a][q] = t.lever[a][q] = 0;
-        for (auto& column : t.memory) column[q] = 0;
-    }
+    const F zero = broadcast(0.0f);
+    store(t.particle + packed, broadcast((f.count + 2) * places_per_index));
+    store(t.overlap + packed, broadcast(-1.0f));
+    for (auto* rows : {&t.normal, &t.velocity, &t.lever})
+        for (auto& row : *rows) store(row + packed, zero);
+    for (int a = 0; a < Kernel::histories; ++a) store(t.memory[a] + packed, zero);
 }
 
-/// The laws at the packed contacts: forces on the particles, new memories, sums for the wall.
-template <class Kernel>
+/// The laws at the packed contacts: forces on the particles, new memories, and where asked for the wall's sums.
+template <class Kernel, bool summed>
 GRAINSWEEP_PHASE void press(const Field& f, const typename Kernel::Laws& laws, WallTile& t, int batches,
                             float& wall_overlap, WallSums& sums) {
-    Place partner[width];
-    for (int q = 0; q < width; ++q) partner[q] = static_cast<Place>((f.count + 3) * places_per_index);
     F largest_overlap = broadcast(wall_overlap);
     LaneSums lanes{zero_vector(), zero_vector(), broadcast(0.0f)};
     for (int b = 0; b < batches; ++b) {
         const int at = b * width;
         const Place* particle = t.particle + at;
-        F rows[12];
-        load_motion(f.records, particle, partner, rows);
+        F rows[8];
+        load_motion(f.records, particle, rows);
         const F radius = rows[7];
-        const V3 surface_velocity = load_vector(t.velocity, at);
+        V3 surface_velocity;
+        if constexpr (summed) surface_velocity = load_vector(t.velocity, at);
         Meeting<Kernel, Partner::wall> m;
         m.time_step = broadcast(f.history_step);
         m.radius = radius;
         m.overlap = load(t.overlap + at);
         m.touching = may_touch<Kernel>(m.overlap);
         m.normal = load_vector(t.normal, at);
-        m.velocity = V3{rows[0], rows[1], rows[2]} - surface_velocity;
-        const F half_overlap = broadcast(0.5f) * m.overlap;
+        m.velocity = {rows[0], rows[1], rows[2]};
+        if constexpr (summed) m.velocity = m.velocity - surface_velocity;
         const F arm = fnma(broadcast(0.5f), m.overlap, radius);
         m.surface = V3{rows[4], rows[5], rows[6]} * arm;
         m.root_radius = radius * inverse_root(max(radius, broadcast(1e-12f)));
@@ -87,36 +87,39 @@ GRAINSWEEP_PHASE void press(const Field& f, const typename Kernel::Laws& laws, W
         const auto [force, turn, rolling] = respond(laws, m, memory);
         for (int a = 0; a < Kernel::histories; ++a) store(t.memory[a] + at, memory[a]);
         largest_overlap = max(keep(m.touching, m.overlap * inverse(radius + radius)), largest_overlap);
-        lanes.force = lanes.force + force;
-        lanes.power = fma(force.x, surface_velocity.x,
-                          fma(force.y, surface_velocity.y, fma(force.z, surface_velocity.z, lanes.power)));
-        // the force acts in the middle of the overlap
-        const V3 lever = fnma(half_overlap, m.normal, load_vector(t.lever, at));
-        lanes.torque = add_cross(lanes.torque, lever, force);
+        if constexpr (summed) {
+            lanes.force = lanes.force + force;
+            lanes.power = fma(force.x, surface_velocity.x,
+                              fma(force.y, surface_velocity.y, fma(force.z, surface_velocity.z, lanes.power)));
+            // the force acts in the middle of the overlap
+            const V3 lever = fnma(broadcast(0.5f) * load(t.overlap + at), m.normal, load_vector(t.lever, at));
+            lanes.torque = add_cross(lanes.torque, lever, force);
+            if constexpr (Kernel::rolls) lanes.torque = lanes.torque - rolling;
+        }
         const F forces[3] = {force.x, force.y, force.z};
         F torques[3] = {turn.x * arm, turn.y * arm, turn.z * arm};
         if constexpr (Kernel::rolls) {
             torques[0] = torques[0] - rolling.x;
             torques[1] = torques[1] - rolling.y;
             torques[2] = torques[2] - rolling.z;
-            lanes.torque = lanes.torque - rolling;
         }
         scatter(f.forces, particle, forces, torques);
     }
     wall_overlap = largest(largest_overlap);
+    if constexpr (!summed) return;
     add_to(sums.force, lanes.force);
     add_to(sums.torque, lanes.torque);
     sums.power += sum_of(lanes.power);
 }
 
 /// Memories back to the list; those of particles that do not touch end.
+template <class Kernel>
 GRAINSWEEP_LANES void return_memories(const Field& f, const WallTile& t, const WallProgress& p) {
-    for (int a = 0; a < f.histories; ++a) {
-        int at = 0, b = 0;
-        for (std::int32_t k = p.begin; k < p.slot; k += width, ++b) {
+    int at = 0, b = 0;
+    for (std::int32_t k = p.begin; k < p.slot; k += width, ++b) {
+        for (int a = 0; a < Kernel::histories; ++a)
             store(f.wall_history[a] + k, expand(load(t.memory[a] + at), p.touch[b]));
-            at += __builtin_popcount(p.touch[b]);
-        }
+        at += __builtin_popcount(p.touch[b]);
     }
 }
 
@@ -150,22 +153,26 @@ void walls(const Field& f, Tally& tally) {
     WallProgress p;
     for (std::int32_t w = 0; w < f.wall_count; ++w) {
         const PlacedWall& wall = f.walls[w];
+        const FindPlaces find = PlaceFinders<geometry::Shape>::of[wall.shape];
+        const auto [begin, end] = find != nullptr ? f.segments[w] : f.touched[w];
+        f.wall_sums[w] = {};
+        if (begin == end) continue;
         const typename Kernel::Laws laws(wall.laws);
         WallSums sums{};
         const auto press_packed = [&](int packed) {
-            fill_up(f, t, packed);
-            press<Kernel>(f, laws, t, (packed + width - 1) / width, tally.wall_overlap, sums);
+            if (packed == 0) return;
+            fill_up<Kernel>(f, t, packed);
+            const auto press_all = wall.summed != 0 ? press<Kernel, true> : press<Kernel, false>;
+            press_all(f, laws, t, (packed + width - 1) / width, tally.wall_overlap, sums);
         };
-        if (const FindPlaces find = PlaceFinders<geometry::Shape>::of[wall.shape]; find != nullptr) {
-            const std::int32_t end = f.segments[w].end;
-            for (p.slot = f.segments[w].begin; p.slot < end;) {
+        if (find != nullptr) {
+            for (p.slot = begin; p.slot < end;) {
                 find(f, wall, end, t, p);
                 press_packed(p.packed);
-                if (f.history_step != 0) return_memories(f, t, p);
+                if (f.history_step != 0) return_memories<Kernel>(f, t, p);
             }
         } else {
-            const std::int32_t end = f.touched[w].end;
-            for (std::int32_t from = f.touched[w].begin; from < end; from += tile) {
+            for (std::int32_t from = begin; from < end; from += tile) {
                 const int count = from + tile < end ? tile : end - from;
                 take_touches<Kernel>(f, from, count, t);
                 press_packed(count);

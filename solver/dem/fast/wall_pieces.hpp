@@ -19,7 +19,7 @@ struct PieceLanes {
 /// Appends those touched to the columns; returns their number.
 template <class S>
 GRAINSWEEP_LANES std::int32_t look_at(const Field& f, const PlacedWall& w, const PieceList& list,
-                                      const PieceLanes& lanes, const Place* partner, std::int32_t at) {
+                                      const PieceLanes& lanes, std::int32_t at) {
     constexpr int count = sizeof(typename S::PieceNumbers) / sizeof(double);
     alignas(64) double column[count][width];
     for (int q = 0; q < width; ++q) {
@@ -28,20 +28,20 @@ GRAINSWEEP_LANES std::int32_t look_at(const Field& f, const PlacedWall& w, const
     }
     D numbers[count];
     for (int k = 0; k < count; ++k) numbers[k] = load(column[k]);
-    const D3 r = positions_at(f, w, lanes.particle, partner);
+    const D3 r = positions_at(f, w, lanes.particle);
     const D3 body = w.turned != 0 ? to_body(w.rows, r) : r;
     const geometry::NearPiece<D> near = S::near_piece(numbers, body.x, body.y, body.z);
 
     const D zero = broadcast(0.0), one = broadcast(1.0);
     const D side = where_less(near.height, zero, zero - one, one), distance = side * near.height;
-    const D radius = exact(radii_of(f.records, lanes.particle)),
+    const D radius = exact(load_radii(f.records, lanes.particle)),
             reach = radius + broadcast(double{f.constants.beyond_wall});
     const D beyond = max(zero, zero - near.inside), disc = fnma(distance, distance, reach * reach);
     D status = where_less(broadcast(list.margin), near.inside, one, where_less(beyond * beyond, disc, one + one, zero));
     status = where_less(distance, reach, status, zero);
     const F kind = single(status);
-    const unsigned touched = bits(broadcast(0.0f) < kind);
-    if (touched == 0) return 0;
+    const Chosen touched(broadcast(0.0f) < kind);
+    if (touched.bits == 0) return 0;
     const D3 plane{side * numbers[0], side * numbers[1], side * numbers[2]};
     const D3 normal = w.turned != 0 ? from_body(w.rows, plane) : plane;
     const D3 lever = fnma(distance, normal, r) - broadcast(w.pivot);
@@ -61,14 +61,12 @@ GRAINSWEEP_LANES std::int32_t look_at(const Field& f, const PlacedWall& w, const
     keep_vector(f.touch_normal, direction);
     keep_vector(f.touch_lever, arm);
     keep_vector(f.touch_velocity, material);
-    return __builtin_popcount(touched);
+    return __builtin_popcount(touched.bits);
 }
 
 template <class S>
 GRAINSWEEP_PHASE std::int32_t find_pieces_of(const Field& f, const PlacedWall& w, const PieceList& list,
                                              std::int32_t at) {
-    Place partner[width];
-    for (int q = 0; q < width; ++q) partner[q] = static_cast<Place>((f.count + 3) * places_per_index);
     PieceLanes lanes;
     const std::int32_t begin = at;
     int waiting = 0;
@@ -81,7 +79,7 @@ GRAINSWEEP_PHASE std::int32_t find_pieces_of(const Field& f, const PlacedWall& w
             prefetch(numbers);
             prefetch(numbers + 8);
             if (++waiting < width) continue;
-            at += look_at<S>(f, w, list, lanes, partner, at);
+            at += look_at<S>(f, w, list, lanes, at);
             waiting = 0;
         }
     if (waiting == 0) return at - begin;
@@ -89,7 +87,7 @@ GRAINSWEEP_PHASE std::int32_t find_pieces_of(const Field& f, const PlacedWall& w
         lanes.particle[q] = static_cast<Place>((f.count + 2) * places_per_index);
         lanes.entry[q] = lanes.piece[q] = 0;
     }
-    at += look_at<S>(f, w, list, lanes, partner, at);
+    at += look_at<S>(f, w, list, lanes, at);
     return at - begin;
 }
 

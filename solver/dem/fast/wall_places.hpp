@@ -44,8 +44,8 @@ struct alignas(64) WallTile {
     Place particle[tile + 2 * width];
     float overlap[tile + 2 * width];
     float normal[3][tile + 2 * width];
-    float velocity[3][tile + 2 * width];  ///< of the wall's material
-    float lever[3][tile + 2 * width];     ///< from the wall's pivot to the place on its surface
+    float velocity[3][tile + 2 * width];  ///< of the wall's material, where the wall is summed up; otherwise 0
+    float lever[3][tile + 2 * width];     ///< from the wall's pivot to the place on its surface, likewise
     float memory[histories_at_most][tile + 2 * width];
 };
 
@@ -60,17 +60,11 @@ struct WallProgress {
     std::uint16_t touch[listed_vectors];  ///< which lanes touch, vector by vector of the list
 };
 
-GRAINSWEEP_LANES F radii_of(const Record* records, const Place* particle) {
-    float radius[width];
-    for (int q = 0; q < width; ++q) radius[q] = record_at(records, particle[q])->radius;
-    return load(radius);
-}
-
 /// Position of the particles relative to a wall's origin: of the nearest of its images.
-GRAINSWEEP_LANES D3 positions_at(const Field& f, const PlacedWall& w, const Place* particle, const Place* partner) {
+GRAINSWEEP_LANES D3 positions_at(const Field& f, const PlacedWall& w, const Place* particle) {
     const Constants& c = f.constants;
     I ix, iy, iz;
-    load_offsets(f.records, particle, partner, ix, iy, iz);
+    load_positions(f.records, particle, ix, iy, iz);
     const D3 x{exact(ix) * broadcast(c.unit[0]), exact(iy) * broadcast(c.unit[1]), exact(iz) * broadcast(c.unit[2])};
     D3 r = x - broadcast(w.origin);
     if (w.imaged != 0) {
@@ -109,7 +103,7 @@ GRAINSWEEP_LANES geometry::Near<D> nearest(const PlacedWall& w, D3 r) {
     return {found.distance, normal.x, normal.y, normal.z};
 }
 
-GRAINSWEEP_LANES void store(float (&rows)[3][tile + 2 * width], int at, V3 a, unsigned lanes) {
+GRAINSWEEP_LANES void store(float (&rows)[3][tile + 2 * width], int at, V3 a, Chosen lanes) {
     store(rows[0] + at, compress(a.x, lanes));
     store(rows[1] + at, compress(a.y, lanes));
     store(rows[2] + at, compress(a.z, lanes));
@@ -118,29 +112,32 @@ GRAINSWEEP_LANES void store(float (&rows)[3][tile + 2 * width], int at, V3 a, un
 /// Packs what touches, or may still hold, from p.slot on, up to `end` or until a tile is full.
 template <class S>
 GRAINSWEEP_PHASE void find_places(const Field& f, const PlacedWall& w, std::int32_t end, WallTile& t, WallProgress& p) {
-    Place partner[width];
-    for (int q = 0; q < width; ++q) partner[q] = static_cast<Place>((f.count + 3) * places_per_index);
     const D3 origin = broadcast(w.pivot), velocity = broadcast(w.velocity), spin = broadcast(w.spin);
     p.begin = p.slot;
     p.packed = 0;
+    const V3 carried = single(velocity);
+    const bool turns = w.turns != 0, summed = w.summed != 0;
+    const int histories = f.histories;
     for (int b = 0; b < listed_vectors && p.slot < end && p.packed < tile; ++b, p.slot += width) {
         const Place* particle = f.wall_particle + p.slot;
-        const D3 r = positions_at(f, w, particle, partner);
+        const D3 r = positions_at(f, w, particle);
         const geometry::Near<D> surface = nearest<S>(w, r);
-        const F overlap = single(exact(radii_of(f.records, particle)) - surface.distance);
-        const unsigned lanes = bits(broadcast(-f.constants.beyond_wall) < overlap);
-        p.touch[b] = static_cast<std::uint16_t>(lanes);
-        if (lanes == 0) continue;
+        const F overlap = single(exact(load_radii(f.records, particle)) - surface.distance);
+        const Chosen lanes(broadcast(-f.constants.beyond_wall) < overlap);
+        p.touch[b] = static_cast<std::uint16_t>(lanes.bits);
+        if (lanes.bits == 0) continue;
         const D3 normal{surface.x, surface.y, surface.z};
-        const D3 lever = fnma(surface.distance, normal, r) - origin;
         store(t.particle + p.packed, compress(load(particle), lanes));
         store(t.overlap + p.packed, compress(overlap, lanes));
         store(t.normal, p.packed, single(normal), lanes);
-        store(t.lever, p.packed, single(lever), lanes);
-        store(t.velocity, p.packed, single(w.turns != 0 ? add_cross(velocity, spin, lever) : velocity), lanes);
-        for (int a = 0; a < f.histories; ++a)
+        if (summed) {
+            const D3 lever = fnma(surface.distance, normal, r) - origin;
+            store(t.lever, p.packed, single(lever), lanes);
+            store(t.velocity, p.packed, turns ? single(add_cross(velocity, spin, lever)) : carried, lanes);
+        }
+        for (int a = 0; a < histories; ++a)
             store(t.memory[a] + p.packed, compress(load(f.wall_history[a] + p.slot), lanes));
-        p.packed += __builtin_popcount(lanes);
+        p.packed += __builtin_popcount(lanes.bits);
     }
 }
 

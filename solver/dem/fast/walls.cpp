@@ -107,6 +107,10 @@ void Walls::place(double time) {
     }
 }
 
+void Walls::sum_up(bool all) {
+    for (std::size_t w = 0; w < count(); ++w) placed_[w].summed = all || !moving_[w].at_rest() ? 1 : 0;
+}
+
 void Walls::bound_velocities(double time, Tally& tally) const {
     for (const MovingWall& wall : moving_) {
         if (wall.at_rest()) continue;

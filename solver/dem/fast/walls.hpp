@@ -31,6 +31,8 @@ public:
 
     /// Lets them stand where, and move as, they do at `time` after they were set, s.
     void place(double time);
+    /// Which of them are summed up from here on: all, or only those that move and do work.
+    void sum_up(bool all);
     [[nodiscard]] const PlacedWall* placed() const { return placed_.data(); }
     /// Extends the extremes of velocity by those of the surfaces during the step after `time`.
     void bound_velocities(double time, Tally& tally) const;
