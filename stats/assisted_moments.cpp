@@ -20,6 +20,9 @@ constexpr std::size_t least_sequences = 4, least_rare = 30, least_scramblings = 
 constexpr double contradiction = 2;  // in joint half-widths
 constexpr double normal_95 = 1.959963984540054;
 constexpr std::int64_t least_freedom = 2;
+// Cases from which on, and error of the models (in sd) below which, two estimates of one variance are averaged.
+constexpr std::size_t fewest_averaged = 200;
+constexpr double largest_error_averaged = 0.5;
 using Moment4 = std::array<double, 4>;
 
 std::string shown(double x) {
@@ -230,7 +233,11 @@ double half_width(const RawMoments& gradient, const std::vector<Moment4>& sequen
         for (std::size_t k = 0; k < scramblings; ++k)
             integrals[k] += dot(gradient, sequence[k]) / static_cast<double>(parts.integrals.size());
     const double by_points = scramblings >= least_scramblings ? student_half_width(integrals) : 0;
-    return std::hypot(std::max(student_half_width(values), by_cases), by_points);
+    const double by_sequences = student_half_width(values);
+    const bool averaged = parts.residuals.size() >= fewest_averaged && parts.error < largest_error_averaged;
+    const double error = averaged ? std::sqrt((by_sequences * by_sequences + by_cases * by_cases) / 2)
+                                  : std::max(by_sequences, by_cases);
+    return std::hypot(error, by_points);
 }
 
 /// What scatter adds to M_1 ... M_4, and how that moves with them.

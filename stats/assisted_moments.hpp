@@ -13,13 +13,15 @@
 // in closed form (response/kriging.hpp). A bad model costs accuracy, not truth. v is one value for each half, so that
 // it rests on no case of the sequence either; where it is at the bound of the fit (1e-8) it counts as 0 and g_p = m^p.
 //
-// 95 % half-width of a statistic: the largest of (a) Student t over the S values of grad T . M^(s), (b) t with n_eff -
-// 1 degrees of freedom (2 at least) times sqrt(sum r_i^2/(n (n - 1))), r_i = grad T . (z_i^p - g_p)_p, n_eff = (sum
-// r^2)^2/sum r^4, and (c) 1.96 times the standard error that normal residuals of the models' size give, sqrt(sum_i
-// Var[sum_p (grad T)_p (m_i + s e)^p])/n with s the rms of z_i - m_s(x_i): what decides g1 and kurtosis are tails that
-// few cases may not show, and by (a) and (b) alone those samples understate their error (90 % of 95 % half-widths
-// reached the kurtosis of 104 normal values). In quadrature the error of Q from its independent scramblings (Student t
-// over their means).
+// 95 % half-width of a statistic, from (a) Student t over the S values of grad T . M^(s), (b) t with n_eff - 1 degrees
+// of freedom (2 at least) times sqrt(sum r_i^2/(n (n - 1))), r_i = grad T . (z_i^p - g_p)_p, n_eff = (sum r^2)^2/sum
+// r^4, and (c) 1.96 times the standard error that normal residuals of the models' size give, sqrt(sum_i Var[sum_p (grad
+// T)_p (m_i + s e)^p])/n with s the rms of z_i - m_s(x_i): what decides g1 and kurtosis are tails that few cases may
+// not show, and by (a) and (b) alone those samples understate their error (90 % of 95 % half-widths reached the
+// kurtosis of 104 normal values). Below 200 cases, and where the models err by half an sd or more, the largest of the
+// three. Otherwise (a) and the larger of (b) and (c) are two estimates of one variance, each with its factor for 95 %,
+// and the root of the mean of their squares is taken: the larger one reached the truth in 97.4 % of campaigns of 400
+// cases, this one in 96. In quadrature the error of Q from its independent scramblings (Student t over their means).
 //
 // Two targets. With scatter: moments of single runs, what the plain estimate says. Without: of the mean response. By
 // the law of total cumulance, with noise of variance v_i that is symmetric about the mean,
