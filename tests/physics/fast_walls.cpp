@@ -165,6 +165,42 @@ TEST(FastWalls, CrowdsAmongMovingWallsEqualThePlainLaw) {
     }
 }
 
+// Walls at rest are summed up in the last step of a run only: step by step, each of them is such a step.
+TEST(FastWalls, AtRestHaveTheLoadsOfARunStepByStep) {
+    for (const double spread : {0.0, 0.2}) {
+        const Crowd crowd(spread);
+        const Vec3 &c = crowd.centre, top = c + Vec3{0, 0, crowd.half};
+        tests::Soup block = tests::box(1e-3, 2e-3);
+        for (auto& triangle : block)
+            for (Vec3& x : triangle) x += top + Vec3{0.3e-3, 0.2e-3, 2.1e-3};
+        const dem::Bar paddle{top[0] + 0.5e-3, 1e-3, top[2] + 0.05e-3, top[2] + 3e-3, 0.2e-3};
+        auto setup = crowd.among({paddle, {dem::Translation{.velocity = {0.1, 0, -0.6}}}, {}});
+        setup.walls.push_back({dem::Mesh(tests::surface_of(block)), {}, {.friction = 0.4}});
+        setup.material.rolling_friction = spread > 0 ? 0.1 : 0;
+        for (const auto path : test::paths()) {
+            const auto at_once = dem::fast::make_mixed_engine(setup, path);
+            const auto by_steps = dem::fast::make_mixed_engine(setup, path);
+            std::vector<int> loaded(setup.walls.size());
+            for (int k = 0; k < 100; ++k) {
+                at_once->run(5);
+                for (int s = 0; s < 5; ++s) by_steps->run(1);
+                for (std::size_t w = 0; w < setup.walls.size(); ++w) {
+                    const auto a = at_once->wall_load(w, c), b = by_steps->wall_load(w, c);
+                    EXPECT_EQ(a.force, b.force);
+                    EXPECT_EQ(a.torque, b.torque);
+                    EXPECT_EQ(a.work, b.work);
+                    if (norm(a.force) > 0 && norm(a.torque) > 0) ++loaded[w];
+                }
+            }
+            EXPECT_GT(loaded[0] + loaded[1] + loaded[2] + loaded[3] + loaded[4], 0) << "planes";
+            EXPECT_GT(loaded[6], 0) << "triangles";
+            std::vector<std::byte> a, b;
+            at_once->save(a), by_steps->save(b);
+            EXPECT_TRUE(a == b);
+        }
+    }
+}
+
 // The same among triangles: a stirred block, and a drum of facets that turns, against the double engine, whose start is
 // moved by 1e-7 diameters to see what that grows to.
 TEST(FastWalls, CrowdsAmongTrianglesEqualTheDoubleEngine) {
