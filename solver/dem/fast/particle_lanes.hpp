@@ -58,7 +58,7 @@ GRAINSWEEP_LANES void store8(float* p, F8 a) {
 }
 /// b where a > 0, else 0
 GRAINSWEEP_LANES F8 where_positive(F8 a, F8 b) {
-    return {Vector<float, 8>{_mm256_and_ps(_mm256_cmp_ps(a.v.raw, _mm256_setzero_ps(), _CMP_GT_OQ), b.v.raw)}};
+    return {hn::IfThenElseZero(hn::Gt(a.v, hn::Zero(eight)), b.v)};
 }
 #else
 struct F8 {
