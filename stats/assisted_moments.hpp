@@ -21,7 +21,7 @@
 // kurtosis of 104 normal values). Below 200 cases, and where the models err by half an sd or more, the largest of the
 // three. Otherwise (a) and the larger of (b) and (c) are two estimates of one variance, each with its factor for 95 %,
 // and the root of the mean of their squares is taken: the larger one reached the truth in 97.4 % of campaigns of 400
-// cases, this one in 96. In quadrature the error of Q from its independent scramblings (Student t over their means).
+// cases, this one in 96.4. In quadrature the error of Q from its independent scramblings (Student t over their means).
 //
 // Two targets. With scatter: moments of single runs, what the plain estimate says. Without: of the mean response. By
 // the law of total cumulance, with noise of variance v_i that is symmetric about the mean,

@@ -44,8 +44,8 @@ struct alignas(64) WallTile {
     Place particle[tile + 2 * width];
     float overlap[tile + 2 * width];
     float normal[3][tile + 2 * width];
-    float velocity[3][tile + 2 * width];  ///< of the wall's material, where the wall is summed up; otherwise 0
-    float lever[3][tile + 2 * width];     ///< from the wall's pivot to the place on its surface, likewise
+    float velocity[3][tile + 2 * width];  ///< of the wall's material; written where the wall is summed up
+    float lever[3][tile + 2 * width];     ///< from the wall's pivot to the place on its surface; likewise
     float memory[histories_at_most][tile + 2 * width];
 };
 
