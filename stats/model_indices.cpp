@@ -64,14 +64,21 @@ public:
             using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
             const Eigen::Map<const RowMajor> x(points.data(), static_cast<Eigen::Index>(points.size() / factors),
                                                static_cast<Eigen::Index>(factors));
-            return folds_.predict(state_.kriging, response::mapped(state_.kriging.h, x));
+            return responses(response::mapped(state_.kriging.h, x));
         }
         const std::vector<double> features = features_({points, factors});
         const Rows rows{features, static_cast<std::size_t>(state_.low.size())};
-        return folds_.predict(state_.kriging, response::mapped(state_.kriging.h, state_.in_box(rows)));
+        return responses(response::mapped(state_.kriging.h, state_.in_box(rows)));
     }
 
 private:
+    /// Up to a factor and a constant, which no share of the variance knows.
+    [[nodiscard]] Eigen::MatrixXd responses(const Eigen::MatrixXd& at) const {
+        Eigen::MatrixXd z = folds_.predict(state_.kriging, at);
+        if (state_.logarithm) z = (state_.scale * z.array()).exp();
+        return z;
+    }
+
     const ResponseModel::State& state_;
     const FeatureMap& features_;
     response::FoldWeights folds_;

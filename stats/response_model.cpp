@@ -17,7 +17,9 @@ namespace {
 
 using response::Kriging;
 
-constexpr double outside_by = 1e-9;  // of the box: what round-off of a feature may do
+constexpr double outside_by = 1e-9;        // of the box: what round-off of a feature may do
+constexpr double worth_a_logarithm = 2.5;  // largest value over the least
+constexpr double kept_below = 0.95;        // of the error without it
 
 /// A double as a sentence shows it.
 std::string shown(double x) {
@@ -69,30 +71,86 @@ double half_width_factor(double freedom) {
     return student_quantile(freedom, 0.975);
 }
 
+/// Sets how z stands for the responses y, and returns it.
+Eigen::VectorXd standardise(ResponseModel::State& state, const Eigen::VectorXd& y, bool logarithm) {
+    Eigen::ArrayXd raw = y;
+    if (logarithm) raw = raw.log().eval();
+    state.logarithm = logarithm;
+    state.offset = raw.mean();
+    state.scale = std::sqrt((raw - state.offset).square().mean());
+    return (raw - state.offset) / state.scale;
+}
+
 /// Leave-one-out figures and the local noise, which rests on them.
 void assess(ResponseModel::State& state) {
     const Kriging& k = state.kriging;
     const response::LeftOut out = response::leave_one_out(k);
     state.noise = {k.points, out.residual.array().square() / out.variance.array()};
     const Eigen::ArrayXd local = state.noise.factors_without_self();
-    const Eigen::ArrayXd errors = (local * out.variance.array()).sqrt();
-    const Eigen::ArrayXd scores = out.residual.array().abs() / errors;
     ModelQuality& q = state.quality;
     q.rests_on = static_cast<std::size_t>(k.size());
-    const double spread = std::sqrt((k.values.array() - k.values.mean()).square().mean());
-    q.leave_one_out_error = std::sqrt(out.residual.array().square().mean()) / spread;
+    q.logarithm = state.logarithm;
+    Eigen::ArrayXd y(k.size()), residuals(k.size()), errors(k.size()), scatter(k.size());
+    for (Eigen::Index i = 0; i < k.size(); ++i) {
+        const double expected = state.mean_at(k.values(i) - out.residual(i));
+        y(i) = state.logarithm ? std::exp(state.offset + state.scale * k.values(i))
+                               : state.offset + state.scale * k.values(i);
+        residuals(i) = state.logarithm ? y(i) - expected : state.scale * out.residual(i);
+        errors(i) = state.deviation(expected, local(i) * out.variance(i));
+        scatter(i) = state.deviation(expected, local(i) * k.h.noise());
+    }
+    const Eigen::ArrayXd scores = residuals.abs() / errors;
+    const double spread = std::sqrt((y - y.mean()).square().mean());
+    q.leave_one_out_error = std::sqrt(residuals.square().mean()) / spread;
     q.coverage_50 = (scores < student_quantile(static_cast<double>(state.noise.freedom()), 0.75)).cast<double>().mean();
     q.coverage_95 = (scores < student_factor(state.noise.freedom())).cast<double>().mean();
-    q.noise_share = std::min(1.0, k.h.noise() * local.mean() / (spread * spread));
+    q.noise_share = std::min(1.0, scatter.square().mean() / (spread * spread));
     q.learned_map = !k.h.shear.isIdentity(0);
-    for (Eigen::Index i = 0; i < k.size(); ++i) {
-        q.residuals.push_back(state.scale * out.residual(i));
-        q.errors.push_back(state.scale * errors(i));
-    }
+    q.residuals.assign(residuals.begin(), residuals.end());
+    q.errors.assign(errors.begin(), errors.end());
     for (const double l : k.h.log_length) q.lengths.push_back(std::exp(l));
 }
 
+std::optional<response::Hyperparameters> search(const Eigen::MatrixXd& x, const Eigen::VectorXd& y, bool logarithm,
+                                                const ResponseModelOptions& options) {
+    ResponseModel::State scaled;
+    return response::find_hyperparameters(x, standardise(scaled, y, logarithm),
+                                          {options.starts, options.cases_in_fit, options.map});
+}
+
+/// Leave-one-out error, in the unit of the response over its sd: of a response with a long tail few cases decide it, so
+/// that more of them are asked than decide the hyperparameters.
+double error_left_out(const response::Hyperparameters& h, const Eigen::MatrixXd& x, const Eigen::VectorXd& y,
+                      bool logarithm) {
+    ResponseModel::State state;
+    const Eigen::VectorXd z = standardise(state, y, logarithm);
+    const auto chosen = response::spread_choice(z.size(), cases_compared);
+    auto kriging = response::solve_kriging(h, x(chosen, Eigen::all), z(chosen));
+    if (!kriging) return std::numeric_limits<double>::infinity();
+    state.kriging = std::move(*kriging);
+    assess(state);
+    return state.quality.leave_one_out_error;
+}
+
 }  // namespace
+
+double ResponseModel::State::standardised(double response) const {
+    return ((logarithm ? std::log(response) : response) - offset) / scale;
+}
+
+double ResponseModel::State::mean_at(double z) const {
+    const double at = offset + scale * z;
+    return logarithm ? std::exp(at + scale * scale * kriging.h.noise() / 2) : at;
+}
+
+double ResponseModel::State::deviation(double mean, double variance) const {
+    return logarithm ? mean * std::sqrt(std::expm1(scale * scale * variance)) : scale * std::sqrt(variance);
+}
+
+double ResponseModel::State::covariance(double mean, double other, double covariance) const {
+    const double c = scale * scale * covariance;
+    return logarithm ? mean * other * std::expm1(c) : c;
+}
 
 double Prediction::run_error() const {
     return std::hypot(mean_error, scatter);
@@ -127,8 +185,9 @@ std::vector<Prediction> ResponseModel::predict(Rows points) const {
     std::vector<Prediction> result;
     for (Eigen::Index i = 0; i < at.rows(); ++i) {
         const bool inside = x.row(i).minCoeff() >= -outside_by && x.row(i).maxCoeff() <= 1 + outside_by;
-        result.push_back({s.offset + s.scale * p.mean(i), s.scale * std::sqrt(local(i) * p.variance(i)),
-                          s.scale * std::sqrt(local(i) * s.kriging.h.noise()), inside, freedom()});
+        const double mean = s.mean_at(p.mean(i));
+        result.push_back({mean, s.deviation(mean, local(i) * p.variance(i)),
+                          s.deviation(mean, local(i) * s.kriging.h.noise()), inside, freedom()});
     }
     return result;
 }
@@ -137,7 +196,7 @@ std::vector<double> ResponseModel::means(Rows points) const {
     const State& s = *state_;
     const Eigen::VectorXd z = response::predict_means(s.kriging, response::mapped(s.kriging.h, s.in_box(points)));
     std::vector<double> result;
-    for (const double mean : z) result.push_back(s.offset + s.scale * mean);
+    for (const double mean : z) result.push_back(s.mean_at(mean));
     return result;
 }
 
@@ -147,10 +206,12 @@ JointPrediction ResponseModel::predict_jointly(Rows points) const {
     const auto p = response::predict(s.kriging, at, true);
     const Eigen::VectorXd local = s.noise.factors(at).cwiseSqrt();
     JointPrediction joint;
-    for (Eigen::Index i = 0; i < at.rows(); ++i) joint.mean.push_back(s.offset + s.scale * p.mean(i));
+    for (Eigen::Index i = 0; i < at.rows(); ++i) joint.mean.push_back(s.mean_at(p.mean(i)));
     for (Eigen::Index i = 0; i < at.rows(); ++i)
         for (Eigen::Index j = 0; j < at.rows(); ++j)
-            joint.covariance.push_back(s.scale * s.scale * local(i) * local(j) * p.covariance(i, j));
+            joint.covariance.push_back(s.covariance(joint.mean[static_cast<std::size_t>(i)],
+                                                    joint.mean[static_cast<std::size_t>(j)],
+                                                    local(i) * local(j) * p.covariance(i, j)));
     return joint;
 }
 
@@ -158,22 +219,30 @@ std::vector<double> ResponseModel::covariances_with(Rows points, std::span<const
     const State& s = *state_;
     const Eigen::MatrixXd at = response::mapped(s.kriging.h, s.in_box(points));
     const Eigen::MatrixXd with = response::mapped(s.kriging.h, s.in_box({features, features.size()}));
-    const Eigen::ArrayXd local = s.noise.factors(at).array() * s.noise.factors(with)(0);
-    const Eigen::ArrayXd covariances =
-        s.scale * s.scale * local.sqrt() * response::covariances_with(s.kriging, at, with).array();
-    return {covariances.begin(), covariances.end()};
+    const Eigen::ArrayXd local = (s.noise.factors(at).array() * s.noise.factors(with)(0)).sqrt();
+    const Eigen::VectorXd c = response::covariances_with(s.kriging, at, with);
+    const Eigen::VectorXd z = s.logarithm ? response::predict_means(s.kriging, at) : Eigen::VectorXd::Zero(c.size());
+    const double there = s.logarithm ? s.mean_at(response::predict_means(s.kriging, with)(0)) : 0;
+    std::vector<double> covariances;
+    for (Eigen::Index i = 0; i < c.size(); ++i)
+        covariances.push_back(s.covariance(s.mean_at(z(i)), there, local(i) * c(i)));
+    return covariances;
 }
 
 ResponseModel ResponseModel::with_cases(Rows points, std::span<const double> values) const {
     check_sizes(points, values.size());
     if (!all_finite(points.values) || !all_finite(values))
         throw std::invalid_argument("response model: an added case is not finite");
-    const Eigen::Map<const Eigen::VectorXd> raw(values.data(), static_cast<Eigen::Index>(values.size()));
-    const Eigen::VectorXd z = (raw.array() - state_->offset) / state_->scale;
+    Eigen::VectorXd z(static_cast<Eigen::Index>(values.size()));
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (state_->logarithm && !(values[i] > 0))
+            throw std::invalid_argument("response model: an added case has no logarithm");
+        z(static_cast<Eigen::Index>(i)) = state_->standardised(values[i]);
+    }
     auto longer = response::extend_kriging(state_->kriging, state_->in_box(points), z);
     if (!longer) throw std::invalid_argument("response model: an added case repeats another without any noise");
     auto next = std::make_shared<State>(State{state_->low, state_->high, state_->offset, state_->scale,
-                                              std::move(*longer), state_->noise, state_->quality});
+                                              state_->logarithm, std::move(*longer), state_->noise, state_->quality});
     next->quality.cases += values.size();
     next->quality.rests_on += values.size();
     return ResponseModel(std::move(next));
@@ -207,13 +276,23 @@ std::variant<ResponseModel, Refusal> fit_response(Rows points, std::span<const d
     Eigen::VectorXd y(static_cast<Eigen::Index>(used.size()));
     for (std::size_t i = 0; i < used.size(); ++i) y(static_cast<Eigen::Index>(i)) = values[used[i]];
     Eigen::MatrixXd x = state->in_box(points)(used, Eigen::all);
-    state->offset = y.mean();
-    state->scale = std::sqrt((y.array() - state->offset).square().mean());
-    Eigen::VectorXd z = (y.array() - state->offset) / state->scale;
+    bool logarithm = false;
     state->quality.cases = used.size();
     state->quality.excluded = values.size() - used.size();
-    const auto hyperparameters =
-        response::find_hyperparameters(x, z, {options.starts, options.cases_in_fit, options.map});
+    auto found = search(x, y, false, options);
+    double plain_error = std::numeric_limits<double>::quiet_NaN(), log_error = plain_error;
+    if (options.logarithm == LogResponse::where_better && found && y.minCoeff() > 0 &&
+        y.maxCoeff() >= worth_a_logarithm * y.minCoeff()) {
+        plain_error = error_left_out(*found, x, y, false);
+        auto of_logarithm = search(x, y, true, options);
+        if (of_logarithm) log_error = error_left_out(*of_logarithm, x, y, true);
+        if (log_error < kept_below * plain_error) {
+            found = std::move(of_logarithm);
+            logarithm = true;
+        }
+    }
+    Eigen::VectorXd z = standardise(*state, y, logarithm);
+    if (found && used.size() > options.cases_in_fit) found = response::follow(*found, x, z, options.cases_followed);
     if (used.size() > options.most_cases) {
         const auto chosen = response::space_filling_choice(x, options.most_cases);
         x = x(chosen, Eigen::all).eval();
@@ -221,11 +300,13 @@ std::variant<ResponseModel, Refusal> fit_response(Rows points, std::span<const d
         for (std::size_t i = 0; i < chosen.size(); ++i) used[i] = used[static_cast<std::size_t>(chosen[i])];
         used.resize(chosen.size());
     }
-    auto kriging = hyperparameters ? response::solve_kriging(*hyperparameters, x, z) : std::nullopt;
+    auto kriging = found ? response::solve_kriging(*found, x, z) : std::nullopt;
     if (!kriging) return Refusal{"no response model: its equations are singular in double precision"};
     state->kriging = std::move(*kriging);
     state->quality.used = std::move(used);
     assess(*state);
+    state->quality.error_without_logarithm = plain_error;
+    state->quality.error_with_logarithm = log_error;
     if (!(state->quality.leave_one_out_error < options.refused_error))
         return Refusal{"no response model: left-out cases are predicted with an error of " +
                        shown(state->quality.leave_one_out_error) + " standard deviations of the response (limit " +

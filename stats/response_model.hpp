@@ -12,6 +12,10 @@
 // 687) and, where the noise is not the same everywhere, widened or narrowed by the size of those residuals nearby:
 // response/local_noise.hpp.
 //
+// Where it is asked for, the logarithm of a positive response takes the response's place if that lowers the error: its
+// scatter is then a share of its size. Means, errors and covariances are those of the log-normal response; what is said
+// of it is in its own unit, and intervals are symmetric about the mean as everywhere.
+//
 // Between 12 and 4,000 cases; of more, a subset that fills the space (greedy maximin) is what the model rests on.
 // Same numbers in, same model out: the starts of the search are Sobol points and nothing is drawn.
 #pragma once
@@ -49,15 +53,26 @@ enum class LearnedMap {
     always
 };
 
+/// Whether the logarithm of the response is modelled.
+enum class LogResponse {
+    never,
+    where_better  ///< all values positive, the largest 2.5 times the least or more, and the error 5 % lower
+};
+
 struct ResponseModelOptions {
-    std::vector<double> low = {};    ///< box of the features, one value each; empty: 0
-    std::vector<double> high = {};   ///< empty: 1
-    std::size_t starts = 6;          ///< searches of the likelihood
-    std::size_t cases_in_fit = 500;  ///< at most so many decide the hyperparameters (all enter the prediction)
-    std::size_t most_cases = 4000;   ///< of more, a subset that fills the space
+    std::vector<double> low = {};      ///< box of the features, one value each; empty: 0
+    std::vector<double> high = {};     ///< empty: 1
+    std::size_t starts = 6;            ///< searches of the likelihood
+    std::size_t cases_in_fit = 500;    ///< at most so many decide the hyperparameters (all enter the prediction)
+    std::size_t cases_followed = 800;  ///< where there are more than those: what was found is followed on so many
+    std::size_t most_cases = 4000;     ///< of more, a subset that fills the space
     LearnedMap map = LearnedMap::where_better;
+    LogResponse logarithm = LogResponse::never;
     double refused_error = 0.7;  ///< leave-one-out error, in sd, from which on the model is refused
 };
+
+/// With and without a logarithm the error is compared on at most so many cases.
+inline constexpr std::size_t cases_compared = 2500;
 
 /// What a model rests on and how good it is, on the cases it has seen, each left out.
 struct ModelQuality {
@@ -69,6 +84,10 @@ struct ModelQuality {
     double coverage_95 = std::numeric_limits<double>::quiet_NaN();
     double noise_share = std::numeric_limits<double>::quiet_NaN();  ///< of the variance of the responses
     bool learned_map = false;
+    bool logarithm = false;  ///< the model is one of the response's logarithm
+    /// Leave-one-out error on the cases compared, NaN: not tried.
+    double error_without_logarithm = std::numeric_limits<double>::quiet_NaN();
+    double error_with_logarithm = std::numeric_limits<double>::quiet_NaN();
     std::vector<double> lengths;    ///< per feature, in widths of the box
     std::vector<double> residuals;  ///< leave-one-out, observed minus predicted, in the unit of the response
     std::vector<double> errors;     ///< their predicted standard deviations (single run, local noise without the case)

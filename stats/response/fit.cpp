@@ -169,6 +169,13 @@ std::optional<Hyperparameters> find_hyperparameters(const Eigen::MatrixXd& point
     return error(*mapped) < error(*plain) ? mapped : plain;
 }
 
+Hyperparameters follow(const Hyperparameters& found, const Eigen::MatrixXd& points, const Eigen::VectorXd& values,
+                       std::size_t cases) {
+    const Likelihood likelihood = likelihood_of(points, values, cases, !found.shear.isIdentity(0));
+    const Search better = climb(likelihood, likelihood.parameters(found));
+    return std::isfinite(better.best_value) ? likelihood.hyperparameters(better.best) : found;
+}
+
 double leave_one_out_rms(const Hyperparameters& h, const Eigen::MatrixXd& points, const Eigen::VectorXd& values,
                          std::size_t cases) {
     const auto chosen = spread_choice(points.rows(), cases);

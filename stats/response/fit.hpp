@@ -3,9 +3,10 @@
 //
 // Starts are Sobol points over log l in [-1.5, 1.5], log s^2 in [-0.5, 2], log g in [log 0.001, log 0.3]; eight times
 // as many as are searched from are compared first. All this on at most 200 cases; the best two maxima are then followed
-// on at most `cases` of them. Cases are chosen by a fixed permutation: no draw, the same every time. Bounds: l in
-// [0.02, 50] widths of the box, s^2 in [e^-4, e^6], g in [1e-8, 2] (of the variance of the responses), U_jk in [-5, 5].
-// A noise at its lower bound stands for a response without noise.
+// on at most `cases` of them, and what was found, where it is asked for, on more (`follow`). Cases are chosen by a
+// fixed permutation: no draw, the same every time. Bounds: l in [0.02, 50] widths of the box, s^2 in [e^-4, e^6], g in
+// [1e-8, 2] (of the variance of the responses), U_jk in [-5, 5]. A noise at its lower bound stands for a response
+// without noise.
 #pragma once
 
 #include "stats/response/likelihood.hpp"
@@ -42,6 +43,11 @@ struct FitSettings {
 [[nodiscard]] std::optional<Hyperparameters> find_hyperparameters(const Eigen::MatrixXd& points,
                                                                   const Eigen::VectorXd& values,
                                                                   const FitSettings& settings);
+
+/// The maximum that these lead to on at most `cases` of the cases; of a linear map where they have one. They themselves
+/// where K is singular.
+[[nodiscard]] Hyperparameters follow(const Hyperparameters& found, const Eigen::MatrixXd& points,
+                                     const Eigen::VectorXd& values, std::size_t cases);
 
 /// Root mean square of leave-one-out residuals over (at most `cases` of) the cases; infinite where K is singular.
 [[nodiscard]] double leave_one_out_rms(const Hyperparameters& h, const Eigen::MatrixXd& points,

@@ -289,7 +289,9 @@ std::variant<ObservableModel, stats::Refusal> learn(const ModelCases& cases, con
     const auto rows = rows_of(features, cases.settings);
     if (auto refused = undefined_feature(features, cases, rows)) return std::move(*refused);
     const auto width = features.names.size();
-    auto fit = stats::fit_response({rows, width}, observable.values, boxed(rows, width));
+    auto options = boxed(rows, width);
+    options.logarithm = stats::LogResponse::where_better;
+    auto fit = stats::fit_response({rows, width}, observable.values, options);
     if (auto* refused = std::get_if<stats::Refusal>(&fit)) return std::move(*refused);
     ObservableModel learned{observable.name,
                             observable.unit,
@@ -304,6 +306,11 @@ std::variant<ObservableModel, stats::Refusal> learn(const ModelCases& cases, con
     learned.undefined = static_cast<std::size_t>(std::ranges::count(learned.case_defined, false));
     if (learned.undefined > 0) learned.boundary = learn_boundary(rows, width, learned.case_defined);
     const auto& quality = learned.model.quality();
+    if (quality.logarithm)
+        learned.notes.push_back(fmt::format(
+            "the model is one of log({}): leave-one-out error {:.3f} with it, {:.3f} without it, on {} cases",
+            learned.observable, quality.error_with_logarithm, quality.error_without_logarithm,
+            std::min(quality.cases, stats::cases_compared)));
     if (quality.rests_on < quality.cases)
         learned.notes.push_back(fmt::format("the model rests on {} of {} cases, chosen to fill the space",
                                             quality.rests_on, quality.cases));

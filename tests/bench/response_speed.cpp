@@ -26,7 +26,9 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 void show(const std::string& name, Rows points, const std::vector<double>& values) {
     const auto start = std::chrono::steady_clock::now();
     const auto cpu = std::clock();
-    const auto fit = fit_response(points, values);
+    ResponseModelOptions options;
+    options.logarithm = LogResponse::where_better;  // as `predict` does
+    const auto fit = fit_response(points, values, options);
     const double fitting = seconds_since(start);
     const double cpu_seconds = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
     if (const auto* refusal = std::get_if<Refusal>(&fit)) {
@@ -41,9 +43,10 @@ void show(const std::string& name, Rows points, const std::vector<double>& value
     std::printf(
         "{\"response\": \"%s\", \"cases\": %zu, \"rests_on\": %zu, \"fit_seconds\": %.3f, \"fit_cpu_seconds\": %.3f, "
         "\"predict_1000_seconds\": %.3f, \"leave_one_out_error\": %.4f, \"coverage_50\": %.3f, \"coverage_95\": %.3f, "
-        "\"noise_share\": %.4f, \"learned_map\": %s}\n",
+        "\"noise_share\": %.4f, \"learned_map\": %s, \"logarithm\": %s, \"compared\": [%.4f, %.4f]}\n",
         name.c_str(), q.cases, q.rests_on, fitting, cpu_seconds, seconds_since(asked), q.leave_one_out_error,
-        q.coverage_50, q.coverage_95, q.noise_share, q.learned_map ? "true" : "false");
+        q.coverage_50, q.coverage_95, q.noise_share, q.learned_map ? "true" : "false", q.logarithm ? "true" : "false",
+        q.error_without_logarithm, q.error_with_logarithm);
     std::fflush(stdout);
 }
 

@@ -187,6 +187,76 @@ TEST(ResponseModel, MoreCasesThanItTakesAreASubset) {
     EXPECT_LT(error_elsewhere(model, bend), 0.15);
 }
 
+// y = exp(f + 0.1 e): the scatter is a share of the response, and the mean of runs is exp(f + 0.005).
+TEST(ResponseModel, TheLogarithmIsModelledWhereItErrsLess) {
+    const Response f = [](std::span<const double> u) { return 5 * u[0] + std::sin(8 * u[1]); };
+    Campaign c = ask(f, 2, 200, 0.1);
+    for (double& y : c.values) y = std::exp(y);
+    const ResponseModelOptions options{.logarithm = LogResponse::where_better};
+    const ResponseModel plain = fitted(c), model = fitted(c, options);
+    EXPECT_FALSE(plain.quality().logarithm);
+    const ModelQuality& q = model.quality();
+    ASSERT_TRUE(q.logarithm);
+    EXPECT_LT(q.error_with_logarithm, 0.95 * q.error_without_logarithm);
+    EXPECT_LT(q.leave_one_out_error, plain.quality().leave_one_out_error);
+    EXPECT_NEAR(q.coverage_95, 0.95, 0.03);
+    const Response runs_mean = [&](std::span<const double> u) { return std::exp(f(u) + 0.005); };
+    EXPECT_LT(error_elsewhere(model, runs_mean), 0.7 * error_elsewhere(plain, runs_mean));
+
+    const auto fresh = ask_design("random", 2, {{"points", 400}}, 7);
+    const auto said = model.predict(Rows{fresh.coordinates, 2});
+    const Stream stream(8, 3);
+    int of_means = 0, of_runs = 0;
+    double shares = 0;
+    for (std::size_t i = 0; i < fresh.size(); ++i) {
+        const double mean = runs_mean(fresh.point(i));
+        of_means += std::abs(said[i].mean - mean) <= said[i].mean_half_width() ? 1 : 0;
+        const double run = std::exp(f(fresh.point(i)) + 0.1 * normal(stream, i));
+        of_runs += std::abs(said[i].mean - run) <= said[i].run_half_width() ? 1 : 0;
+        shares += said[i].scatter / said[i].mean / 400;
+    }
+    EXPECT_GE(of_means, 350);
+    EXPECT_NEAR(of_runs, 380, 13);
+    EXPECT_NEAR(shares, std::sqrt(std::expm1(0.01)), 0.02);
+
+    // means, errors and covariances say the same; variances are small differences of the process's own
+    const std::vector<double> points{0.2, 0.3, 0.25, 0.35, 0.9, 0.8};
+    const auto each = model.predict(Rows{points, 2});
+    const auto joint = model.predict_jointly({points, 2});
+    const auto with_first = model.covariances_with({points, 2}, std::span(points).first(2));
+    const auto means = model.means({points, 2});
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR(means[i], each[i].mean, 1e-12 * means[i]);
+        EXPECT_NEAR(joint.mean[i], each[i].mean, 1e-12 * means[i]);
+        EXPECT_NEAR(joint.covariance[4 * i], each[i].mean_error * each[i].mean_error, 1e-7 * joint.covariance[4 * i]);
+        EXPECT_NEAR(joint.covariance[i], with_first[i], 1e-7 * joint.covariance[0]);
+    }
+    const ResponseModel grown = model.with_cases({std::span(points).first(2), 2}, std::span(means).first(1));
+    EXPECT_LT(grown.predict(std::span(points).first(2)).mean_error, each[0].mean_error);
+    EXPECT_THROW((void)model.with_cases({std::span(points).first(2), 2}, std::vector<double>{0}),
+                 std::invalid_argument);
+}
+
+TEST(ResponseModel, TheLogarithmIsLeftWhereItDoesNotHelp) {
+    const ResponseModelOptions options{.logarithm = LogResponse::where_better};
+    const Response line = [](std::span<const double> u) { return 1 + 3 * u[0] + u[1]; };
+    const ResponseModel straight = fitted(ask(line, 2, 100, 0.05), options);
+    EXPECT_FALSE(straight.quality().logarithm);
+    EXPECT_GT(straight.quality().error_with_logarithm, straight.quality().error_without_logarithm);
+    Campaign with_zero = ask(line, 2, 100, 0.05);
+    with_zero.values[17] = 0;
+    EXPECT_TRUE(std::isnan(fitted(with_zero, options).quality().error_with_logarithm));
+    const Response narrow = [](std::span<const double> u) { return 2 + u[0]; };
+    EXPECT_TRUE(std::isnan(fitted(ask(narrow, 2, 100, 0.01), options).quality().error_with_logarithm));
+}
+
+TEST(ResponseModel, MoreCasesThanTheSearchTakesAreFollowed) {
+    const Campaign c = ask([](std::span<const double> u) { return ishigami(u); }, 3, 700, 0.3);
+    const double few = fitted(c, {.cases_in_fit = 150, .cases_followed = 150}).quality().leave_one_out_error;
+    const double more = fitted(c, {.cases_in_fit = 150, .cases_followed = 700}).quality().leave_one_out_error;
+    EXPECT_LE(more, few);
+}
+
 TEST(ResponseModel, RefusesInWords) {
     const auto few = ask(bend, 2, 11, 0);
     EXPECT_EQ(refused(few), "no response model: too few cases, 11 with a value where 2 features need at least 12");
