@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <future>
+#include <limits>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -19,7 +21,8 @@ using response::Kriging;
 
 constexpr double outside_by = 1e-9;        // of the box: what round-off of a feature may do
 constexpr double worth_a_logarithm = 2.5;  // largest value over the least
-constexpr double kept_below = 0.95;        // of the error without it
+constexpr double kept_below = 0.97;        // of the error without it
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 /// A double as a sentence shows it.
 std::string shown(double x) {
@@ -279,20 +282,28 @@ std::variant<ResponseModel, Refusal> fit_response(Rows points, std::span<const d
     bool logarithm = false;
     state->quality.cases = used.size();
     state->quality.excluded = values.size() - used.size();
-    auto found = search(x, y, false, options);
-    double plain_error = std::numeric_limits<double>::quiet_NaN(), log_error = plain_error;
-    if (options.logarithm == LogResponse::where_better && found && y.minCoeff() > 0 &&
-        y.maxCoeff() >= worth_a_logarithm * y.minCoeff()) {
-        plain_error = error_left_out(*found, x, y, false);
-        auto of_logarithm = search(x, y, true, options);
-        if (of_logarithm) log_error = error_left_out(*of_logarithm, x, y, true);
+    const bool tried = options.logarithm == LogResponse::where_better && y.minCoeff() > 0 &&
+                       y.maxCoeff() >= worth_a_logarithm * y.minCoeff();
+    const auto candidate = [&](bool of_logarithm) {
+        auto h = search(x, y, of_logarithm, options);
+        const double error = h && tried ? error_left_out(*h, x, y, of_logarithm) : unknown;
+        return std::pair{std::move(h), error};
+    };
+    std::future<std::pair<std::optional<response::Hyperparameters>, double>> other;
+    if (tried) other = std::async(std::launch::async, candidate, true);
+    auto [found, plain_error] = candidate(false);
+    double log_error = unknown;
+    if (tried) {
+        auto [of_logarithm, error] = other.get();
+        log_error = error;
         if (log_error < kept_below * plain_error) {
             found = std::move(of_logarithm);
             logarithm = true;
         }
     }
     Eigen::VectorXd z = standardise(*state, y, logarithm);
-    if (found && used.size() > options.cases_in_fit) found = response::follow(*found, x, z, options.cases_followed);
+    if (found && logarithm && used.size() > options.cases_in_fit)
+        found = response::follow(*found, x, z, options.cases_followed);
     if (used.size() > options.most_cases) {
         const auto chosen = response::space_filling_choice(x, options.most_cases);
         x = x(chosen, Eigen::all).eval();

@@ -56,7 +56,7 @@ enum class LearnedMap {
 /// Whether the logarithm of the response is modelled.
 enum class LogResponse {
     never,
-    where_better  ///< all values positive, the largest 2.5 times the least or more, and the error 5 % lower
+    where_better  ///< all values positive, the largest 2.5 times the least or more, and the error 3 % lower
 };
 
 struct ResponseModelOptions {
@@ -64,7 +64,7 @@ struct ResponseModelOptions {
     std::vector<double> high = {};     ///< empty: 1
     std::size_t starts = 6;            ///< searches of the likelihood
     std::size_t cases_in_fit = 500;    ///< at most so many decide the hyperparameters (all enter the prediction)
-    std::size_t cases_followed = 800;  ///< where there are more than those: what was found is followed on so many
+    std::size_t cases_followed = 800;  ///< of a logarithm with more: what was found is followed on so many
     std::size_t most_cases = 4000;     ///< of more, a subset that fills the space
     LearnedMap map = LearnedMap::where_better;
     LogResponse logarithm = LogResponse::never;

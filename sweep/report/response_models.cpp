@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -289,6 +290,11 @@ std::variant<ObservableModel, stats::Refusal> learn(const ModelCases& cases, con
     const auto rows = rows_of(features, cases.settings);
     if (auto refused = undefined_feature(features, cases, rows)) return std::move(*refused);
     const auto width = features.names.size();
+    std::vector<bool> defined;
+    for (const double value : observable.values) defined.push_back(std::isfinite(value));
+    const auto undefined = static_cast<std::size_t>(std::ranges::count(defined, false));
+    std::future<std::optional<stats::ResponseModel>> boundary;  // learned beside the model
+    if (undefined > 0) boundary = std::async(std::launch::async, [&] { return learn_boundary(rows, width, defined); });
     auto options = boxed(rows, width);
     options.logarithm = stats::LogResponse::where_better;
     auto fit = stats::fit_response({rows, width}, observable.values, options);
@@ -302,9 +308,9 @@ std::variant<ObservableModel, stats::Refusal> learn(const ModelCases& cases, con
                             rows,
                             {},
                             std::nullopt};
-    for (const double value : observable.values) learned.case_defined.push_back(std::isfinite(value));
-    learned.undefined = static_cast<std::size_t>(std::ranges::count(learned.case_defined, false));
-    if (learned.undefined > 0) learned.boundary = learn_boundary(rows, width, learned.case_defined);
+    if (undefined > 0) learned.boundary = boundary.get();
+    learned.undefined = undefined;
+    learned.case_defined = std::move(defined);
     const auto& quality = learned.model.quality();
     if (quality.logarithm)
         learned.notes.push_back(fmt::format(
