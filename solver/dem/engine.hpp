@@ -154,6 +154,8 @@ public:
 
 /// Throws std::invalid_argument with one sentence on a setup that no engine computes.
 void require_possible(const Setup& setup);
+/// The same on a method that does not go with a possible setup.
+void require_possible(const Setup& setup, const Method& method);
 
 /// Chooses laws and instruction path once. Throws std::invalid_argument with one sentence on an impossible setup.
 [[nodiscard]] std::unique_ptr<Engine> make_engine(const Setup& setup, const Method& method);

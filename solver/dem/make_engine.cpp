@@ -1,94 +1,12 @@
 #include "solver/dem/clear/make.hpp"
 #include "solver/dem/engine.hpp"
 #include "solver/dem/fast/mixed_engine.hpp"
-#include "solver/dem/shaking.hpp"
-#include "solver/geometry/vector.hpp"
-#include "solver/particles/neighbour_list.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
 
 namespace grainsweep::dem {
-namespace {
-
-void require(bool holds, const std::string& sentence) {
-    if (!holds) throw std::invalid_argument(sentence);
-}
-
-bool positive(double x) {
-    return std::isfinite(x) && x > 0;
-}
-bool not_negative(double x) {
-    return std::isfinite(x) && x >= 0;
-}
-
-void check(const Material& m) {
-    require(positive(m.youngs_modulus), "Young's modulus must be positive");
-    require(m.poisson_ratio > -1 && m.poisson_ratio <= 0.5, "Poisson's ratio must lie in (-1, 0.5]");
-    require(positive(m.density), "the density must be positive");
-    require(m.restitution > 0 && m.restitution <= 1, "the restitution must lie in (0, 1]");
-    require(not_negative(m.friction), "the friction must not be negative");
-    require(not_negative(m.cohesion), "the cohesion energy density must not be negative");
-    require(not_negative(m.surface_energy), "the surface energy must not be negative");
-    // Beyond 1 the rolling spring would be stiffer than those the time step is judged by.
-    require(m.rolling_friction >= 0 && m.rolling_friction <= 1, "the rolling friction must lie in [0, 1]");
-    require(m.rolling_damping >= 0 && m.rolling_damping <= 1, "the rolling damping must lie in [0, 1]");
-}
-
-void check_spheres(const Setup& setup) {
-    require(setup.spheres.size() < particles::Neighbour::most_particles,
-            "there are more particles than can be numbered");
-    double largest = 0;
-    for (const Sphere& s : setup.spheres) {
-        require(positive(s.radius), "every radius must be positive");
-        require(geometry::finite(s.position) && geometry::finite(s.velocity) && geometry::finite(s.angular_velocity),
-                "every particle must start with finite position and velocities");
-        require(s.mobile || (s.velocity == Vec3{} && s.angular_velocity == Vec3{}), "a frozen particle cannot move");
-        largest = std::max(largest, s.radius);
-    }
-    for (std::size_t k = 0; k < 3; ++k) {
-        const double length = setup.domain.high[k] - setup.domain.low[k];
-        require(positive(length), "the domain must have a finite extent along every axis");
-        // A particle must reach a partner through one image only.
-        require(!setup.domain.periodic[k] || length > 4 * largest,
-                "a period must be longer than two of the largest diameters");
-    }
-}
-
-}  // namespace
-
-void require_possible(const Setup& setup) {
-    check(setup.material);
-    check_spheres(setup);
-    require(positive(setup.time_step), "the time step must be positive");
-    require(geometry::finite(setup.gravity), "gravity must be finite");
-    require(geometry::finite(setup.shaking.amplitude) && not_negative(setup.shaking.frequency),
-            "the amplitude and frequency of shaking must be finite");
-    require(setup.shaking.frequency * setup.time_step <= 0.05, "a period of shaking must last at least twenty steps");
-}
 
 std::unique_ptr<Engine> make_engine(const Setup& setup, const Method& method) {
     require_possible(setup);
-    require(not_negative(method.skin), "the skin must not be negative");
-    require(not_negative(method.rest_speed), "the rest speed must not be negative");
-    if (method.rest_speed > 0) {
-        require(is_still(setup.shaking), "powder in a vessel that is shaken never rests: no rest speed");
-        require(geometry::norm(setup.gravity) > 0,
-                "a rest speed needs gravity: net forces are compared with the weight");
-        for (const Wall& wall : setup.walls)
-            require(std::ranges::all_of(wall.motions, geometry::is_still),
-                    "powder among moving walls has no rest speed");
-    }
-    if (method.skin > 0) {
-        double largest = 0;
-        for (const Sphere& s : setup.spheres) largest = std::max(largest, s.radius);
-        for (std::size_t k = 0; k < 3; ++k)
-            require(!setup.domain.periodic[k] ||
-                        setup.domain.high[k] - setup.domain.low[k] > 2 * (2 * largest + method.skin),
-                    "a period must be longer than twice the largest diameter plus the skin");
-    }
-
+    require_possible(setup, method);
     // One line per precision: where an engine joins.
     return method.precision == Method::Precision::mixed
                ? fast::make_mixed_engine(setup, method.path, method.skin, method.rest_speed, {.most = method.threads})
