@@ -135,6 +135,30 @@ double error_left_out(const response::Hyperparameters& h, const Eigen::MatrixXd&
     return state.quality.leave_one_out_error;
 }
 
+struct Found {
+    std::optional<response::Hyperparameters> hyperparameters;
+    bool of_logarithm = false;
+    double error_without = unknown, error_with = unknown;
+};
+
+/// The response's hyperparameters or its logarithm's: both searches side by side where both are asked for.
+Found with_or_without_logarithm(const Eigen::MatrixXd& x, const Eigen::VectorXd& y,
+                                const ResponseModelOptions& options) {
+    if (options.logarithm == LogResponse::never || !(y.minCoeff() > 0) ||
+        y.maxCoeff() < worth_a_logarithm * y.minCoeff())
+        return {search(x, y, false, options)};
+    const auto candidate = [&](bool logarithm) {
+        auto h = search(x, y, logarithm, options);
+        const double error = h ? error_left_out(*h, x, y, logarithm) : unknown;
+        return std::pair{std::move(h), error};
+    };
+    auto other = std::async(std::launch::async, candidate, true);
+    auto [without, error_without] = candidate(false);
+    auto [with, error_with] = other.get();
+    const bool better = error_with < kept_below * error_without;
+    return {better ? std::move(with) : std::move(without), better, error_without, error_with};
+}
+
 }  // namespace
 
 double ResponseModel::State::standardised(double response) const {
@@ -279,28 +303,9 @@ std::variant<ResponseModel, Refusal> fit_response(Rows points, std::span<const d
     Eigen::VectorXd y(static_cast<Eigen::Index>(used.size()));
     for (std::size_t i = 0; i < used.size(); ++i) y(static_cast<Eigen::Index>(i)) = values[used[i]];
     Eigen::MatrixXd x = state->in_box(points)(used, Eigen::all);
-    bool logarithm = false;
     state->quality.cases = used.size();
     state->quality.excluded = values.size() - used.size();
-    const bool tried = options.logarithm == LogResponse::where_better && y.minCoeff() > 0 &&
-                       y.maxCoeff() >= worth_a_logarithm * y.minCoeff();
-    const auto candidate = [&](bool of_logarithm) {
-        auto h = search(x, y, of_logarithm, options);
-        const double error = h && tried ? error_left_out(*h, x, y, of_logarithm) : unknown;
-        return std::pair{std::move(h), error};
-    };
-    std::future<std::pair<std::optional<response::Hyperparameters>, double>> other;
-    if (tried) other = std::async(std::launch::async, candidate, true);
-    auto [found, plain_error] = candidate(false);
-    double log_error = unknown;
-    if (tried) {
-        auto [of_logarithm, error] = other.get();
-        log_error = error;
-        if (log_error < kept_below * plain_error) {
-            found = std::move(of_logarithm);
-            logarithm = true;
-        }
-    }
+    auto [found, logarithm, plain_error, log_error] = with_or_without_logarithm(x, y, options);
     Eigen::VectorXd z = standardise(*state, y, logarithm);
     if (found && logarithm && used.size() > options.cases_in_fit)
         found = response::follow(*found, x, z, options.cases_followed);
