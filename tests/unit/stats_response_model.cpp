@@ -190,7 +190,7 @@ TEST(ResponseModel, MoreCasesThanItTakesAreASubset) {
 // y = exp(f + 0.1 e): the scatter is a share of the response, and the mean of runs is exp(f + 0.005).
 TEST(ResponseModel, TheLogarithmIsModelledWhereItErrsLess) {
     const Response f = [](std::span<const double> u) { return 5 * u[0] + std::sin(8 * u[1]); };
-    Campaign c = ask(f, 2, 150, 0.1);
+    Campaign c = ask(f, 2, 100, 0.1);
     for (double& y : c.values) y = std::exp(y);
     const ResponseModelOptions options{.logarithm = LogResponse::where_better};
     const ResponseModel plain = fitted(c), model = fitted(c, options);
