@@ -124,7 +124,7 @@ test)
     # They run in parts that even out; those that fit models by the hundred or write large pages, up to a minute each
     # there, walk paths that others walk, too.
     long=ResponseModel.LearnsKnownFunctions:ResponseModel.ALearnedMapFindsTheDirectionThatMatters
-    long+=:ResponseModel.TheLogarithmIsLeftWhereItDoesNotHelp
+    long+=:ResponseModel.TheLogarithmIsLeftWhereItDoesNotHelp:ResponseModel.MoreCasesThanTheSearchTakesAreFollowed
     long+=:ModelIndices.IshigamiFromFewerPointsThanADesignForIt
     long+=:CalibrationWaves.ACurveOfManyPointsIsNoMoreCertainThanWhatItLeavesOut
     long+=:CalibrationWaves.TargetsThatContradictEachOtherOrLieOutOfReachAreKnown

@@ -251,10 +251,17 @@ TEST(ResponseModel, TheLogarithmIsLeftWhereItDoesNotHelp) {
 }
 
 TEST(ResponseModel, MoreCasesThanTheSearchTakesAreFollowed) {
-    const Campaign c = ask([](std::span<const double> u) { return ishigami(u); }, 3, 700, 0.3);
-    const double few = fitted(c, {.cases_in_fit = 150, .cases_followed = 150}).quality().leave_one_out_error;
-    const double more = fitted(c, {.cases_in_fit = 150, .cases_followed = 700}).quality().leave_one_out_error;
-    EXPECT_LE(more, few);
+    Campaign c = ask([](std::span<const double> u) { return ishigami(u); }, 3, 700, 0.3);
+    const auto fit = [&](std::size_t cases, LogResponse logarithm) {
+        return fitted(c, {.cases_in_fit = 150, .cases_followed = cases, .logarithm = logarithm}).quality();
+    };
+    EXPECT_EQ(fit(150, LogResponse::never).lengths, fit(700, LogResponse::never).lengths) << "of a logarithm alone";
+    for (double& y : c.values) y = std::exp(0.2 * y);
+    const ModelQuality few = fit(150, LogResponse::where_better), more = fit(700, LogResponse::where_better);
+    ASSERT_TRUE(few.logarithm);
+    ASSERT_TRUE(more.logarithm);
+    EXPECT_NE(more.lengths, few.lengths);
+    EXPECT_LT(more.leave_one_out_error, few.leave_one_out_error);
 }
 
 TEST(ResponseModel, RefusesInWords) {
