@@ -53,6 +53,7 @@ struct Setup {
     double time_step = 1e-5;  ///< s
     std::vector<Sphere> spheres;
     std::vector<Wall> walls;
+    Surface frozen;  ///< what differs from the material in contacts with frozen spheres
 };
 
 /// How to compute it; never changes what is asked beyond the stated error of the precision.
@@ -149,8 +150,10 @@ public:
     virtual void restore(std::span<const std::byte> from) = 0;
 };
 
-/// Those in contacts between particles and, wall by wall, with walls.
+/// Those in contacts between particles, wall by wall with walls, and with frozen spheres where these differ.
 [[nodiscard]] std::vector<Material> materials_of(const Setup& setup);
+/// Whether there are frozen spheres in contacts with which something differs from the material.
+[[nodiscard]] bool frozen_differ(const Setup& setup);
 
 /// Throws std::invalid_argument with one sentence on a setup that no engine computes.
 void require_possible(const Setup& setup);

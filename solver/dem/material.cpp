@@ -2,6 +2,7 @@
 
 #include "solver/dem/engine.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -33,13 +34,21 @@ Material at_surface(const Material& material, const Surface& surface) {
     m.friction = surface.friction.value_or(m.friction);
     m.rolling_friction = surface.rolling_friction.value_or(m.rolling_friction);
     m.restitution = surface.restitution.value_or(m.restitution);
+    m.cohesion = surface.cohesion.value_or(m.cohesion);
+    m.surface_energy = surface.surface_energy.value_or(m.surface_energy);
     return m;
 }
 
 std::vector<Material> materials_of(const Setup& setup) {
     std::vector<Material> all{setup.material};
     for (const Wall& wall : setup.walls) all.push_back(at_surface(setup.material, wall.surface));
+    if (frozen_differ(setup)) all.push_back(at_surface(setup.material, setup.frozen));
     return all;
+}
+
+bool frozen_differ(const Setup& setup) {
+    return at_surface(setup.material, setup.frozen) != setup.material &&
+           std::ranges::any_of(setup.spheres, [](const Sphere& s) { return !s.mobile; });
 }
 
 }  // namespace grainsweep::dem

@@ -27,7 +27,7 @@ enum class RollingLaw { epsd, epsd_liggghts, cdt };
     return law == CohesionLaw::jkr || law == CohesionLaw::dmt;
 }
 
-/// One material for particles and walls; a wall's Surface may differ in part.
+/// One material for particles and walls; the Surface of a wall, or of frozen spheres, may differ in part.
 struct Material {
     double youngs_modulus = 21e6;  ///< Pa
     double poisson_ratio = 0.3;
@@ -44,6 +44,8 @@ struct Material {
     double surface_energy = 0;  ///< w of jkr, dmt: work of adhesion per contact area, J/m2; 0: none of them at all
     CohesionLaw cohesion_law = CohesionLaw::sjkr;
     FrictionLimit friction_limit = FrictionLimit::contact;
+
+    bool operator==(const Material&) const = default;
 };
 
 [[nodiscard]] double effective_modulus(const Material& material);        ///< E*, Pa
@@ -53,7 +55,7 @@ struct Material {
 [[nodiscard]] double damping_factor(double restitution);
 [[nodiscard]] double sphere_mass(double radius, double density);  ///< kg
 
-/// The material as it is in contacts with a wall of this surface.
+/// The material as it is in contacts with a wall, or frozen spheres, of this surface.
 [[nodiscard]] Material at_surface(const Material& material, const Surface& surface);
 
 }  // namespace grainsweep::dem

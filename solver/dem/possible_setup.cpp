@@ -60,6 +60,11 @@ void check_spheres(const Setup& setup) {
 void require_possible(const Setup& setup) {
     check(setup.material);
     check_spheres(setup);
+    const std::string of_frozen = flaw(setup.frozen, "frozen spheres");
+    require(of_frozen.empty(), of_frozen);
+    for (const Material& m : materials_of(setup))
+        require(m.cohesion_law != CohesionLaw::jkr || (m.surface_energy > 0) == (setup.material.surface_energy > 0),
+                "jkr needs surface energy in all contacts or in none: a small one, or dmt, where there is none");
     require(positive(setup.time_step), "the time step must be positive");
     require(geometry::finite(setup.gravity), "gravity must be finite");
     require(geometry::finite(setup.shaking.amplitude) && not_negative(setup.shaking.frequency),

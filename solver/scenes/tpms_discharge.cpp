@@ -131,6 +131,7 @@ TpmsDischarge::TpmsDischarge(const TpmsQuestion& question, const particles::Tpms
     }
     setup.shaking = question.shaking;
     setup.material = question.material;
+    setup.frozen = question.wall;
     setup.time_step = question.time_step;
     const auto add = [&](const Vec3& x, bool mobile) {
         setup.spheres.push_back({{x[0] * d, x[1] * d, x[2] * d}, {}, {}, d / 2, mobile});

@@ -136,8 +136,8 @@ Vec3 PlainDem::rolling(const Contact& c, bool update, Vec3& history, const Vec3&
 }
 
 /// Radius and attraction of a contact; `area` of those that attract by one.
-void PlainDem::attract(Contact& c, double area) const {
-    const dem::Material& m = setup_.material;
+void PlainDem::attract(Contact& c, double area) {
+    const dem::Material& m = c.material;
     const double young = m.youngs_modulus / (2 * (1 - m.poisson_ratio * m.poisson_ratio)), w = m.surface_energy;
     c.root = std::sqrt(c.radius * std::max(c.overlap, 0.0));
     c.neck = m.cohesion * area;
@@ -157,15 +157,15 @@ void PlainDem::attract(Contact& c, double area) const {
 }
 
 /// The overlap at which a contact ends, which lasts beyond touch if it is old and its law is JKR's.
-double PlainDem::end_of_contact(double radius, bool lasts) const {
-    const dem::Material& m = setup_.material;
+double PlainDem::end_of_contact(const dem::Material& m, double radius, bool lasts) {
     if (!lasts || m.cohesion_law != dem::CohesionLaw::jkr) return 0;
     const double ratio = 2 * pi * m.surface_energy * (1 - m.poisson_ratio * m.poisson_ratio) / m.youngs_modulus;
     return -0.75 * std::cbrt(ratio * ratio * radius);
 }
 
 void PlainDem::pair(std::size_t i, std::size_t j, bool update) {
-    const dem::Material& m = setup_.material;
+    const bool of_powder = setup_.spheres[i].mobile && setup_.spheres[j].mobile;
+    const dem::Material m = of_powder ? setup_.material : dem::at_surface(setup_.material, setup_.frozen);
     Vec3 d = x_[i] - x_[j];
     for (std::size_t a = 0; a < 3; ++a)
         if (setup_.domain.periodic[a]) {
@@ -175,7 +175,7 @@ void PlainDem::pair(std::size_t i, std::size_t j, bool update) {
     const double ri = setup_.spheres[i].radius, rj = setup_.spheres[j].radius;
     if (dot(d, d) > 1.1 * (ri + rj) * (ri + rj)) return;  // far: it left contact, and was forgotten, on its way
     const double r = norm(d), overlap = ri + rj - r;
-    if (overlap <= end_of_contact(ri * rj / (ri + rj), pairs_that_last_.contains({i, j}))) {
+    if (overlap <= end_of_contact(m, ri * rj / (ri + rj), pairs_that_last_.contains({i, j}))) {
         pair_history_.erase({i, j});
         pair_rolling_.erase({i, j});
         pairs_that_last_.erase({i, j});
@@ -242,7 +242,7 @@ void PlainDem::wall(std::size_t i, std::size_t w, bool update) {
     c.n = pose.turn(c.n);
     c.velocity = v_[i] - geometry::twist_at(wall.motions, t).at(x_[i] - distance * c.n);
     c.overlap = ri - distance;
-    if (c.overlap <= end_of_contact(ri, at_walls_that_last_.contains({i, w}))) {
+    if (c.overlap <= end_of_contact(m, ri, at_walls_that_last_.contains({i, w}))) {
         wall_history_.erase({i, w});
         wall_rolling_.erase({i, w});
         at_walls_that_last_.erase({i, w});

@@ -38,8 +38,8 @@ private:
     void forces(bool update);
     void pair(std::size_t i, std::size_t j, bool update);
     void wall(std::size_t i, std::size_t w, bool update);
-    void attract(Contact& c, double area) const;
-    [[nodiscard]] double end_of_contact(double radius, bool lasts) const;
+    static void attract(Contact& c, double area);
+    [[nodiscard]] static double end_of_contact(const dem::Material& m, double radius, bool lasts);
     /// Force on i and n x F_t of one contact.
     void respond(const Contact& c, bool update, dem::Vec3& history, dem::Vec3& force, dem::Vec3& turn) const;
     /// Moment on i of the rolling resistance.

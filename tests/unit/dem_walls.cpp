@@ -61,6 +61,7 @@ TEST(DemWalls, CheckpointsContinueBitForBit) {
         auto setup = one_sphere(m.position, m.velocity, {m.wall});
         setup.material.rolling_friction = 0.1;
         setup.walls[0].surface.friction = 0.7;
+        setup.walls[0].surface.cohesion = 1e4;
         const auto first = dem::make_engine(setup, {});
         setup.walls.clear();
         const auto second = dem::make_engine(setup, {});
@@ -104,6 +105,7 @@ TEST(DemWalls, WhatCannotBeIsRefused) {
     refused({dem::Plane{}, {dem::Rotation{.axis = {0, 0, 3}, .speed = 1}}});
     refused({dem::Plane{}, {dem::Translation{.velocity = {1, 0, 0}, .start = 2, .end = 1}}});
     refused({dem::Plane{}, {}, {.friction = -1}});
+    refused({dem::Plane{}, {}, {.cohesion = -1}});
     refused(dem::Plane{}, {false, false, true});
     refused(dem::Cylinder{.radius = 1e-2}, {true, false, false});  // no end across, nor an image
     refused({dem::Plane{}, {dem::Rotation{.axis = {0, 1, 0}, .speed = 1}}}, {true, false, false});

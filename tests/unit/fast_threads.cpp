@@ -149,6 +149,8 @@ std::vector<Case> cases() {
         frozen.spheres[i].velocity = frozen.spheres[i].angular_velocity = {};
     }
     all.push_back({"obstacles", frozen, 250});
+    frozen.frozen = {.friction = 0.7, .cohesion = 1e5};
+    all.push_back({"obstacles of another surface", frozen, 250});
     all.push_back({"triangles", among_triangles(), 400});
     for (const double spread : {0.0, 0.4}) {
         const std::string sizes = spread > 0 ? ", many sizes" : "";

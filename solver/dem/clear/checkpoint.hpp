@@ -8,7 +8,7 @@
 
 namespace grainsweep::dem::clear {
 
-inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'0003ULL;  // "grnscl", version 3
+inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'0004ULL;  // "grnscl", version 4
 
 template <class Laws, Needs case_needs>
 void ClearEngine<Laws, case_needs>::state(State& into) const {

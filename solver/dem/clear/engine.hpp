@@ -94,6 +94,10 @@ private:
         if constexpr (needs.frozen) return p_.mobile[i] && p_.mobile[j] ? mass_ / 2 : mass_;
         return mass_ / 2;
     }
+    [[nodiscard]] const Laws& laws_of([[maybe_unused]] std::size_t i, [[maybe_unused]] std::size_t j) const {
+        if constexpr (needs.frozen) return mobile(i) && mobile(j) ? laws_ : frozen_laws_;
+        return laws_;
+    }
     /// 1/(1/I_i + 1/I_j) about the contact; a frozen partner does not turn.
     [[nodiscard]] double rolling_inertia(std::size_t i, std::size_t j) const requires(needs.sizes) {
         const double ri = radius(i), rj = radius(j);
@@ -167,7 +171,7 @@ private:
     void restore_walls(ByteReader& in);
 
     Material material_;
-    Laws laws_;
+    Laws laws_, frozen_laws_;  // of pairs, and of those with a frozen partner
     geometry::Domain domain_;
     std::array<Vec3, 27> image_shifts_;
     Vec3 gravity_;

@@ -144,15 +144,16 @@ void ClearEngine<Laws, case_needs>::pair_contacts() {
             auto t = touch(i, j, branch, r2);
             Memory none{};
             Memory& memory = memory_at(pairs_.value, k, none);
+            const Laws& laws = laws_of(i, j);
             if constexpr (Laws::reaches)
-                if (!begins(laws_, t, memory)) continue;
+                if (!begins(laws, t, memory)) continue;
             if constexpr (equal_contacts) {
                 largest = std::max(largest, t.overlap);
             } else {
                 largest = std::max(largest, t.overlap / (2 * std::min(t.radius_i, t.radius_j)));
                 stiffest_ = std::max(stiffest_, t.root / t.reduced_mass);
             }
-            const auto r = laws_.template respond<advance>(t, memory.data());
+            const auto r = laws.template respond<advance>(t, memory.data());
             const Vec3 f = r.normal * t.normal - r.resistance;
             p_.force[i] += f;
             p_.force[j] -= f;
@@ -266,7 +267,7 @@ void ClearEngine<Laws, case_needs>::for_each_touching_pair(Visit&& visit) const 
             Memory none{};
             const Memory& memory = memory_at(pairs_.value, k, none);
             auto t = touch(i, j, branch, r2);
-            if constexpr (Laws::reaches) laws_.begin(t, memory.data());
+            if constexpr (Laws::reaches) laws_of(i, j).begin(t, memory.data());
             if (t.touching) visit(i, j, t, memory);
         }
 }
@@ -297,8 +298,9 @@ void ClearEngine<Laws, case_needs>::contacts(std::vector<ContactForce>& into) co
         const auto r = laws.template respond<false>(t, memory.data());
         into.push_back({p_.id[i], second, t.overlap, t.normal, r.normal, -r.resistance, -r.rolling});
     };
-    for_each_touching_pair(
-        [&](std::size_t i, std::size_t j, const auto& t, const Memory& memory) { add(laws_, i, p_.id[j], t, memory); });
+    for_each_touching_pair([&](std::size_t i, std::size_t j, const auto& t, const Memory& memory) {
+        add(laws_of(i, j), i, p_.id[j], t, memory);
+    });
     for_each_touched_wall([&](std::size_t i, std::size_t w, const auto& t, const Memory& memory) {
         add(walls_[w].laws, i, -1 - static_cast<std::int32_t>(w), t, memory);
     });
@@ -315,8 +317,9 @@ double ClearEngine<Laws, case_needs>::mechanical_energy(double& active) const {
         stored += energy;
         squeezed += std::abs(energy);
     };
-    for_each_touching_pair(
-        [&](std::size_t, std::size_t, const auto& t, const Memory& memory) { add(laws_.energy(t, memory.data())); });
+    for_each_touching_pair([&](std::size_t i, std::size_t j, const auto& t, const Memory& memory) {
+        add(laws_of(i, j).energy(t, memory.data()));
+    });
     for_each_touched_wall([&](std::size_t, std::size_t w, const auto& t, const Memory& memory) {
         add(walls_[w].laws.energy(t, memory.data()));
     });

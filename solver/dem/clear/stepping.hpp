@@ -20,6 +20,7 @@ template <class Laws, Needs case_needs>
 ClearEngine<Laws, case_needs>::ClearEngine(const Setup& setup, const Method& method)
     : material_(setup.material),
       laws_(Laws::of(setup.material)),
+      frozen_laws_(Laws::of(at_surface(setup.material, setup.frozen))),
       domain_{setup.domain.low, setup.domain.high, setup.domain.periodic},
       image_shifts_(domain_.image_shifts()),
       gravity_(setup.gravity),
@@ -51,8 +52,10 @@ ClearEngine<Laws, case_needs>::ClearEngine(const Setup& setup, const Method& met
     }
     largest_radius_ = largest;
     if constexpr (Laws::reaches) {
-        beyond_pair_ = Laws::beyond(material_, largest / 2);
-        beyond_wall_ = Laws::beyond(material_, largest);
+        for (const Material& m : materials_of(setup)) {
+            beyond_pair_ = std::max(beyond_pair_, Laws::beyond(m, largest / 2));
+            beyond_wall_ = std::max(beyond_wall_, Laws::beyond(m, largest));
+        }
     }
     if constexpr (!needs.spin) {
         spin_at_start_.resize(n);
@@ -228,7 +231,9 @@ auto ClearEngine<Laws, case_needs>::make_walls(const std::vector<Wall>& walls) c
     for (const Wall& wall : walls) {
         const Material m = at_surface(material_, wall.surface);
         if (!Laws::covers(m))
-            throw std::invalid_argument("the surface of a wall has friction that nothing at the start had");
+            throw std::invalid_argument("the surface of a wall has friction or cohesion that nothing at the start had");
+        if (Laws::beyond(m, largest_radius_) > beyond_wall_)
+            throw std::invalid_argument("the surface of a wall attracts from further than anything at the start did");
         made.push_back({MovingWall(wall, domain_, largest_radius_), Laws::of(m), {}, 0, {}, {}, {}, {}, {}});
     }
     return made;

@@ -10,17 +10,23 @@
 namespace grainsweep::dem::fast {
 namespace {
 
+template <class K, bool frozen_differ = false>
+constexpr Kernels compiled{width,       sweep<K, frozen_differ>, advance<K>,         walls<K>,
+                           find_pieces, search<K::unequal>,      refresh<K::unequal>};
 template <class K>
-constexpr Kernels compiled{width, sweep<K>, advance<K>, walls<K>, find_pieces, search<K::unequal>, refresh<K::unequal>};
+GRAINSWEEP_LANES const Kernels& holding(const Needs& n) {
+    return n.frozen_differ ? compiled<K, true> : compiled<K>;
+}
 
 template <class Combination>
 GRAINSWEEP_LANES const Kernels& kernels_for(const Needs& n) {
     if constexpr (Combination::columns == Columns::any) {
-        return compiled<Kernel<Combination, true, true>>;
+        return holding<Kernel<Combination, true, true>>(n);
     } else {
         if constexpr (Combination::columns == Columns::sizes)
-            if (n.unequal) return compiled<Kernel<Combination, true, true>>;
-        return n.holds() ? compiled<Kernel<Combination, false, true>> : compiled<Kernel<Combination, false, false>>;
+            if (n.unequal) return holding<Kernel<Combination, true, true>>(n);
+        if (n.holds()) return holding<Kernel<Combination, false, true>>(n);
+        return compiled<Kernel<Combination, false, false>>;
     }
 }
 

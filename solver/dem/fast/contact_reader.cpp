@@ -11,8 +11,9 @@ namespace grainsweep::dem::fast {
 
 using namespace geometry;
 
-ContactReader::ContactReader(const AnyContact& laws, const ListSpace& space, const Field& field, const std::int32_t* id,
-                             std::span<const Motion> motions, std::int32_t width, std::span<const ParkedContact> parked)
+ContactReader::ContactReader(const PairContacts& laws, const ListSpace& space, const Field& field,
+                             const std::int32_t* id, std::span<const Motion> motions, std::int32_t width,
+                             std::span<const ParkedContact> parked)
     : laws_(laws),
       space_(space),
       field_(field),
@@ -22,8 +23,13 @@ ContactReader::ContactReader(const AnyContact& laws, const ListSpace& space, con
       parked_(parked),
       beyond_pair_(space.scale.length * static_cast<double>(field.constants.beyond)),
       beyond_wall_(space.scale.length * static_cast<double>(field.constants.beyond_wall)) {
-    std::ranges::transform(laws.memory(), memory_unit_.begin(),
+    std::ranges::transform(laws.powder->memory(), memory_unit_.begin(),
                            [&](const MemoryKind& kind) { return unit_of(kind.dimension, space.scale); });
+}
+
+const AnyContact& ContactReader::laws_of(std::int32_t i, std::int32_t j) const {
+    const bool powder = field_.records[i].inverse_mass > 0 && field_.records[j].inverse_mass > 0;
+    return powder ? *laws_.powder : *laws_.frozen;
 }
 
 double ContactReader::radius(std::int32_t i) const {
@@ -73,7 +79,7 @@ bool ContactReader::touches(std::int32_t i, std::int32_t j, const Memory& memory
     t.normal = (1 / t.distance) * branch;
     t.effective_radius = t.radius_i * t.radius_j / sum;
     t.root = std::sqrt(t.effective_radius * std::max(t.overlap, 0.0));
-    return laws_.begin(t, memory.data());
+    return laws_of(i, j).begin(t, memory.data());
 }
 
 template <class Visit>
@@ -118,7 +124,7 @@ void ContactReader::stand_still(ParkedContact& contact) const {
     if (!touches(contact.first, contact.second, of_pair, t)) return;
     complete(contact.first, contact.second, t);
     std::vector<ContactForce> one;
-    add(laws_, t, contact.first, contact.second, {}, {}, {}, of_pair, one);
+    add(laws_of(contact.first, contact.second), t, contact.first, contact.second, {}, {}, {}, of_pair, one);
     const ContactForce& c = one.front();
     const Scale& s = space_.scale;
     const double unit = s.mass * s.length / (s.time * s.time);
@@ -139,7 +145,7 @@ void ContactReader::pairs(std::vector<ContactForce>& into) const {
         complete(i, j, t);
         const Motion &of_i = motions_[static_cast<std::size_t>(i)], &of_j = motions_[static_cast<std::size_t>(j)];
         const Vec3 turn = (t.radius_i - t.overlap / 2) * of_i.spin + (t.radius_j - t.overlap / 2) * of_j.spin;
-        add(laws_, t, i, id_[j], of_i.velocity - of_j.velocity, turn, of_i.spin - of_j.spin, memory, into);
+        add(laws_of(i, j), t, i, id_[j], of_i.velocity - of_j.velocity, turn, of_i.spin - of_j.spin, memory, into);
     });
 }
 
@@ -194,8 +200,9 @@ StoredEnergy ContactReader::stored(const Walls& walls) const {
         e.sum += energy;
         e.squeezed += std::abs(energy);
     };
-    for_each_pair(
-        [&](std::int32_t, std::int32_t, const auto& t, const Memory& memory) { add_energy(laws_, t, memory); });
+    for_each_pair([&](std::int32_t i, std::int32_t j, const auto& t, const Memory& memory) {
+        add_energy(laws_of(i, j), t, memory);
+    });
     for (std::size_t w = 0; w < walls.count(); ++w)
         for_each_at_wall(walls, w, [&](std::int32_t, const Vec3&, const auto& t, const Memory& memory) {
             add_energy(walls.laws(w), t, memory);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -28,10 +29,15 @@ struct StoredEnergy {
     double squeezed = 0;
 };
 
+/// Laws of contacts between particles.
+struct PairContacts {
+    std::unique_ptr<const AnyContact> powder, frozen;  ///< without and with a frozen partner
+};
+
 class ContactReader {
 public:
     /// All views must outlive the reader; `motions` in the order of the records, empty where only energy is wanted.
-    ContactReader(const AnyContact& laws, const ListSpace& space, const Field& field, const std::int32_t* id,
+    ContactReader(const PairContacts& laws, const ListSpace& space, const Field& field, const std::int32_t* id,
                   std::span<const Motion> motions, std::int32_t width, std::span<const ParkedContact> parked = {});
 
     /// Gives a contact of two particles at rest its overlap, force and torques.
@@ -46,6 +52,7 @@ public:
 private:
     using Memory = std::array<double, memories_at_most>;
 
+    [[nodiscard]] const AnyContact& laws_of(std::int32_t i, std::int32_t j) const;
     [[nodiscard]] double radius(std::int32_t i) const;
     [[nodiscard]] double mass(std::int32_t i) const;  ///< kg; infinite where frozen
     [[nodiscard]] Memory memory(const float* const* column, std::int64_t at) const;
@@ -63,7 +70,7 @@ private:
     void add(const AnyContact& laws, Touch<partner> t, std::int32_t i, std::int32_t second, const Vec3& velocity,
              const Vec3& turn, const Vec3& turning, Memory memory, std::vector<ContactForce>& into) const;
 
-    const AnyContact& laws_;
+    const PairContacts& laws_;
     const ListSpace& space_;
     const Field& field_;
     const std::int32_t* id_;

@@ -71,15 +71,16 @@ struct ParkedContact {
 struct Constants {
     double unit[3];  ///< length of one position unit
     float unit_single[3];
-    float inverse_unit[4];           ///< fourth: 0
-    float gravity[8];                ///< change of velocity per step; spin part 0
-    float radius;                    ///< of all particles where they are equal
-    double reach_squared;            ///< (2 radius)^2, exact
-    float candidate_squared;         ///< the same, enlarged by the rounding of single precision
-    float beyond, beyond_wall;       ///< how far contacts may last beyond touch, of pairs and at walls
-    float root_radius;               ///< sqrt(R*) of an equal pair
-    float rotation;                  ///< 2.5/R^2 where radii are equal
-    double laws[constants_at_most];  ///< of the combination of laws, in order
+    float inverse_unit[4];                  ///< fourth: 0
+    float gravity[8];                       ///< change of velocity per step; spin part 0
+    float radius;                           ///< of all particles where they are equal
+    double reach_squared;                   ///< (2 radius)^2, exact
+    float candidate_squared;                ///< the same, enlarged by the rounding of single precision
+    float beyond, beyond_wall;              ///< how far contacts may last beyond touch, of pairs and at walls
+    float root_radius;                      ///< sqrt(R*) of an equal pair
+    float rotation;                         ///< 2.5/R^2 where radii are equal
+    double laws[constants_at_most];         ///< of the combination of laws, in order
+    double frozen_laws[constants_at_most];  ///< in contacts with frozen particles
 };
 
 /// Bytes of what a shape is written in for lanes, at most.
@@ -234,6 +235,7 @@ struct Needs {
     bool unequal;              ///< radii differ, or the combination is compiled for such only
     bool frozen;               ///< particles of infinite mass are present
     bool resting;              ///< particles at rest may be left unadvanced
+    bool frozen_differ;        ///< contacts with frozen particles have constants of their own
     bool skips;                ///< those that are not advanced are passed over: worth its list unless they are few
     /// Whether some particles are not advanced, or the kernel allows for it.
     [[nodiscard]] constexpr bool holds() const { return unequal || frozen || resting; }

@@ -27,12 +27,13 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
       needs_(make_needs(setup, rest_speed > 0)),
       rest_speed_(rest_speed),
       kernels_(&kernels_of(path, needs_)),
-      laws_(make_contact(needs_.combination, setup.material)),
+      laws_{make_contact(needs_.combination, setup.material),
+            make_contact(needs_.combination, at_surface(setup.material, setup.frozen))},
       materials_(materials_of(setup)),
       walls_(setup.walls, setup.domain, space_.scale, needs_.combination, materials_),
       sound_(sound_overlaps(setup)),
       watch_(setup, space_.scale),
-      resting_(setup, *laws_, space_.scale, rest_speed),
+      resting_(setup, laws_, space_.scale, rest_speed),
       subdomains_(*kernels_, threads),
       threads_(threads),
       adapts_skin_(!(skin > 0)) {
@@ -44,8 +45,8 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
     if (skin > 0) space_.skin = static_cast<float>(skin / space_.scale.length);
     space_.skin = std::min(space_.skin, largest_skin_);
     field_.constants = make_constants(setup, space_.scale, needs_);
-    columns_.histories = static_cast<std::int32_t>(laws_->memory().size());
-    std::ranges::transform(laws_->memory(), columns_.exchanged,
+    columns_.histories = static_cast<std::int32_t>(laws_.powder->memory().size());
+    std::ranges::transform(laws_.powder->memory(), columns_.exchanged,
                            [](const MemoryKind& kind) { return static_cast<float>(kind.exchanged); });
     load(setup);
     touches_.begin(field_, columns_, walls_, space_.scale);

@@ -73,7 +73,7 @@ std::vector<Motion> MixedEngine::motions() const {
 void MixedEngine::contacts(std::vector<ContactForce>& into) const {
     join_lists();
     const std::vector<Motion> now = motions();
-    const ContactReader reader(*laws_, space_, field_, columns_.id.data(), now, kernels_->width, resting_.parked());
+    const ContactReader reader(laws_, space_, field_, columns_.id.data(), now, kernels_->width, resting_.parked());
     into.clear();
     reader.pairs(into);
     for (std::size_t w = 0; w < walls_.count(); ++w) reader.wall(walls_, w, into);
@@ -85,7 +85,7 @@ WallLoad MixedEngine::wall_load(std::size_t wall, const Vec3& about) const {
 
 Moment MixedEngine::moment(std::span<const Motion> motions) const {
     join_lists();
-    const ContactReader reader(*laws_, space_, field_, columns_.id.data(), {}, kernels_->width, resting_.parked());
+    const ContactReader reader(laws_, space_, field_, columns_.id.data(), {}, kernels_->width, resting_.parked());
     return {field_, space_, columns_.id.data(), motions, reader.stored(walls_)};
 }
 

@@ -112,8 +112,8 @@ private:
     Needs needs_;
     double rest_speed_;
     const Kernels* kernels_;
-    std::unique_ptr<const AnyContact> laws_;  ///< in SI, for what is no part of a step
-    std::vector<Material> materials_;         ///< of particles and walls at the start
+    PairContacts laws_;                ///< in SI, for what is no part of a step
+    std::vector<Material> materials_;  ///< of particles and walls at the start
     Walls walls_;
     WallTouches touches_;
     float smallest_diameter_ = 1;

@@ -47,7 +47,7 @@ std::pair<std::size_t, std::size_t> pair_at(const Columns& c, std::size_t o) {
 
 }  // namespace
 
-Resting::Resting(const Setup& setup, const AnyContact& laws, const Scale& scale, double rest_speed)
+Resting::Resting(const Setup& setup, const PairContacts& laws, const Scale& scale, double rest_speed)
     : laws_(&laws),
       speed_(rest_speed / scale.speed()),
       gravity_(geometry::norm(setup.gravity) * scale.time * scale.time / scale.length) {

@@ -32,7 +32,7 @@ inline constexpr std::int64_t rest_interval = 128;
 class Resting {
 public:
     /// rest_speed: m/s; 0: all particles are always advanced.
-    Resting(const Setup& setup, const AnyContact& laws, const Scale& scale, double rest_speed);
+    Resting(const Setup& setup, const PairContacts& laws, const Scale& scale, double rest_speed);
 
     [[nodiscard]] bool wanted() const { return speed_ > 0; }
     [[nodiscard]] bool holds(std::int32_t particle) const { return held_[static_cast<std::size_t>(particle)] != 0; }
@@ -74,7 +74,7 @@ private:
     [[nodiscard]] ParkedContact parked_from(const Columns& c, const ContactReader& reader, std::size_t pair,
                                             std::int32_t live) const;
 
-    const AnyContact* laws_;
+    const PairContacts* laws_;
     double speed_ = 0;    ///< engine's units
     double gravity_ = 0;  ///< change of velocity per step
 

@@ -65,12 +65,15 @@ Constants make_constants(const Setup& setup, const Scale& scale, const Needs& ne
     c.radius = 0.5F;
     c.reach_squared = 1;
     c.candidate_squared = 1 + 4e-6F;
-    const auto contact = make_contact(needs.combination, setup.material);
-    c.beyond = static_cast<float>(contact->beyond(0.25 * scale.length) / scale.length);
-    c.beyond_wall = static_cast<float>(contact->beyond(0.5 * scale.length) / scale.length);
+    for (const Material& m : materials_of(setup)) {
+        const auto contact = make_contact(needs.combination, m);
+        c.beyond = std::max(c.beyond, static_cast<float>(contact->beyond(0.25 * scale.length) / scale.length));
+        c.beyond_wall = std::max(c.beyond_wall, static_cast<float>(contact->beyond(0.5 * scale.length) / scale.length));
+    }
     c.root_radius = 0.5F;
     c.rotation = needs.unequal ? 2.5F : 10.0F;
     write_law_constants(needs.combination, setup.material, scale, c.laws);
+    write_law_constants(needs.combination, at_surface(setup.material, setup.frozen), scale, c.frozen_laws);
     return c;
 }
 
@@ -84,6 +87,7 @@ Needs make_needs(const Setup& setup, bool resting) {
     n.combination = choose_combination(materials_of(setup), [&](const CombinationFacts& facts) {
         return !n.unequal || facts.columns != Columns::equal;
     });
+    n.frozen_differ = frozen_differ(setup);
     // what is compiled for any spheres computes with each particle's own radius
     n.unequal = n.unequal || facts_of(n.combination).columns == Columns::any;
     n.skips = n.resting || (n.frozen && !n.unequal && facts_of(n.combination).spin);

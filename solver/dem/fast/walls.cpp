@@ -82,10 +82,15 @@ Walls::Walls(const std::vector<Wall>& walls, const Domain& domain, const Scale& 
     : scale_(scale), placed_(walls.size()), sums_(walls.size()), pivot_(walls.size()), work_(walls.size()) {
     std::vector<Material> together(materials.begin(), materials.end());
     together.emplace_back();
+    const auto beyond = [&](const Material& m) { return make_contact(combination, m)->beyond(0.5 * scale.length); };
+    double furthest = 0;
+    for (const Material& m : materials) furthest = std::max(furthest, beyond(m));
     for (std::size_t w = 0; w < walls.size(); ++w) {
         const Material& surface = together.back() = at_surface(materials.front(), walls[w].surface);
         if (!fits(combination, together))
-            throw std::invalid_argument("the surface of a wall has friction that nothing at the start had");
+            throw std::invalid_argument("the surface of a wall has friction or cohesion that nothing at the start had");
+        if (beyond(surface) > furthest)
+            throw std::invalid_argument("the surface of a wall attracts from further than anything at the start did");
         moving_.emplace_back(walls[w], geometry::Domain{domain.low, domain.high, domain.periodic}, 0.5 * scale.length);
         single_.push_back(std::visit([]<class S>(const S&) { return Vectorised<S>; }, walls[w].shape));
         laws_.push_back(make_contact(combination, surface));

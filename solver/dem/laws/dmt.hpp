@@ -19,7 +19,8 @@ struct Dmt : LawTraits {
     static constexpr int constants = 2;
 
     static bool wanted(const Material& m) { return m.surface_energy > 0 && m.cohesion_law == CohesionLaw::dmt; }
-    static bool suits(const Material& m) { return wanted(m); }
+    /// Also of none, beside others that have some.
+    static bool suits(const Material& m) { return m.cohesion_law == CohesionLaw::dmt; }
     static std::array<Quantity, constants> constants_of(const Material& m) {
         return {{{2 * std::numbers::pi * m.surface_energy, energy_per_area},
                  {m.friction_limit == FrictionLimit::net ? 1.0 : 0.0, number}}};

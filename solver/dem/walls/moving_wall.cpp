@@ -42,16 +42,6 @@ std::vector<Motion> displacing(const Shape& shape, std::span<const Motion> motio
 /// By how much of it a wall may be longer than the period: files of single precision round to 6e-8 of a coordinate.
 constexpr double rounding_of_length = 1e-6;
 
-std::string flaw(const Surface& s) {
-    if (s.friction && !(std::isfinite(*s.friction) && *s.friction >= 0))
-        return "the friction of a wall must not be negative";
-    if (s.rolling_friction && !(*s.rolling_friction >= 0 && *s.rolling_friction <= 1))
-        return "the rolling friction of a wall must lie in [0, 1]";
-    if (s.restitution && !(*s.restitution > 0 && *s.restitution <= 1))
-        return "the restitution of a wall must lie in (0, 1]";
-    return {};
-}
-
 bool switches(const Motion& motion) {
     return std::visit([](const auto& m) { return m.start > 0 || std::isfinite(m.end); }, motion);
 }
@@ -92,7 +82,7 @@ MovingWall::MovingWall(Wall wall, const Domain& domain, double largest) : wall_(
     };
     refuse_flaw(std::visit([](const auto& s) { return s.flaw(); }, wall_.shape));
     for (const Motion& m : wall_.motions) refuse_flaw(flaw(m));
-    refuse_flaw(flaw(wall_.surface));
+    refuse_flaw(flaw(wall_.surface, "a wall"));
     std::erase_if(wall_.motions, is_still);
     single_contact_ = std::visit([](const auto& s) { return SingleContact<decltype(s)>; }, wall_.shape);
     displacing_ = displacing(wall_.shape, wall_.motions);

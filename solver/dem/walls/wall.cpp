@@ -1,6 +1,23 @@
 #include "solver/dem/walls/wall.hpp"
 
+#include <cmath>
+
 namespace grainsweep::dem {
+
+std::string flaw(const Surface& s, std::string_view whom) {
+    const auto complaint = [&](std::string_view part, std::string_view rule) {
+        return std::string("the ").append(part).append(" of ").append(whom).append(rule);
+    };
+    const auto negative = [](const std::optional<double>& x) { return x && !(std::isfinite(*x) && *x >= 0); };
+    if (negative(s.friction)) return complaint("friction", " must not be negative");
+    if (s.rolling_friction && !(*s.rolling_friction >= 0 && *s.rolling_friction <= 1))
+        return complaint("rolling friction", " must lie in [0, 1]");
+    if (s.restitution && !(*s.restitution > 0 && *s.restitution <= 1))
+        return complaint("restitution", " must lie in (0, 1]");
+    if (negative(s.cohesion)) return complaint("cohesion energy density", " must not be negative");
+    if (negative(s.surface_energy)) return complaint("surface energy", " must not be negative");
+    return {};
+}
 
 Blade::operator Wall() const {
     Wall wall(Bar{.front = front, .thickness = thickness, .bottom = bottom, .top = top, .edge_radius = edge_radius});

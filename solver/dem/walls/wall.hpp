@@ -6,6 +6,8 @@
 
 #include <concepts>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace grainsweep::dem {
@@ -23,12 +25,16 @@ using geometry::Tube;
 using geometry::Vec3;
 using geometry::Vibration;
 
-/// What differs from the powder's material in contacts with a wall.
+/// What differs from the powder's material in contacts with a wall, or with frozen spheres.
 struct Surface {
     std::optional<double> friction{}, rolling_friction{}, restitution{};
+    std::optional<double> cohesion{}, surface_energy{};  ///< by the powder's law, J/m3 and J/m2
 
     bool operator==(const Surface&) const = default;
 };
+
+/// Why no engine computes it, one sentence about the surface of `whom`; empty where one does.
+[[nodiscard]] std::string flaw(const Surface& surface, std::string_view whom);
 
 /// A shape alone is a wall at rest. Times of motions count from when the walls were set.
 struct Wall {

@@ -9,6 +9,14 @@
 
 namespace grainsweep::dem {
 
+/// Calls visit(part) for every part of a surface.
+template <class Of, class Visit>
+void for_each_part(Of& surface, Visit&& visit) {
+    for (auto* part : {&surface.friction, &surface.rolling_friction, &surface.restitution, &surface.cohesion,
+                       &surface.surface_energy})
+        visit(*part);
+}
+
 /// put(value) writes a number or an array of numbers.
 template <class Put>
 void write_wall(const Wall& wall, Put&& put) {
@@ -19,10 +27,10 @@ void write_wall(const Wall& wall, Put&& put) {
     write(wall.shape);
     put(static_cast<std::uint64_t>(wall.motions.size()));
     for (const geometry::Motion& motion : wall.motions) write(motion);
-    for (const auto* part : {&wall.surface.friction, &wall.surface.rolling_friction, &wall.surface.restitution}) {
-        put(static_cast<std::uint64_t>(part->has_value()));
-        put(part->value_or(0));
-    }
+    for_each_part(wall.surface, [&](const std::optional<double>& part) {
+        put(static_cast<std::uint64_t>(part.has_value()));
+        put(part.value_or(0));
+    });
 }
 
 /// The alternative with this number, to be filled.
@@ -52,12 +60,12 @@ template <class Get>
         read(motion);
         wall.motions.push_back(motion);
     }
-    for (auto* part : {&wall.surface.friction, &wall.surface.rolling_friction, &wall.surface.restitution}) {
+    for_each_part(wall.surface, [&](std::optional<double>& part) {
         std::uint64_t given = 0;
         double value = 0;
         get(given), get(value);
-        if (given != 0) *part = value;
-    }
+        if (given != 0) part = value;
+    });
     return wall;
 }
 

@@ -53,13 +53,13 @@ inline constexpr kit::Real occupancy_cell{
     "occupancy_cell", "m", "side of the cells of occupancy and surface; 0: D", 0, {0, 1}};
 
 [[nodiscard]] inline std::vector<ParameterSpec> parameters() {
-    return kit::declared(drum_diameter, length, ends, end_friction, particles, fill, rpm, gravity, turning_time,
-                         measured_time, frame_interval, occupancy_cell, powder.diameter, powder.size_distribution,
-                         powder.size_spread, powder.size_file, powder.density, powder.youngs_modulus,
-                         powder.poisson_ratio, powder.restitution, powder.friction, powder.rolling_friction,
-                         powder.rolling_law, powder.wall_friction, powder.wall_rolling_friction,
-                         powder.wall_restitution, powder.cohesion, powder.cohesion_law, powder.surface_energy,
-                         powder.time_step, powder.time_step_fraction, powder.precision);
+    return kit::declared(
+        drum_diameter, length, ends, end_friction, particles, fill, rpm, gravity, turning_time, measured_time,
+        frame_interval, occupancy_cell, powder.diameter, powder.size_distribution, powder.size_spread, powder.size_file,
+        powder.density, powder.youngs_modulus, powder.poisson_ratio, powder.restitution, powder.friction,
+        powder.rolling_friction, powder.rolling_law, powder.wall_friction, powder.wall_rolling_friction,
+        powder.wall_restitution, powder.cohesion, powder.cohesion_law, powder.surface_energy, powder.wall_cohesion,
+        powder.wall_surface_energy, powder.time_step, powder.time_step_fraction, powder.precision);
 }
 
 }  // namespace grainsweep::drum::question

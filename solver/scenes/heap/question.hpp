@@ -44,7 +44,8 @@ inline constexpr kit::Real end_time{
                          powder.youngs_modulus, powder.poisson_ratio, powder.restitution, powder.friction,
                          powder.rolling_friction, powder.rolling_law, powder.wall_friction,
                          powder.wall_rolling_friction, powder.wall_restitution, powder.cohesion, powder.cohesion_law,
-                         powder.surface_energy, powder.time_step, powder.time_step_fraction, powder.precision);
+                         powder.surface_energy, powder.wall_cohesion, powder.wall_surface_energy, powder.time_step,
+                         powder.time_step_fraction, powder.precision);
 }
 
 }  // namespace grainsweep::heap::question

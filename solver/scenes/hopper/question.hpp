@@ -55,7 +55,8 @@ inline constexpr kit::Real frame_interval{
                          powder.poisson_ratio, powder.restitution, powder.friction, powder.rolling_friction,
                          powder.rolling_law, powder.wall_friction, powder.wall_rolling_friction,
                          powder.wall_restitution, powder.cohesion, powder.cohesion_law, powder.surface_energy,
-                         powder.time_step, powder.time_step_fraction, powder.precision);
+                         powder.wall_cohesion, powder.wall_surface_energy, powder.time_step, powder.time_step_fraction,
+                         powder.precision);
 }
 
 }  // namespace grainsweep::hopper::question

@@ -43,9 +43,25 @@ dem::Material Powder::material(const Inputs& inputs) const {
 }
 
 dem::Surface Powder::wall_surface(const Inputs& inputs) const {
-    return {.friction = own(wall_friction, inputs),
-            .rolling_friction = own(wall_rolling_friction, inputs),
-            .restitution = own(wall_restitution, inputs, true)};
+    dem::Surface surface{.friction = own(wall_friction, inputs),
+                         .rolling_friction = own(wall_rolling_friction, inputs),
+                         .restitution = own(wall_restitution, inputs, true)};
+    const dem::CohesionLaw law = cohesion_law(inputs);
+    if (!dem::acts_by_surface_energy(law)) {
+        surface.cohesion = own(wall_cohesion, inputs);
+        return surface;
+    }
+    surface.surface_energy = own(wall_surface_energy, inputs);
+    const double of_powder = surface_energy(inputs), of_walls = surface.surface_energy.value_or(of_powder);
+    if (law == dem::CohesionLaw::jkr && (of_powder > 0) != (of_walls > 0)) {
+        char sentence[200];
+        std::snprintf(sentence, sizeof sentence,
+                      "wall_surface_energy is %.4g and surface_energy %.4g: 'jkr' needs both above 0, or neither; "
+                      "give a small one, or cohesion_law 'dmt'",
+                      of_walls, of_powder);
+        throw std::invalid_argument(sentence);
+    }
+    return surface;
 }
 
 particles::SizeDistribution Powder::sizes(const Inputs& inputs, const Files* files) const {

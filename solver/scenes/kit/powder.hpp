@@ -87,12 +87,20 @@ struct Powder {
           {"paper", dem::CohesionLaw::paper},
           {"jkr", dem::CohesionLaw::jkr},
           {"dmt", dem::CohesionLaw::dmt}}}};
+    Real wall_cohesion{"wall_cohesion", "J/m3",           "cohesion energy density at the walls; -1: cohesion",
+                       as_powder,       {as_powder, 1e6}, {if_word("cohesion_law", "sjkr", "sjkr2", "paper")}};
     Real surface_energy{"surface_energy",
                         "J/m2",
                         "work of adhesion w of 'jkr' and 'dmt': of two surfaces of surface energy g each, 2 g",
                         0.0,
                         {0, 10},
                         {if_word("cohesion_law", "jkr", "dmt")}};
+    Real wall_surface_energy{"wall_surface_energy",
+                             "J/m2",
+                             "work of adhesion at the walls; -1: surface_energy",
+                             as_powder,
+                             {as_powder, 10},
+                             {if_word("cohesion_law", "jkr", "dmt")}};
     Real time_step{"time_step",
                    "s",
                    "time step; 0: time_step_fraction of the shorter of the Rayleigh time and the Hertz "
@@ -111,7 +119,7 @@ struct Powder {
     /// Of all parameters from density to cohesion_law.
     [[nodiscard]] dem::Material material(const Inputs& inputs) const;
     /// What the walls do differently from the powder. Throws std::invalid_argument with one sentence on what is neither
-    /// a property nor as_powder.
+    /// a property nor as_powder, and where 'jkr' has surface energy at the walls only, or everywhere else.
     [[nodiscard]] dem::Surface wall_surface(const Inputs& inputs) const;
     /// Of d/D. Without files, as for an estimate, sizes in a file are taken as all equal. Throws std::invalid_argument
     /// with one sentence where the file is missing or D is outside of it.

@@ -37,6 +37,16 @@ constexpr kit::Powder powder = [] {
     p.poisson_ratio = p.poisson_ratio.with("Poisson's ratio", 0.3, {0, 0.5});
     p.density = p.density.with("density of the particle material", 7980, {1, 3e4});
     p.time_step = p.time_step.with("time step", 1e-6, {0, unbounded, true, true});
+    p.wall_friction =
+        p.wall_friction.with("Coulomb friction at the wall; -1: friction", kit::as_powder, {kit::as_powder, 2});
+    p.wall_rolling_friction = p.wall_rolling_friction.with("rolling friction at the wall; -1: rolling_friction",
+                                                           kit::as_powder, {kit::as_powder, 1});
+    p.wall_restitution =
+        p.wall_restitution.with("restitution at the wall; -1: restitution", kit::as_powder, {kit::as_powder, 1});
+    p.wall_cohesion = p.wall_cohesion.with("cohesion energy density at the wall; -1: cohesion", kit::as_powder,
+                                           {kit::as_powder, 1e7});
+    p.wall_surface_energy = p.wall_surface_energy.with("work of adhesion at the wall; -1: surface_energy",
+                                                       kit::as_powder, {kit::as_powder, 10});
     p.precision = p.precision.with("arithmetic of the contact forces");
     return p;
 }();
@@ -118,12 +128,13 @@ dem::Material material_of(const Inputs& inputs) {
 
 std::vector<ParameterSpec> tpms_discharge_parameters() {
     using namespace ask;
-    return kit::declared(cell, side, edge, shell, packing, packing_fraction, packing_seed, powder.diameter,
-                         powder.friction, powder.rolling_friction, powder.rolling_law, friction_limit,
-                         powder.restitution, powder.cohesion, powder.cohesion_law, powder.surface_energy,
-                         powder.youngs_modulus, powder.poisson_ratio, powder.density, gravity, tilt, tilt_azimuth,
-                         vibration_amplitude, vibration_frequency, vibration_direction, end_time, ends_when_quiet,
-                         powder.time_step, powder.precision, rest_speed);
+    return kit::declared(
+        cell, side, edge, shell, packing, packing_fraction, packing_seed, powder.diameter, powder.friction,
+        powder.rolling_friction, powder.rolling_law, friction_limit, powder.restitution, powder.cohesion,
+        powder.cohesion_law, powder.surface_energy, powder.wall_friction, powder.wall_rolling_friction,
+        powder.wall_restitution, powder.wall_cohesion, powder.wall_surface_energy, powder.youngs_modulus,
+        powder.poisson_ratio, powder.density, gravity, tilt, tilt_azimuth, vibration_amplitude, vibration_frequency,
+        vibration_direction, end_time, ends_when_quiet, powder.time_step, powder.precision, rest_speed);
 }
 
 const std::string& tpms_packing_text(const Inputs& inputs, const Files& files) {
@@ -140,6 +151,7 @@ TpmsQuestion::TpmsQuestion(const Inputs& inputs, std::uint64_t seed)
       packing_seed(static_cast<std::uint64_t>(ask::packing_seed(inputs))),
       diameter(ask::powder.diameter(inputs)),
       material(material_of(inputs)),
+      wall(ask::powder.wall_surface(inputs)),
       gravity(ask::gravity(inputs)),
       end_time(ask::end_time(inputs)),
       stop_when_quiet(ask::ends_when_quiet(inputs)),

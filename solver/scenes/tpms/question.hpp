@@ -27,6 +27,7 @@ struct TpmsQuestion {
     std::uint64_t packing_seed = 1;
     double diameter = 45e-6;  ///< m
     dem::Material material;
+    dem::Surface wall;      ///< of the frozen shell
     double gravity = 9.81;  ///< m/s2
     std::array<double, 3> down{0, 0, -1};
     dem::Shaking shaking;  ///< of the whole cell
