@@ -108,11 +108,11 @@ TEST(Hosts, WorkersAreTheHostsChildrenAndHostsAreLaunchedWithTheirNumber) {
 }
 
 TEST(Hosts, AHostThatIsKilledCostsNoCaseATry) {
-    const HostedCampaign campaign(300, 0.01);
+    const HostedCampaign campaign(300, 0.02);  // long enough to look and kill six times on a busy machine
     Process run(campaign.command(), campaign.folder().path());
     int killed = 0;
     for (std::uint64_t moment = 0; moment < 6; ++moment) {
-        campaign.await(run, 40 * static_cast<std::int64_t>(moment));
+        campaign.await(run, 30 * static_cast<std::int64_t>(moment));
         const auto hosts = run.children();
         if (hosts.empty()) continue;
         ::kill(hosts[Stream(21, moment).bits(0) % hosts.size()], SIGKILL);
@@ -127,11 +127,11 @@ TEST(Hosts, AHostThatIsKilledCostsNoCaseATry) {
 }
 
 TEST(Hosts, AWorkerOfAHostThatIsKilledIsReplaced) {
-    const HostedCampaign campaign(300, 0.01);
+    const HostedCampaign campaign(300, 0.02);  // long enough to look and kill six times on a busy machine
     Process run(campaign.command(), campaign.folder().path());
     int killed = 0;
     for (std::uint64_t moment = 0; moment < 6; ++moment) {
-        campaign.await(run, 40 * static_cast<std::int64_t>(moment));
+        campaign.await(run, 30 * static_cast<std::int64_t>(moment));
         for (const pid_t host : run.children()) {
             const auto workers = children_of(host);
             if (workers.empty()) continue;

@@ -128,11 +128,11 @@ GRAINSWEEP_LANES Laws selected(M m, const Laws& a, const Laws& b) {
     static_assert(std::is_trivially_copyable_v<Laws> && sizeof(Laws) % sizeof(F) == 0);
     constexpr std::size_t count = sizeof(Laws) / sizeof(F);
     F of_a[count], of_b[count];
-    std::memcpy(of_a, &a, sizeof(Laws));
-    std::memcpy(of_b, &b, sizeof(Laws));
+    std::memcpy(static_cast<void*>(of_a), &a, sizeof(Laws));
+    std::memcpy(static_cast<void*>(of_b), &b, sizeof(Laws));
     for (std::size_t k = 0; k < count; ++k) of_a[k] = select(m, of_a[k], of_b[k]);
     Laws result = a;
-    std::memcpy(&result, of_a, sizeof(Laws));
+    std::memcpy(static_cast<void*>(&result), of_a, sizeof(Laws));
     return result;
 }
 
