@@ -75,8 +75,11 @@ void Columns::bind(Field& f) const {
 void Columns::hold_particles(std::size_t particles, std::size_t wall_count) {
     const std::size_t n = particles + fillers + spare;
     records.hold(n), records_next.hold(n);
-    residuals.hold(n), residuals_next.hold(n);
     forces.hold(n);
+    if (residuals_apart)
+        residuals.hold(n), residuals_next.hold(n);
+    else
+        forces_next.hold(n);
     id.hold(n), id_next.hold(n);
     row.hold(n);
     for (auto& c : column) c.hold(n);

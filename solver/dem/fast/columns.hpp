@@ -79,8 +79,9 @@ struct PairColumns {
 struct Columns : PairColumns {
     float exchanged[histories_at_most] = {};  ///< factors of histories when the particles of a contact change places
     Column<Record> records, records_next;
+    bool residuals_apart = true;  ///< where radii differ; otherwise forces move with the records when these are sorted
     Column<Residual> residuals, residuals_next;
-    Column<Force> forces;
+    Column<Force> forces, forces_next;
     Column<std::int32_t> id, id_next;
 
     Column<std::int32_t> row;

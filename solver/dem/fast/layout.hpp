@@ -39,17 +39,20 @@ struct alignas(64) Record {
     float inverse_mass;  ///< 0: frozen, or any wall
     float spin[3];       ///< angular velocity at the half step
     float radius;        ///< 0: any wall
-    float surface[3];    ///< radius times spin; kept only where radii differ
-    float radius_again;
+    /// Where radii differ: radius times spin, and the radius again. Where they are equal: of Residual the position, and
+    /// the first component of the velocity.
+    float rest[4];
 };
 
-/// What the last additions to position and velocity could not represent; carried to the next step.
+/// What the last additions to position and velocity could not represent; carried to the next step. A column of its own
+/// where radii differ, otherwise in Record and Force (left_over.hpp).
 struct alignas(32) Residual {
     float position[4];
     float velocity[4];
 };
 
-/// Sum of forces, and of torques, on one particle.
+/// Sum of forces, and of torques, on one particle. Where radii are equal the fourth numbers are the second and third
+/// component of the velocity of Residual: whatever is added to forces leaves them as they are.
 struct alignas(32) Force {
     float force[4];
     float torque[4];
@@ -152,7 +155,7 @@ struct Field {
     std::int32_t streams;     ///< 1: nor the caches far from it, new histories are written past all of them
 
     Record* records;
-    Residual* residuals;
+    Residual* residuals;  ///< null where radii are equal
     Force* forces;
     /// Particles that are advanced, in order, and how many of them come before each; on the others, frozen or at
     /// rest, forces add up. Null, and never read, where none are passed over: what is frozen then takes no step.

@@ -33,7 +33,7 @@ void MixedEngine::pass(Self& self, Archive& archive) {
     auto& c = self.columns_;
     const auto particles = static_cast<std::size_t>(self.field_.count) + fillers;
     archive.column(c.records, particles);
-    archive.column(c.residuals, particles);
+    if (c.residuals_apart) archive.column(c.residuals, particles);
     archive.column(c.forces, particles);
     archive.column(c.id, particles);
     const auto outer = static_cast<std::size_t>(self.field_.outer_count) + spare;

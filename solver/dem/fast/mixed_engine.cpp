@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "solver/dem/fast/left_over.hpp"
 #include "solver/dem/fast/mixed_stepping.hpp"
 #include "solver/dem/shaking.hpp"
 
@@ -56,6 +57,7 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
 
 void MixedEngine::load(const Setup& setup) {
     const auto n = setup.spheres.size();
+    columns_.residuals_apart = needs_.unequal;
     columns_.hold_particles(n, walls_.count());
     columns_.hold_lists(8 * n);
     columns_.hold_wall_contacts(n);
@@ -68,11 +70,13 @@ void MixedEngine::load(const Setup& setup) {
     const bool all_periodic = setup.domain.periodic[0] && setup.domain.periodic[1] && setup.domain.periodic[2];
     box_includes_rest_ = !all_periodic || needs_.frozen || needs_.resting;
     for (std::size_t i = 0; i < n; ++i) {
+        const auto k = static_cast<std::int32_t>(i);
         const Sphere& sphere = setup.spheres[i];
         Record& r = columns_.records[i];
-        Residual& residual = columns_.residuals[i];
+        Residual residual{};
         const double radius = sphere.radius / s.length;
-        r.radius = r.radius_again = static_cast<float>(needs_.unequal ? radius : 0.5);
+        r.radius = static_cast<float>(needs_.unequal ? radius : 0.5);
+        if (needs_.unequal) r.rest[3] = r.radius;
         r.inverse_radius = 1 / r.radius;
         r.inverse_mass = sphere.mobile ? static_cast<float>(1 / (8 * radius * radius * radius)) : 0.0F;
         smallest_diameter_ = std::min(smallest_diameter_, 2 * r.radius);
@@ -91,9 +95,9 @@ void MixedEngine::load(const Setup& setup) {
             const double velocity = sphere.velocity[axis] / s.speed();
             r.velocity[a] = static_cast<float>(velocity);
             residual.velocity[a] = static_cast<float>(velocity - static_cast<double>(r.velocity[a]));
-            r.spin[a] = static_cast<float>(sphere.angular_velocity[axis] * s.time);
-            r.surface[a] = r.spin[a] * r.radius;
+            set_spin(field_, k, a, static_cast<float>(sphere.angular_velocity[axis] * s.time));
         }
+        leave_over(field_, k, residual);
     }
     place_fillers(field_);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "solver/dem/fast/left_over.hpp"
 #include "solver/dem/fast/mixed_engine.hpp"
 #include "solver/dem/shaking.hpp"
 
@@ -72,7 +73,7 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
         touches_.reorder(field_, columns_);
         touches_.list(field_, walls_, space_.scale, static_cast<double>(space_.skin), parts);
         parts.run_shares(field_.count, [this](Range range) {  // what was carried over belongs to the old order
-            std::fill(field_.forces + range.begin, field_.forces + range.end, Force{});
+            for (std::int32_t i = range.begin; i < range.end; ++i) field_.forces[i] = cleared(field_.forces[i]);
         });
         if (field_.count < before) watch_.restart_balance();
         list_advanced();
@@ -213,16 +214,16 @@ double MixedEngine::half_spin_change(std::int32_t i, int a) const {
 void MixedEngine::full_step_velocities() {
     for (std::int32_t i = 0; i < field_.count; ++i) {
         Record& r = field_.records[i];
-        Residual& residual = field_.residuals[i];
+        Residual residual = left_over(field_, i);
         for (int a = 0; a < 3; ++a) {
             const double v =
                 static_cast<double>(r.velocity[a]) + static_cast<double>(residual.velocity[a]) + half_change(i, a);
             r.velocity[a] = static_cast<float>(v);
             residual.velocity[a] = static_cast<float>(v - static_cast<double>(r.velocity[a]));
-            r.spin[a] = static_cast<float>(static_cast<double>(r.spin[a]) + half_spin_change(i, a));
-            r.surface[a] = r.spin[a] * r.radius;
+            set_spin(field_, i, a, static_cast<float>(static_cast<double>(r.spin[a]) + half_spin_change(i, a)));
         }
         field_.forces[i] = Force{};
+        leave_over(field_, i, residual);
     }
 }
 
@@ -241,15 +242,15 @@ void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
     peak_overlap_ = std::max(peak_overlap_, overlap());
     for (std::int32_t i = 0; i < field_.count; ++i) {
         Record& r = field_.records[i];
-        Residual& residual = field_.residuals[i];
+        Residual residual = left_over(field_, i);
         for (int a = 0; a < 3; ++a) {
             const double v =
                 static_cast<double>(r.velocity[a]) + static_cast<double>(residual.velocity[a]) - half_change(i, a);
             r.velocity[a] = static_cast<float>(v);
             residual.velocity[a] = static_cast<float>(v - static_cast<double>(r.velocity[a]));
-            r.spin[a] = static_cast<float>(static_cast<double>(r.spin[a]) - half_spin_change(i, a));
-            r.surface[a] = r.spin[a] * r.radius;
+            set_spin(field_, i, a, static_cast<float>(static_cast<double>(r.spin[a]) - half_spin_change(i, a)));
         }
+        leave_over(field_, i, residual);
     }
     if (too_deep()) fault_ = describe_overlap(view(), tally_);
 }

@@ -34,6 +34,21 @@ GRAINSWEEP_LANES I4 rounded(F4 a) {
 #endif
 }
 
+/// a with its fourth lane from a lane of b.
+template <int lane>
+GRAINSWEEP_LANES F4 with_fourth(F4 a, F4 b) {
+#if HWY_ARCH_X86
+    return {Vector<float, 4>{_mm_insert_ps(a.v.raw, b.v.raw, (lane << 6) | 0x30)}};
+#else
+    return {hn::InsertLane(a.v, 3, hn::ExtractLane(b.v, lane))};
+#endif
+}
+/// The fourth lanes of all three, and 0.
+GRAINSWEEP_LANES F4 fourths(F4 a, F4 b, F4 c) {
+    const auto last = hn::ShiftRightLanes<2>(four, hn::InterleaveUpper(four, b.v, c.v));
+    return {hn::CombineShiftRightBytes<12>(four, last, a.v)};
+}
+
 #if HWY_CAP_GE256
 using F8 = Singles<8>;
 constexpr Tag<float, 8> eight;
@@ -59,6 +74,27 @@ GRAINSWEEP_LANES void store8(float* p, F8 a) {
 /// b where a > 0, else 0
 GRAINSWEEP_LANES F8 where_positive(F8 a, F8 b) {
     return {hn::IfThenElseZero(hn::Gt(a.v, hn::Zero(eight)), b.v)};
+}
+/// The fourth lane of a, the fourth and the eighth of b, and zeros.
+GRAINSWEEP_LANES F8 fourths(F4 a, F8 b) {
+#if HWY_CAP_GE512
+    const __m256i lanes = _mm256_setr_epi32(11, 3, 7, 0, 0, 0, 0, 0);
+    return {Vector<float, 8>{_mm256_maskz_permutex2var_ps(0x07, b.v.raw, lanes, _mm256_castps128_ps256(a.v.raw))}};
+#else
+    const __m128 of_b =
+        _mm256_castps256_ps128(_mm256_permutevar8x32_ps(b.v.raw, _mm256_setr_epi32(0, 3, 7, 0, 0, 0, 0, 0)));
+    return {Vector<float, 8>{_mm256_zextps128_ps256(_mm_insert_ps(of_b, a.v.raw, 0xc8))}};
+#endif
+}
+/// a and b, with their fourth lanes from the second and the third of c.
+GRAINSWEEP_LANES F8 with_fourths(F4 a, F4 b, F4 c) {
+#if HWY_CAP_GE512
+    const __m256i lanes = _mm256_setr_epi32(0, 0, 0, 1, 0, 0, 0, 2);
+    const F8 both = join(a, b);
+    return {Vector<float, 8>{_mm256_mask_permutexvar_ps(both.v.raw, 0x88, lanes, _mm256_castps128_ps256(c.v.raw))}};
+#else
+    return join(with_fourth<1>(a, c), with_fourth<2>(b, c));
+#endif
 }
 #else
 struct F8 {
@@ -106,6 +142,12 @@ GRAINSWEEP_LANES F8 max(F8 a, F8 b) {
 GRAINSWEEP_LANES F8 where_positive(F8 a, F8 b) {
     const F zero = broadcast(0.0f);
     return {keep(zero < a.lo, b.lo), keep(zero < a.hi, b.hi)};
+}
+GRAINSWEEP_LANES F8 fourths(F4 a, F8 b) {
+    return {fourths(a, b.lo, b.hi), broadcast(0.0f)};
+}
+GRAINSWEEP_LANES F8 with_fourths(F4 a, F4 b, F4 c) {
+    return {with_fourth<1>(a, c), with_fourth<2>(b, c)};
 }
 #endif
 

@@ -200,10 +200,10 @@ void place_fillers(Field& f) {
         Record r{};
         r.inverse_mass = 1;
         r.inverse_radius = 1;
-        if (k < 2) r.radius = r.radius_again = 1e-3F;
+        if (k < 2) r.radius = r.rest[3] = 1e-3F;
         if (k == 1)
-            for (auto& p : r.position) p = INT32_MIN;   // half a period away
-        if (k == 2) r.radius = r.radius_again = -1e6F;  // out of reach of every wall
+            for (auto& p : r.position) p = INT32_MIN;  // half a period away
+        if (k == 2) r.radius = r.rest[3] = -1e6F;      // out of reach of every wall
         f.records[f.count + k] = r;
     }
     f.begin = 0;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "solver/dem/fast/left_over.hpp"
 #include "solver/geometry/vector.hpp"
 
 namespace grainsweep::dem::fast {
@@ -30,8 +31,13 @@ bool is_mobile(const Field& f, std::size_t i) {
     return f.records[i].inverse_mass > 0;
 }
 
-void stop(Record& r, Residual& residual) {
-    for (int a = 0; a < 3; ++a) r.velocity[a] = r.spin[a] = r.surface[a] = residual.velocity[a] = 0;
+void stop(Field& f, std::int32_t i) {
+    Residual residual = left_over(f, i);
+    for (int a = 0; a < 3; ++a) {
+        f.records[i].velocity[a] = residual.velocity[a] = 0;
+        set_spin(f, i, a, 0);
+    }
+    leave_over(f, i, residual);
 }
 
 /// The same contact with its particles exchanged.
@@ -158,7 +164,7 @@ void Resting::decide(Field& f) {
             quiet_[i] = 0;
         } else if (held_[i] == 0 && quiet_[i] >= quiet_time && disturbed_[i] == 0) {
             held_[i] = 1;
-            stop(f.records[i], f.residuals[i]);
+            stop(f, static_cast<std::int32_t>(i));
         }
         count_ += held_[i];
     }

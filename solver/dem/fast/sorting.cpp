@@ -147,8 +147,7 @@ std::int32_t take_out(const Field& f, Columns& c, const ListSpace& space, std::s
         }
         return stay;
     });
-    for (std::int32_t k = f.count; k < f.count + fillers; ++k)
-        c.place[static_cast<std::size_t>(k)] = -1;
+    for (std::int32_t k = f.count; k < f.count + fillers; ++k) c.place[static_cast<std::size_t>(k)] = -1;
     return kept.back();
 }
 
@@ -182,14 +181,21 @@ void sort_particles(Field& f, Columns& c, const ListSpace& space, std::int32_t k
             const auto t = static_cast<std::size_t>(to);
             const Record& r = c.records[i];
             c.records_next[t] = r;
-            c.residuals_next[t] = c.residuals[i];
+            if (c.residuals_apart)
+                c.residuals_next[t] = c.residuals[i];
+            else
+                c.forces_next[t] = c.forces[i];
             c.id_next[t] = c.id[i];
             for (int a = 0; a < 3; ++a) c.column[a][t] = r.position[a];
             c.column_radius[t] = r.radius;
             c.column_mobile[t] = r.inverse_mass > 0 ? 1.0F : 0.0F;
         }
     });
-    c.records.swap(c.records_next), c.residuals.swap(c.residuals_next), c.id.swap(c.id_next);
+    c.records.swap(c.records_next), c.id.swap(c.id_next);
+    if (c.residuals_apart)
+        c.residuals.swap(c.residuals_next);
+    else
+        c.forces.swap(c.forces_next);
     f.count = kept;
     c.bind(f);
 }
