@@ -80,10 +80,12 @@ GRAINSWEEP_LANES F8 fourths(F4 a, F8 b) {
 #if HWY_CAP_GE512
     const __m256i lanes = _mm256_setr_epi32(11, 3, 7, 0, 0, 0, 0, 0);
     return {Vector<float, 8>{_mm256_maskz_permutex2var_ps(0x07, b.v.raw, lanes, _mm256_castps128_ps256(a.v.raw))}};
-#else
+#elif HWY_ARCH_X86
     const __m128 of_b =
         _mm256_castps256_ps128(_mm256_permutevar8x32_ps(b.v.raw, _mm256_setr_epi32(0, 3, 7, 0, 0, 0, 0, 0)));
     return {Vector<float, 8>{_mm256_zextps128_ps256(_mm_insert_ps(of_b, a.v.raw, 0xc8))}};
+#else
+    return join(fourths(a, low(b), high(b)), broadcast4(0.0f));
 #endif
 }
 /// a and b, with their fourth lanes from the second and the third of c.
