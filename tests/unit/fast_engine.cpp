@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "solver/dem/fast/listed_pairs.hpp"
 #include "solver/dem/fast/mixed_engine.hpp"
 #include "tests/support/granular_scenes.hpp"
 
@@ -271,4 +272,29 @@ TEST(FastEngine, MomentumOfAFreeClusterStays) {
         // 125 particles of up to 1 m/s: forces on two partners are equal to the last bit, their sums are rounded
         for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(momentum(a), start[a], 2e-4);
     }
+}
+
+TEST(FastEngine, FetchesAsFarAheadAsMostPartnersAre) {
+    constexpr std::int32_t particles = 4000, layer = 900;
+    std::vector<dem::fast::Place> first, second;
+    const auto list = [&](std::int32_t a, std::int32_t b) {
+        first.push_back(dem::fast::place_at(a));
+        second.push_back(dem::fast::place_at(b));
+    };
+    dem::fast::Field f{};
+    f.filler = particles;
+    const auto distance = [&] {
+        f.inner_count = static_cast<std::int32_t>(first.size()) / 16 * 16;
+        f.inner_first = first.data();
+        f.inner_second = second.data();
+        return dem::fast::distance_to_fetch(f);
+    };
+    EXPECT_EQ(distance(), 0);
+    for (std::int32_t i = 0; i < particles; ++i) {
+        if (i + 1 < particles) list(i, i + 1);
+        if (i + layer < particles) list(i, i + layer);
+        if (i < layer) list(i, i + particles - layer);                   // across a periodic face
+        if (i >= particles - layer) list(i, particles + 2 + i % layer);  // the copy of another subdomain's
+    }
+    EXPECT_EQ(distance(), layer + layer / 8 + dem::fast::tile / 2);
 }

@@ -96,16 +96,26 @@ GRAINSWEEP_PHASE void advance_range(const Field& f, std::int32_t from, std::int3
             return nullptr;
         }
     };
+    // One of each a particle, in the order in which pairs come upon them first, where the processor sees none: pairs
+    // meet most of their particles in a cache from then on.
+    const auto fetch = [records, forces, ahead = f.fetch_ahead, last = f.end - 1](std::int32_t i) {
+        const std::int32_t k = i + ahead < last ? i + ahead : last;
+        prefetch(records + k);
+        prefetch(forces + k);
+    };
     if (Kernel::holds && f.skips != 0) {
         const std::int32_t* const advanced = f.advanced;
         const std::int32_t end = f.advanced_before[to];
         for (std::int32_t k = f.advanced_before[from]; k < end; ++k) {
             const std::int32_t i = advanced[k];
+            fetch(i);
             advance_one<Kernel, false>(records[i], forces[i], residual_of(i), s);
         }
     } else {
-        for (std::int32_t i = from; i < to; ++i)
+        for (std::int32_t i = from; i < to; ++i) {
+            fetch(i);
             advance_one<Kernel, Kernel::holds>(records[i], forces[i], residual_of(i), s);
+        }
     }
     store8(t.velocity_high, s.high);
     store8(t.velocity_low, s.low);

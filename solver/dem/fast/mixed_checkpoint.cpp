@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "solver/dem/fast/listed_pairs.hpp"
 #include "solver/dem/fast/mixed_stepping.hpp"
 
 namespace grainsweep::dem::fast {
@@ -205,6 +206,7 @@ void MixedEngine::restore(std::span<const std::byte> from) {
     columns_.bind(field_);
     tidy_spare_entries();
     place_fillers(field_);
+    field_.fetch_ahead = distance_to_fetch(field_);
     list_advanced();
     stand_walls();
     touches_.restored(field_, columns_, walls_, space_.scale, static_cast<double>(space_.skin) - drift_.outer);

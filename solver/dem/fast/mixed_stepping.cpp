@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "solver/dem/fast/left_over.hpp"
+#include "solver/dem/fast/listed_pairs.hpp"
 #include "solver/dem/fast/mixed_engine.hpp"
 #include "solver/dem/shaking.hpp"
 
@@ -92,10 +93,12 @@ void MixedEngine::make_lists(std::span<const std::int32_t> removed) {
     }
     inner_skin_ = static_cast<float>(
         std::clamp(std::sqrt(inner_balance * drift_.last_step), inner_skin_least, static_cast<double>(space_.skin)));
-    if (subdomains_.cut())
+    if (subdomains_.cut()) {
         refresh_ = Refresh{inner_skin_, rebuilt};
-    else
+    } else {
         refresh(field_, columns_, *kernels_, inner_skin_, rebuilt);
+        field_.fetch_ahead = distance_to_fetch(field_);
+    }
     drift_.inner = 0;
 }
 
@@ -109,6 +112,7 @@ int MixedEngine::set_threads(int count) {
 void MixedEngine::use_wanted_subdomains() {
     if (subdomains_.wanted(field_.count) == subdomains_.count()) return;
     join_lists();
+    field_.fetch_ahead = distance_to_fetch(field_);
     subdomains_.cut_up(field_, columns_, true);
 }
 

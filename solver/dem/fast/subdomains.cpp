@@ -30,6 +30,7 @@ Field Subdomain::view(const Field& whole) const {
     f.filler = filler;
     f.outer_count = static_cast<std::int32_t>(ghost.size()) + row_end - row_begin;
     f.inner_count = inner_count;
+    f.fetch_ahead = fetch_ahead;
     return f;
 }
 
@@ -46,6 +47,7 @@ Place Subdomain::place_of(std::int32_t particle) const {
 
 void Subdomain::count_inner(const Field& view) {
     inner_count = view.inner_count;
+    fetch_ahead = distance_to_fetch(view);
     const std::int32_t all = true_pairs(view);
     const auto ghosts = static_cast<std::int32_t>(ghost.size());
     inner_ghosts = static_cast<std::int32_t>(std::lower_bound(view.inner_source, view.inner_source + all, ghosts) -

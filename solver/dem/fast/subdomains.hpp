@@ -46,6 +46,7 @@ struct alignas(64) Subdomain {
     std::int32_t inner_count = 0;             ///< a multiple of the width
     std::int32_t inner_ghosts = 0;            ///< the first ones of the inner list
     std::int32_t inner_rows = 0;              ///< those of its own rows, behind them
+    std::int32_t fetch_ahead = 0;             ///< see Field
     PairColumns pairs;
     Tally tally{};
 
