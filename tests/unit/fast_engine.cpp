@@ -289,7 +289,7 @@ TEST(FastEngine, FetchesAsFarAheadAsMostPartnersAre) {
         f.inner_second = second.data();
         return dem::fast::distance_to_fetch(f);
     };
-    EXPECT_EQ(distance(), 0);
+    f.end = particles;
     for (std::int32_t i = 0; i < particles; ++i) {
         if (i + 1 < particles) list(i, i + 1);
         if (i + layer < particles) list(i, i + layer);
@@ -297,4 +297,6 @@ TEST(FastEngine, FetchesAsFarAheadAsMostPartnersAre) {
         if (i >= particles - layer) list(i, particles + 2 + i % layer);  // the copy of another subdomain's
     }
     EXPECT_EQ(distance(), layer + layer / 8 + dem::fast::tile / 2);
+    first.resize(particles - 16);
+    EXPECT_EQ(distance(), 0);
 }

@@ -96,9 +96,10 @@ GRAINSWEEP_PHASE void advance_range(const Field& f, std::int32_t from, std::int3
             return nullptr;
         }
     };
-    // One of each a particle, in the order in which pairs come upon them first, where the processor sees none: pairs
-    // meet most of their particles in a cache from then on.
+    // Once per particle what pairs will come upon, in an order that the processor does not foresee: fetching it once
+    // per pair costs more than it gains where the far caches hold it.
     const auto fetch = [records, forces, ahead = f.fetch_ahead, last = f.end - 1](std::int32_t i) {
+        if (ahead == 0) return;
         const std::int32_t k = i + ahead < last ? i + ahead : last;
         prefetch(records + k);
         prefetch(forces + k);

@@ -154,7 +154,7 @@ struct Field {
     std::int32_t read_ahead;  ///< 1: the particles do not fit the caches near the core, fetch them early
     std::int32_t streams;     ///< 1: nor the caches far from it, new histories are written past all of them
     /// Most particles meet partners up to nearly as many places behind them: so far ahead of the particle that is
-    /// integrated, records and forces are fetched. Changes no bit.
+    /// integrated, records and forces are fetched. 0: nothing is. Changes no bit.
     std::int32_t fetch_ahead;
 
     Record* records;

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
-#include <vector>
 
 #include "solver/dem/fast/layout.hpp"
 
@@ -37,22 +37,24 @@ inline std::int32_t true_pairs(const Field& f) {
 
 /// Field::fetch_ahead for an inner list: the median, over groups of neighbouring pairs, of how many places their
 /// farthest partner lies behind, and some more. Pairs across periodic faces, often nearly all places apart, are few,
-/// and copies of other subdomains' particles do not count.
+/// and copies of other subdomains' particles do not count. 0 where particles have fewer than one pair each: integrating
+/// goes through memory in order, and what few pairs meet is not worth it.
 inline std::int32_t distance_to_fetch(const Field& f) {
-    constexpr std::int32_t group = 16, groups_at_most = 1024;
+    constexpr std::int32_t group = 16, groups_at_most = 64;
+    if (f.inner_count < f.end - f.begin) return 0;
     const std::int32_t stride = (f.inner_count / group / groups_at_most + 1) * group;
-    std::vector<std::int32_t> distance;
-    distance.reserve(groups_at_most);
+    std::array<std::int32_t, groups_at_most> distances{};
+    std::int32_t count = 0;
     for (std::int32_t k = 0; k + group <= f.inner_count; k += stride) {
         std::int32_t farthest = 0;
         for (std::int32_t q = k; q < k + group; ++q)
             if (f.inner_second[q] < place_at(f.filler))
                 farthest = std::max(farthest, index_at(f.inner_second[q]) - index_at(f.inner_first[q]));
-        if (farthest > 0) distance.push_back(farthest);
+        if (farthest > 0) distances[static_cast<std::size_t>(count++)] = farthest;
     }
-    if (distance.empty()) return 0;
-    const auto median = distance.begin() + static_cast<std::ptrdiff_t>(distance.size() / 2);
-    std::nth_element(distance.begin(), median, distance.end());
+    if (count == 0) return 0;
+    const auto median = distances.begin() + count / 2;
+    std::nth_element(distances.begin(), median, distances.begin() + count);
     return *median + *median / 8 + tile / 2;
 }
 
