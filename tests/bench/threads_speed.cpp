@@ -4,14 +4,19 @@
 //
 // Two engines of the same case, one thread and N (2), take turns window by window. `speedup` is the ratio of their
 // cheapest windows, `speedup_mean` that of all, lists made anew included, in elapsed time: on a machine that does
-// something else besides, both are too small. `same`: both end with the same checkpoint. Bytes per particle: what the
-// process grew by with each engine. --large adds the full-size Schwarz-P cell of configs/gupta_full_cells.json without
-// cohesion, as its powder begins to fall, and a bed of a million spheres; --scene full_cell or settled_1M runs one.
+// something else besides, both are too small. `same`: both end with the same checkpoint. `round_trip_ns`: how long a
+// word takes from one core to another and back, the farthest of those that --pin binds the threads to, just before and
+// after the windows, the longer one: cores that share a cache hand particles over several times as fast as others, and
+// a small case shows it. Bytes per particle: what the process grew by with each engine. --large adds the full-size
+// Schwarz-P cell of configs/gupta_full_cells.json without cohesion, as its powder begins to fall, and a bed of a
+// million spheres; --scene full_cell or settled_1M runs one.
 #include <sched.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -43,19 +48,57 @@ double seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+unsigned cores() {
+    return std::max(1U, std::thread::hardware_concurrency());
+}
+
+void bind(pid_t thread, unsigned core) {
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(core, &one);
+    sched_setaffinity(thread, sizeof one, &one);
+}
+
 /// Binds the threads of this process to the cores, one after the other.
 void pin_threads() {
-    const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
     std::vector<pid_t> threads;
     for (const auto& entry : std::filesystem::directory_iterator("/proc/self/task"))
         threads.push_back(static_cast<pid_t>(std::atoi(entry.path().filename().c_str())));
     std::ranges::sort(threads);
-    for (std::size_t k = 0; k < threads.size(); ++k) {
-        cpu_set_t one;
-        CPU_ZERO(&one);
-        CPU_SET(k % cores, &one);
-        sched_setaffinity(threads[k], sizeof one, &one);
+    for (std::size_t k = 0; k < threads.size(); ++k) bind(threads[k], static_cast<unsigned>(k % cores()));
+}
+
+/// Nanoseconds for a word from this thread to one on `core` and back, the cheapest of 50 rows of a thousand.
+double round_trip(unsigned core) {
+    constexpr int rows = 50, row = 1000;
+    std::atomic<int> word = 0;
+    std::jthread other([&] {
+        bind(0, core);
+        for (int k = 0; k < rows * row; ++k) {
+            while (word.load() != 2 * k + 1) {
+            }
+            word.store(2 * k + 2);
+        }
+    });
+    double least = 1e300;
+    for (int k = 0, r = 0; r < rows; ++r) {
+        const double start = seconds();
+        for (int q = 0; q < row; ++q, ++k) {
+            word.store(2 * k + 1);
+            while (word.load() != 2 * k + 2) {
+            }
+        }
+        least = std::min(least, seconds() - start);
     }
+    return 1e9 * least / row;
+}
+
+/// Of the cores that so many threads are bound to, the one farthest from the first; 0: there is but one.
+double farthest_round_trip(int threads) {
+    double most = 0;
+    for (unsigned core = 1; core < std::min(cores(), static_cast<unsigned>(threads)); ++core)
+        most = std::max(most, round_trip(core));
+    return most;
 }
 
 /// Of this process, bytes.
@@ -96,20 +139,23 @@ void compare(const Options& o, const std::string& scene, const dem::Setup& setup
     several.engine->run(2 * window);
     memory[2] = resident();
     if (o.pin) pin_threads();
+    double far = o.pin ? farthest_round_trip(o.threads) : 0;
     const auto rebuilds = one.engine->work().rebuilds;
     for (int k = 0; k < o.windows; ++k) {
         one.run(window);
         several.run(window);
     }
+    if (o.pin) far = std::max(far, farthest_round_trip(o.threads));
+    const std::string hand_over = o.pin ? "\"round_trip_ns\": " + std::to_string(std::lround(far)) + ", " : "";
     const double steps = static_cast<double>(window) * o.windows, scale = 1e9 / particles;
     std::printf(
         "{\"bench\": \"threads\", \"scene\": \"%s\", \"particles\": %.0f, \"threads\": %d, \"steps\": %.0f, "
         "\"ns_one\": %.2f, \"ns_several\": %.2f, \"speedup\": %.3f, \"speedup_mean\": %.3f, "
-        "\"steps_per_s\": %.1f, \"rebuilds_per_1000\": %.1f, \"bytes_per_particle_one\": %.0f, "
+        "%s\"steps_per_s\": %.1f, \"rebuilds_per_1000\": %.1f, \"bytes_per_particle_one\": %.0f, "
         "\"bytes_per_particle_several\": %.0f, \"same\": %s, \"fault\": \"%s\"}\n",
         scene.c_str(), particles, o.threads, steps, scale * one.least / static_cast<double>(window),
         scale * several.least / static_cast<double>(window), one.least / several.least, one.total / several.total,
-        static_cast<double>(window) / several.least,
+        hand_over.c_str(), static_cast<double>(window) / several.least,
         1000 * static_cast<double>(one.engine->work().rebuilds - rebuilds) / steps, (memory[1] - memory[0]) / particles,
         (memory[2] - memory[1]) / particles, one.bytes() == several.bytes() ? "true" : "false",
         one.engine->fault().c_str());

@@ -19,9 +19,12 @@
 
 namespace grainsweep::dem::fast {
 
-/// Touching pairs worked on at a time: their records and forces stay in the first cache. Lists are read ahead by as
-/// much, so that every column has this many spare entries, and twice the widest vector.
-constexpr std::int32_t tile = 128;
+/// Touching pairs worked on at a time: enough for the phases of a sweep to run long, few enough for their records and
+/// forces to stay in the nearer caches. Lists are read ahead by as much, so that every column has this many spare
+/// entries, and twice the widest vector.
+constexpr std::int32_t tile = 256;
+/// Contacts with a wall worked on at a time; its sums are those of each such row in turn.
+constexpr std::int32_t wall_tile = 128;
 constexpr std::int32_t spare = 2 * tile + 64;
 
 /// A particle in a list: its index times eight, so that its record and its force are one scaled address away.

@@ -24,7 +24,7 @@ GRAINSWEEP_LANES V3 operator+(V3 a, V3 b) {
 GRAINSWEEP_LANES V3 operator-(V3 a, V3 b) {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
-GRAINSWEEP_LANES V3 load_vector(const float (&rows)[3][tile + 2 * width], int at) {
+GRAINSWEEP_LANES V3 load_vector(const float (&rows)[3][wall_tile + 2 * width], int at) {
     return {load(rows[0] + at), load(rows[1] + at), load(rows[2] + at)};
 }
 
@@ -172,8 +172,8 @@ void walls(const Field& f, Tally& tally) {
                 if (f.history_step != 0) return_memories<Kernel>(f, t, p);
             }
         } else {
-            for (std::int32_t from = begin; from < end; from += tile) {
-                const int count = from + tile < end ? tile : end - from;
+            for (std::int32_t from = begin; from < end; from += wall_tile) {
+                const int count = from + wall_tile < end ? wall_tile : end - from;
                 take_touches<Kernel>(f, from, count, t);
                 press_packed(count);
                 if (f.history_step != 0) return_touches<Kernel>(f, from, count, t);

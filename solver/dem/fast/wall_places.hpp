@@ -41,12 +41,12 @@ GRAINSWEEP_LANES D3 add_cross(D3 c, D3 a, D3 b) {
 
 /// Contacts with one wall, packed.
 struct alignas(64) WallTile {
-    Place particle[tile + 2 * width];
-    float overlap[tile + 2 * width];
-    float normal[3][tile + 2 * width];
-    float velocity[3][tile + 2 * width];  ///< of the wall's material; written where the wall is summed up
-    float lever[3][tile + 2 * width];     ///< from the wall's pivot to the place on its surface; likewise
-    float memory[histories_at_most][tile + 2 * width];
+    Place particle[wall_tile + 2 * width];
+    float overlap[wall_tile + 2 * width];
+    float normal[3][wall_tile + 2 * width];
+    float velocity[3][wall_tile + 2 * width];  ///< of the wall's material; written where the wall is summed up
+    float lever[3][wall_tile + 2 * width];     ///< from the wall's pivot to the place on its surface; likewise
+    float memory[histories_at_most][wall_tile + 2 * width];
 };
 
 /// Vectors of listed particles that fill a tile, at most.
@@ -103,7 +103,7 @@ GRAINSWEEP_LANES geometry::Near<D> nearest(const PlacedWall& w, D3 r) {
     return {found.distance, normal.x, normal.y, normal.z};
 }
 
-GRAINSWEEP_LANES void store(float (&rows)[3][tile + 2 * width], int at, V3 a, Chosen lanes) {
+GRAINSWEEP_LANES void store(float (&rows)[3][wall_tile + 2 * width], int at, V3 a, Chosen lanes) {
     store(rows[0] + at, compress(a.x, lanes));
     store(rows[1] + at, compress(a.y, lanes));
     store(rows[2] + at, compress(a.z, lanes));
@@ -118,7 +118,7 @@ GRAINSWEEP_PHASE void find_places(const Field& f, const PlacedWall& w, std::int3
     const V3 carried = single(velocity);
     const bool turns = w.turns != 0, summed = w.summed != 0;
     const int histories = f.histories;
-    for (int b = 0; b < listed_vectors && p.slot < end && p.packed < tile; ++b, p.slot += width) {
+    for (int b = 0; b < listed_vectors && p.slot < end && p.packed < wall_tile; ++b, p.slot += width) {
         const Place* particle = f.wall_particle + p.slot;
         const D3 r = positions_at(f, w, particle);
         const geometry::Near<D> surface = nearest<S>(w, r);
