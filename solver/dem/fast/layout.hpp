@@ -19,12 +19,13 @@
 
 namespace grainsweep::dem::fast {
 
-/// Touching pairs worked on at a time: enough for the phases of a sweep to run long, few enough for their records and
-/// forces to stay in the nearer caches. Lists are read ahead by as much, so that every column has this many spare
-/// entries, and twice the widest vector.
+/// Touching pairs worked on at a time: the fewest with which beds and chutes were fastest (docs/cost.md). No bit
+/// depends on it.
 constexpr std::int32_t tile = 256;
-/// Contacts with a wall worked on at a time; its sums are those of each such row in turn.
+/// Contacts with a wall worked on at a time. Its sums are formed row by row: another number rounds them otherwise.
 constexpr std::int32_t wall_tile = 128;
+/// Spare entries of every column: lists are filled up, and read ahead, by as much as a tile and twice the widest
+/// vector.
 constexpr std::int32_t spare = 2 * tile + 64;
 
 /// A particle in a list: its index times eight, so that its record and its force are one scaled address away.
