@@ -42,11 +42,11 @@ void MixedEngine::run(std::int64_t steps) {
         stand_walls();
         make_lists();
         const bool checked = watch_.due(work_.steps);  // at the full step: no particle is advanced before
-        advanced = s + 1 < steps && !checked;
+        const bool goes_on = std::exchange(advanced, s + 1 < steps && !checked);
         begin_tally();
         walls_.sum_up(s + 1 == steps);
         press_walls(true);
-        sweep_pairs(advanced, false);
+        sweep_pairs(goes_on, advanced, false);
         peak_overlap_ = std::max(peak_overlap_, overlap());
         work_.pair_visits += field_.inner_count;
         if (too_deep() && fault_.empty()) fault_ = describe_overlap(view(), tally_);
@@ -123,10 +123,11 @@ void MixedEngine::advance_particles() {
         kernels_->advance(field_, tally_);
 }
 
-/// Forces of all pairs, and where `advance` the next positions. `keep_histories`: those of contacts stay as they were.
-void MixedEngine::sweep_pairs(bool advance, bool keep_histories) {
+/// Forces of all pairs, and where `advance` the next positions. `goes_on`: see Subdomains. `keep_histories`: those of
+/// contacts stay as they were.
+void MixedEngine::sweep_pairs(bool goes_on, bool advance, bool keep_histories) {
     if (subdomains_.cut()) {
-        subdomains_.sweep(field_, std::exchange(refresh_, std::nullopt), advance, keep_histories, tally_);
+        subdomains_.sweep(field_, std::exchange(refresh_, std::nullopt), goes_on, advance, keep_histories, tally_);
         return;
     }
     kernels_->sweep(field_, advance, tally_);
@@ -241,7 +242,7 @@ void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
     field_.history_step = 0;
     walls_.sum_up(true);
     press_walls(false);
-    sweep_pairs(false, true);
+    sweep_pairs(false, false, true);
     field_.history_step = 1;
     peak_overlap_ = std::max(peak_overlap_, overlap());
     for (std::int32_t i = 0; i < field_.count; ++i) {

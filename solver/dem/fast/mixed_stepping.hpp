@@ -78,7 +78,7 @@ private:
     void list_advanced();
     void use_wanted_subdomains();
     void advance_particles();
-    void sweep_pairs(bool advance, bool keep_histories);
+    void sweep_pairs(bool goes_on, bool advance, bool keep_histories);
     void join_lists() const { subdomains_.join(field_, columns_); }
     void full_step_velocities();
     void restart_forces(std::span<const std::int32_t> removed = {});

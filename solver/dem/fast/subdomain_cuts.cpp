@@ -53,6 +53,8 @@ void Subdomains::cut_up(Field& whole, Columns& columns, bool listed) {
         d->pairs.histories = columns.histories;
         d->is_met.resize(d->partner.size());
         d->met.reserve(d->partner.size());
+        d->met_here.reserve(d->partner.size());
+        for (auto& row : d->received) row.hold(d->partner.size());
         d->pairs.hold_pairs(d->ghost.size() + static_cast<std::size_t>(d->row_end - d->row_begin) + 2 * tile);
     }
     pool_->run([&](int part) {

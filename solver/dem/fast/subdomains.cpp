@@ -60,8 +60,12 @@ void Subdomain::count_inner(const Field& view) {
     for (std::int32_t k = 0; k < inner_ghosts; ++k) look_at(view.inner_first[k]);
     for (std::int32_t k = inner_ghosts; k < all; ++k) look_at(view.inner_second[k]);
     met.clear();
+    met_here.clear();
     for (std::size_t k = 0; k < is_met.size(); ++k)
-        if (is_met[k] != 0) met.push_back(static_cast<std::int32_t>(k));
+        if (is_met[k] != 0) {
+            met.push_back(static_cast<std::int32_t>(k));
+            met_here.push_back(partner[k]);
+        }
 }
 
 std::int32_t Subdomain::touching_in(std::int32_t from, std::int32_t count, std::int32_t width) const {
@@ -75,7 +79,34 @@ void Subdomain::copy_partners(Record* records, bool all) const {
     if (all)
         for (std::size_t k = 0; k < partner.size(); ++k) copy[k] = records[partner[k]];
     else
-        for (const std::int32_t k : met) copy[k] = records[partner[static_cast<std::size_t>(k)]];
+        for (std::size_t k = 0; k < met.size(); ++k) copy[met[k]] = records[met_here[k]];
+}
+
+void Subdomain::receive(const Field& whole, int turn) const {
+    Record* const copy = whole.records + filler + 2;
+    const Kinematics* moved = received[turn].data();
+    const bool unequal = whole.residuals != nullptr;
+    for (const std::int32_t k : met) {
+        Record& r = copy[k];
+        for (int a = 0; a < 3; ++a) {
+            r.position[a] = moved->position[a];
+            r.velocity[a] = moved->velocity[a];
+            r.spin[a] = moved->spin[a];
+            if (unequal) r.rest[a] = r.spin[a] * r.radius;
+        }
+        ++moved;
+    }
+}
+
+void Subdomain::send(const Record* records, Subdomain& to, int turn) const {
+    const auto first = std::ranges::lower_bound(to.met_here, begin);
+    Kinematics* moved = to.received[turn].data() + (first - to.met_here.begin());
+    for (auto particle = first; particle != to.met_here.end() && *particle < end; ++particle, ++moved) {
+        const Record& r = records[*particle];
+        *moved = {{r.position[0], r.position[1], r.position[2]},
+                  {r.velocity[0], r.velocity[1], r.velocity[2]},
+                  {r.spin[0], r.spin[1], r.spin[2]}};
+    }
 }
 
 void Subdomains::use(Threads threads) {
@@ -150,12 +181,22 @@ void Subdomains::join_part(const Field& whole, int part, std::int32_t n, std::in
     for (int a = 0; a < f.histories; ++a) std::copy_n(f.history[a] + before, of_rows, whole.history[a] + contacts);
 }
 
-void Subdomains::sweep(Field& whole, std::optional<Refresh> renewal, bool advance, bool keep, Tally& tally) {
-    pool_->run([&](int part) {
-        subdomains_[static_cast<std::size_t>(part)]->copy_partners(whole.records, renewal.has_value());
-    });
+void Subdomains::send(const Record* records, int part) const {
+    for (const auto& to : subdomains_)
+        if (to != subdomains_[static_cast<std::size_t>(part)])
+            subdomains_[static_cast<std::size_t>(part)]->send(records, *to, 1 - turn_);
+}
+
+void Subdomains::sweep(Field& whole, std::optional<Refresh> renewal, bool goes_on, bool advance, bool keep,
+                       Tally& tally) {
+    const bool received = goes_on && !renewal;
+    if (!received)
+        pool_->run([&](int part) {
+            subdomains_[static_cast<std::size_t>(part)]->copy_partners(whole.records, renewal.has_value());
+        });
     pool_->run([&](int part) {
         Subdomain& d = *subdomains_[static_cast<std::size_t>(part)];
+        if (received) d.receive(whole, turn_);
         Field f = d.view(whole);
         if (renewal) {
             refresh(f, d.pairs, *kernels_, renewal->skin, renewal->marked);
@@ -164,12 +205,15 @@ void Subdomains::sweep(Field& whole, std::optional<Refresh> renewal, bool advanc
         d.tally = neutral_tally();
         kernels_->sweep(f, advance, d.tally);
         if (!keep) d.pairs.swap_histories(f);
+        if (advance && !renewal) send(whole.records, part);
     });
     if (renewal) {
+        if (advance) pool_->run([&](int part) { send(whole.records, part); });  // what each meets is known only now
         std::int32_t pairs = 0;
         for (const auto& subdomain : subdomains_) pairs += subdomain->inner_rows;
         whole.inner_count = (pairs + kernels_->width - 1) / kernels_->width * kernels_->width;
     }
+    turn_ = 1 - turn_;
     merge(tally);
     joined_ = false;
 }

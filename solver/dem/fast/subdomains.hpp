@@ -4,9 +4,15 @@
 // pairs that touch one of its particles: first those whose first particle lies in an earlier subdomain, in the order of
 // the whole list, then the rows of its own particles. So every force on its particles is added up in the order of the
 // whole list. A pair across subdomains is computed in both, with a copy of its history in each, and to the same bits:
-// what a lane computes depends on its pair alone. Partners in other subdomains are read from copies of their records,
-// taken before any subdomain advances its particles; what is added to the copies' forces is not used. Hence no bit of a
-// result depends on where the cuts are, and none on the number of threads.
+// what a lane computes depends on its pair alone. Partners in other subdomains are read from copies of their records;
+// what is added to the copies' forces is not used. Hence no bit of a result depends on where the cuts are, and none on
+// the number of threads.
+//
+// What a step changes of the copies is sent: a subdomain that has advanced its particles writes what others meet of
+// them into rows of theirs, one particle behind another, from which they bring their copies up to date before the next
+// sweep. So a record is read by the core that writes it alone (a line that another core has read costs a message to
+// write again), and a step in all subdomains begins once and ends once. Where rows hold another state, or other
+// particles than are needed, records are copied before any subdomain goes on.
 //
 // What is not part of a step (contacts in SI, checkpoints, energy, faults, rebuilding) reads the whole lists: join()
 // writes the contacts back to them.
@@ -31,16 +37,24 @@ struct Refresh {
     bool marked;  ///< see refresh() in rebuild.hpp
 };
 
+/// What a step changes of a record that pairs read.
+struct Kinematics {
+    std::int32_t position[3];
+    float velocity[3], spin[3];
+};
+
 /// One range of particles and its lists. Places below the number of particles are those of the particles; behind come,
 /// for each subdomain, two records that fill vectors up, and the copies of its partners in other subdomains.
 struct alignas(64) Subdomain {
     std::int32_t begin = 0, end = 0;
     std::int32_t filler = 0;
-    std::vector<std::int32_t> partner;  ///< in other subdomains, ascending; their copies lie behind the fillers
-    std::vector<std::int32_t> met;  ///< those of the inner list: numbers in `partner`; only they are copied each step
+    std::vector<std::int32_t> partner;   ///< in other subdomains, ascending; their copies lie behind the fillers
+    std::vector<std::int32_t> met;       ///< those of the inner list: numbers in `partner`; only they matter each step
+    std::vector<std::int32_t> met_here;  ///< the particles that these are copies of, ascending
     std::vector<std::uint8_t> is_met;
-    std::vector<std::int32_t> ghost;          ///< of its outer list the first ones: where they stand in the whole list
-    std::vector<std::int32_t> leaving;        ///< pairs of its rows with a later subdomain, likewise
+    Column<Kinematics> received[2];     ///< of `met`, in turn: one is written for the next step while the other is read
+    std::vector<std::int32_t> ghost;    ///< of its outer list the first ones: where they stand in the whole list
+    std::vector<std::int32_t> leaving;  ///< pairs of its rows with a later subdomain, likewise
     std::int32_t row_begin = 0, row_end = 0;  ///< its rows in the whole outer list
     double ghost_cost = 0;                    ///< of a sweep over the ghosts, see choose_ranges()
     std::int32_t inner_count = 0;             ///< a multiple of the width
@@ -62,6 +76,10 @@ struct alignas(64) Subdomain {
     [[nodiscard]] std::int32_t touching_in(std::int32_t from, std::int32_t count, std::int32_t width) const;
     /// Copies the records of its partners: all, or those that a sweep over the inner list meets.
     void copy_partners(Record* records, bool all) const;
+    /// Brings the copies that a sweep meets up to date with what was received.
+    void receive(const Field& whole, int turn) const;
+    /// Writes what another subdomain meets of its particles to it.
+    void send(const Record* records, Subdomain& to, int turn) const;
 };
 
 class Subdomains {
@@ -87,8 +105,9 @@ public:
     /// Writes inner list, touching pairs and histories of all subdomains to the whole lists, where they are not yet.
     void join(const Field& whole, const Columns& columns) const;
 
-    /// As the kernel of that name over all particles. `keep`: the histories remain those of before.
-    void sweep(Field& whole, std::optional<Refresh> refresh, bool advance, bool keep, Tally& tally);
+    /// As the kernel of that name over all particles. `keep`: the histories remain those of before. `goes_on`: the
+    /// sweep before advanced the particles, and nothing else has changed them since.
+    void sweep(Field& whole, std::optional<Refresh> refresh, bool goes_on, bool advance, bool keep, Tally& tally);
     /// As the kernel of that name.
     void advance(const Field& whole, Tally& tally);
 
@@ -101,6 +120,7 @@ private:
     void fill(Subdomain& subdomain, const Field& whole) const;
     void fill_inner(Subdomain& subdomain, const Field& whole) const;
     [[nodiscard]] std::int32_t contacts_before(const Field& whole, std::int32_t pair) const;
+    void send(const Record* records, int part) const;
     void join_part(const Field& whole, int part, std::int32_t pairs, std::int32_t contacts) const;
     void merge(Tally& tally) const;
 
@@ -108,6 +128,7 @@ private:
     Threads threads_{};
     std::unique_ptr<ThreadPool> pool_;
     std::vector<std::unique_ptr<Subdomain>> subdomains_;
+    int turn_ = 0;                               ///< of Subdomain::received, that which the next sweep reads
     std::vector<std::int32_t> contacts_before_;  ///< vectors of the whole outer list
     mutable bool joined_ = true;
 };
