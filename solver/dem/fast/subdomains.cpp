@@ -58,7 +58,11 @@ void Subdomain::count_inner(const Field& view) {
         if (place > place_at(filler + 1)) is_met[static_cast<std::size_t>(index_at(place) - filler - 2)] = 1;
     };
     for (std::int32_t k = 0; k < inner_ghosts; ++k) look_at(view.inner_first[k]);
-    for (std::int32_t k = inner_ghosts; k < all; ++k) look_at(view.inner_second[k]);
+    if (!leaving.empty()) {  // before the first of them, rows meet no copies
+        const auto* const first_leaving = std::lower_bound(view.inner_source + inner_ghosts, view.inner_source + all,
+                                                           leaving.front() - row_begin + ghosts);
+        for (auto k = first_leaving - view.inner_source; k < all; ++k) look_at(view.inner_second[k]);
+    }
     met.clear();
     met_here.clear();
     for (std::size_t k = 0; k < is_met.size(); ++k)
