@@ -5,6 +5,7 @@
 #include <thread>
 #include <utility>
 
+#include "solver/dem/fast/left_over.hpp"
 #include "solver/dem/fast/listed_pairs.hpp"
 #include "solver/dem/fast/rebuild.hpp"
 
@@ -87,16 +88,14 @@ void Subdomain::copy_partners(Record* records, bool all) const {
 }
 
 void Subdomain::receive(const Field& whole, int turn) const {
-    Record* const copy = whole.records + filler + 2;
     const Kinematics* moved = received[turn].data();
-    const bool unequal = whole.residuals != nullptr;
     for (const std::int32_t k : met) {
-        Record& r = copy[k];
+        const std::int32_t copy = filler + 2 + k;
+        Record& r = whole.records[copy];
         for (int a = 0; a < 3; ++a) {
             r.position[a] = moved->position[a];
             r.velocity[a] = moved->velocity[a];
-            r.spin[a] = moved->spin[a];
-            if (unequal) r.rest[a] = r.spin[a] * r.radius;
+            set_spin(whole, copy, a, moved->spin[a]);
         }
         ++moved;
     }

@@ -10,9 +10,9 @@
 //
 // What a step changes of the copies is sent: a subdomain that has advanced its particles writes what others meet of
 // them into rows of theirs, one particle behind another, from which they bring their copies up to date before the next
-// sweep. So a record is read by the core that writes it alone (a line that another core has read costs a message to
-// write again), and a step in all subdomains begins once and ends once. Where rows hold another state, or other
-// particles than are needed, records are copied before any subdomain goes on.
+// sweep. So mostly a sweep writes no record that another subdomain has read (to write such a line costs a message), and
+// a step in all subdomains begins once and ends once. Where rows hold another state, or other particles than are
+// needed, records are copied before any subdomain goes on.
 //
 // What is not part of a step (contacts in SI, checkpoints, energy, faults, rebuilding) reads the whole lists: join()
 // writes the contacts back to them.
