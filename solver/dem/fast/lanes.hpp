@@ -357,6 +357,10 @@ GRAINSWEEP_LANES Force* force_at(Force* f, Place p) {
 GRAINSWEEP_LANES void prefetch(const void* p) {
     __builtin_prefetch(p);
 }
+/// Takes the line away from other cores.
+GRAINSWEEP_LANES void prefetch_to_write(const void* p) {
+    __builtin_prefetch(p, 1);
+}
 /// Past the caches; p at a multiple of the vector's size.
 GRAINSWEEP_LANES void stream(float* p, F a) {
     hn::Stream(a.v, singles, p);

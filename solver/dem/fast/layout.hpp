@@ -32,6 +32,9 @@ constexpr std::int32_t spare = 2 * tile + 64;
 using Place = std::uint32_t;
 constexpr std::int32_t places_per_index = 8;
 
+/// Bytes that a core takes from another one's caches at a time.
+constexpr std::int32_t cache_line = 64;
+
 /// Records behind those of the particles, which fill vectors up.
 constexpr std::int32_t fillers = 3;
 
@@ -160,6 +163,11 @@ struct Field {
     /// Most particles meet partners up to nearly as many places behind them: so far ahead of the particle that is
     /// integrated, records and forces are fetched. 0: nothing is. Changes no bit.
     std::int32_t fetch_ahead;
+
+    /// What is written behind a sweep and was read on another core: its cache lines are fetched to be written during
+    /// the sweep, so that nothing waits for them after it. Changes no bit.
+    const std::byte* written_after;
+    std::int32_t lines_written_after;
 
     Record* records;
     Residual* residuals;  ///< null where radii are equal

@@ -54,7 +54,11 @@ void Subdomains::cut_up(Field& whole, Columns& columns, bool listed) {
         d->is_met.resize(d->partner.size());
         d->met.reserve(d->partner.size());
         d->met_here.reserve(d->partner.size());
-        for (auto& row : d->received) row.hold(d->partner.size());
+        std::size_t sending = 0;
+        for (const auto& to : subdomains_) sending += d->own(to->partner).size();
+        d->sending.clear();
+        d->sending.reserve(sending);
+        for (auto& rows : d->sent) rows.hold(sending);
         d->pairs.hold_pairs(d->ghost.size() + static_cast<std::size_t>(d->row_end - d->row_begin) + 2 * tile);
     }
     pool_->run([&](int part) {
@@ -62,6 +66,7 @@ void Subdomains::cut_up(Field& whole, Columns& columns, bool listed) {
         fill(d, whole);
         if (listed) fill_inner(d, whole);
     });
+    if (listed) pool_->run([this](int part) { find_what_to_send(part); });
     joined_ = true;
 }
 

@@ -87,26 +87,21 @@ void Subdomain::copy_partners(Record* records, bool all) const {
         for (std::size_t k = 0; k < met.size(); ++k) copy[met[k]] = records[met_here[k]];
 }
 
-void Subdomain::receive(const Field& whole, int turn) const {
-    const Kinematics* moved = received[turn].data();
-    for (const std::int32_t k : met) {
-        const std::int32_t copy = filler + 2 + k;
-        Record& r = whole.records[copy];
-        for (int a = 0; a < 3; ++a) {
-            r.position[a] = moved->position[a];
-            r.velocity[a] = moved->velocity[a];
-            set_spin(whole, copy, a, moved->spin[a]);
-        }
-        ++moved;
-    }
+std::span<const std::int32_t> Subdomain::own(const std::vector<std::int32_t>& particles) const {
+    return {std::ranges::lower_bound(particles, begin), std::ranges::lower_bound(particles, end)};
 }
 
-void Subdomain::send(const Record* records, Subdomain& to, int turn) const {
-    const auto first = std::ranges::lower_bound(to.met_here, begin);
-    Kinematics* moved = to.received[turn].data() + (first - to.met_here.begin());
-    for (auto particle = first; particle != to.met_here.end() && *particle < end; ++particle, ++moved) {
-        const Record& r = records[*particle];
-        *moved = {{r.position[0], r.position[1], r.position[2]},
+void Subdomain::fetch_what_is_sent(Field& view, int turn) const {
+    view.written_after = reinterpret_cast<const std::byte*>(sent[turn].data());
+    view.lines_written_after =
+        static_cast<std::int32_t>((sending.size() * sizeof(Kinematics) + cache_line - 1) / cache_line);
+}
+
+void Subdomain::send(const Record* records, int turn) const {
+    Kinematics* row = sent[turn].data();
+    for (const std::int32_t particle : sending) {
+        const Record& r = records[particle];
+        *row++ = {{r.position[0], r.position[1], r.position[2]},
                   {r.velocity[0], r.velocity[1], r.velocity[2]},
                   {r.spin[0], r.spin[1], r.spin[2]}};
     }
@@ -184,10 +179,34 @@ void Subdomains::join_part(const Field& whole, int part, std::int32_t n, std::in
     for (int a = 0; a < f.histories; ++a) std::copy_n(f.history[a] + before, of_rows, whole.history[a] + contacts);
 }
 
-void Subdomains::send(const Record* records, int part) const {
-    for (const auto& to : subdomains_)
-        if (to != subdomains_[static_cast<std::size_t>(part)])
-            subdomains_[static_cast<std::size_t>(part)]->send(records, *to, 1 - turn_);
+/// After every subdomain has found what it meets.
+void Subdomains::find_what_to_send(int part) const {
+    Subdomain& d = *subdomains_[static_cast<std::size_t>(part)];
+    d.sending.clear();
+    d.sending_to.assign(1, 0);
+    for (const auto& to : subdomains_) {
+        const std::span<const std::int32_t> met = d.own(to->met_here);
+        d.sending.insert(d.sending.end(), met.begin(), met.end());
+        d.sending_to.push_back(static_cast<std::int32_t>(d.sending.size()));
+    }
+}
+
+/// Brings the copies that a sweep of this part meets up to date with what the others have sent.
+void Subdomains::receive(const Field& whole, int part) const {
+    const auto to = static_cast<std::size_t>(part);
+    const Subdomain& d = *subdomains_[to];
+    const std::int32_t* met = d.met.data();  // ascending: those of the first subdomain, of the second ...
+    for (const auto& from : subdomains_)
+        for (std::int32_t k = from->sending_to[to]; k < from->sending_to[to + 1]; ++k) {
+            const Kinematics& moved = from->sent[turn_].data()[k];
+            const std::int32_t copy = d.filler + 2 + *met++;
+            Record& r = whole.records[copy];
+            for (int a = 0; a < 3; ++a) {
+                r.position[a] = moved.position[a];
+                r.velocity[a] = moved.velocity[a];
+                set_spin(whole, copy, a, moved.spin[a]);
+            }
+        }
 }
 
 void Subdomains::sweep(Field& whole, std::optional<Refresh> renewal, bool goes_on, bool advance, bool keep,
@@ -199,8 +218,9 @@ void Subdomains::sweep(Field& whole, std::optional<Refresh> renewal, bool goes_o
         });
     pool_->run([&](int part) {
         Subdomain& d = *subdomains_[static_cast<std::size_t>(part)];
-        if (received) d.receive(whole, turn_);
+        if (received) receive(whole, part);
         Field f = d.view(whole);
+        if (advance) d.fetch_what_is_sent(f, 1 - turn_);
         if (renewal) {
             refresh(f, d.pairs, *kernels_, renewal->skin, renewal->marked);
             d.count_inner(f);
@@ -208,10 +228,13 @@ void Subdomains::sweep(Field& whole, std::optional<Refresh> renewal, bool goes_o
         d.tally = neutral_tally();
         kernels_->sweep(f, advance, d.tally);
         if (!keep) d.pairs.swap_histories(f);
-        if (advance && !renewal) send(whole.records, part);
+        if (advance && !renewal) d.send(whole.records, 1 - turn_);
     });
     if (renewal) {
-        if (advance) pool_->run([&](int part) { send(whole.records, part); });  // what each meets is known only now
+        pool_->run([&](int part) {  // what each meets is known only now
+            find_what_to_send(part);
+            if (advance) subdomains_[static_cast<std::size_t>(part)]->send(whole.records, 1 - turn_);
+        });
         std::int32_t pairs = 0;
         for (const auto& subdomain : subdomains_) pairs += subdomain->inner_rows;
         whole.inner_count = (pairs + kernels_->width - 1) / kernels_->width * kernels_->width;

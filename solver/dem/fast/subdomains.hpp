@@ -9,10 +9,11 @@
 // the number of threads.
 //
 // What a step changes of the copies is sent: a subdomain that has advanced its particles writes what others meet of
-// them into rows of theirs, one particle behind another, from which they bring their copies up to date before the next
+// them into rows, one particle behind another, from which the others bring their copies up to date before the next
 // sweep. So mostly a sweep writes no record that another subdomain has read (to write such a line costs a message), and
-// a step in all subdomains begins once and ends once. Where rows hold another state, or other particles than are
-// needed, records are copied before any subdomain goes on.
+// a step in all subdomains begins once and ends once. The rows, which were read, are fetched to be written during the
+// sweep before. Where they hold another state, or other particles than are needed, records are copied before any
+// subdomain goes on.
 //
 // What is not part of a step (contacts in SI, checkpoints, energy, faults, rebuilding) reads the whole lists: join()
 // writes the contacts back to them.
@@ -21,6 +22,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "solver/dem/fast/columns.hpp"
@@ -52,9 +54,11 @@ struct alignas(64) Subdomain {
     std::vector<std::int32_t> met;       ///< those of the inner list: numbers in `partner`; only they matter each step
     std::vector<std::int32_t> met_here;  ///< the particles that these are copies of, ascending
     std::vector<std::uint8_t> is_met;
-    Column<Kinematics> received[2];     ///< of `met`, in turn: one is written for the next step while the other is read
-    std::vector<std::int32_t> ghost;    ///< of its outer list the first ones: where they stand in the whole list
-    std::vector<std::int32_t> leaving;  ///< pairs of its rows with a later subdomain, likewise
+    std::vector<std::int32_t> sending;     ///< particles that others meet: for the first subdomain, for the second ...
+    std::vector<std::int32_t> sending_to;  ///< where those for each subdomain begin, and where the last end
+    Column<Kinematics> sent[2];  ///< of `sending`, in turn: one is written for the next step while the other is read
+    std::vector<std::int32_t> ghost;          ///< of its outer list the first ones: where they stand in the whole list
+    std::vector<std::int32_t> leaving;        ///< pairs of its rows with a later subdomain, likewise
     std::int32_t row_begin = 0, row_end = 0;  ///< its rows in the whole outer list
     double ghost_cost = 0;                    ///< of a sweep over the ghosts, see choose_ranges()
     std::int32_t inner_count = 0;             ///< a multiple of the width
@@ -76,10 +80,12 @@ struct alignas(64) Subdomain {
     [[nodiscard]] std::int32_t touching_in(std::int32_t from, std::int32_t count, std::int32_t width) const;
     /// Copies the records of its partners: all, or those that a sweep over the inner list meets.
     void copy_partners(Record* records, bool all) const;
-    /// Brings the copies that a sweep meets up to date with what was received.
-    void receive(const Field& whole, int turn) const;
-    /// Writes what another subdomain meets of its particles to it.
-    void send(const Record* records, Subdomain& to, int turn) const;
+    /// Those of some particles, ascending, that are its own.
+    [[nodiscard]] std::span<const std::int32_t> own(const std::vector<std::int32_t>& particles) const;
+    /// Lets a sweep fetch the rows that send() will write.
+    void fetch_what_is_sent(Field& view, int turn) const;
+    /// Writes what others meet of its particles, for them to receive.
+    void send(const Record* records, int turn) const;
 };
 
 class Subdomains {
@@ -120,7 +126,8 @@ private:
     void fill(Subdomain& subdomain, const Field& whole) const;
     void fill_inner(Subdomain& subdomain, const Field& whole) const;
     [[nodiscard]] std::int32_t contacts_before(const Field& whole, std::int32_t pair) const;
-    void send(const Record* records, int part) const;
+    void find_what_to_send(int part) const;
+    void receive(const Field& whole, int part) const;
     void join_part(const Field& whole, int part, std::int32_t pairs, std::int32_t contacts) const;
     void merge(Tally& tally) const;
 
@@ -128,7 +135,7 @@ private:
     Threads threads_{};
     std::unique_ptr<ThreadPool> pool_;
     std::vector<std::unique_ptr<Subdomain>> subdomains_;
-    int turn_ = 0;                               ///< of Subdomain::received, that which the next sweep reads
+    int turn_ = 0;                               ///< of Subdomain::sent, that which the next sweep reads
     std::vector<std::int32_t> contacts_before_;  ///< vectors of the whole outer list
     mutable bool joined_ = true;
 };

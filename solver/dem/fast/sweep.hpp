@@ -291,6 +291,16 @@ GRAINSWEEP_LANES void keep_rest(Packed& p, int from) {
     for (auto& offset : p.offset) store(offset, load(offset + from));
 }
 
+/// Fetches of what is written after a sweep as much as there has been of the sweep.
+GRAINSWEEP_LANES void fetch_what_is_written_after(const Field& f, std::int32_t batch, std::int32_t batches,
+                                                  std::int32_t& fetched) {
+    const std::int32_t all = f.lines_written_after;
+    const std::int32_t until =
+        batch < batches ? static_cast<std::int32_t>(static_cast<std::int64_t>(all) * batch / batches) : all;
+    for (; fetched < until; ++fetched)
+        prefetch_to_write(f.written_after + static_cast<std::int64_t>(cache_line) * fetched);
+}
+
 template <class Kernel, bool streams, bool frozen_differ>
 void sweep_pairs(const Field& f, bool advancing, Tally& t) {
     Packed p;
@@ -298,10 +308,12 @@ void sweep_pairs(const Field& f, bool advancing, Tally& t) {
     at.done = f.begin;
     const PairLaws<Kernel, frozen_differ> laws(f.constants);
     const std::int32_t batches = f.inner_count / width;
+    std::int32_t fetched = 0;
     for (bool last = false; !last;) {
         sift<Kernel, streams>(f, batches, p, at);
         last = at.packed < tile;
         if (last) fill_up(f, p, at.packed);
+        if (f.lines_written_after != 0) fetch_what_is_written_after(f, at.batch, batches, fetched);
         const int full = (last ? at.packed + width - 1 : at.packed) / width;
         meet<Kernel, streams, frozen_differ>(f, laws, p, full, at.met, t);
         scatter<Kernel>(f, p, full);
