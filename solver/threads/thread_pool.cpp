@@ -24,7 +24,8 @@ void pause_core() {
 ThreadPool::ThreadPool(int threads)
     : size_(threads),
       spins_(threads <= static_cast<int>(std::thread::hardware_concurrency())),
-      parts_(std::make_unique<Part[]>(static_cast<std::size_t>(threads))) {
+      parts_(std::make_unique<Part[]>(static_cast<std::size_t>(threads))),
+      orders_(std::make_unique<Order[]>(static_cast<std::size_t>(threads))) {
     threads_.reserve(static_cast<std::size_t>(threads));
     try {
         for (int k = 1; k < threads; ++k) threads_.emplace_back([this, k] { serve(k); });
@@ -60,9 +61,29 @@ void ThreadPool::work_on_parts(int first, unsigned round) noexcept {
         const int part = (first + k) % size_;
         unsigned before = round - 1;
         if (!parts_[static_cast<std::size_t>(part)].begun.compare_exchange_strong(before, round)) continue;
+        const bool compared = compared_ && k == 0;
         work_(of_, part);
-        if (ended_.fetch_add(1) + 1 == size_ && first != 0) wake();
+        const int ended_before = ended_.fetch_add(1);
+        if (ended_before + 1 == size_ && first != 0) wake();
+        if (compared) {
+            Order& order = orders_[static_cast<std::size_t>(part)];
+            order.rounds.fetch_add(1, std::memory_order_relaxed);
+            order.ended_before.fetch_add(ended_before, std::memory_order_relaxed);
+        }
     }
+}
+
+std::vector<double> ThreadPool::lateness(int rounds) {
+    const auto all = static_cast<std::size_t>(size_);
+    for (std::size_t k = 0; k < all; ++k)
+        if (orders_[k].rounds.load(std::memory_order_relaxed) < rounds) return {};
+    std::vector<double> late(all);
+    for (std::size_t k = 0; k < all; ++k) {
+        const auto counted = static_cast<double>(orders_[k].rounds.exchange(0, std::memory_order_relaxed));
+        const auto before = static_cast<double>(orders_[k].ended_before.exchange(0, std::memory_order_relaxed));
+        late[k] = all > 1 ? 2 * before / (counted * static_cast<double>(all - 1)) - 1 : 0;
+    }
+    return late;
 }
 
 void ThreadPool::wait_for_the_rest() noexcept {

@@ -13,6 +13,9 @@ namespace {
 // Of a pair of another subdomain's rows also its particles, which come out of order and are waited for.
 constexpr double cost_of_particle = 4, cost_of_contact = 5, cost_of_pair = 0.3, cost_of_waiting = 1.5;
 
+// Fewer say more of chance than of cores.
+constexpr int sweeps_that_tell = 64;
+
 }  // namespace
 
 std::int32_t Subdomains::contacts_before(const Field& whole, std::int32_t pair) const {
@@ -32,7 +35,12 @@ void Subdomains::cut_up(Field& whole, Columns& columns, bool listed) {
     subdomains_.resize(static_cast<std::size_t>(parts));  // those there are keep their memory
     for (auto& subdomain : subdomains_)
         if (subdomain == nullptr) subdomain = std::make_unique<Subdomain>();
-    if (pool_ == nullptr || pool_->size() != parts) pool_ = std::make_unique<ThreadPool>(parts);
+    if (pool_ == nullptr || pool_->size() != parts) {
+        pool_ = std::make_unique<ThreadPool>(parts);
+        shares_ = Shares(parts);
+    } else {
+        shares_.move(pool_->lateness(sweeps_that_tell));
+    }
     const std::int32_t width = kernels_->width;
     const std::int32_t vectors = whole.outer_count / width + 1;
     if (listed) {
@@ -70,7 +78,7 @@ void Subdomains::cut_up(Field& whole, Columns& columns, bool listed) {
     joined_ = true;
 }
 
-/// Ranges that cost about the same. Pairs across subdomains are computed in both: what a subdomain computes of the
+/// Ranges that take about the same time. Pairs across subdomains are computed in both: what a subdomain computes of the
 /// earlier ones' depends little on where exactly its range begins, and is known from ranges chosen without it.
 void Subdomains::choose_ranges(const Field& whole, const Columns& columns) {
     for (const auto& subdomain : subdomains_) subdomain->ghost_cost = 0;
@@ -84,7 +92,7 @@ void Subdomains::choose_ranges(const Field& whole, const Columns& columns) {
     find_crossing_pairs(whole);
 }
 
-/// Ranges of equal cost with the ghosts' costs as they are.
+/// Ranges whose costs are as the shares of their threads, with the ghosts' costs as they are.
 void Subdomains::set_ranges(const Field& whole, const Columns& columns) {
     const int parts = count();
     const auto cost_before = [&](std::int32_t particle) {
@@ -99,7 +107,7 @@ void Subdomains::set_ranges(const Field& whole, const Columns& columns) {
     for (int part = 0; part < parts; ++part) {
         Subdomain& d = *subdomains_[static_cast<std::size_t>(part)];
         std::int32_t low = begin, high = whole.count;
-        share += total / parts - d.ghost_cost;
+        share += total * shares_.of(part) - d.ghost_cost;
         while (part + 1 < parts && low < high) {
             const std::int32_t middle = low + (high - low) / 2;
             if (cost_before(middle) < share)

@@ -29,6 +29,7 @@
 #include "solver/dem/fast/layout.hpp"
 #include "solver/dem/fast/parts.hpp"
 #include "solver/dem/fast/threads.hpp"
+#include "solver/threads/shares.hpp"
 #include "solver/threads/thread_pool.hpp"
 
 namespace grainsweep::dem::fast {
@@ -134,6 +135,7 @@ private:
     const Kernels* kernels_;
     Threads threads_{};
     std::unique_ptr<ThreadPool> pool_;
+    Shares shares_;  ///< of the subdomains
     std::vector<std::unique_ptr<Subdomain>> subdomains_;
     int turn_ = 0;                               ///< of Subdomain::sent, that which the next sweep reads
     std::vector<std::int32_t> contacts_before_;  ///< vectors of the whole outer list
