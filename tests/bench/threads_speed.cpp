@@ -22,6 +22,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <utility>
@@ -185,13 +186,16 @@ Options read_options(int argc, char** argv) {
             o.large = true;
         else if (name == "--pin")
             o.pin = true;
+        else
+            throw std::invalid_argument("no option '" + name +
+                                        "': there are --scene, --threads, --windows, --large, --pin");
     }
     return o;
 }
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
     const Options o = read_options(argc, argv);
     const auto wanted = [&](const char* name) { return o.scene.empty() || o.scene == name; };
     const auto run = [&](const char* name, const std::function<dem::Setup()>& setup) {
@@ -219,4 +223,7 @@ int main(int argc, char** argv) {
     if (chosen("full_cell")) compare(o, "full_cell", full_cell());
     if (chosen("settled_1M")) compare(o, "settled_1M", test::replicated(bed, 7, 7));
     return 0;
+} catch (const std::invalid_argument& wrong) {
+    std::fprintf(stderr, "%s\n", wrong.what());
+    return 2;
 }

@@ -6,7 +6,7 @@
 // whole list. A pair across subdomains is computed in both, with a copy of its history in each, and to the same bits:
 // what a lane computes depends on its pair alone. Partners in other subdomains are read from copies of their records;
 // what is added to the copies' forces is not used. Hence no bit of a result depends on where the cuts are, and none on
-// the number of threads.
+// the number of threads: subdomains whose threads end late may get less, whenever lists are made anew.
 //
 // What a step changes of the copies is sent: a subdomain that has advanced its particles writes what others meet of
 // them into rows, one particle behind another, from which the others bring their copies up to date before the next
