@@ -102,10 +102,11 @@ test)
     install_missing "${program_packages[@]}" "${test_packages[@]}"
     (cd "$here" && configure release -DGRAINSWEEP_TESTS=ON)
     cmake --build "$here/build" -j "$jobs"
-    # The tests wait a lot, for signals and for limits of time: what they leave of the processor builds the unit tests once
-    # more, under the address and undefined-behaviour sanitizers, and the engine on several threads under the thread
-    # sanitizer.
-    (cd "$here" && configure sanitize -DGRAINSWEEP_TESTS=ON && configure thread -DGRAINSWEEP_TESTS=ON)
+    # The tests wait a lot, for signals and for limits of time: what they leave of the processor builds what the unit tests
+    # test once more, under the address and undefined-behaviour sanitizers, and the engine on several threads under the
+    # thread sanitizer.
+    (cd "$here" && configure sanitize -DGRAINSWEEP_TESTS=ON -DGRAINSWEEP_UNIT_TESTS_OF="$here/build" &&
+        configure thread -DGRAINSWEEP_TESTS=ON)
     logs=$(mktemp -d)
     nice -n 10 ninja -C "$here/build-sanitize" -j "$jobs" test_unit >"$logs/sanitize" 2>&1 &
     building=($!)
