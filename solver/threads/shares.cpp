@@ -8,8 +8,8 @@ namespace grainsweep {
 
 namespace {
 
-// Steps, as parts of a share. With the smallest ones a share wanders about where it should be; with the largest, cores
-// of which one is half as fast as the other are evened out in eight moves.
+// Steps, as parts of a share. With the smallest ones a share wanders about where it should be; growing
+// from the first one, cores of which one is half as fast as the other end together, to 1 %, after six.
 constexpr double first_step = 0.02, smallest_step = 0.004, largest_step = 0.1;
 constexpr double growth = 1.5, shrinkage = 0.5;
 constexpr double little = 0.2;  ///< lateness that tells nothing: of two alike, one ends last as often as the other

@@ -16,7 +16,6 @@ public:
     /// Equal ones.
     explicit Shares(int parts = 1);
 
-    [[nodiscard]] int parts() const { return static_cast<int>(share_.size()); }
     /// Of the whole work, which is 1.
     [[nodiscard]] double of(int part) const { return share_[static_cast<std::size_t>(part)]; }
     /// `lateness`: of every part, from -1 (it always ended first) to 1 (always last); or empty, then nothing moves.

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <thread>
 #include <vector>
 
 #include "solver/threads/shares.hpp"
@@ -65,11 +67,11 @@ TEST(ThreadShares, LetCoresThatAreNotAlikeEndTogether) {
          {std::vector<double>{1, 0.75}, {0.6, 1}, {1, 1, 0.6, 0.6}, {1, 0.9, 1.2, 1}}) {
         Shares shares(static_cast<int>(speed.size()));
         Rounds rounds;
-        const double before = excess(shares, speed);
+        EXPECT_GT(excess(shares, speed), 0.1) << "before they move";
         for (int k = 0; k < 12; ++k) shares.move(rounds.lateness(shares, speed, 100));
         for (int k = 0; k < 100; ++k) {
             shares.move(rounds.lateness(shares, speed, 100));
-            EXPECT_LT(excess(shares, speed), std::min(0.06, before)) << speed.size() << " parts, move " << k;
+            EXPECT_LT(excess(shares, speed), 0.02) << speed.size() << " parts, move " << k;
         }
     }
 }
@@ -79,7 +81,7 @@ TEST(ThreadShares, FollowACoreThatIsDisturbedForAWhile) {
     Rounds rounds;
     for (const double speed : {1.0, 0.7, 1.0}) {
         for (int k = 0; k < 15; ++k) shares.move(rounds.lateness(shares, {1, speed}, 100));
-        EXPECT_LT(excess(shares, {1, speed}), 0.03) << speed;
+        EXPECT_LT(excess(shares, {1, speed}), 0.01) << speed;
     }
 }
 
@@ -99,20 +101,16 @@ TEST(ThreadPool, KnowsWhichPartsEndLate) {
     EXPECT_TRUE(pool.lateness(1).empty());
     pool.run([](int) {});
     EXPECT_TRUE(pool.lateness(1).empty()) << "a round that is not compared";
-    // The second part goes on until the first has ended and some time after, on whichever thread it is.
-    std::vector<double> late;
-    for (int tries = 0; tries < 100000 && late.empty(); ++tries) {
-        std::atomic<bool> first_ended = false;
+    // Each part waits for the other, so that two threads do them; the second goes on for a while after the first.
+    for (int round = 0; round < 50; ++round) {
+        std::atomic<bool> first_goes = false, second_goes = false;
         pool.run_compared([&](int part) {
-            if (part == 0) first_ended = true;
-            if (part == 1) {
-                while (!first_ended) {
-                }
-                for (int k = 0; k < 2000; ++k) first_ended.load();
-            }
+            (part == 0 ? first_goes : second_goes) = true;
+            while (!first_goes || !second_goes) std::this_thread::yield();
+            if (part == 1) std::this_thread::sleep_for(std::chrono::milliseconds(1));
         });
-        late = pool.lateness(40);
     }
+    const std::vector<double> late = pool.lateness(40);  // of the last round a thread may still be counting
     ASSERT_EQ(late.size(), 2U);
     EXPECT_LT(late[0], -0.5);
     EXPECT_GT(late[1], 0.5);
