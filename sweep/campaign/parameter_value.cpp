@@ -1,14 +1,13 @@
 // One value of one parameter: its type, its bounds, its words, its file.
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/sections.hpp"
+#include "sweep/campaign/whole_file.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 
 namespace grainsweep::campaign {
@@ -39,9 +38,8 @@ Value read_file_word(const Cursor& place, const Words& words, const fs::path& fo
     }
     if (fs::file_size(path, error) > largest_named_file || error)
         place.refuse("the file must be readable and at most 1 GiB");
-    std::ifstream stream(path, std::ios::binary);
-    const std::string contents{std::istreambuf_iterator<char>(stream), {}};
-    if (!stream.good() && !stream.eof()) place.refuse("the file cannot be read");
+    const std::string contents = whole_file(path, error);
+    if (error) place.refuse(fmt::format("the file cannot be read: {}", error.message()));
     if (words.check_file) {
         try {
             words.check_file(contents);

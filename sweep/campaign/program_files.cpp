@@ -1,14 +1,13 @@
 // "files" and "templates" of a program: what lies in every case's folder.
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/program_section.hpp"
+#include "sweep/campaign/whole_file.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
 
 namespace grainsweep::campaign {
 namespace {
@@ -51,9 +50,9 @@ void read_one(const Cursor& place, const fs::path& folder, bool is_template, Pro
     if (error || size > (is_template ? largest_template : largest_file))
         place.refuse(fmt::format("has at most {} MiB; larger data are named by an absolute path in the command",
                                  (is_template ? largest_template : largest_file) >> 20U));
-    std::ifstream stream(path, std::ios::binary);
-    file.contents.assign(std::istreambuf_iterator<char>(stream), {});
-    if (stream.bad() || file.contents.size() != size) place.refuse("the file cannot be read");
+    file.contents = whole_file(path, error);
+    if (error) place.refuse(fmt::format("the file cannot be read: {}", error.message()));
+    if (file.contents.size() != size) place.refuse("the file changed while it was read");
     if (is_template && file.contents.find('\0') != std::string::npos)
         place.refuse("is no text file; what is copied as it is belongs to \"files\"");
     file.hash = content_hash(file.contents);

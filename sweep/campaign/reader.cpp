@@ -4,13 +4,13 @@
 #include "sweep/campaign/program_section.hpp"
 #include "sweep/campaign/relevance.hpp"
 #include "sweep/campaign/sections.hpp"
+#include "sweep/campaign/whole_file.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 
 namespace grainsweep::campaign {
 
@@ -88,16 +88,10 @@ std::string read_text(const fs::path& file) {
                              nearest_word(file.filename().string(), beside));
     }
     if (fs::is_directory(file, error)) throw wrong_question(shown_name, "", "is a folder, not a campaign file");
-    std::ifstream stream(file, std::ios::binary);
-    std::string text;
-    std::string chunk(1U << 16U, '\0');
-    while (stream.read(chunk.data(), static_cast<std::streamsize>(chunk.size())) || stream.gcount() > 0) {
-        text.append(chunk, 0, static_cast<std::size_t>(stream.gcount()));
-        if (text.size() > largest_text) {
-            throw wrong_question(shown_name, "", "a campaign file has at most 64 MiB; give long lists as a CSV file");
-        }
-    }
-    if (!stream.eof()) throw wrong_question(shown_name, "", "the file cannot be read");
+    std::string text = whole_file(file, error, largest_text);
+    if (error == std::errc::file_too_large)
+        throw wrong_question(shown_name, "", "a campaign file has at most 64 MiB; give long lists as a CSV file");
+    if (error) throw wrong_question(shown_name, "", fmt::format("the file cannot be read: {}", error.message()));
     return text;
 }
 

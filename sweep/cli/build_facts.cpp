@@ -1,6 +1,7 @@
 #include "sweep/cli/build_facts.hpp"
 
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/whole_file.hpp"
 
 #include <grainsweep_version.hpp>
 
@@ -13,7 +14,6 @@
 #include <cstddef>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 
 namespace grainsweep::cli {
 
@@ -82,9 +82,9 @@ std::string build_id() {
     std::string text;
     ::dl_iterate_phdr(look_for_build_id, &text);
     if (!text.empty()) return text;
-    std::ifstream executable("/proc/self/exe", std::ios::binary);  // a linker that leaves no such note
-    const std::string bytes{std::istreambuf_iterator<char>(executable), {}};
-    return campaign::content_hash(bytes);
+    std::error_code ignored;
+    return campaign::content_hash(
+        campaign::whole_file("/proc/self/exe", ignored));  // a linker that leaves no such note
 }
 
 campaign::Computer this_computer() {

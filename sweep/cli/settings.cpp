@@ -1,6 +1,7 @@
 #include "sweep/cli/settings.hpp"
 
 #include "sweep/campaign/csv_record.hpp"
+#include "sweep/campaign/whole_file.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
@@ -8,8 +9,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <string_view>
 
@@ -68,10 +67,10 @@ std::string text_of(const std::filesystem::path& file) {
         throw campaign::wrong_question("--points", file.string(), "there is no such file");
     if (std::filesystem::file_size(file, none) > largest_file)
         throw campaign::wrong_question("--points", file.string(), "the file must have at most 256 MiB");
-    std::ifstream stream(file, std::ios::binary);
-    std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-    if (stream.bad() || !stream.is_open())
-        throw campaign::wrong_question("--points", file.string(), "the file cannot be read");
+    std::string text = campaign::whole_file(file, none);
+    if (none)
+        throw campaign::wrong_question("--points", file.string(),
+                                       fmt::format("the file cannot be read: {}", none.message()));
     constexpr std::string_view utf8_mark = "\xEF\xBB\xBF";
     if (text.starts_with(utf8_mark)) text.erase(0, utf8_mark.size());
     return text;

@@ -1,5 +1,6 @@
 #include "sweep/cli/window_run.hpp"
 
+#include "sweep/campaign/whole_file.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/run_campaign.hpp"
 #include "sweep/store/campaign_name.hpp"
@@ -9,7 +10,6 @@
 #include <algorithm>
 #include <fstream>
 #include <iostream>
-#include <iterator>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -26,9 +26,10 @@ constexpr int interrupted = 130;
 class BatchFile {
 public:
     BatchFile(const std::string& name, const std::string& text) : path_(name + ".json") {
-        if (std::ifstream there(path_, std::ios::binary); there) {
-            const std::string found{std::istreambuf_iterator<char>(there), {}};
-            if (found != text)
+        std::error_code error;
+        if (const std::string found = campaign::whole_file(path_, error);
+            error != std::errc::no_such_file_or_directory) {
+            if (error || found != text)
                 throw campaign::wrong_question(
                     "--run", path_.string(),
                     "a file of this name is there; the batch's campaign file would replace it");

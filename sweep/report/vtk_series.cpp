@@ -1,5 +1,6 @@
 #include "sweep/report/vtk_series.hpp"
 
+#include "sweep/campaign/whole_file.hpp"
 #include "sweep/report/vtk_file.hpp"
 #include "sweep/store/aside_file.hpp"
 #include "sweep/store/broken_world.hpp"
@@ -7,8 +8,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <span>
 #include <string_view>
 #include <system_error>
@@ -45,8 +44,7 @@ void VtkSeries::begin() {
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
     if (error) throw store::BrokenWorld(fmt::format("cannot make {}: {}", folder_.string(), error.message()));
-    std::ifstream stream(collection(), std::ios::binary);
-    const std::string older{std::istreambuf_iterator<char>(stream), {}};
+    const std::string older = campaign::whole_file(collection(), error);  // none there, as a rule
     constexpr std::string_view before = "file=\"";
     for (std::size_t at = older.find(before); at != std::string::npos; at = older.find(before, at)) {
         at += before.size();

@@ -1,5 +1,6 @@
 #include "sweep/store/aside_file.hpp"
 
+#include "sweep/campaign/whole_file.hpp"
 #include "sweep/store/broken_world.hpp"
 
 #include <fcntl.h>
@@ -13,8 +14,6 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -35,9 +34,10 @@ std::string host_name() {
 /// Also one whose end its parent has not taken note of, as first processes of containers do late or never, has ended.
 bool runs(pid_t process) {
     if (kill(process, 0) != 0) return errno != ESRCH;
-    std::ifstream stream(fmt::format("/proc/{}/stat", process));
-    const std::string line{std::istreambuf_iterator<char>(stream), {}};
-    const auto name_end = line.rfind(") ");  // the name before it may hold anything
+    std::error_code error;
+    const std::string line = campaign::whole_file(fmt::format("/proc/{}/stat", process), error);
+    if (error == std::errc::no_such_process) return false;  // it ended between opening and reading
+    const auto name_end = line.rfind(") ");                 // the name before it may hold anything
     return name_end == std::string::npos || line.compare(name_end + 2, 1, "Z") != 0;
 }
 

@@ -1,5 +1,6 @@
 // What a program finds: its command, environment and files for a case; and how workers find the program itself.
 #include "sweep/campaign/placeholders.hpp"
+#include "sweep/campaign/whole_file.hpp"
 #include "sweep/store/broken_world.hpp"
 #include "sweep/workers/program_answerer.hpp"
 #include "sweep/workers/program_process.hpp"
@@ -10,10 +11,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <fstream>
-#include <iterator>
 #include <regex>
 #include <stdexcept>
 
@@ -44,10 +42,9 @@ fs::path place_of(std::string_view scene, const fs::path& cases) {
 }
 
 std::string text_of(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    std::string text(std::istreambuf_iterator<char>(stream), {});
-    if (!stream.is_open() || stream.bad())
-        throw store::BrokenWorld(fmt::format("'{}': cannot be read: {}", file.string(), std::strerror(errno)));
+    std::error_code error;
+    std::string text = campaign::whole_file(file, error);
+    if (error) throw store::BrokenWorld(fmt::format("'{}': cannot be read: {}", file.string(), error.message()));
     return text;
 }
 

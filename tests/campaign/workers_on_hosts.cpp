@@ -11,7 +11,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <thread>
 #include <vector>
@@ -77,8 +76,8 @@ private:
 std::vector<pid_t> children_of(pid_t parent) {
     std::vector<pid_t> found;
     for (const pid_t child : processes_with(" worker ")) {
-        std::ifstream stat("/proc/" + std::to_string(child) + "/stat");
-        std::string all((std::istreambuf_iterator<char>(stat)), {});
+        std::string all;
+        std::getline(std::ifstream("/proc/" + std::to_string(child) + "/stat"), all);  // nothing, if it ends meanwhile
         const auto after = all.rfind(") ");
         if (after != std::string::npos && std::atoi(all.c_str() + after + 4) == parent) found.push_back(child);
     }

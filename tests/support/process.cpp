@@ -12,17 +12,20 @@
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace grainsweep::test {
 namespace {
 
 namespace fs = std::filesystem;
 
+/// What can be read of it: of a process that ends meanwhile, nothing. (An iterator over the stream would throw then.)
 std::string contents(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
+    std::ostringstream text;
+    text << std::ifstream(file, std::ios::binary).rdbuf();
+    return std::move(text).str();
 }
 
 std::atomic<int> serial = 0;

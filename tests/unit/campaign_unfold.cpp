@@ -2,6 +2,7 @@
 #include "sweep/campaign/campaign.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/relevance.hpp"
+#include "sweep/campaign/whole_file.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 
 #include <gmock/gmock.h>
@@ -283,6 +284,39 @@ TEST(FileWords, AreIdentifiedByTheirContents) {
                      "--set packing: got \"pakcing.csv\"; must be 'generated' or a file beside the campaign file, and "
                      "there is no such file. Did you mean 'packing.csv'?");
     }
+    std::filesystem::remove(folder / "packing.csv");
+    std::filesystem::create_symlink("/proc/self/mem", folder / "packing.csv");  // as a disk that fails
+    try {
+        (void)word("packing.csv");
+        FAIL() << "it was read";
+    } catch (const WrongQuestion& wrong) {
+        EXPECT_STREQ(wrong.what(), "--set packing: got \"packing.csv\"; the file cannot be read: Input/output error.");
+    }
+    std::filesystem::remove_all(folder);
+}
+
+TEST(WholeFile, HoldsEveryByteOrSaysWhyNot) {
+    const auto folder = std::filesystem::temp_directory_path() / "grainsweep_whole_file";
+    std::filesystem::create_directories(folder);
+    std::string bytes;
+    for (int k = 0; k < 200'000; ++k) bytes += static_cast<char>(k * 31 / 7);
+    std::ofstream(folder / "bytes", std::ios::binary) << bytes;
+    std::ofstream(folder / "nothing");
+    std::error_code error = std::make_error_code(std::errc::interrupted);
+    EXPECT_EQ(whole_file(folder / "bytes", error), bytes);
+    EXPECT_FALSE(error);
+    EXPECT_EQ(whole_file(folder / "bytes", error, bytes.size()), bytes);
+    EXPECT_FALSE(error);
+    EXPECT_EQ(whole_file(folder / "nothing", error), "");
+    EXPECT_FALSE(error);
+    (void)whole_file(folder / "bytes", error, bytes.size() - 1);
+    EXPECT_EQ(error, std::errc::file_too_large);
+    EXPECT_EQ(whole_file(folder, error), "");
+    EXPECT_EQ(error, std::errc::is_a_directory);
+    EXPECT_EQ(whole_file(folder / "none", error), "");
+    EXPECT_EQ(error, std::errc::no_such_file_or_directory);
+    EXPECT_EQ(whole_file("/proc/self/mem", error), "");
+    EXPECT_EQ(error, std::errc::io_error);
     std::filesystem::remove_all(folder);
 }
 
