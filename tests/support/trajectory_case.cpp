@@ -4,14 +4,6 @@
 
 namespace grainsweep::tests {
 
-namespace {
-
-dem::Vec3 vec(const nlohmann::json& a) {
-    return {a[0], a[1], a[2]};
-}
-
-}  // namespace
-
 dem::Setup setup_of(const nlohmann::json& c) {
     dem::Setup s;
     s.domain = {{-1, -1, -1}, {1, 1, 1}, {}};
@@ -27,7 +19,7 @@ dem::Setup setup_of(const nlohmann::json& c) {
     s.gravity = {0, 0, c["grav"].get<bool>() ? -9.81 : 0.0};
     s.time_step = c["dt"];
     for (const auto& atom : c["atoms"])
-        s.spheres.push_back({vec(atom[1]), vec(atom[2]), vec(atom[3]), atom[0].get<double>() / 2, true});
+        s.spheres.push_back({atom[1], atom[2], atom[3], atom[0].get<double>() / 2, true});
     if (!c["wall"].is_null()) s.walls.emplace_back(dem::Plane{{0, 0, 0}, {0, 0, 1}});
     if (!c["blade"].is_null()) {
         const auto& b = c["blade"];

@@ -19,10 +19,6 @@ namespace {
 using nlohmann::json;
 using namespace geometry;
 
-dem::Vec3 vec(const json& a) {
-    return {a[0], a[1], a[2]};
-}
-
 std::size_t axis_of(char letter) {
     return static_cast<std::size_t>(letter - 'x');
 }
@@ -72,13 +68,12 @@ std::vector<geometry::Motion> motions_of(const json& mesh) {
     for (const json& m : mesh["moves"]) {
         const auto kind = m["kind"].get<std::string>();
         if (kind == "linear")
-            motions.push_back(dem::Translation{.velocity = vec(m["v"])});
+            motions.push_back(dem::Translation{.velocity = m["v"]});
         else if (kind == "wiggle")
-            motions.push_back(
-                dem::Vibration{.amplitude = vec(m["amplitude"]), .frequency = 1 / m["period"].get<double>()});
+            motions.push_back(dem::Vibration{.amplitude = m["amplitude"], .frequency = 1 / m["period"].get<double>()});
         else if (kind == "rotate")
-            motions.push_back(dem::Rotation{.point = vec(m["origin"]),
-                                            .axis = (1 / geometry::norm(vec(m["axis"]))) * vec(m["axis"]),
+            motions.push_back(dem::Rotation{.point = m["origin"],
+                                            .axis = (1 / geometry::norm(m["axis"])) * m["axis"].get<dem::Vec3>(),
                                             .speed = 2 * std::numbers::pi / m["period"].get<double>()});
         else
             throw std::runtime_error("unknown motion " + kind);
@@ -88,7 +83,7 @@ std::vector<geometry::Motion> motions_of(const json& mesh) {
 
 dem::Setup setup_of_wall_case(const json& c) {
     dem::Setup s;
-    const dem::Vec3 half = vec(c["box"]);
+    const dem::Vec3 half = c["box"];
     s.domain = {-1.0 * half, half, {}};
     s.material.youngs_modulus = c["E"];
     s.material.poisson_ratio = c["nu"];
@@ -101,9 +96,9 @@ dem::Setup setup_of_wall_case(const json& c) {
         s.material.rolling_law = dem::RollingLaw::epsd_liggghts;
     }
     if (c["cohesion"] != "") s.material.cohesion = c["k"];
-    s.gravity = vec(c["g"]);
+    s.gravity = c["g"];
     s.time_step = c["dt"];
-    s.spheres = {{vec(c["x"]), vec(c["v"]), vec(c["w"]), c["diameter"].get<double>() / 2, true}};
+    s.spheres = {{c["x"], c["v"], c["w"], c["diameter"].get<double>() / 2, true}};
     for (const json& primitive : c["primitives"]) s.walls.push_back(wall_of(primitive, s.spheres[0].position));
     for (const json& mesh : c["meshes"]) s.walls.push_back({mesh_of(mesh), motions_of(mesh)});
     return s;
