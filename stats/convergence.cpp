@@ -15,6 +15,15 @@ namespace {
 constexpr std::array<std::string_view, 4> rule_names = {"replicates", "any_change", "all_change", "assisted"};
 constexpr std::int64_t fewest_sequences = 4;
 constexpr std::int64_t fewest_values = 4;  // of each sequence, for an error of anything but the mean
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Whether repetitions of a statistic differ by more than rounding: only then do they tell an error. False where one
+/// of them is undefined.
+bool differ(std::span<const double> repetitions) {
+    if (repetitions.empty() || std::ranges::any_of(repetitions, [](double x) { return std::isnan(x); })) return false;
+    const auto [low, high] = std::ranges::minmax(repetitions);
+    return high - low > 16 * std::numeric_limits<double>::epsilon() * std::max(std::abs(low), std::abs(high));
+}
 
 /// log(measure) = a + slope log(points) over the checks of the last three quarters, and its value now.
 struct Decay {
@@ -158,6 +167,8 @@ void Convergence::check() {
     const Summary summary = pooled_.moments.summary(pooled_.sample.middle());
     now.count = summary.count;
     now.excluded = summary.excluded;
+    now.fresh = now.count - (checkpoints_.empty() ? 0 : checkpoints_.back().count);
+    now.all_equal = now.count > 0 && summary.minimum == summary.maximum;
     now.zero_share = summary.zero_share;
     for (std::size_t s = 0; s < statistics.size(); ++s) now.estimates[s].value = summary.of(statistics[s]);
     find_errors(now);
@@ -179,8 +190,9 @@ void Convergence::find_errors(Checkpoint& now) {
         !sequences_.empty() && std::ranges::any_of(summaries, [](const Summary& x) { return x.count < fewest_values; });
     std::vector<double> repetitions(summaries.size());
     for (std::size_t s = 0; s < statistics.size(); ++s) {
-        if (too_few && statistics[s] != Statistic::mean) continue;
+        if (now.all_equal || (too_few && statistics[s] != Statistic::mean)) continue;
         std::ranges::transform(summaries, repetitions.begin(), [&](const Summary& x) { return x.of(statistics[s]); });
+        if (!differ(repetitions)) continue;
         now.estimates[s].error =
             sequences_.empty() ? jackknife_half_width(repetitions) : student_half_width(repetitions);
     }
@@ -191,11 +203,10 @@ void Convergence::find_measures(Checkpoint& now) const {
         Estimate& estimate = now.estimates[static_cast<std::size_t>(statistic)];
         double error = estimate.error;
         if (settings_.rule != ConvergenceRule::replicates)
-            error = checkpoints_.empty() ? std::numeric_limits<double>::quiet_NaN()
-                                         : std::abs(estimate.value - checkpoints_.back().of(statistic).value);
-        estimate.measure = measure_of(statistic, error, estimate.value);
-        if (statistic == Statistic::skewness && median_is_unsound(now.zero_share))
-            estimate.measure = std::numeric_limits<double>::quiet_NaN();
+            error = checkpoints_.empty() ? nan : std::abs(estimate.value - checkpoints_.back().of(statistic).value);
+        const bool unsound = statistic == Statistic::skewness && median_is_unsound(now.zero_share);
+        const bool unknown = now.all_equal || now.fresh == 0 || unsound;
+        estimate.measure = unknown ? nan : measure_of(statistic, error, estimate.value);
     }
 }
 

@@ -15,8 +15,10 @@
 // mean once each has 4 values); else a delete-a-group jackknife over 8 consecutive stretches of the points (see
 // confidence.hpp).
 //
-// What is undefined never passes. Pearson's skewness is refused as a gate while between 45 and 55 % of the
-// values are zero: there the median jumps between zero and the rest.
+// What is undefined never passes, and neither does what is unknown: while all values are equal, or where the
+// repetitions of a statistic are, nothing is known of its scatter, and its error is undefined. A check without a new
+// value since the check before confirms nothing: its measures are undefined. Pearson's skewness is refused as a gate
+// while between 45 and 55 % of the values are zero: there the median jumps between zero and the rest.
 #pragma once
 
 #include "stats/moments.hpp"
@@ -56,6 +58,8 @@ struct Checkpoint {
     std::int64_t points = 0;    ///< design points in the prefix
     std::int64_t count = 0;     ///< finite values among them
     std::int64_t excluded = 0;  ///< values that are not finite
+    std::int64_t fresh = 0;     ///< finite values since the check before
+    bool all_equal = false;     ///< one value, once or several times: nothing is known of the scatter
     double zero_share = std::numeric_limits<double>::quiet_NaN();
     std::array<Estimate, statistics.size()> estimates;
     bool passes = false;                 ///< the rule holds at this check

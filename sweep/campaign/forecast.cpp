@@ -84,6 +84,19 @@ std::vector<std::string> calibration_warnings(const Campaign& campaign) {
     return warnings;
 }
 
+/// Names how many runs the design makes, where several of its places ask the same; empty where none do.
+std::string repeated_cases(const Campaign& campaign, const Forecast& forecast) {
+    if (forecast.questions == forecast.places) return {};
+    const auto* design = designs::find_design(campaign.design);
+    if (design == nullptr || design->grows || design->purpose == designs::Purpose::morris) return {};
+    const auto has_levels = [](const Factor& factor) { return std::holds_alternative<Levels>(factor.range); };
+    std::string advice = "'replicates' repeats every point with other seeds";
+    if (design->beginning == designs::Beginning::sample && std::ranges::all_of(campaign.space.factors, has_levels))
+        advice = "a lattice with 'replicates' runs every combination of the levels several times, with other seeds";
+    return fmt::format("the {} cases of the design are {} different ones, and each counts once in every statistic: {}",
+                       forecast.places, forecast.questions, advice);
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of(const Campaign& campaign, const Forecast& forecast) {
@@ -92,6 +105,7 @@ std::vector<std::string> warnings_of(const Campaign& campaign, const Forecast& f
         warnings.push_back(fmt::format("{}: {} of {} cases, first at point {}: {}", caution.kind, caution.questions,
                                        forecast.questions, caution.first_point, caution.sentence));
     }
+    if (auto repeated = repeated_cases(campaign, forecast); !repeated.empty()) warnings.push_back(std::move(repeated));
     for (auto& sentence : calibration_warnings(campaign)) warnings.push_back(std::move(sentence));
     if (campaign.execution.threads > 0 && is_program(campaign.scene().name))
         warnings.emplace_back(

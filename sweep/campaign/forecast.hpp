@@ -30,8 +30,8 @@ struct Forecast {
     std::vector<double> seconds;  ///< of each place's question; 0 where it is proven or impossible
 };
 
-/// What to warn of before a campaign runs, one sentence each: cautions with their counts, and a rule of convergence
-/// that cannot be met.
+/// Warnings before a campaign runs, one sentence each: cautions with their counts, cases that stand at several places,
+/// a rule of convergence that cannot be met.
 [[nodiscard]] std::vector<std::string> warnings_of(const Campaign& campaign, const Forecast& forecast);
 
 /// What is known of a case before it is computed.

@@ -142,6 +142,11 @@ void warn(History& history, const Responses& responses, const ResponseColumn& re
                         "skewness is ill-defined",
                         100 * history.all.zero_share));
     }
+    if (!responses.repeated.empty()) {
+        history.warnings.push_back(
+            fmt::format("{} of {} places repeat an earlier case: each of the {} cases counts once",
+                        responses.repeated.size(), responses.repeated.size() + responses.rows(), responses.rows()));
+    }
     if (history.all.excluded > 0) {
         history.warnings.push_back(fmt::format("{} of {} cases have no value and are left out", history.all.excluded,
                                                history.all.excluded + history.all.count));
@@ -200,8 +205,10 @@ std::string extent_note(const store::CampaignRecord& campaign) {
 }
 
 std::string points_line(const Responses& responses) {
-    return fmt::format("{} candidates, {} left out by where, {} cases asked, {} finished", responses.candidates,
-                       responses.dropped(), responses.rows(), responses.finished());
+    const auto line = fmt::format("{} candidates, {} left out by where, {} cases asked, {} finished",
+                                  responses.candidates, responses.dropped(), responses.rows(), responses.finished());
+    if (responses.repeated.empty()) return line;
+    return fmt::format("{}, {} places repeat one of them", line, responses.repeated.size());
 }
 
 History figures_of(const Responses& responses, const ResponseColumn& response) {

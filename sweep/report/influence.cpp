@@ -31,17 +31,24 @@ struct Grid {
 
 Grid grid_of(const Responses& responses, const ResponseColumn& response) {
     const std::size_t d = responses.factors.size();
-    const auto points =
-        responses.settled == 0 ? 0 : static_cast<std::size_t>(responses.points[responses.settled - 1] + 1);
+    auto points = responses.settled == 0 ? 0 : static_cast<std::size_t>(responses.points[responses.settled - 1] + 1);
+    const auto stands = [&](const RepeatedPlace& place) {
+        return place.row < responses.settled && place.point < responses.settled_points;
+    };
+    for (const auto& place : responses.repeated)
+        if (stands(place)) points = std::max(points, static_cast<std::size_t>(place.point) + 1);
     Grid grid{std::vector<double>(points * d, none), std::vector<double>(points, none)};
     std::vector<double> sums(points), counts(points);
-    for (std::size_t row = 0; row < responses.settled; ++row) {
-        const auto point = static_cast<std::size_t>(responses.points[row]);
+    const auto place_row = [&](std::size_t point, std::size_t row) {
         for (std::size_t j = 0; j < d; ++j) grid.coordinates[point * d + j] = responses.factors[j].coordinate(row);
-        if (!std::isfinite(response.values[row])) continue;
+        if (!std::isfinite(response.values[row])) return;
         sums[point] += response.values[row];
         counts[point] += 1;
-    }
+    };
+    for (std::size_t row = 0; row < responses.settled; ++row)
+        place_row(static_cast<std::size_t>(responses.points[row]), row);
+    for (const auto& place : responses.repeated)
+        if (stands(place)) place_row(static_cast<std::size_t>(place.point), place.row);
     for (std::size_t p = 0; p < points; ++p)
         if (counts[p] > 0) grid.values[p] = sums[p] / counts[p];
     return grid;
@@ -167,7 +174,8 @@ void add_trends(Influence& influence, const Responses& responses, const Response
         const double in_bins = responses.design().beginning == designs::Beginning::corner
                                    ? 0
                                    : static_cast<double>(found.bins - 1) / points;
-        const double noise = std::isfinite(found.first.half_width) ? std::max(in_bins, found.first.half_width) : 1e-9;
+        const double noise =
+            std::max({in_bins, std::isfinite(found.first.half_width) ? found.first.half_width : 0, 1e-9});
         const bool seen = found.first.value > noise || std::abs(rank.value) > rank.half_width;
         if (seen) found.trend = trend_of(factor, levels, responses, influence.split.pure, values);
     }

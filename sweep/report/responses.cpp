@@ -17,6 +17,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <unordered_map>
 #include <utility>
 
 namespace grainsweep::report {
@@ -141,7 +142,25 @@ void bring_settled_forward(Responses& responses) {
     reorder(responses.outcomes, rows);
     for (auto& factor : responses.factors) reorder(factor.values, rows);
     for (auto& response : responses.observables) reorder(response.values, rows);
+    std::vector<std::size_t> places(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) places[rows[i]] = i;
+    for (auto& place : responses.repeated) place.row = places[place.row];
 }
+
+/// Rows of cases that were read, by what makes two of them the same. Returns whether the case is a new one; else its
+/// place is kept among the repeated ones.
+template <class Key>
+class FirstPlaces {
+public:
+    bool is_first(const Key& key, std::int64_t point, Responses& responses) {
+        const auto [known, fresh] = rows_.try_emplace(key, responses.rows());
+        if (!fresh) responses.repeated.push_back({point, known->second});
+        return fresh;
+    }
+
+private:
+    std::unordered_map<Key, std::size_t> rows_;
+};
 
 void find_settled(Responses& responses) {
     const auto& record = responses.campaign;
@@ -231,7 +250,9 @@ std::size_t Responses::finished() const {
 }
 
 std::int64_t Responses::dropped() const {
-    return candidates - static_cast<std::int64_t>(std::set<std::int64_t>(points.begin(), points.end()).size());
+    std::set<std::int64_t> kept(points.begin(), points.end());
+    for (const auto& place : repeated) kept.insert(place.point);
+    return candidates - static_cast<std::int64_t>(kept.size());
 }
 
 bool repeats(const Responses& responses) {
@@ -267,7 +288,9 @@ Responses read_responses(const store::Store& store, const store::CampaignRecord&
             responses.observables.push_back(std::move(response));
         }
     };
+    FirstPlaces<std::string> places;
     const auto add = [&](const std::vector<Cell>& row) {
+        if (!places.is_first(std::get<std::string>(row[case_column]), integer(row[point_column]), responses)) return;
         responses.points.push_back(integer(row[point_column]));
         responses.replicates.push_back(integer(row[replicate_column]));
         responses.case_ids.push_back(std::get<std::string>(row[case_column]));
@@ -293,7 +316,9 @@ Responses read_response(const store::Store& store, const store::CampaignRecord& 
     responses.candidates = record.stored.candidates;
     ResponseColumn response;
     response.name = observable;
+    FirstPlaces<std::int64_t> places;
     for (const auto& placed : store.values(record.name, observable)) {
+        if (!places.is_first(placed.case_key, placed.point, responses)) continue;
         responses.points.push_back(placed.point);
         responses.replicates.push_back(placed.replicate);
         responses.outcomes.push_back(placed.outcome);

@@ -33,11 +33,19 @@ struct ResponseColumn {
     std::vector<double> values;
 };
 
-/// One row per placed case, ordered by (point, replicate). A lattice or a list, whose order means nothing, has first
-/// the rows with a final outcome, then the others.
+/// A place of the design whose case stands at an earlier place, too.
+struct RepeatedPlace {
+    std::int64_t point = 0;
+    std::size_t row = 0;  ///< of that case
+};
+
+/// One row per case, at the first place where it stands, ordered by (point, replicate): a case that several points ask
+/// about is one run, and counts once. A lattice or a list, whose order means nothing, has first the rows with a final
+/// outcome, then the others.
 struct Responses {
     store::CampaignRecord campaign;
     std::vector<std::int64_t> points, replicates;
+    std::vector<RepeatedPlace> repeated;  ///< ordered by point
     std::vector<std::string> case_ids;
     std::vector<std::optional<campaign::Outcome>> outcomes;
     std::vector<FactorColumn> factors;

@@ -17,8 +17,8 @@ AssistedJudge::AssistedJudge(stats::ConvergenceSettings settings, ModelView view
       due_(first_check_),
       dimensions_(convergence_.dimensions()) {}
 
-void AssistedJudge::add(double value) {
-    const std::size_t point = placed_.place(points_.size()).point;
+void AssistedJudge::add(std::size_t place, double value) {
+    const std::size_t point = placed_.place(place).point;
     const auto features = features_of_(point);
     if (features.size() != dimensions_) throw std::invalid_argument("a case has another number of features");
     points_.push_back(static_cast<std::int64_t>(point));

@@ -29,8 +29,8 @@ public:
     /// stats::AssistedConvergence does.
     AssistedJudge(stats::ConvergenceSettings settings, ModelView view, campaign::Cases placed, bool stops);
 
-    /// The value of the next place (NaN: the case failed).
-    void add(double value);
+    /// Adds the value at a place of the cases (NaN: the case failed). Places come in their order; some may be left out.
+    void add(std::size_t place, double value);
     /// Every point below `points` has been added or will never be.
     void settle(std::int64_t points) { settled_ = points; }
     /// Takes what is finished and begins the check that is due, if any. `wait`: until none is.

@@ -106,6 +106,12 @@ std::string verdict_of(const stats::Checkpoint& check, const stats::ConvergenceS
     }
     const bool first_of_changes = of_changes(settings) && check.points <= settings.block;
     if (first_of_changes) return fmt::format("{} points, nothing to compare with yet", check.points);
+    if (check.all_equal)
+        return fmt::format("all values are equal after {} points ({} values): their scatter is unknown", check.points,
+                           check.count);
+    if (check.fresh == 0)
+        return fmt::format("no new value since the check before {} points: the {} different cases are known",
+                           check.points, check.count);
     if (*check.held_back == stats::Statistic::skewness && stats::median_is_unsound(check.zero_share)) {
         return fmt::format("skewness cannot be judged: {} of the values are zero, so the median jumps",
                            percent(check.zero_share));
@@ -154,10 +160,11 @@ std::span<const stats::Checkpoint> Judge::checkpoints() const {
 
 void Judge::feed(std::size_t settled) {
     for (; fed_ < settled; ++fed_) {
+        if (!placed_.is_first(fed_)) continue;  // the same run again says nothing new
         if (plain_)
             plain_->add(placed_.place(fed_).point, values_[fed_]);
         else
-            assisted_->add(values_[fed_]);
+            assisted_->add(fed_, values_[fed_]);
     }
     if (fed_ != settled) return;
     const std::int64_t points = settled == placed_.size() ? candidates_ : std::int64_t{placed_.place(settled).point};

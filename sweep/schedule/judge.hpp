@@ -2,9 +2,10 @@
 //
 // Only gapless beginnings of the design are judged, block by block, so the verdict does not depend on the
 // number of workers or on the order of finishing. A block is `block` design points; those that the `where` clause
-// filtered out contribute nothing. A case without an answer (unstable, rejected, given up) is left out and
-// counted. The rules and their errors: stats/convergence.hpp; of `assisted`, whose checks are fewer and take time:
-// stats/assisted_convergence.hpp and assisted_judge.hpp.
+// filtered out contribute nothing. A case that stands at several points counts once, at the first of them. A case
+// without an answer (unstable, rejected, given up) is left out and counted. The rules and their errors:
+// stats/convergence.hpp; of `assisted`, whose checks are fewer and take time: stats/assisted_convergence.hpp and
+// assisted_judge.hpp.
 #pragma once
 
 #include "stats/convergence.hpp"

@@ -57,8 +57,9 @@ std::vector<PlacedValue> Store::values_along(std::string_view campaign, std::str
     const std::int64_t key = impl_->campaign_key(campaign);
     const std::int64_t observable_key = curve_key(db, key, campaign, observable);
     auto rows = db.ask(
-        "SELECT p.point, p.sequence, p.replicate, c.outcome, o.time, o.bin, o.value, o.sample FROM campaign_case AS p "
-        "JOIN sim_case AS c ON c.case_key = p.case_key LEFT JOIN observation AS o ON o.case_key = p.case_key AND "
+        "SELECT p.point, p.sequence, p.replicate, c.outcome, o.time, o.bin, o.value, o.sample, p.case_key FROM "
+        "campaign_case AS p JOIN sim_case AS c ON c.case_key = p.case_key LEFT JOIN observation AS o ON o.case_key = "
+        "p.case_key AND "
         "o.observable_id = ?1 WHERE p.campaign_id = ?2 ORDER BY p.point, p.replicate, o.sample",
         observable_key, key);
     std::vector<PlacedValue> values;
@@ -75,6 +76,7 @@ std::vector<PlacedValue> Store::values_along(std::string_view campaign, std::str
                 {.point = point,
                  .sequence = rows.get<std::int64_t>(1),
                  .replicate = replicate,
+                 .case_key = rows.get<std::int64_t>(8),
                  .outcome = rows.is_null(3) ? std::nullopt : campaign::outcome_named(rows.get<std::string_view>(3)),
                  .value = none});
         }

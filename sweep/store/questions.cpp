@@ -300,17 +300,17 @@ std::vector<PlacedValue> Store::values(std::string_view campaign, std::string_vi
     }
     std::vector<PlacedValue> values;
     auto rows = db.ask(
-        "SELECT p.point, p.sequence, p.replicate, c.outcome, (SELECT o.value FROM observation AS o WHERE o.case_key = "
-        "p.case_key AND o.observable_id = ?1 AND o.sample = 0) FROM campaign_case AS p JOIN sim_case AS c ON "
-        "c.case_key = "
-        "p.case_key WHERE p.campaign_id = ?2 ORDER BY p.point, p.replicate",
+        "SELECT p.point, p.sequence, p.replicate, p.case_key, c.outcome, (SELECT o.value FROM observation AS o WHERE "
+        "o.case_key = p.case_key AND o.observable_id = ?1 AND o.sample = 0) FROM campaign_case AS p JOIN sim_case AS c "
+        "ON c.case_key = p.case_key WHERE p.campaign_id = ?2 ORDER BY p.point, p.replicate",
         observable_key, key);
     while (rows.next()) {
         values.push_back({.point = rows.get<std::int64_t>(0),
                           .sequence = rows.get<std::int64_t>(1),
                           .replicate = rows.get<std::int64_t>(2),
-                          .outcome = outcome_at(rows, 3),
-                          .value = rows.get<double>(4)});
+                          .case_key = rows.get<std::int64_t>(3),
+                          .outcome = outcome_at(rows, 4),
+                          .value = rows.get<double>(5)});
     }
     return values;
 }

@@ -71,6 +71,7 @@ struct ConvergenceRow {
 /// A stored value of one scalar at one place of the design.
 struct PlacedValue {
     std::int64_t point = 0, sequence = 0, replicate = 0;
+    std::int64_t case_key = 0;  ///< the same at every place where the case stands
     std::optional<campaign::Outcome> outcome;
     double value = 0;  ///< NaN where there is none
 };

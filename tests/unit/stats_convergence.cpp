@@ -141,7 +141,7 @@ TEST(Convergence, UndefinedNeverPasses) {
     EXPECT_FALSE(flat.back().passes);
     EXPECT_EQ(flat.back().held_back, Statistic::kurtosis);
     EXPECT_FALSE(flat.back().points_needed);
-    EXPECT_TRUE(judge_convergence(replicates({Statistic::mean}, 0.5), numbers(1600), constant, 1600).back().converged);
+    EXPECT_FALSE(judge_convergence(replicates({Statistic::mean}, 0.5), numbers(1600), constant, 1600).back().converged);
     const std::vector<double> failed(1600, missing);
     const auto nothing = judge_convergence(replicates({Statistic::mean}, 0.5), numbers(1600), failed, 1600);
     EXPECT_FALSE(nothing.back().passes);
@@ -149,6 +149,54 @@ TEST(Convergence, UndefinedNeverPasses) {
 }
 
 // The kurtosis of two values is 1, of three 1.5, whatever they are: their agreement is no small error.
+TEST(Convergence, EqualValuesSoFarAreNoVerdict) {
+    for (const auto rule : {ConvergenceRule::replicates, ConvergenceRule::any_change, ConvergenceRule::all_change}) {
+        auto settings = replicates({Statistic::mean}, 0.05, 64);
+        settings.rule = rule;
+        std::vector<double> values(512, 1.0);
+        values[300] = 101;
+        const auto checks = judge_convergence(settings, numbers(512), values, 512);
+        ASSERT_EQ(checks.size(), 8U);
+        for (std::size_t k = 0; k < 4; ++k) {
+            EXPECT_TRUE(checks[k].all_equal);
+            EXPECT_EQ(checks[k].of(Statistic::mean).value, 1);
+            EXPECT_TRUE(std::isnan(checks[k].of(Statistic::mean).error)) << k;
+            EXPECT_FALSE(checks[k].passes) << to_string(rule) << k;
+            EXPECT_FALSE(checks[k].points_needed);
+        }
+        EXPECT_FALSE(checks[4].all_equal);
+        EXPECT_GT(checks[4].of(Statistic::mean).error, 0.05);
+        EXPECT_FALSE(checks[4].passes) << to_string(rule);
+    }
+}
+
+TEST(Convergence, EqualRepetitionsOfAStatisticTellNoError) {
+    // Half of the values of every sequence are 1: eight equal means, of a share that is known to a tenth at best.
+    std::vector<double> values(64);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = i / 8 % 2 == 0 ? 0 : 1;
+    const auto checks = judge_convergence(replicates({Statistic::mean}, 0.05, 32), numbers(64), values, 64);
+    ASSERT_EQ(checks.size(), 2U);
+    EXPECT_TRUE(std::isnan(checks[1].of(Statistic::mean).error));
+    EXPECT_FALSE(checks[1].converged);
+}
+
+TEST(Convergence, ACheckWithoutANewValueConfirmsNothing) {
+    // A design of 40 different values that asks for the same again: rows of point numbers without values.
+    const auto values = uniform(40, 3);
+    for (const auto rule : {ConvergenceRule::replicates, ConvergenceRule::any_change, ConvergenceRule::all_change}) {
+        auto settings = replicates({Statistic::mean}, 10, 40);
+        settings.rule = rule;
+        const auto checks = judge_convergence(settings, numbers(40), values, 400);
+        ASSERT_EQ(checks.size(), 10U);
+        EXPECT_EQ(checks[0].passes, rule == ConvergenceRule::replicates);
+        for (std::size_t k = 1; k < checks.size(); ++k) {
+            EXPECT_EQ(checks[k].fresh, 0);
+            EXPECT_FALSE(checks[k].passes) << to_string(rule) << k;
+            EXPECT_TRUE(std::isnan(checks[k].of(Statistic::mean).measure));
+        }
+    }
+}
+
 TEST(Convergence, ErrorsOfTheShapeNeedFourValuesInEachSequence) {
     const auto values = uniform(40, 6);
     const auto checks = judge_convergence(replicates({Statistic::mean}, 0.01, 8), numbers(40), values, 40);
