@@ -323,6 +323,7 @@ private:
                     std::fprintf(stderr, "grainsweep: %s\n", text.c_str());
                 });
         const auto record = store_->stored(campaign_).value();
+        stopped_before_ = record.stopped_at;
         if (first) say_first(*line_, campaign_, forecast_, record);
         const auto placement = placement_of(*store_, record, placed_, std::move(states_), std::move(forecast_.seconds));
         judge_ = campaign::asked_in(request_.config, [&] { return make_judge(campaign_, *store_, placement); });
@@ -352,6 +353,9 @@ private:
                                       walltime_);
         ending_ = scheduler.run();
         tally_ = plan.tally();
+        const bool judged_anew = judge_ && stopped_before_ && judge_->judged_points() >= *stopped_before_;
+        if (judged_anew && !judge_->converged_at())  // by an older version's rule
+            store_->group([&] { store_->stop(campaign_.name, std::nullopt); });
     }
     void compute() {
         schedule::Plan plan(std::move(questions_), rules_of(campaign_, request_, workers_));
@@ -381,6 +385,7 @@ private:
     campaign::Forecast forecast_;
     std::vector<store::CaseState> states_;
     std::unique_ptr<schedule::Judge> judge_;
+    std::optional<std::int64_t> stopped_before_;  ///< points at which an earlier run stopped
     schedule::Questions questions_;
     Ending ending_{};
     schedule::Plan::Tally tally_;

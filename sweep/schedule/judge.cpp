@@ -154,6 +154,10 @@ std::optional<std::int64_t> Judge::converged_at() const {
     return check == nullptr ? std::nullopt : std::optional(check->points);
 }
 
+std::int64_t Judge::judged_points() const {
+    return checkpoints().empty() ? 0 : checkpoints().back().points;
+}
+
 std::span<const stats::Checkpoint> Judge::checkpoints() const {
     return plain_ ? plain_->checkpoints() : assisted_->checkpoints();
 }

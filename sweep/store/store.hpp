@@ -179,7 +179,8 @@ public:
     /// std::logic_error for an observable that the scene has not declared.
     bool finish(const campaign::CaseResult& result);
     void record(std::string_view campaign, const ConvergenceRow& row);
-    void stop(std::string_view campaign, std::int64_t points);
+    /// Stores where the campaign converged and stopped; nothing: it goes on.
+    void stop(std::string_view campaign, std::optional<std::int64_t> points);
 
     // Questions. Those about results compare what they read with its checksums, once per Store, and throw BrokenWorld
     // naming what is damaged; status, places, attempts and query do not.

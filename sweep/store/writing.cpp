@@ -168,9 +168,14 @@ void Store::record(std::string_view campaign, const ConvergenceRow& row) {
     store_sum(db, "convergence", key, sum);
 }
 
-void Store::stop(std::string_view campaign, std::int64_t points) {
+void Store::stop(std::string_view campaign, std::optional<std::int64_t> points) {
     impl_->require_group();
-    impl_->db.run("UPDATE campaign SET stopped_at = ? WHERE campaign_id = ?", points, impl_->campaign_key(campaign));
+    constexpr std::string_view update = "UPDATE campaign SET stopped_at = ? WHERE campaign_id = ?";
+    const auto key = impl_->campaign_key(campaign);
+    if (points)
+        impl_->db.run(update, *points, key);
+    else
+        impl_->db.run(update, std::nullopt, key);
     renew_sum(impl_->db, "campaign");
 }
 
