@@ -110,15 +110,20 @@ void print_model_influence(const report::ModelInfluence& influence) {
 }
 
 /// Calls `with` for every campaign the subject names; those whose scene has not the observable are passed over where
-/// no campaign is named.
-template <class With>
-void for_each_campaign(const Store& store, const Subject& subject, With with) {
+/// no campaign is named. `whole` answers for a campaign before its observable is looked for; true: it has answered.
+template <class Whole, class With>
+void for_each_campaign(const Store& store, const Subject& subject, Whole whole, With with) {
     const auto records = report::find_campaigns(store, subject.campaign);
     std::size_t found = 0;
     for (std::size_t i = 0; i < records.size(); ++i) {
         const auto responses = report::read_responses(store, records[i]);
         const bool last_chance = i + 1 == records.size() && found == 0;
-        if (!last_chance && !responses.measures(subject.observable)) continue;
+        const bool measures = responses.measures(subject.observable);
+        if ((measures || subject.observable.empty()) && whole(responses, found == 0)) {
+            ++found;
+            continue;
+        }
+        if (!last_chance && !measures) continue;
         with(responses, responses.observable(subject.observable), found++ == 0);
     }
 }
@@ -166,11 +171,12 @@ int converge(const Subject& subject, Format format) {
     Json all = Json::array();
     store::Table rows;
     bool converged = true;
-    for_each_campaign(store, subject,
+    const auto whole = [&](const Responses& responses, bool first) {
+        return show_brackets(store, responses, format, first, all, rows) ||
+               show_calibration(store, responses, format, first, all, rows, converged);
+    };
+    for_each_campaign(store, subject, whole,
                       [&](const Responses& responses, const report::ResponseColumn& response, bool first) {
-                          if (show_brackets(store, responses, format, first, all, rows) ||
-                              show_calibration(store, responses, format, first, all, rows, converged))
-                              return;
                           const auto history = report::history_of(responses, response);
                           converged = converged && history.converged.value_or(false);
                           const auto lattices = report::lattice_family(store, responses, response);
@@ -199,8 +205,9 @@ int sensitivity(const Subject& subject, Format format) {
     const Store store(subject.database, Store::Mode::read);
     Json all = Json::array();
     store::Table rows;
+    const auto nothing = [](const Responses&, bool) { return false; };
     for_each_campaign(
-        store, subject, [&](const Responses& responses, const report::ResponseColumn& response, bool first) {
+        store, subject, nothing, [&](const Responses& responses, const report::ResponseColumn& response, bool first) {
             const auto influence = report::influence_of(responses, response);
             if (format == Format::json) {
                 all.push_back(report::to_json(responses, response, influence));

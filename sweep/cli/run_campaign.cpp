@@ -291,7 +291,10 @@ public:
             unfold();
         } while (true);
         store_->remember_file();
-        return {exit_code(ending_, tally_), campaign_.name, database_, describe(ending_, tally_, judge_.get()),
+        const auto grown = campaign_.request.grown;
+        const auto in_vain = ending_ == Ending::finished && grown ? grown->without_result : std::string();
+        return {in_vain.empty() ? exit_code(ending_, tally_) : 1, campaign_.name, database_,
+                describe(ending_, tally_, judge_.get()) + (in_vain.empty() ? "" : "; " + in_vain),
                 judge_ ? std::optional(judge_->converged_at().has_value()) : std::nullopt};
     }
 

@@ -2,6 +2,7 @@
 
 #include "stats/calibration.hpp"
 #include "stats/several_responses.hpp"
+#include "sweep/designs/calibration_layout.hpp"
 #include "sweep/designs/kinds.hpp"
 
 #include <algorithm>
@@ -20,28 +21,7 @@ constexpr std::size_t most_compared = 4096;  // among which the next settings ar
 constexpr std::size_t chains_begin_at = 64;  // settings of least implausibility
 constexpr double failing_share = 0.05;       // of the settings, above which it is learned where they fail
 constexpr std::ptrdiff_t neighbours = 5;     // that say whether a case would answer
-
-/// The factors that are calibrated, and those that state the conditions of targets.
-struct Layout {
-    std::vector<std::size_t> calibrated, stated;                 ///< numbers of factors
-    std::vector<std::map<std::string, std::size_t>> conditions;  ///< distinct, in the order of the targets
-    std::vector<std::size_t> condition_of;                       ///< each target's
-};
-
-Layout layout_of(const DesignRequest& request, const std::vector<MeasuredTarget>& targets) {
-    Layout layout;
-    for (std::size_t j = 0; j < request.dimensions(); ++j)
-        (request.levels[j] == 0 ? layout.calibrated : layout.stated).push_back(j);
-    if (layout.calibrated.empty())
-        throw std::invalid_argument("no factor varies between two values: nothing to calibrate");
-    if (targets.empty()) throw std::invalid_argument("a calibration needs at least one target");
-    for (const auto& target : targets) {
-        const auto found = std::ranges::find(layout.conditions, target.level);
-        layout.condition_of.push_back(static_cast<std::size_t>(found - layout.conditions.begin()));
-        if (found == layout.conditions.end()) layout.conditions.push_back(target.level);
-    }
-    return layout;
-}
+constexpr const char* nowhere_likely = "the measurements lie too far from every case for a posterior";
 
 /// Sobol points of the calibrated factors, rows of d.
 std::vector<double> even_points(const DesignRequest& request, std::size_t d, std::int64_t count, std::uint64_t stream) {
@@ -57,7 +37,7 @@ class Course {
 public:
     explicit Course(const DesignRequest& request) : request_(request) {
         result_.targets = targets_in(request.word("targets"));
-        layout_ = layout_of(request, result_.targets);
+        layout_ = calibration_layout(request, result_.targets);
         d_ = layout_.calibrated.size();
         for (const std::size_t j : layout_.calibrated) {
             result_.factors.push_back(request.factors[j].name);
@@ -217,9 +197,13 @@ private:
     /// The next settings; none where the waves end.
     std::vector<double> next(std::int64_t wave) {
         auto& now = result_.waves.back();
+        if (const auto target = unanswered(); target && !modelled().empty()) {
+            now.kept = result_.waves.size() > 1 ? result_.waves[result_.waves.size() - 2].kept : 1;
+            return fail("no case has an answer to " + result_.targets[*target].observable);
+        }
         if (modelled().empty()) {
             now.kept = result_.waves.size() > 1 ? result_.waves[result_.waves.size() - 2].kept : 1;
-            if (wave == request_.count("waves")) return end("the waves asked for are done, and no target has a model");
+            if (wave == request_.count("waves")) return fail("the waves asked for are done, and no target has a model");
             return even_points(request_, d_, request_.count("points_per_wave"), static_cast<std::uint64_t>(2 * wave));
         }
         const auto wanted = static_cast<std::size_t>(request_.count("points_per_wave"));
@@ -231,12 +215,8 @@ private:
         } while (all.kept.size() < enough_kept * wanted && count <= most_candidates);
         now.kept = static_cast<double>(all.kept.size()) / static_cast<double>(all.implausibility.size());
         result_.least_implausibility = *std::ranges::min_element(all.implausibility);
-        best_.clear();
-        std::vector<std::size_t> order(all.implausibility.size());
-        std::iota(order.begin(), order.end(), std::size_t{0});
-        const auto last = order.begin() + static_cast<std::ptrdiff_t>(std::min(chains_begin_at, order.size()));
-        std::ranges::partial_sort(order, last, {}, [&](std::size_t i) { return std::pair(all.implausibility[i], i); });
-        for (auto i = order.begin(); i != last; ++i) append(best_, all.points, *i);
+        best_ = starts(all);
+        if (best_.empty()) return fail("no setting is expected to answer every target");
 
         const bool complete = std::ranges::all_of(now.refusals, [](const auto& text) { return text.empty(); });
         if (wave == request_.count("waves")) return end("the waves asked for are done");
@@ -254,6 +234,38 @@ private:
         result_.why_they_end = std::move(why);
         return {};
     }
+    /// Ends without a posterior.
+    std::vector<double> fail(std::string why) {
+        result_.points.without_result = why;
+        return end(std::move(why));
+    }
+    /// A target that no case of the waves has answered.
+    [[nodiscard]] std::optional<std::size_t> unanswered() const {
+        for (std::size_t t = 0; t < values_.size(); ++t)
+            if (std::ranges::none_of(values_[t], [](double x) { return std::isfinite(x); })) return t;
+        return std::nullopt;
+    }
+    /// The settings of least implausibility, for the chains to begin at; where none of these is expected to answer, the
+    /// least implausible among those that are.
+    [[nodiscard]] std::vector<double> starts(const Candidates& all) const {
+        std::vector<std::size_t> order(all.implausibility.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        const auto answers = [&](std::size_t i) { return feasible(std::span(all.points).subspan(i * d_, d_)); };
+        const auto sort = [&] {
+            const auto last = order.begin() + static_cast<std::ptrdiff_t>(std::min(chains_begin_at, order.size()));
+            std::ranges::partial_sort(order, last, {},
+                                      [&](std::size_t i) { return std::pair(all.implausibility[i], i); });
+            return std::span(order.begin(), last);
+        };
+        auto least = sort();
+        if (std::ranges::none_of(least, answers)) {
+            std::erase_if(order, [&](std::size_t i) { return !answers(i); });
+            least = sort();
+        }
+        std::vector<double> points;
+        for (const std::size_t i : least) append(points, all.points, i);
+        return points;
+    }
     void append(std::vector<double>& rows, const std::vector<double>& points, std::size_t i) const {
         const auto from = points.begin() + static_cast<std::ptrdiff_t>(i * d_);
         rows.insert(rows.end(), from, from + static_cast<std::ptrdiff_t>(d_));
@@ -266,7 +278,8 @@ private:
         for (std::size_t k = 0; k < all.kept.size(); k += step) append(pool, all.points, all.kept[k]);
         if (pool.size() / d_ < 2 * wanted) {
             const auto drawn = posterior(static_cast<std::uint64_t>(wave));
-            pool.insert(pool.end(), drawn.points.begin(), drawn.points.end());
+            if (!drawn) return fail(nowhere_likely);
+            pool.insert(pool.end(), drawn->points.begin(), drawn->points.end());
         }
         const std::size_t n = pool.size() / d_;
         std::vector<double> distance(n, std::numeric_limits<double>::infinity());
@@ -286,24 +299,29 @@ private:
         }
         return chosen;
     }
-    [[nodiscard]] stats::PosteriorSample posterior(std::uint64_t stream) const {
+    /// None where the measurements have no likelihood in double precision at any start.
+    [[nodiscard]] std::optional<stats::PosteriorSample> posterior(std::uint64_t stream) const {
         const auto targets = modelled();
         const auto covariance = modelled_covariance();
         stats::PosteriorSettings settings;
         settings.seed = draw_key(request_.seed, DrawPurpose::calibration, stream, 1);
-        return stats::sample_posterior(
-            [&](stats::Rows points) {
-                auto density = stats::log_likelihood(targets, predict(points), covariance);
-                for (std::size_t i = 0; i < density.size(); ++i)
-                    if (!feasible(points.row(i))) density[i] = -std::numeric_limits<double>::infinity();
-                return density;
-            },
-            {best_, d_}, settings);
+        const auto density_at = [&](stats::Rows points) {
+            auto density = stats::log_likelihood(targets, predict(points), covariance);
+            for (std::size_t i = 0; i < density.size(); ++i)
+                if (!feasible(points.row(i))) density[i] = -std::numeric_limits<double>::infinity();
+            return density;
+        };
+        const stats::Rows begin{best_, d_};
+        if (std::ranges::none_of(density_at(begin), [](double x) { return std::isfinite(x); })) return std::nullopt;
+        return stats::sample_posterior(density_at, begin, settings);
     }
     void sample() {
-        if (modelled().empty()) return;
+        if (!result_.points.without_result.empty()) return;
         result_.posterior = posterior(0);
-        result_.shape = stats::posterior_shape(result_.posterior->rows());
+        if (result_.posterior)
+            result_.shape = stats::posterior_shape(result_.posterior->rows());
+        else
+            (void)fail(nowhere_likely);
     }
     /// Settings drawn from the posterior are run.
     void check() {
@@ -319,7 +337,7 @@ private:
     }
 
     const DesignRequest& request_;
-    Layout layout_;
+    CalibrationLayout layout_;
     std::size_t d_ = 0, first_ = 0;
     std::vector<std::vector<double>> values_;  ///< of each target
     std::vector<bool> failed_;                 ///< of each setting; empty: too few to matter

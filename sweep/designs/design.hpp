@@ -81,6 +81,8 @@ struct PointSet {
     Rows rows = {};
     std::vector<std::uint32_t> part = {};    ///< what takes the place of a point's sequence
     std::vector<std::uint32_t> repeat = {};  ///< the one replicate of each point
+    /// Of a design that grows: why it ends without the result it looks for; empty: it goes on, or has it.
+    std::string without_result = {};
 
     [[nodiscard]] std::size_t size() const {
         return rows.empty() ? (dimensions == 0 ? 0 : coordinates.size() / dimensions) : rows.size();

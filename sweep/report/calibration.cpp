@@ -4,6 +4,7 @@
 #include "stats/calibration.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/stored_request.hpp"
+#include "sweep/designs/calibration_layout.hpp"
 #include "sweep/report/responses.hpp"
 #include "sweep/report/summary.hpp"
 #include "sweep/report/table.hpp"
@@ -100,6 +101,20 @@ std::string target_name(const TargetCheck& target) {
     return target.condition.empty() ? target.observable : fmt::format("{} at {}", target.observable, target.condition);
 }
 
+/// The places that the curves of a target cover under its condition; none where it is a scalar, or there is no curve.
+std::optional<std::pair<double, double>> covered_by(const store::Store& store, const std::string& campaign,
+                                                    const designs::CalibrationLayout& layout, std::size_t t,
+                                                    const designs::CurvePlace& place) {
+    if (!place.at) return std::nullopt;
+    std::optional<std::pair<double, double>> covered;
+    for (const auto& curve : store.curve_extents(campaign, place.observable)) {
+        if (static_cast<std::size_t>(curve.point) % layout.conditions.size() != layout.condition_of[t]) continue;
+        if (!covered) covered = {curve.first, curve.last};
+        covered = {std::min(covered->first, curve.first), std::max(covered->second, curve.last)};
+    }
+    return covered;
+}
+
 /// How many of the points that follow from the answers are, from the first on, the settings that were run: all of them,
 /// unless another version of the program chose them.
 std::size_t followed_points(const designs::Calibration& found, const Responses& run) {
@@ -125,11 +140,14 @@ std::vector<std::string> notes_of(const CalibrationReport& report) {
     std::vector<std::string> notes;
     const auto& found = report.found;
     for (const auto& target : report.targets) {
-        if (!target.refusal.empty())
+        if (!target.refusal.empty() && !std::isinf(target.beyond))
             notes.push_back(
                 fmt::format("{} has no response model and decides nothing: {}", target_name(target), target.refusal));
         if (std::isinf(target.beyond))
-            notes.push_back(fmt::format("{}: no case has an answer to it", target_name(target)));
+            notes.push_back(fmt::format("{}: no case has an answer to it{}", target_name(target),
+                                        target.covered ? fmt::format("; its curves cover {:.6g} to {:.6g}",
+                                                                     target.covered->first, target.covered->second)
+                                                       : ""));
         else if (target.beyond > out_of_reach)
             notes.push_back(
                 fmt::format("{}: no case came near the measured {:.5g}; it lies {:.1f} standard deviations beyond "
@@ -203,10 +221,13 @@ std::optional<CalibrationReport> calibration_report(const store::Store& store, c
             const auto* parameter = scene == nullptr ? nullptr : scene->find_parameter(report.found.factors[j]);
             if (parameter != nullptr) report.factors.back().unit = parameter->unit;
         }
+    const auto layout = designs::calibration_layout(request, report.found.targets);
     for (std::size_t t = 0; t < report.found.targets.size(); ++t) {
         auto& check = report.targets.emplace_back(check_of(report.found, t));
         check.condition = condition_text(report.found.targets[t], stated);
-        const auto* measured = scene == nullptr ? nullptr : scene->find_observable(check.observable);
+        const auto place = designs::place_on_curve(check.observable);
+        if (std::isinf(check.beyond)) check.covered = covered_by(store, record.name, layout, t, place);
+        const auto* measured = scene == nullptr ? nullptr : scene->find_observable(place.observable);
         if (measured != nullptr) check.unit = measured->unit;
     }
     report.notes = notes_of(report);

@@ -9,6 +9,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace grainsweep::report {
@@ -31,6 +32,8 @@ struct TargetCheck {
     std::size_t runs = 0;
     double beyond = 0;    ///< how far it lies beyond every case, in standard deviations; 0: within
     std::string refusal;  ///< why it has no model; empty: it has one
+    /// Of a place along a curve that no case has answered: the first and last place of the curves under its condition.
+    std::optional<std::pair<double, double>> covered = {};
 
     /// Fresh runs against the measurement, over what separates them: error, discrepancy, scatter of the runs.
     [[nodiscard]] double z() const;

@@ -4,8 +4,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <optional>
+#include <utility>
 
 namespace grainsweep::store {
 namespace {
@@ -16,20 +20,43 @@ struct Sample {
     double time, bin, value;
 };
 
-/// Samples of one curve in their order; of a profile measured more than once those of its last time.
-double value_at(const std::vector<Sample>& samples, double at) {
-    const double last = samples.empty() ? none : samples.back().time;
-    double x0 = none, y0 = none;
-    for (const auto& sample : samples) {
-        const bool binned = !std::isnan(sample.bin);
-        if (binned && !std::isnan(last) && sample.time != last) continue;
-        const double x = binned ? sample.bin : sample.time;
-        if (x == at) return sample.value;
-        if (x0 < at && at < x) return std::lerp(y0, sample.value, (at - x0) / (x - x0));
-        x0 = x;
-        y0 = sample.value;
+/// Places along a curve, ascending, and the values there.
+struct Curve {
+    std::vector<double> places, values;
+
+    /// Between two places on the line through them; NaN outside of them all.
+    [[nodiscard]] double value_at(double at) const {
+        const auto k = static_cast<std::size_t>(std::ranges::lower_bound(places, at) - places.begin());
+        if (k == places.size()) return none;
+        if (places[k] == at) return values[k];
+        if (k == 0) return none;
+        return std::lerp(values[k - 1], values[k], (at - places[k - 1]) / (places[k] - places[k - 1]));
     }
-    return none;
+};
+
+/// A program writes samples in any order. Of a profile measured more than once the last time counts; of several samples
+/// at one place their mean; of a profile no sample without a bin.
+Curve curve_of(std::vector<Sample> samples) {
+    const bool binned = std::ranges::any_of(samples, [](const Sample& s) { return !std::isnan(s.bin); });
+    double last = none;
+    for (const auto& s : samples) last = s.time <= last ? last : s.time;
+    const auto place = [binned](const Sample& s) { return binned ? s.bin : s.time; };
+    std::erase_if(samples, [&](const Sample& s) {
+        return std::isnan(place(s)) || (binned && !std::isnan(last) && s.time != last);
+    });
+    std::ranges::stable_sort(samples, {}, place);
+    Curve curve;
+    double count = 0;  // samples at the last place
+    for (const auto& s : samples) {
+        if (curve.places.empty() || place(s) != curve.places.back()) {
+            curve.places.push_back(place(s));
+            curve.values.push_back(s.value);
+            count = 1;
+        } else {
+            curve.values.back() += (s.value - curve.values.back()) / ++count;
+        }
+    }
+    return curve;
 }
 
 std::int64_t curve_key(const Connection& db, std::int64_t campaign_key, std::string_view campaign,
@@ -49,41 +76,60 @@ std::int64_t curve_key(const Connection& db, std::int64_t campaign_key, std::str
         campaign::nearest_word(observable, curves));
 }
 
+/// Calls `each` for every case of the campaign, by point and replicate, with its curve.
+void for_each_curve(const Connection& db, std::int64_t campaign_key, std::int64_t observable_key,
+                    const std::function<void(PlacedValue, const Curve&)>& each) {
+    auto rows = db.ask(
+        "SELECT p.point, p.sequence, p.replicate, c.outcome, o.time, o.bin, o.value, o.sample, p.case_key FROM "
+        "campaign_case AS p JOIN sim_case AS c ON c.case_key = p.case_key LEFT JOIN observation AS o ON o.case_key = "
+        "p.case_key AND "
+        "o.observable_id = ?1 WHERE p.campaign_id = ?2 ORDER BY p.point, p.replicate, o.sample",
+        observable_key, campaign_key);
+    std::optional<PlacedValue> placed;
+    std::vector<Sample> samples;
+    const auto close = [&] {
+        if (placed) each(*placed, curve_of(std::exchange(samples, {})));
+    };
+    while (rows.next()) {
+        const auto point = rows.get<std::int64_t>(0), replicate = rows.get<std::int64_t>(2);
+        if (!placed || placed->point != point || placed->replicate != replicate) {
+            close();
+            placed = {
+                .point = point,
+                .sequence = rows.get<std::int64_t>(1),
+                .replicate = replicate,
+                .case_key = rows.get<std::int64_t>(8),
+                .outcome = rows.is_null(3) ? std::nullopt : campaign::outcome_named(rows.get<std::string_view>(3)),
+                .value = none};
+        }
+        if (!rows.is_null(7)) samples.push_back({rows.get<double>(4), rows.get<double>(5), rows.get<double>(6)});
+    }
+    close();
+}
+
 }  // namespace
 
 std::vector<PlacedValue> Store::values_along(std::string_view campaign, std::string_view observable, double at) const {
     impl_->require_sound();
     const auto& db = impl_->db;
     const std::int64_t key = impl_->campaign_key(campaign);
-    const std::int64_t observable_key = curve_key(db, key, campaign, observable);
-    auto rows = db.ask(
-        "SELECT p.point, p.sequence, p.replicate, c.outcome, o.time, o.bin, o.value, o.sample, p.case_key FROM "
-        "campaign_case AS p JOIN sim_case AS c ON c.case_key = p.case_key LEFT JOIN observation AS o ON o.case_key = "
-        "p.case_key AND "
-        "o.observable_id = ?1 WHERE p.campaign_id = ?2 ORDER BY p.point, p.replicate, o.sample",
-        observable_key, key);
     std::vector<PlacedValue> values;
-    std::vector<Sample> samples;
-    const auto close = [&] {
-        if (!values.empty()) values.back().value = value_at(samples, at);
-        samples.clear();
-    };
-    while (rows.next()) {
-        const auto point = rows.get<std::int64_t>(0), replicate = rows.get<std::int64_t>(2);
-        if (values.empty() || values.back().point != point || values.back().replicate != replicate) {
-            close();
-            values.push_back(
-                {.point = point,
-                 .sequence = rows.get<std::int64_t>(1),
-                 .replicate = replicate,
-                 .case_key = rows.get<std::int64_t>(8),
-                 .outcome = rows.is_null(3) ? std::nullopt : campaign::outcome_named(rows.get<std::string_view>(3)),
-                 .value = none});
-        }
-        if (!rows.is_null(7)) samples.push_back({rows.get<double>(4), rows.get<double>(5), rows.get<double>(6)});
-    }
-    close();
+    for_each_curve(db, key, curve_key(db, key, campaign, observable), [&](PlacedValue placed, const Curve& curve) {
+        placed.value = curve.value_at(at);
+        values.push_back(placed);
+    });
     return values;
+}
+
+std::vector<CurveExtent> Store::curve_extents(std::string_view campaign, std::string_view observable) const {
+    impl_->require_sound();
+    const auto& db = impl_->db;
+    const std::int64_t key = impl_->campaign_key(campaign);
+    std::vector<CurveExtent> extents;
+    for_each_curve(db, key, curve_key(db, key, campaign, observable), [&](PlacedValue placed, const Curve& curve) {
+        if (!curve.places.empty()) extents.push_back({placed.point, curve.places.front(), curve.places.back()});
+    });
+    return extents;
 }
 
 }  // namespace grainsweep::store

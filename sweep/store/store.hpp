@@ -76,6 +76,12 @@ struct PlacedValue {
     double value = 0;  ///< NaN where there is none
 };
 
+/// The places that one curve of a point covers.
+struct CurveExtent {
+    std::int64_t point = 0;
+    double first = 0, last = 0;
+};
+
 /// Where a case stands, and what decides there whether it runs.
 struct CasePlace {
     std::string campaign;
@@ -207,9 +213,12 @@ public:
     /// One scalar over the campaign's design, ordered by (point, replicate).
     [[nodiscard]] std::vector<PlacedValue> values(std::string_view campaign, std::string_view observable) const;
     /// The same of a series or profile, at one place along it: time, or bin at the last time. Between two samples on
-    /// the line through them; NaN outside of them all.
+    /// the line through them, in whichever order they are stored; several at one place count as their mean; NaN outside
+    /// of them all.
     [[nodiscard]] std::vector<PlacedValue> values_along(std::string_view campaign, std::string_view observable,
                                                         double at) const;
+    /// First and last place of every curve of an observable that has one.
+    [[nodiscard]] std::vector<CurveExtent> curve_extents(std::string_view campaign, std::string_view observable) const;
     [[nodiscard]] std::vector<ConvergenceRow> convergence(std::string_view campaign, std::string_view observable) const;
     /// One row per campaign: campaign, scene, cases, one count per outcome, waiting (no outcome yet), stopped_at,
     /// rate (answers per second of the last run), time_left (s, at that rate; NULL where none is known); then

@@ -115,6 +115,41 @@ TEST(CalibrationWaves, TargetsThatContradictEachOtherOrLieOutOfReachAreKnown) {
     EXPECT_GT(beyond.beyond[0], 20);
 }
 
+TEST(CalibrationWaves, ATargetThatNoCaseAnswersEndsThemWithoutAPosterior) {
+    const auto slope = [](Point u) { return u[0]; };
+    const auto silent = [](Point) { return none; };
+    auto asked = calibration_request(1, {{"a", 0.5, 0.01, 0.01, {}}, {"c@2", 0.5, 0.01, 0.01, {}, 1}},
+                                     {{"points_per_wave", std::int64_t{12}}, {"waves", std::int64_t{3}}});
+    const auto found = answered(asked, {{"a", slope}, {"c@2", silent}});
+    EXPECT_TRUE(found.waves_end);
+    EXPECT_EQ(found.waves.size(), 1U);
+    EXPECT_FALSE(found.posterior);
+    EXPECT_EQ(found.points.without_result, "no case has an answer to c@2");
+    EXPECT_EQ(found.why_they_end, found.points.without_result);
+}
+
+// The settings that fit best all fail: the chains begin among those that answer.
+TEST(CalibrationWaves, ChainsBeginWhereCasesAnswer) {
+    const auto slope = [](Point u) { return u[0] < 0.6 ? u[0] : none; };
+    auto asked = calibration_request(1, {{"a", 0.9, 0.01, 0.01, {}}},
+                                     {{"points_per_wave", std::int64_t{24}}, {"waves", std::int64_t{1}}});
+    const auto found = answered(asked, {{"a", slope}});
+    ASSERT_TRUE(found.posterior);
+    EXPECT_TRUE(found.points.without_result.empty());
+    EXPECT_GT(found.shape->mean[0], 0.5);
+    EXPECT_LT(found.shape->mean[0], 0.65);
+}
+
+TEST(CalibrationWaves, MeasurementsThatNoSettingComesNearHaveNoPosterior) {
+    const auto slope = [](Point u) { return u[0]; };
+    auto asked = calibration_request(1, {{"a", 1e100, 1e-60, 0, {}}},
+                                     {{"points_per_wave", std::int64_t{12}}, {"waves", std::int64_t{2}}});
+    const auto found = answered(asked, {{"a", slope}});
+    EXPECT_TRUE(found.waves_end);
+    EXPECT_FALSE(found.posterior);
+    EXPECT_FALSE(found.points.without_result.empty());
+}
+
 TEST(CalibrationWaves, AResponseThatNoModelFollowsDecidesNothing) {
     const auto flat = [](Point u) { return 0 * u[0] + 2; };
     const auto slope = [](Point u) { return u[0]; };

@@ -77,6 +77,32 @@ TEST_F(StoreResults, ACurveIsReadAtAnyPlaceBetweenItsEnds) {
     EXPECT_THROW((void)store.values_along("first", "y", 1), campaign::WrongQuestion) << "a scalar";
 }
 
+// A program writes the places of a curve in any order, some of them twice.
+TEST_F(StoreResults, ACurveIsTheSameInWhateverOrderItsSamplesAreStored) {
+    const double none = std::nan("");
+    const std::vector<Sample> ascending = {{none, 0, 10}, {none, 1, 12}, {none, 1, 16}, {none, 2, 11}, {none, 4, 3}};
+    const std::vector<std::vector<std::size_t>> orders = {{0, 1, 2, 3, 4}, {4, 3, 2, 1, 0}, {2, 4, 0, 3, 1}};
+    store.group([&] {
+        for (std::size_t k = 0; k < orders.size(); ++k) {
+            auto given = answer(cases[k].question, 1);
+            for (const auto i : orders[k]) given.observations.series["y_series"].push_back(ascending[i]);
+            given.observations.series["y_series"].push_back({1, none, 99});  // of no bin
+            store.begin(given.attempt);
+            EXPECT_TRUE(store.finish(given));
+        }
+    });
+    for (const auto& [at, value] :
+         {std::pair(0.0, 10.0), {0.5, 12.0}, {1.0, 14.0}, {1.5, 12.5}, {3.0, 7.0}, {4.0, 3.0}})
+        for (std::size_t k = 0; k < orders.size(); ++k)
+            EXPECT_EQ(store.values_along("first", "y_series", at)[k].value, value) << at << ", order " << k;
+    for (const double at : {-0.1, 4.1})
+        for (std::size_t k = 0; k < orders.size(); ++k)
+            EXPECT_TRUE(std::isnan(store.values_along("first", "y_series", at)[k].value));
+    const auto extents = store.curve_extents("first", "y_series");
+    ASSERT_EQ(extents.size(), orders.size());
+    for (const auto& extent : extents) EXPECT_EQ(std::pair(extent.first, extent.last), std::pair(0.0, 4.0));
+}
+
 TEST_F(StoreResults, AnAnswerComesBackBitForBit) {
     auto given = answer(one, 1);
     given.observations.scalars = {{"y", 0.1 + 0.2}};

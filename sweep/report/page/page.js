@@ -194,10 +194,10 @@ function render() {
     parts = explorerSections(model, response, other);
     page.append(...[calibrationSection(campaign), distributionSection(response, campaign.sample, other), filmsSection(model), parts.explore, parts.maps, parts.listed, curvesSection(model)].filter(Boolean));
   } else {
-    page.append(el("p", {}, "No case has an answer yet."));
+    page.append(el("p", {}, campaign.observables.length === 0 ? "Series and profiles are measured, and no scalar." : "No case has an answer yet."));
     const cases = caseTable(model, () => {});
     parts = { paint: cases.paint };
-    page.append(...[section("cases", "Cases", "Every case.", cases.node), curvesSection(model)].filter(Boolean));
+    page.append(...[calibrationSection(campaign), section("cases", "Cases", "Every case.", cases.node), curvesSection(model)].filter(Boolean));
   }
   page.append(...[failuresSection(campaign), provenanceSection(campaign)].filter(Boolean));
   parts.paint();
