@@ -1,6 +1,7 @@
 // "calibration": what was measured, under which conditions. Takes the place of "design": conditions become factors with
 // levels, and the waves are a design of their own.
 #include "solver/plain_text.hpp"
+#include "sweep/campaign/csv_table.hpp"
 #include "sweep/campaign/csv_text.hpp"
 #include "sweep/campaign/sections.hpp"
 #include "sweep/campaign/wrong_question.hpp"
@@ -70,8 +71,8 @@ double number_in(const Cursor& file, std::size_t record, const std::string& cell
 std::vector<designs::MeasuredTarget> read_curve(const Cursor& file, const designs::MeasuredTarget& alike,
                                                 bool has_error, const std::filesystem::path& folder) {
     const std::string text = read_csv_text(file, folder / file.text());
-    std::string_view rest = text;
-    const auto columns = take_csv_record(rest).size();
+    CsvTable table(text, [&](const std::string& rule) { file.refuse(rule); });
+    const auto columns = table.header().size();
     if (columns != 2 && columns != 3)
         file.refuse(
             fmt::format("its header has {} columns: where along the curve, the value and, if it differs from "
@@ -83,18 +84,15 @@ std::vector<designs::MeasuredTarget> read_curve(const Cursor& file, const design
                         : "its lines have no error, and there is no \"error\" for them all");
     std::vector<designs::MeasuredTarget> targets;
     double before = -std::numeric_limits<double>::infinity();
-    for (std::size_t number = 2; !rest.empty(); ++number) {
-        const auto record = take_csv_record(rest);
-        if (record == CsvRecord{""}) continue;
-        if (record.size() != columns)
-            file.refuse(fmt::format("record {} has {} cells and the header {}", number, record.size(), columns));
-        const double at = number_in(file, number, record[0]);
+    while (const auto record = table.next()) {
+        const std::size_t number = table.number();
+        const double at = number_in(file, number, (*record)[0]);
         if (!(at > before)) file.refuse(fmt::format("record {}: places along the curve must grow", number));
         before = at;
         auto& target = targets.emplace_back(alike);
         target.observable = designs::word_of({alike.observable, at});
-        target.value = number_in(file, number, record[1]);
-        if (columns == 3) target.error = number_in(file, number, record[2]);
+        target.value = number_in(file, number, (*record)[1]);
+        if (columns == 3) target.error = number_in(file, number, (*record)[2]);
         if (target.error < 0) file.refuse(fmt::format("record {}: an error is at least 0", number));
     }
     if (targets.size() < 2 || targets.size() > most_points)
@@ -152,7 +150,7 @@ void read_discrepancies(const Section& section, std::vector<designs::MeasuredTar
                             "in {0}, as a standard deviation; 0 is allowed and warned of",
                             measured[k]));
         }
-        if (targets[k].error == 0 && targets[k].discrepancy == 0)
+        if (!(std::pow(targets[k].error, 2) + std::pow(targets[k].discrepancy, 2) > 0))
             throw wrong_question(section.at("targets").path(), targets[k].observable,
                                  "has neither an error nor a discrepancy: no simulation meets it exactly");
     }

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <string_view>
 #include <system_error>
 
 namespace grainsweep::campaign {
@@ -28,8 +27,6 @@ std::string read_csv_text(const Cursor& file, const fs::path& path) {
     if (error)  // what was read is a part, and would pass for a shorter list
         file.refuse(fmt::format("'{}' cannot be read beyond line {}: {}", path.string(),
                                 1 + std::ranges::count(text, '\n'), error.message()));
-    constexpr std::string_view utf8_mark = "\xEF\xBB\xBF";
-    if (text.starts_with(utf8_mark)) text.erase(0, utf8_mark.size());
     return text;
 }
 

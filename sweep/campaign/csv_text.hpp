@@ -1,7 +1,6 @@
 // A CSV file that a campaign file names, as text.
 #pragma once
 
-#include "sweep/campaign/csv_record.hpp"
 #include "sweep/campaign/cursor.hpp"
 
 #include <filesystem>
@@ -9,7 +8,7 @@
 
 namespace grainsweep::campaign {
 
-/// The whole file without a mark of UTF-8. `file`: the place in the campaign file that names it, for refusals: no such
+/// The whole file. `file`: the place in the campaign file that names it, for refusals: no such
 /// file, larger than 256 MiB, not readable to its end.
 [[nodiscard]] std::string read_csv_text(const Cursor& file, const std::filesystem::path& path);
 

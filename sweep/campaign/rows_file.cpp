@@ -1,4 +1,5 @@
 // Listed rows from CSV (RFC 4180): a header that names the factors in any order, then one point a line.
+#include "sweep/campaign/csv_table.hpp"
 #include "sweep/campaign/csv_text.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/sections.hpp"
@@ -26,9 +27,6 @@ std::vector<std::size_t> columns_of(const Cursor& file, const Record& header, co
                 fmt::format("column {} of its header, {}, is no factor of the campaign", k + 1, shown(header[k])),
                 nearest_word(header[k], names));
         }
-        if (std::count(header.begin(), header.end(), header[k]) > 1) {
-            file.refuse(fmt::format("its header names '{}' twice", header[k]));
-        }
     }
     std::vector<std::size_t> columns;
     for (const auto& name : names) {
@@ -44,22 +42,17 @@ std::vector<std::size_t> columns_of(const Cursor& file, const Record& header, co
 designs::Rows read_rows_file(const Cursor& file, const ParameterSpace& space, const fs::path& folder) {
     const std::string name = file.text();
     const std::string text = read_csv_text(file, folder / name);
-    std::string_view rest = text;
-    const Record header = take_csv_record(rest);
-    const auto columns = columns_of(file, header, space);
+    CsvTable table(text, [&](const std::string& rule) { file.refuse(rule); });
+    const auto columns = columns_of(file, table.header(), space);
     designs::Rows rows;
-    for (std::size_t number = 2; !rest.empty(); ++number) {
-        const Record record = take_csv_record(rest);
-        if (record == Record{""}) continue;
-        if (record.size() != header.size()) {
-            file.refuse(fmt::format("record {} has {} cells and the header {}", number, record.size(), header.size()));
-        }
+    while (const auto record = table.next()) {
         auto& row = rows.emplace_back();
         for (std::size_t j = 0; j < columns.size(); ++j) {
             const auto& parameter = *space.scene->find_parameter(space.factors[j].name);
-            const auto where = fmt::format("{}: {}, record {}, column '{}'", file.path(), name, number, parameter.name);
-            row.push_back(parse_value(parameter, record[columns[j]], folder, where));
-            const Json cell = record[columns[j]];
+            const auto where =
+                fmt::format("{}: {}, record {}, column '{}'", file.path(), name, table.number(), parameter.name);
+            row.push_back(parse_value(parameter, (*record)[columns[j]], folder, where));
+            const Json cell = (*record)[columns[j]];
             check_in_range(Cursor(cell, where), space.factors[j], row.back());
         }
     }

@@ -1,6 +1,6 @@
 #include "sweep/cli/settings.hpp"
 
-#include "sweep/campaign/csv_record.hpp"
+#include "sweep/campaign/csv_table.hpp"
 #include "sweep/campaign/whole_file.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 
@@ -71,8 +71,6 @@ std::string text_of(const std::filesystem::path& file) {
     if (none)
         throw campaign::wrong_question("--points", file.string(),
                                        fmt::format("the file cannot be read: {}", none.message()));
-    constexpr std::string_view utf8_mark = "\xEF\xBB\xBF";
-    if (text.starts_with(utf8_mark)) text.erase(0, utf8_mark.size());
     return text;
 }
 
@@ -96,30 +94,21 @@ Setting read_setting(std::span<const ModelFactor> factors, std::span<const std::
 
 std::vector<Setting> read_settings_file(const std::filesystem::path& file, std::span<const ModelFactor> factors) {
     const std::string text = text_of(file), where = "--points " + file.string();
-    std::string_view rest = text;
-    const auto header = campaign::take_csv_record(rest);
+    campaign::CsvTable table(text, [&](const std::string& rule) { throw campaign::wrong_question(where, "", rule); });
     std::vector<std::size_t> columns;
     std::vector<std::optional<double>> named(factors.size());
-    for (const auto& name : header) {
+    for (const auto& name : table.header()) {
         columns.push_back(factor_named(name, factors, where));
-        if (named[columns.back()])
-            throw campaign::wrong_question(where, "", fmt::format("its header names '{}' twice", name));
         named[columns.back()] = 0;
     }
     require_all(factors, named, where);
     std::vector<Setting> settings;
-    for (std::size_t number = 2; !rest.empty(); ++number) {
-        const auto record = campaign::take_csv_record(rest);
-        if (record == campaign::CsvRecord{""}) continue;
-        if (record.size() != header.size())
-            throw campaign::wrong_question(
-                where, "",
-                fmt::format("record {} has {} cells and the header {}", number, record.size(), header.size()));
+    while (const auto record = table.next()) {
         auto& setting = settings.emplace_back(factors.size());
         for (std::size_t k = 0; k < columns.size(); ++k) {
             const auto& factor = factors[columns[k]];
-            setting[columns[k]] =
-                value_of(factor, record[k], fmt::format("{}, record {}, column '{}'", where, number, factor.name));
+            setting[columns[k]] = value_of(
+                factor, (*record)[k], fmt::format("{}, record {}, column '{}'", where, table.number(), factor.name));
         }
     }
     if (settings.empty()) throw campaign::wrong_question(where, "", "it has no row below its header");

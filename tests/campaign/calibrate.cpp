@@ -123,10 +123,80 @@ TEST(CalibrateCampaign, FollowsAMeasuredCurve) {
     EXPECT_THAT(refused("time,y,sd\n0.2,1,1\n0.1,2,1\n"), HasSubstr("record 3: places along the curve must grow"));
     EXPECT_THAT(refused("time,y,sd\n0.2,1,1\n0.3,high,1\n"), HasSubstr("record 3 has \"high\" where a number"));
     EXPECT_THAT(refused("time,y,sd\n0.2,1,1\n"), HasSubstr("it has 1 lines"));
+    for (const char* numbers :
+         {"0.25,1.95,0.02\n0.5,4,0.02\n0.75,6,0.02\n", "\n\n0.25,1.95,0.02\n0.5,4,0.02\n0.7,6,1\n",
+          "\xEF\xBB\xBF+1.0D-01,1.95,0.02\r\n0.5,4,0.02\r\n0.7,6,1\r\n"})
+        EXPECT_THAT(refused(numbers), HasSubstr("a header that names the columns is expected"));
+    EXPECT_THAT(refused("\"\",\"time\",\"y\"\n\"1\",0.25,1.95\n\"2\",0.5,4\n"),
+                HasSubstr("column 1 of its header has no name"));
+    EXPECT_THAT(refused("time;y;sd\n0,25;1,95;0,02\n0,5;4;0,02\n"), HasSubstr("its header has semicolons between"));
+    EXPECT_THAT(refused("time\ty\tsd\n0.25\t1.95\t0.02\n"), HasSubstr("its header has tabs between the columns"));
+    EXPECT_THAT(refused("time,y,sd\ns,1,1\n0.2,1,1\n"), HasSubstr("record 2 has \"s\" where a number"));
+    EXPECT_THAT(refused("time,y,sd\n0,2,1,1\n"), HasSubstr("record 2 has 4 cells and the header 3"));
+    EXPECT_THAT(refused("time,y,y\n0.2,1,1\n"), HasSubstr("its header names 'y' twice"));
+    EXPECT_THAT(refused("\xFF\xFEt,y\n"), HasSubstr("not UTF-16"));
+    EXPECT_THAT(refused(""), HasSubstr("the file is empty"));
     asked["calibration"]["targets"][0]["file"] = "none.csv";
     EXPECT_THAT(refusal(folder, asked), HasSubstr("there is no such file"));
     asked["calibration"]["targets"][0] = {{"observable", "y_series"}, {"value", 1}, {"error", 1}};
     EXPECT_THAT(refusal(folder, asked), HasSubstr("is a curve"));
+}
+
+namespace {
+
+/// p(x) = a x^2 + b at eleven places in the order of `places`, a list in Python; measured at `measured`.
+json profile_campaign(const Folder& folder, const std::string& places, const std::string& measured) {
+    folder.write("f.py",
+                 "import json, sys\nfor line in sys.stdin:\n    q = json.loads(line)['inputs']\n"
+                 "    p = [[t / 10, q['a'] * (t / 10) ** 2 + q['b']] for t in " +
+                     places + "]\n    print(json.dumps({'observables': {'p': p}}), flush=True)\n");
+    folder.write("m.csv", measured);
+    return json::parse(R"({"campaign": "c", "scene": "program",
+      "program": {"command": ["python3", "f.py"], "files": ["f.py"], "protocol": "lines",
+                  "observables": {"p": {"shape": "profile"}}},
+      "factors": [{"name": "a", "between": [0, 1]}, {"name": "b", "between": [0, 1]}],
+      "calibration": {"targets": [{"observable": "p", "file": "m.csv", "error": 0.02}], "discrepancy": {"p": 0.01},
+                      "waves": 1, "points_per_wave": 24, "checks": 2}})");
+}
+
+}  // namespace
+
+TEST(CalibrateCampaign, TheOrderInWhichAProgramWritesACurveDoesNotMatter) {
+    json before;
+    for (const char* places : {"range(11)", "range(10, -1, -1)", "(1, 0, 10, 9, 8, 7, 6, 5, 4, 3, 2)"}) {
+        const Folder folder;
+        folder.write("c.json", profile_campaign(folder, places, "x,y\n0.05,0.301\n0.55,0.421\n0.95,0.661\n").dump());
+        ASSERT_EQ(calibrate(folder, "a.db", {"-j", "1", "--quiet"}).code, 0);
+        // A program without a scalar: converge has the posterior all the same.
+        const auto said = run_program({"converge", "a.db", "--format", "json"}, folder.path());
+        ASSERT_EQ(said.code, 0) << said.err;
+        const auto posterior = json::parse(said.out)[0]["posterior"];
+        EXPECT_NEAR(posterior[0]["mean"].get<double>(), 0.4, 0.03);
+        EXPECT_NEAR(posterior[1]["mean"].get<double>(), 0.3, 0.02);
+        if (!before.is_null()) EXPECT_EQ(posterior, before) << places;
+        before = posterior;
+        EXPECT_EQ(run_program({"status", "a.db"}, folder.path()).code, 0);
+        EXPECT_EQ(run_program({"report", "a.db", "-o", "a.html"}, folder.path()).code, 0);
+        for (const char* command : {"sensitivity", "predict"}) {
+            const auto refused = run_program({command, "a.db"}, folder.path());
+            EXPECT_EQ(refused.code, 2) << command;
+            EXPECT_THAT(refused.err, HasSubstr("measures no scalar")) << command;
+        }
+    }
+}
+
+TEST(CalibrateCampaign, APlaceBeyondTheCurvesIsNamedWithWhatTheyCover) {
+    const Folder folder;
+    folder.write("c.json", profile_campaign(folder, "range(11)", "x,y\n0.5,0.4\n2,0.7\n").dump());
+    const auto ended = calibrate(folder, "a.db", {"-j", "1"});
+    EXPECT_EQ(ended.code, 1) << ended.err;
+    EXPECT_THAT(ended.out, HasSubstr("p@2: no case has an answer to it; its curves cover 0 to 1"));
+    EXPECT_EQ(calibrate(folder, "a.db", {"-j", "1", "--quiet"}).code, 1) << "asked again";
+    EXPECT_EQ(run_program({"report", "a.db", "-o", "a.html"}, folder.path()).code, 0);
+    const auto said = run_program({"converge", "a.db"}, folder.path());
+    EXPECT_EQ(said.code, 0) << said.err;
+    EXPECT_THAT(said.out, HasSubstr("its curves cover 0 to 1"));
+    EXPECT_EQ(run_program({"converge", "a.db", "--check"}, folder.path()).code, 1);
 }
 
 TEST(CalibrateCampaign, RefusesInOneSentence) {
