@@ -2,6 +2,7 @@
 // word, the shortest text that reads back as the same number. Independent of the locale.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -19,11 +20,27 @@ namespace grainsweep {
     return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
+/// Whether a decimal number that double cannot hold is too small, not too large.
+[[nodiscard]] inline bool is_too_small(std::string_view number) {
+    const auto mark = std::min(number.find_first_of("eE"), number.size());
+    const auto digits = number.substr(0, mark);
+    const auto exponent = number.substr(std::min(mark + 1, number.size()));
+    long power = 0;  // of ten
+    const auto* const begin = exponent.data() + (exponent.starts_with('+') ? 1 : 0);
+    if (std::from_chars(begin, exponent.data() + exponent.size(), power).ec == std::errc::result_out_of_range)
+        return exponent.starts_with('-');
+    const auto point = static_cast<long>(std::min(digits.find('.'), digits.size()));
+    return static_cast<long>(digits.find_first_of("123456789")) - point > power;
+}
+
 /// The number that the whole word is, infinite or NaN, too; none: it is something else, or beyond the range of double.
+/// One too small for double is 0.
 [[nodiscard]] inline std::optional<double> any_number_in(std::string_view word) {
     double number = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
+    if (end != word.data() + word.size()) return std::nullopt;
+    if (error == std::errc::result_out_of_range && is_too_small(word)) return word.starts_with('-') ? -0.0 : 0.0;
+    if (error != std::errc()) return std::nullopt;
     return number;
 }
 

@@ -1,5 +1,6 @@
 #include "sweep/workers/program_results.hpp"
 
+#include "sweep/workers/program_json.hpp"
 #include "sweep/workers/program_tables.hpp"
 #include "sweep/workers/worker_state.hpp"
 
@@ -28,27 +29,11 @@ constexpr std::size_t largest_json = std::size_t{16} << 20U;
 /// A value that is not there or not to be used: what the case is rejected for.
 using Unusable = std::invalid_argument;
 
-std::string shown(const Json& value) {
-    return shortened(value.dump(-1, ' ', true, Json::error_handler_t::replace), 60);
-}
-
 double number_in(const Json& value, const std::string& place) {
-    if (!value.is_number()) throw Unusable(fmt::format("{} is {}, which is no number", place, shown(value)));
+    if (!value.is_number()) throw Unusable(fmt::format("{} is {}, which is no number", place, shown_json(value)));
     const auto number = value.get<double>();
     if (!std::isfinite(number)) throw Unusable(fmt::format("{} is beyond double precision", place));
     return number;
-}
-
-Json parsed(std::string_view text, const std::string& file) {
-    try {
-        return Json::parse(text);
-    } catch (const Json::parse_error& error) {
-        const auto near = text.substr(std::min(text.size(), error.byte > 12 ? error.byte - 12 : 0), 24);
-        for (const char* word : {"NaN", "nan", "Infinity", "inf"})
-            if (near.find(word) != std::string_view::npos)
-                throw Unusable(fmt::format("{} holds {} at byte {}, which is no number", file, word, error.byte));
-        throw Unusable(fmt::format("{} is no JSON at byte {}: {}", file, error.byte, shown(Json(std::string(near)))));
-    }
 }
 
 /// Files read once for all that is found in them.
@@ -60,7 +45,7 @@ public:
         std::string why;
         const auto text = folder_.read(name, largest_json, why);
         if (!text) throw Unusable(fmt::format("{} {}", name, why));
-        return json_.emplace(name, parsed(*text, name)).first->second;
+        return json_.emplace(name, program_json(*text, name)).first->second;
     }
     ProgramTable& table(const std::string& name, const std::string& separator) {
         auto& known = tables_[{name, separator}];
@@ -80,14 +65,16 @@ private:
 };
 
 const Json& value_at(const Json& document, const std::string& file, const std::string& path) {
-    const Json::json_pointer pointer(path);
-    if (!document.contains(pointer)) throw Unusable(fmt::format("{} has no {}", file, path));
-    return document.at(pointer);
+    try {
+        return document.at(Json::json_pointer(path));
+    } catch (const Json::exception&) {  // of an index too large for any list, too
+        throw Unusable(fmt::format("{} has no {}", file, path));
+    }
 }
 
 std::vector<double> numbers_at(const Json& document, const std::string& file, const std::string& path) {
     const auto& list = value_at(document, file, path);
-    if (!list.is_array()) throw Unusable(fmt::format("{}: {} is {}, which is no list", file, path, shown(list)));
+    if (!list.is_array()) throw Unusable(fmt::format("{}: {} is {}, which is no list", file, path, shown_json(list)));
     std::vector<double> numbers;
     numbers.reserve(list.size());
     for (const auto& value : list)
@@ -157,17 +144,18 @@ std::optional<ProgramReply> said_in(const Json& object, const std::string& file)
     if (word == "completed") return std::nullopt;
     if (word == "unstable") return ProgramReply{Kind::unstable, std::move(message), {}};
     if (word == "rejected") return ProgramReply{Kind::rejected, std::move(message), {}};
-    throw Unusable(fmt::format("{}: /outcome is {}, and it may be completed, unstable or rejected", file, shown(word)));
+    throw Unusable(
+        fmt::format("{}: /outcome is {}, and it may be completed, unstable or rejected", file, shown_json(word)));
 }
 
 /// Pairs [place, value].
 Found pairs_in(const Json& list, const std::string& name) {
-    if (!list.is_array()) throw Unusable(fmt::format("its {} is {}, which is no list", name, shown(list)));
+    if (!list.is_array()) throw Unusable(fmt::format("its {} is {}, which is no list", name, shown_json(list)));
     Found found;
     for (const auto& pair : list) {
         const auto place = fmt::format("its {} number {}", name, found.values.size());
         if (!pair.is_array() || pair.size() != 2)
-            throw Unusable(fmt::format("{} is {}, which is no pair of place and value", place, shown(pair)));
+            throw Unusable(fmt::format("{} is {}, which is no pair of place and value", place, shown_json(pair)));
         found.places.push_back(number_in(pair[0], place));
         found.values.push_back(number_in(pair[1], place));
     }
@@ -225,15 +213,19 @@ ProgramReply results_in(const ProgramFolder& folder, const Program& program) {
 }
 
 ProgramReply results_in(std::string_view line, std::string_view case_id, const Program& program) {
-    const Json object = Json::parse(line, nullptr, false);
-    const bool not_a_number = object.is_discarded() && (line.find("NaN") != std::string_view::npos ||
-                                                        line.find("Infinity") != std::string_view::npos);
-    if (not_a_number) return {Kind::rejected, "it replied NaN or Infinity, which is no number", {}};
+    Json object;
+    try {
+        object = program_json(line, "its reply");
+    } catch (const NoJson&) {
+        object = nullptr;
+    } catch (const Unusable& why) {
+        return {Kind::rejected, why.what(), {}};
+    }
     if (!object.is_object())
         throw Unusable(
-            fmt::format("it replied what is no JSON object: {}", shown(Json(std::string(line.substr(0, 200))))));
+            fmt::format("it replied what is no JSON object: {}", shown_json(std::string(line.substr(0, 200)))));
     if (const auto of = object.find("case"); of != object.end() && *of != case_id)
-        throw Unusable(fmt::format("it replied to case {}, which was not asked", shown(*of)));
+        throw Unusable(fmt::format("it replied to case {}, which was not asked", shown_json(*of)));
     try {
         if (auto said = said_in(object, "its reply")) return std::move(*said);
         return measured_in(object, program);

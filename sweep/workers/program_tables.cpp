@@ -23,11 +23,36 @@ namespace {
 constexpr std::size_t most_columns = 10'000, most_rows = 10'000'000;
 constexpr std::size_t longest_searched = 4096;  // the search recurs once per character
 
+bool is_digit(char c) {
+    return c >= '0' && c <= '9';
+}
+
+/// Fortran writes 1.0D+03, or 1.0Q+03, and 1.0-103 where the exponent has three digits.
+std::string with_plain_exponent(std::string_view text) {
+    std::string plain(text);
+    for (std::size_t k = 1; k + 1 < plain.size(); ++k) {
+        const bool after_number = is_digit(plain[k - 1]) || plain[k - 1] == '.';
+        const bool letter = std::string_view("dDqQ").find(plain[k]) != std::string_view::npos;
+        if (after_number && letter) plain[k] = 'e';
+        if (after_number && (plain[k] == '+' || plain[k] == '-')) plain.insert(k, 1, 'e');
+    }
+    return plain;
+}
+
 /// With a sign, infinite or none, too, as programs write them.
 std::optional<double> any_number_of(std::string_view text) {
     text = trimmed(text);
     if (text.starts_with('+')) text.remove_prefix(1);
-    return any_number_in(text);
+    if (const auto number = any_number_in(text)) return number;
+    return any_number_in(with_plain_exponent(text));
+}
+
+/// The exponent with which the text behind a number goes on: the expression has found the number without it.
+std::optional<std::string> exponent_behind(const std::string& behind) {
+    static const std::regex exponent("^[eEdDqQ][-+]?[0-9]+(?![0-9A-Za-z_])");
+    std::smatch found;
+    if (!std::regex_search(behind, found, exponent)) return std::nullopt;
+    return found.str();
 }
 
 std::optional<double> number_of(std::string_view text) {
@@ -86,6 +111,8 @@ std::vector<std::string> ProgramTable::cells_of(std::string_view line) const {
 
 std::size_t ProgramTable::place_of(const std::string& column) const {
     const auto found = std::ranges::find(names_, column);
+    if (std::ranges::count(names_, column) > 1)
+        throw std::invalid_argument(fmt::format("{} has two columns '{}'", file_, column));
     if (found != names_.end()) return static_cast<std::size_t>(found - names_.begin());
     std::string listed;
     for (const auto& name : names_) listed += (listed.empty() ? "" : ", ") + name;
@@ -128,11 +155,14 @@ double last_in_output(const ProgramFolder& folder, const std::string& pattern) {
     std::string why;
     const int file = folder.open("stdout.txt", why);
     if (file < 0) throw std::invalid_argument("standard output " + why);
-    std::optional<std::string> last;
+    std::optional<std::string> last, behind;
     std::string line;
     std::smatch parts;
     const auto search = [&] {
-        if (std::regex_search(line, parts, found->second) && parts[1].matched) last = parts[1].str();
+        if (std::regex_search(line, parts, found->second) && parts[1].matched) {
+            last = parts[1].str();
+            behind = std::string(parts[1].second, line.cend());
+        }
         line.clear();
     };
     std::array<char, 65536> piece{};
@@ -149,6 +179,9 @@ double last_in_output(const ProgramFolder& folder, const std::string& pattern) {
     ::close(file);
     if (!line.empty()) search();
     if (!last) throw std::invalid_argument(fmt::format("standard output has no line with '{}'", pattern));
+    if (const auto cut = exponent_behind(*behind))
+        throw std::invalid_argument(fmt::format("standard output: '{}' found '{}', a part of the number '{}{}'",
+                                                pattern, shortened(*last, 60), shortened(*last, 60), *cut));
     if (const auto number = number_of(*last)) return *number;
     throw std::invalid_argument(
         fmt::format("standard output: '{}' found '{}', which is no number", pattern, shortened(*last, 60)));

@@ -64,7 +64,13 @@ TEST(ProgramLines, OneProgramAnswersManyCases) {
 
 TEST(ProgramLines, EveryFailureIsOneClearOutcome) {
     expect_has(ending_of(replying("", "    print('{\"observables\": {\"y\": NaN}}')")),
-               "rejected: it replied NaN or Infinity, which is no number");
+               "rejected: its reply: /observables/y is NaN, which is no number");
+    expect_has(ending_of(replying("", "    print('{\"observables\": {\"y\": 1e400}}')")),
+               "rejected: its reply: /observables/y is 1e400, which is no number");
+    expect_has(ending_of(replying("", "    print('{\"observables\": {\"y\": 1, \"y\": 2}}')")),
+               "rejected: its reply: /observables/y is there twice");
+    expect_has(ending_of(replying("", "    print('[' * 100000)")),
+               "rejected: its reply is nested deeper than 100 levels");
     expect_has(ending_of(replying("", "    print('{\"observables\": {}}')")), "rejected: it replied without y");
     expect_has(ending_of(replying("", "    print('{\"observables\": {\"y\": 1, \"z\": 2}}')")),
                "rejected: it measured 'z', which is not declared");

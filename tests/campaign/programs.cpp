@@ -101,7 +101,16 @@ TEST(Programs, AReplayThatDiffersIsJudgedByItsTolerance) {
 
 TEST(Programs, EveryFailureIsOneClearOutcome) {
     const std::vector<std::pair<std::string, std::string>> cases = {
-        {"echo '{\"y\": NaN}' > out.json\n", "rejected: out.json holds NaN at byte"},
+        {"echo '{\"y\": NaN}' > out.json\n", "rejected: out.json: /y is NaN, which is no number"},
+        {"echo '{\"y\": -Infinity}' > out.json\n", "rejected: out.json: /y is Infinity, which is no number"},
+        {"echo '{\"y\": 1e400}' > out.json\n", "rejected: out.json: /y is 1e400, which is no number"},
+        {"echo '{\"y\": 1, \"z\": [0, -1e999]}' > out.json\n",
+         "rejected: out.json: /z/1 is -1e999, which is no number"},
+        {"echo '{\"y\": 1, \"y\": 2}' > out.json\n", "rejected: out.json: /y is there twice"},
+        {"printf '{\"y\": \"\\377\"}' > out.json\n", "rejected: out.json is no JSON at byte"},
+        {"head -c 200000 /dev/zero | tr '\\0' '[' > out.json\n", "rejected: out.json is nested deeper than 100 levels"},
+        {"(head -c 99 /dev/zero | tr '\\0' '['; head -c 99 /dev/zero | tr '\\0' ']') > out.json\n",
+         "rejected: out.json has no /y"},
         {"echo '{\"y\": null}' > out.json\n", "rejected: out.json: /y is null, which is no number"},
         {"echo '{\"z\": 1}' > out.json\n", "rejected: out.json has no /y"},
         {"exit 0\n", "rejected: out.json was not written"},

@@ -56,6 +56,21 @@ TEST(ProgramTables, AHeadOfWordsNeedsNoRemark) {
     EXPECT_EQ(ProgramTable("f", "1,2\n3,4\n", "comma").column("2"), Values{4});
 }
 
+TEST(ProgramTables, NumbersOfFortranAreRead) {
+    const ProgramTable table("f", "a,b,a b\n1.0D+03,-2.5d-3,1.5-103\n+1.E+2,1.0Q0,1e-400\n", "comma");
+    EXPECT_EQ(table.column("a"), (Values{1000, 100}));
+    EXPECT_EQ(table.column("b"), (Values{-2.5e-3, 1}));
+    EXPECT_EQ(table.column("a b"), (Values{1.5e-103, 0}));
+    for (const char* none : {"1.0D", "D+03", "1.0DD3", "1-2-3", "1e400", "-1.0D+400", "0x10"})
+        EXPECT_EQ(refusal(ProgramTable("f", std::string("v\n") + none + "\n", "comma"), "v"),
+                  std::string("f: 'v' in row 0 is '") + none + "', which is no number");
+}
+
+TEST(ProgramTables, AColumnThatIsThereTwiceIsRefused) {
+    EXPECT_EQ(refusal(ProgramTable("f", "t,v,v\n0,5,6\n", "comma"), "v"), "f has two columns 'v'");
+    EXPECT_EQ(ProgramTable("f", "t,v,v\n0,5,6\n", "comma").value("t", 0), 0);
+}
+
 TEST(ProgramTables, ATableWithoutRowsHasItsNames) {
     EXPECT_TRUE(ProgramTable("f", "# t v\n", "blank").column("v").empty());
     EXPECT_TRUE(ProgramTable("f", "t v\n", "blank").column("v").empty());
