@@ -1,5 +1,7 @@
 #include "solver/threads/thread_pool.hpp"
 
+#include "solver/own_cores.hpp"
+
 #include <system_error>
 
 namespace grainsweep {
@@ -23,7 +25,7 @@ void pause_core() {
 
 ThreadPool::ThreadPool(int threads)
     : size_(threads),
-      spins_(threads <= static_cast<int>(std::thread::hardware_concurrency())),
+      spins_(threads <= own_cores()),
       parts_(std::make_unique<Part[]>(static_cast<std::size_t>(threads))),
       orders_(std::make_unique<Order[]>(static_cast<std::size_t>(threads))) {
     threads_.reserve(static_cast<std::size_t>(threads));

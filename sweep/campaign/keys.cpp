@@ -253,7 +253,7 @@ std::span<const Key> limits_keys() {
 
 std::span<const Key> execution_keys() {
     static const std::vector<Key> keys = {
-        {"workers", "worker processes; 0: one per processor", Kind::whole, false, {0, 100'000}, {}, "0"},
+        {"workers", "worker processes; 0: one per core of the job", Kind::whole, false, {0, 100'000}, {}, "0"},
         {"launcher",
          "argument vector put before a worker, or before a host, e.g. srun -N1 -n1 --exact; {host} in a word is the "
          "number of the host, from 1 on",
@@ -271,7 +271,7 @@ std::span<const Key> execution_keys() {
          {},
          "0"},
         {"workers_per_host",
-         "workers that each host runs; 0: one per processor of the machine of the main program",
+         "workers that each host runs; 0: one per core that the main program's job has on its node",
          Kind::whole,
          false,
          {0, 4096},

@@ -286,7 +286,7 @@ std::vector<Command> archive_commands() {
              const auto threads = std::make_shared<std::int64_t>(0);
              declare_threads(parser, *threads);
              return [request, tolerance, threads, &format] {
-                 allow_threads(static_cast<int>(*threads));
+                 use_threads(*threads);
                  if (*tolerance != none_given) request->tolerance = *tolerance;
                  if (request->tolerance && !(*request->tolerance >= 0 && *request->tolerance <= 1))
                      throw campaign::wrong_question("--tolerance", std::to_string(*tolerance), "a number from 0 to 1");

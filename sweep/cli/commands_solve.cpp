@@ -260,7 +260,7 @@ std::vector<Command> solve_commands() {
                  declare_threads(parser, request->threads);
                  return [request, &format] {
                      use_path(request->path);
-                     allow_threads(static_cast<int>(request->threads));
+                     use_threads(request->threads);
                      return solve(*request, format);
                  };
              },

@@ -3,9 +3,9 @@
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
+#include "sweep/workers/job_cores.hpp"
 
 #include <algorithm>
-#include <thread>
 #include <vector>
 
 namespace grainsweep::cli {
@@ -38,7 +38,7 @@ std::size_t worker_count(const campaign::Campaign& campaign, std::optional<std::
     const bool hosted = execution.hosts > 0;
     const std::int64_t number = asked.value_or(hosted ? execution.workers_per_host : execution.workers);
     const std::size_t each =
-        number > 0 ? static_cast<std::size_t>(number) : std::max(1U, std::thread::hardware_concurrency() / of_a_case);
+        number > 0 ? static_cast<std::size_t>(number) : std::max<std::size_t>(1, workers::job_cores() / of_a_case);
     return hosted ? each * static_cast<std::size_t>(execution.hosts) : each;
 }
 

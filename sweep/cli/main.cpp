@@ -1,7 +1,9 @@
 // The front door, and the only place where an exception ends.
+#include "stats/several_responses.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/store/store.hpp"
+#include "sweep/workers/job_cores.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -53,6 +55,7 @@ void occupy_standard_descriptors() {
 int main(int argc, char** argv) {
     occupy_standard_descriptors();
     std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is a full disk: said, not died of
+    stats::allow_fits_at_once(workers::job_cores());
     try {
         return flushed(cli::parse_command_line(cli::all_commands(), argc, argv)());
     } catch (const campaign::WrongQuestion& error) {

@@ -1,12 +1,19 @@
 #include "sweep/cli/threads_option.hpp"
 
+#include "solver/scenes/scene.hpp"
+#include "sweep/workers/job_cores.hpp"
+
 namespace grainsweep::cli {
 
 void declare_threads(Parser& parser, std::int64_t& count) {
     parser
         .add_option("--threads", count,
-                    "threads that compute the case, which changes no bit of it; 0, the default: one for each core")
+                    "threads that compute the case, which changes no bit of it; 0, the default: one for each core of the job")
         ->check(whole_number(0, 1024));
+}
+
+void use_threads(std::int64_t count) {
+    allow_threads(static_cast<int>(count > 0 ? count : static_cast<std::int64_t>(workers::job_cores())));
 }
 
 }  // namespace grainsweep::cli

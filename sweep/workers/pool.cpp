@@ -6,6 +6,7 @@
 #include "sweep/workers/departures.hpp"
 #include "sweep/workers/fruitless_launches.hpp"
 #include "sweep/workers/hosts.hpp"
+#include "sweep/workers/job_cores.hpp"
 #include "sweep/workers/line_buffer.hpp"
 #include "sweep/workers/message.hpp"
 #include "sweep/workers/pool_worker.hpp"
@@ -16,7 +17,6 @@
 #include <csignal>
 #include <deque>
 #include <stdexcept>
-#include <thread>
 #include <utility>
 
 namespace grainsweep::workers {
@@ -46,10 +46,10 @@ std::vector<std::string> command_of(const PoolOptions& options) {
     return argv;
 }
 
-/// For the campaign: one for each worker, of this machine no more than it has.
+/// For the campaign: one for each worker, of this machine no more than its job has.
 std::size_t cores_of_a_node(const PoolOptions& options) {
     if (options.hosts > 0) return options.workers / options.hosts;
-    return std::min<std::size_t>(options.workers, std::max(1U, std::thread::hardware_concurrency()));
+    return std::min(options.workers, job_cores());
 }
 
 bool was_killed(int status) {

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <limits>
-#include <thread>
 #include <utility>
 
 #include "solver/dem/fast/left_over.hpp"
 #include "solver/dem/fast/listed_pairs.hpp"
 #include "solver/dem/fast/rebuild.hpp"
+#include "solver/own_cores.hpp"
 
 namespace grainsweep::dem::fast {
 
@@ -109,7 +109,7 @@ void Subdomain::send(const Record* records, int turn) const {
 
 void Subdomains::use(Threads threads) {
     threads_ = threads;
-    if (threads_.most <= 0) threads_.most = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    if (threads_.most <= 0) threads_.most = own_cores();
     threads_.least_particles = std::max(1, threads_.least_particles);
 }
 

@@ -1,13 +1,13 @@
 #include "solver/scenes/thermovibration/runs.hpp"
 
 #include "solver/observables/flow_state.hpp"
+#include "solver/own_cores.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
 #include <numeric>
-#include <thread>
 
 namespace grainsweep::thermovibration {
 namespace {
@@ -78,7 +78,7 @@ std::string fault(const coupling::SolidsVolume& solids, const flow::Grid& grid, 
 
 int threads_for(const flow::Grid& grid, int count) {
     constexpr std::size_t least_cells = 10'000;
-    const auto most = static_cast<std::size_t>(count > 0 ? count : std::max(1U, std::thread::hardware_concurrency()));
+    const auto most = static_cast<std::size_t>(count > 0 ? count : own_cores());
     return static_cast<int>(std::clamp<std::size_t>(grid.total_cells() / least_cells, 1, most));
 }
 
