@@ -121,7 +121,7 @@ WorkReport work_on(const WorkRequest& request) {
     });
     const auto beside = std::filesystem::absolute(request.config).parent_path();
     const spool::Spool spool(std::filesystem::absolute(request.spool),
-                             {beside, spool::hash_of_cases(cases), campaign.text});
+                             {beside, spool::hash_of_cases(cases), campaign.text}, campaign.scene());
     const std::size_t workers = worker_count(campaign, request.workers);
     ProgressLine line(request.quiet, workers * threads_of_a_case(campaign));
     for (const auto& warning : campaign::warnings_of(campaign, forecast)) line.note("warning: " + warning);

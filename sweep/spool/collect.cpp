@@ -1,16 +1,11 @@
 #include "sweep/spool/collect.hpp"
 
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/store/broken_world.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <map>
-#include <memory>
 #include <utility>
 
 namespace grainsweep::spool {
@@ -18,44 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using campaign::Outcome;
-
-std::string bytes_of(const fs::path& file) {
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), std::fclose);
-    if (!stream) {
-        if (errno == ENOENT) return {};  // it was released in between
-        throw store::BrokenWorld(fmt::format("'{}': cannot be read: {}", file.string(), std::strerror(errno)));
-    }
-    std::string text;
-    std::string part(65536, '\0');
-    for (std::size_t got = 1; got > 0;) {
-        got = std::fread(part.data(), 1, part.size(), stream.get());
-        text.append(part, 0, got);
-    }
-    if (std::ferror(stream.get()) != 0)
-        throw store::BrokenWorld(fmt::format("'{}': cannot be read: {}", file.string(), std::strerror(EIO)));
-    return text;
-}
-
-/// What its scene does not declare so; empty: all is declared.
-std::string undeclared_by(const SceneInfo& scene, const Observations& observations) {
-    const auto declared = [&](const std::string& name, bool scalar) {
-        const auto* observable = scene.find_observable(name);
-        return observable != nullptr && (observable->shape == Shape::scalar) == scalar;
-    };
-    for (const auto& [name, value] : observations.scalars)
-        if (!declared(name, true)) return name;
-    for (const auto& [name, samples] : observations.series)
-        if (!declared(name, false)) return name;
-    return {};
-}
-
-/// Why the answer must not be imported; empty: it may.
-std::string fault_of(const campaign::Campaign& campaign, const campaign::Attempt& named, const Answer& answer) {
-    if (answer.result.attempt != named) return "it answers another attempt than its name says";
-    if (const auto name = undeclared_by(campaign.scene(), answer.result.observations); !name.empty())
-        return fmt::format("it measured '{}', which its scene does not declare so", name);
-    return {};
-}
 
 }  // namespace
 
@@ -90,18 +47,15 @@ Collected collect(const fs::path& cases_folder, const campaign::Campaign& campai
         bool over = false;
         for (const auto number : numbers) {
             const auto file = cases_folder / fmt::format("{}.{}", id, number);
-            auto entry = entry_in(bytes_of(file));
-            if (const auto* damaged = std::get_if<Damaged>(&entry)) {
+            auto entry = entry_of(file, {id, number}, campaign.scene());
+            if (!entry) continue;  // it was released in between
+            if (const auto* damaged = std::get_if<Damaged>(&*entry)) {
                 unusable(file, damaged->why);
                 continue;
             }
-            auto* const answer = std::get_if<Answer>(&entry);
+            auto* const answer = std::get_if<Answer>(&*entry);
             if (answer == nullptr) {
                 if (!over) ++collected.claimed;
-                continue;
-            }
-            if (const auto fault = fault_of(campaign, {id, number}, *answer); !fault.empty()) {
-                unusable(file, fault);
                 continue;
             }
             const auto outcome = answer->result.outcome;

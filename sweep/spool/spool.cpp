@@ -1,5 +1,6 @@
 #include "sweep/spool/spool.hpp"
 
+#include "solver/scenes/scene.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/store/aside_file.hpp"
 #include "sweep/store/broken_world.hpp"
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <random>
 #include <span>
@@ -24,6 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view campaign_head = "grainsweep spool 1\n";
 constexpr double touches_per_lease = 5;
+constexpr off_t largest_file = off_t{32} << 20U;  // an answer is two lines of messages, of at most 16 MB
 
 [[noreturn]] void broken(const fs::path& file, std::string_view what, int number = errno) {
     throw store::BrokenWorld(fmt::format("'{}': cannot be {}: {}", file.string(), what, std::strerror(number)));
@@ -44,20 +47,39 @@ private:
     int number_;
 };
 
-/// Nothing where there is no such file.
-std::optional<std::string> contents_of_file(const fs::path& file) {
-    const Descriptor stream(file, O_RDONLY);
-    if (!stream.is_open() && (errno == ENOENT || errno == ESTALE)) return std::nullopt;
-    if (!stream.is_open()) broken(file, "read");
+/// Files of a spool are regular, and opening anything else must neither wait nor follow a link.
+constexpr int to_read = O_RDONLY | O_NONBLOCK | O_NOFOLLOW | O_NOCTTY;
+
+struct Contents {
     std::string text;
+    std::string fault = {};  ///< why these are not the contents of a spool's file; empty: they are
+};
+
+/// Nothing where there is no such file.
+std::optional<Contents> contents_of_file(const fs::path& file) {
+    const Descriptor stream(file, to_read);
+    if (!stream.is_open()) {
+        if (errno == ENOENT || errno == ESTALE) return std::nullopt;
+        if (errno == ELOOP) return Contents{{}, "it is a link"};
+        if (errno == EACCES || errno == EPERM || errno == ENXIO || errno == ENODEV)
+            return Contents{{}, fmt::format("it cannot be read: {}", std::strerror(errno))};
+        broken(file, "read");
+    }
+    struct stat status {};
+    if (::fstat(stream.number(), &status) != 0) broken(file, "read");
+    if (!S_ISREG(status.st_mode)) return Contents{{}, "it is no regular file"};
+    if (status.st_size > largest_file) return Contents{{}, fmt::format("it has more than {} MB", largest_file >> 20U)};
+    Contents contents;
     std::array<char, 65536> part{};
     while (true) {
         const auto length = ::read(stream.number(), part.data(), part.size());
         if (length < 0 && errno == EINTR) continue;
         if (length < 0 && errno == ESTALE) return std::nullopt;
         if (length < 0) broken(file, "read");
-        if (length == 0) return text;
-        text.append(part.data(), static_cast<std::size_t>(length));
+        if (length == 0) return contents;
+        contents.text.append(part.data(), static_cast<std::size_t>(length));
+        if (contents.text.size() > static_cast<std::size_t>(largest_file))
+            return Contents{{}, "it grows while it is read"};
     }
 }
 
@@ -105,27 +127,53 @@ std::optional<Asked> asked_of(std::string_view text) {
 
 /// ns; nothing where the file is gone. Opened, so that a network file system asks its server.
 std::optional<std::int64_t> modified(const fs::path& file) {
-    const Descriptor stream(file, O_RDONLY);
+    const Descriptor stream(file, to_read);
     struct stat seen {};
-    if (!stream.is_open() || ::fstat(stream.number(), &seen) != 0) return std::nullopt;
+    if (!stream.is_open() || ::fstat(stream.number(), &seen) != 0 || !S_ISREG(seen.st_mode)) return std::nullopt;
     return std::int64_t{seen.st_mtim.tv_sec} * 1'000'000'000 + seen.st_mtim.tv_nsec;
 }
 
+/// What its scene does not declare so; empty: all is declared.
+std::string undeclared_by(const SceneInfo& scene, const Observations& observations) {
+    const auto declared = [&](const std::string& name, bool scalar) {
+        const auto* observable = scene.find_observable(name);
+        return observable != nullptr && (observable->shape == Shape::scalar) == scalar;
+    };
+    for (const auto& [name, value] : observations.scalars)
+        if (!declared(name, true)) return name;
+    for (const auto& [name, samples] : observations.series)
+        if (!declared(name, false)) return name;
+    return {};
+}
+
 }  // namespace
+
+std::optional<Entry> entry_of(const fs::path& file, const campaign::Attempt& named, const SceneInfo& scene) {
+    const auto contents = contents_of_file(file);
+    if (!contents) return std::nullopt;
+    if (!contents->fault.empty()) return Damaged{contents->fault};
+    auto entry = entry_in(contents->text);
+    const auto* answer = std::get_if<Answer>(&entry);
+    if (answer == nullptr) return entry;
+    if (answer->result.attempt != named) return Damaged{"it answers another attempt than its name says"};
+    if (const auto name = undeclared_by(scene, answer->result.observations); !name.empty())
+        return Damaged{fmt::format("it measured '{}', which its scene does not declare so", name)};
+    return entry;
+}
 
 Asked Spool::asked_in(const fs::path& folder) {
     const auto text = contents_of_file(folder / "campaign");
     if (!text)
         throw campaign::wrong_question("DIR", folder.string(),
                                        "is no spool: 'grainsweep work CONFIG --spool DIR' makes one");
-    auto asked = asked_of(*text);
-    if (!asked)
+    auto asked = asked_of(text->text);
+    if (!asked || !text->fault.empty())
         throw store::BrokenWorld(
             fmt::format("'{}': is damaged, or no spool of this program", (folder / "campaign").string()));
     return std::move(*asked);
 }
 
-Spool::Spool(fs::path folder, const Asked& asked) : folder_(std::move(folder)) {
+Spool::Spool(fs::path folder, const Asked& asked, const SceneInfo& scene) : folder_(std::move(folder)), scene_(&scene) {
     std::error_code error;
     for (const char* part : {"tasks", "cases"}) {
         fs::create_directories(folder_ / part, error);
@@ -153,12 +201,7 @@ bool Spool::claim(const campaign::Attempt& attempt, const std::string& task) con
 }
 
 std::optional<Entry> Spool::read(const campaign::Attempt& attempt) const {
-    const auto text = contents_of_file(file_of(attempt));
-    if (!text) return std::nullopt;
-    auto entry = entry_in(*text);
-    if (const auto* answer = std::get_if<Answer>(&entry); answer != nullptr && answer->result.attempt != attempt)
-        return Damaged{"it answers another attempt than its name says"};
-    return entry;
+    return entry_of(file_of(attempt), attempt, *scene_);
 }
 
 void Spool::answer(const Answer& answer) const {
@@ -167,12 +210,6 @@ void Spool::answer(const Answer& answer) const {
 
 void Spool::release(const campaign::Attempt& attempt) const {
     ::unlink(file_of(attempt).c_str());
-}
-
-double Spool::age_of(const campaign::Attempt& attempt, const fs::path& touched_now) const {
-    const auto then = modified(file_of(attempt));
-    const auto now = modified(touched_now);
-    return then && now ? static_cast<double>(*now - *then) * 1e-9 : 0;
 }
 
 TaskFile::TaskFile(const Spool& spool, double lease) : spool_(spool), lease_(lease) {
@@ -201,16 +238,25 @@ void TaskFile::keep_young(double now) {
 TaskFile::State TaskFile::state_of(const std::string& task) {
     const auto other = modified(spool_.task(task));
     if (!other) return State::dead;  // it has ended, and left this behind
-    const auto [first, fresh] = first_seen_.emplace(task, *other);
-    touch();
-    const auto own = modified(file_);
-    if (own && static_cast<double>(*own - *other) * 1e-9 > lease_) return State::dead;
-    return first->second != *other ? State::renewed : State::lives;
+    const auto file = spool_.task(task);
+    if (is_silent(file, *other)) return State::dead;
+    return watched_.at(file).first != *other ? State::renewed : State::lives;
 }
 
 bool TaskFile::is_abandoned(const campaign::Attempt& attempt) {
+    const auto file = spool_.file_of(attempt);
+    const auto claimed = modified(file);
+    return claimed && is_silent(file, *claimed);
+}
+
+bool TaskFile::is_silent(const fs::path& file, std::int64_t modified_at) {
+    using Clock = std::chrono::steady_clock;
+    const double now = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+    auto& seen = watched_.try_emplace(file, Watched{modified_at, modified_at, now}).first->second;
+    if (std::exchange(seen.last, modified_at) != modified_at) seen.changed = now;
     touch();
-    return spool_.age_of(attempt, file_) > lease_;
+    const auto own = modified(file_);  // by the clock of the file system
+    return now - seen.changed > lease_ || (own && static_cast<double>(*own - modified_at) * 1e-9 > lease_);
 }
 
 }  // namespace grainsweep::spool

@@ -48,6 +48,11 @@ using Entry = std::variant<Answer, Claim, Damaged>;
 [[nodiscard]] std::string text_of(const Claim& claim);
 [[nodiscard]] Entry entry_in(std::string_view text);
 
+/// The entry that a file of cases/ holds; nothing where it is gone. Damaged, too: what is no regular file of a spool's
+/// size, and an answer that the scene cannot give or that belongs to another attempt than the file's name says.
+[[nodiscard]] std::optional<Entry> entry_of(const std::filesystem::path& file, const campaign::Attempt& named,
+                                            const SceneInfo& scene);
+
 /// A file of cases/. Nothing where the name is none of a spool's.
 [[nodiscard]] std::optional<campaign::Attempt> attempt_named(std::string_view file);
 
@@ -65,8 +70,8 @@ public:
     [[nodiscard]] static Asked asked_in(const std::filesystem::path& folder);
 
     /// Makes the folder where there is none; throws WrongQuestion where it is a spool of other cases, BrokenWorld where
-    /// it cannot be written.
-    Spool(std::filesystem::path folder, const Asked& asked);
+    /// it cannot be written. `scene`: that answers the cases.
+    Spool(std::filesystem::path folder, const Asked& asked, const SceneInfo& scene);
 
     /// Creates the claim; false where something is there.
     [[nodiscard]] bool claim(const campaign::Attempt& attempt, const std::string& task) const;
@@ -80,18 +85,18 @@ public:
     [[nodiscard]] std::filesystem::path artefacts() const { return folder_ / "artefacts"; }
     [[nodiscard]] std::filesystem::path cases() const { return folder_ / "cases"; }
     [[nodiscard]] std::filesystem::path task(const std::string& name) const { return folder_ / "tasks" / name; }
-    /// Seconds since a claim that names no task was made, by the clock of the file system; 0 where it is gone.
-    [[nodiscard]] double age_of(const campaign::Attempt& attempt, const std::filesystem::path& touched_now) const;
+    [[nodiscard]] std::filesystem::path file_of(const campaign::Attempt& attempt) const;
 
 private:
-    [[nodiscard]] std::filesystem::path file_of(const campaign::Attempt& attempt) const;
     std::filesystem::path folder_;
+    const SceneInfo* scene_;
 };
 
 /// Makes the file of a running task, and keeps it young; removes it in the end.
 class TaskFile {
 public:
-    /// A task whose file is older than `lease` seconds is taken for dead.
+    /// A task whose file is older than `lease` seconds is taken for dead, and so is one whose file this process has not
+    /// seen change for as long: a date in the future is no sign of life.
     TaskFile(const Spool& spool, double lease);
     TaskFile(const TaskFile&) = delete;
     TaskFile& operator=(const TaskFile&) = delete;
@@ -109,12 +114,19 @@ public:
     [[nodiscard]] bool is_abandoned(const campaign::Attempt& attempt);
 
 private:
+    /// A file that others touch, as it was seen so far.
+    struct Watched {
+        std::int64_t first = 0, last = 0;  ///< modification times, ns
+        double changed = 0;                ///< when `last` was first seen, s of the steady clock
+    };
     void touch();
+    /// Whether it is too old, or has not changed for too long; looked at now.
+    [[nodiscard]] bool is_silent(const std::filesystem::path& file, std::int64_t modified);
     const Spool& spool_;
     std::string name_;
     std::filesystem::path file_;
     double lease_, touched_ = 0;
-    std::map<std::string, std::int64_t, std::less<>> first_seen_;  ///< modification times, ns
+    std::map<std::filesystem::path, Watched> watched_;
 };
 
 }  // namespace grainsweep::spool

@@ -18,6 +18,7 @@
 #include <limits>
 #include <numeric>
 #include <set>
+#include <thread>
 
 namespace grainsweep::spool {
 namespace {
@@ -118,7 +119,7 @@ protected:
         cases = campaign::Cases(placed);
         asked = {folder.path(), hash_of_cases(cases), "{}"};
     }
-    [[nodiscard]] Spool open() const { return {folder / "spool", asked}; }
+    [[nodiscard]] Spool open() const { return {folder / "spool", asked, campaign.scene()}; }
     [[nodiscard]] campaign::CaseId id(std::size_t i) const { return placed[i].question.id; }
     void write(const std::string& name, const std::string& text) const {
         std::ofstream(folder / "spool" / "cases" / name, std::ios::binary) << text;
@@ -237,6 +238,72 @@ TEST_F(SpoolFolder, WhatIsDamagedHalfOrForeignIsNamedAndNotImported) {
     for (const std::string& name : {id(0) + ".1", id(1) + ".1", an_id + ".1", std::string("notes.txt"), id(2) + ".1"})
         EXPECT_TRUE(std::ranges::any_of(found.notes, [&](const auto& note) { return note.find(name) != note.npos; }))
             << name;
+}
+
+// None of these is what a spool's file is; opening them must neither wait nor fill memory.
+TEST_F(SpoolFolder, WhatIsNoRegularFileIsNamedAndTheRestImported) {
+    const auto spool = open();
+    const auto at = [&](std::size_t i) { return folder / "spool" / "cases" / (id(i) + ".1"); };
+    ASSERT_EQ(::mkfifo(at(0).c_str(), 0600), 0);
+    fs::create_directory(at(1));
+    fs::create_symlink(at(2).filename(), at(2));
+    fs::create_symlink("/dev/zero", at(3));
+    write(id(4) + ".1", "");
+    fs::resize_file(at(4), std::uintmax_t{1} << 40U);
+    spool.answer(an_answer(id(5), 1));
+    const auto found = collected();
+    EXPECT_EQ(found.tally.imported, 1U);
+    EXPECT_EQ(found.tally.unusable, 5U);
+    const auto named = [&](std::size_t i, const std::string& why) {
+        return std::ranges::any_of(found.notes, [&](const auto& note) {
+            return note.find(id(i)) != note.npos && note.find(why) != note.npos;
+        });
+    };
+    EXPECT_TRUE(named(0, "it is no regular file"));
+    EXPECT_TRUE(named(1, "it is no regular file"));
+    EXPECT_TRUE(named(2, "it is a link"));
+    EXPECT_TRUE(named(3, "it is a link"));
+    EXPECT_TRUE(named(4, "it has more than 32 MB"));
+    for (std::size_t i = 0; i < 5; ++i)
+        EXPECT_TRUE(std::holds_alternative<Damaged>(spool.read({id(i), 1}).value())) << i;
+    fs::remove(folder / "spool" / "campaign");
+    ASSERT_EQ(::mkfifo((folder / "spool" / "campaign").c_str(), 0600), 0);
+    EXPECT_THROW((void)Spool::asked_in(folder / "spool"), std::runtime_error);
+}
+
+// What collect refuses no task takes for an answer.
+TEST_F(SpoolFolder, AnAnswerThatItsSceneCannotGiveIsDamaged) {
+    const auto spool = open();
+    auto stranger = an_answer(id(0), 1);
+    stranger.result.observations.scalars["unheard_of"] = 1;
+    spool.answer(stranger);
+    auto other_shape = an_answer(id(1), 1);
+    other_shape.result.observations.scalars["y_series"] = 1;
+    spool.answer(other_shape);
+    for (const std::size_t i : {0U, 1U})
+        EXPECT_TRUE(std::holds_alternative<Damaged>(spool.read({id(i), 1}).value())) << i;
+}
+
+TEST_F(SpoolFolder, ADateInTheFutureIsNoSignOfLife) {
+    const auto spool = open();
+    TaskFile own(spool, 0.3);
+    const auto next_year = fs::file_time_type::clock::now() + std::chrono::hours(24 * 365);
+    std::ofstream(spool.task("node.1.0")) << "";
+    fs::last_write_time(spool.task("node.1.0"), next_year);
+    write(id(0) + ".1", "");
+    fs::last_write_time(spool.cases() / (id(0) + ".1"), next_year);
+    EXPECT_EQ(own.state_of("node.1.0"), TaskFile::State::lives);
+    EXPECT_FALSE(own.is_abandoned({id(0), 1}));
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    fs::last_write_time(spool.task("node.1.0"), next_year + std::chrono::seconds(1));
+    EXPECT_EQ(own.state_of("node.1.0"), TaskFile::State::renewed);
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    EXPECT_EQ(own.state_of("node.1.0"), TaskFile::State::renewed) << "0.2 s after it was touched";
+    EXPECT_TRUE(own.is_abandoned({id(0), 1})) << "0.4 s without a change";
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    EXPECT_EQ(own.state_of("node.1.0"), TaskFile::State::dead);
+    ASSERT_EQ(::mkfifo(spool.task("node.2.0").c_str(), 0600), 0);
+    EXPECT_EQ(own.state_of("node.2.0"), TaskFile::State::dead) << "no task touches that";
 }
 
 }  // namespace

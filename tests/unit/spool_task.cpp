@@ -28,7 +28,7 @@ protected:
         : campaign(tests::small_campaign("spooled")),
           placed(tests::small_design(campaign, 5)),
           cases(placed),
-          spool(folder / "spool", {folder.path(), hash_of_cases(cases), "{}"}) {}
+          spool(folder / "spool", {folder.path(), hash_of_cases(cases), "{}"}, campaign.scene()) {}
 
     static workers::PoolEvent answered(const campaign::Attempt& attempt) {
         campaign::CaseResult result;
