@@ -31,7 +31,7 @@ std::optional<std::string> FruitlessLaunches::ended(const std::string& reason, b
                                                     double now) {
     if (++in_a_row_ < (killed ? most_killed_in_a_row : most_in_a_row)) return std::nullopt;
     if (others == 0) {
-        why_ = fmt::format("cannot start workers with '{}': {}", command_, reason);
+        give_up(reason);
         return std::nullopt;
     }
     not_before_ = now + pause_;
@@ -40,6 +40,10 @@ std::optional<std::string> FruitlessLaunches::ended(const std::string& reason, b
     if (!first) return std::nullopt;
     return fmt::format("cannot start another worker with '{}': {}; going on with {}, and trying again now and then",
                        command_, reason, others);
+}
+
+void FruitlessLaunches::give_up(const std::string& reason) {
+    why_ = fmt::format("cannot start workers with '{}': {}", command_, reason);
 }
 
 std::optional<std::string> FruitlessLaunches::not_launched(const std::string& reason, std::size_t others, double now) {

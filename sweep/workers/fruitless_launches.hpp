@@ -20,6 +20,8 @@ public:
                                                    double now);
     /// The same of one that could not even be launched: another try at once would end alike.
     [[nodiscard]] std::optional<std::string> not_launched(const std::string& reason, std::size_t others, double now);
+    /// No other launch can do better.
+    void give_up(const std::string& reason);
     [[nodiscard]] bool waits(double now) const { return now < not_before_; }
     /// Why no worker can be had at all; empty: one can.
     [[nodiscard]] const std::string& why() const { return why_; }

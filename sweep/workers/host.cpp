@@ -30,7 +30,7 @@ namespace asio = boost::asio;
 using namespace std::chrono_literals;
 using frames::WorkerNumber;
 
-constexpr int no_main_program = 3, no_frames = 2;
+constexpr int no_main_program = 3;
 constexpr std::array passed_on = {SIGTERM, SIGINT, SIGHUP, SIGUSR1, SIGUSR2};
 constexpr std::size_t most_unwritten = std::size_t{1} << 20U;  // before workers are no longer read from
 constexpr auto look_at_ends_every = 50ms;

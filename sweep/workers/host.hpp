@@ -16,6 +16,9 @@ struct HostOptions {
     double lease_seconds = 600;
 };
 
+/// Exit code of a host whose standard input is not the main program's, or was changed on its way.
+inline constexpr int no_frames = 2;
+
 /// Returns the exit code of the process.
 int host(const HostOptions& options);
 

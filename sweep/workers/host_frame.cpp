@@ -1,5 +1,7 @@
 #include "sweep/workers/host_frame.hpp"
 
+#include <boost/crc.hpp>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -11,7 +13,7 @@ namespace {
 constexpr std::string_view hello_word = "grainsweep host ";
 // A launcher may greet; one that floods is no launcher.
 constexpr std::size_t most_greeting_bytes = std::size_t{64} << 10U;
-constexpr std::size_t longest_head = 80;  // three numbers and a word
+constexpr std::size_t longest_head = 100;  // four numbers and a word
 
 void add_numbers(std::string& to, std::initializer_list<std::uint64_t> numbers) {
     bool first = to.empty() || to.back() == '\n';
@@ -21,6 +23,31 @@ void add_numbers(std::string& to, std::initializer_list<std::uint64_t> numbers) 
         std::array<char, 24> digits{};
         to.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr);
     }
+}
+
+/// The CRC that cksum(1) prints: of the bytes, then of their number, least significant byte first.
+class Sum {
+public:
+    Sum& add(std::string_view bytes) {
+        crc_.process_bytes(bytes.data(), bytes.size());
+        count_ += bytes.size();
+        return *this;
+    }
+    [[nodiscard]] std::uint32_t value() {
+        for (std::size_t rest = count_; rest > 0; rest >>= 8U) crc_.process_byte(static_cast<unsigned char>(rest));
+        return crc_.checksum();
+    }
+
+private:
+    boost::crc_optimal<32, 0x04C11DB7, 0, 0xFFFFFFFF, false, false> crc_;
+    std::size_t count_ = 0;
+};
+
+/// Ends a head, which is all of `to` from `begin` on, and appends its body.
+void add_sum(std::string& to, std::size_t begin, std::string_view body = {}) {
+    const auto sum = Sum().add(std::string_view(to).substr(begin)).add("\n").add(body).value();
+    to += ' ' + std::to_string(sum) + '\n';
+    to += body;
 }
 
 /// Numbers and words of a line, taken one by one.
@@ -51,10 +78,12 @@ private:
 
 struct Head {
     Frame frame;
-    std::optional<std::size_t> body = {};  ///< bytes that follow the line, without their end
+    std::optional<std::size_t> body = {};   ///< bytes that follow the line, without their end
+    std::optional<std::uint32_t> sum = {};  ///< of what stands before it, a line's end and the body
 };
 
-std::optional<Head> head_of(std::string_view line) {
+/// Without the sum.
+std::optional<Head> plain_head_of(std::string_view line) {
     Words words(line);
     Head head;
     if (!line.empty() && line.front() >= '0' && line.front() <= '9') {
@@ -87,6 +116,25 @@ std::optional<Head> head_of(std::string_view line) {
     return head;
 }
 
+std::optional<Head> head_of(std::string_view line) {
+    if (line.starts_with(hello_word) || std::string_view(lease_frame).starts_with(line) ||
+        std::string_view(alive_frame).starts_with(line))
+        return plain_head_of(line);
+    const auto last = line.rfind(' ');
+    if (last == std::string_view::npos) return std::nullopt;
+    auto head = plain_head_of(line.substr(0, last));
+    Words words(line.substr(last + 1));
+    const auto sum = words.number<std::uint32_t>();
+    if (!head || !words.over()) return std::nullopt;
+    head->sum = sum;
+    return head;
+}
+
+/// Whether a frame is as it was written. `line`: its head with the sum.
+bool is_unchanged(const Head& head, std::string_view line, std::string_view body) {
+    return !head.sum || *head.sum == Sum().add(line.substr(0, line.rfind(' '))).add("\n").add(body).value();
+}
+
 }  // namespace
 
 void add_hello(std::string& to) {
@@ -95,37 +143,44 @@ void add_hello(std::string& to) {
 }
 
 void add_start(std::string& to, WorkerNumber worker) {
+    const std::size_t begin = to.size();
     to += "start";
     add_numbers(to, {worker});
-    to += '\n';
+    add_sum(to, begin);
 }
 
 void add_piece(std::string& to, WorkerNumber worker, std::string_view bytes) {
     while (!bytes.empty()) {
         const auto part = bytes.substr(0, longest_piece);
+        const std::size_t begin = to.size();
         add_numbers(to, {worker, part.size()});
-        to.append("\n").append(part) += '\n';
+        add_sum(to, begin, part);
+        to += '\n';
         bytes.remove_prefix(part.size());
     }
 }
 
 void add_signal(std::string& to, WorkerNumber worker, int number) {
+    const std::size_t begin = to.size();
     to += "signal";
     add_numbers(to, {worker, static_cast<std::uint64_t>(number)});
-    to += '\n';
+    add_sum(to, begin);
 }
 
 void add_close(std::string& to, WorkerNumber worker) {
+    const std::size_t begin = to.size();
     to += "close";
     add_numbers(to, {worker});
-    to += '\n';
+    add_sum(to, begin);
 }
 
 void add_ended(std::string& to, WorkerNumber worker, int status, std::string_view log) {
     log = log.substr(log.size() - std::min(log.size(), longest_piece));
+    const std::size_t begin = to.size();
     to += "ended";
     add_numbers(to, {worker, static_cast<std::uint64_t>(status), log.size()});
-    to.append("\n").append(log) += '\n';
+    add_sum(to, begin, log);
+    to += '\n';
 }
 
 std::size_t Reader::parse(std::string_view text, Frame& frame) {
@@ -146,14 +201,16 @@ std::size_t Reader::parse(std::string_view text, Frame& frame) {
         return end + 1;
     }
     if (end > longest_head) return text.size() > longest_head ? nonsense : 0;
-    const auto head = head_of(text.substr(0, end));
+    const auto line = text.substr(0, end);
+    const auto head = head_of(line);
     if (!head) return nonsense;
     frame = head->frame;
-    if (!head->body) return end + 1;
+    if (!head->body) return is_unchanged(*head, line, {}) ? end + 1 : nonsense;
     const std::size_t whole = end + 1 + *head->body + 1;
     if (text.size() < whole) return 0;
     if (text[whole - 1] != '\n') return nonsense;
     const auto body = text.substr(end + 1, *head->body);
+    if (!is_unchanged(*head, line, body)) return nonsense;
     if (auto* piece = std::get_if<Piece>(&frame)) piece->bytes = body;
     if (auto* ended = std::get_if<Ended>(&frame)) ended->log = body;
     return whole;

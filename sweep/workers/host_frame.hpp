@@ -1,14 +1,15 @@
-// What main program and host (host.hpp) write to each other, on one page. A frame is a line of words; where its last
-// word is a length, so many bytes and a line's end follow. Numbers of workers are the main program's and never used
-// twice. What workers and main program say to each other (message.hpp) travels in pieces, as it comes out of a pipe:
-// the host knows no line of it.
+// What main program and host (host.hpp) write to each other, on one page. A frame is a line of words; where it has a
+// length, so many bytes and a line's end follow. SUM, the last word, is the CRC of cksum(1) over the line without it,
+// its end, and the bytes: an answer that changed on its way is no answer. Numbers of workers are the main program's and
+// never used twice. What workers and main program say to each other (message.hpp) travels in pieces, as it comes out of
+// a pipe: the host knows no line of it.
 //
 //   main program                     host
-//          start 7                          grainsweep host 1    first; the number of this protocol
-//          7 120 <bytes>                    7 80 <bytes>         standard input and output of worker 7
-//          signal 7 15                      alive                every second
-//          close 7                          ended 7 9 33 <log>   its status as of waitpid(2), the last it wrote to
-//          lease                                                 standard error
+//          start 7 SUM                      grainsweep host 2    first; the number of this protocol
+//          7 120 SUM <bytes>                7 80 SUM <bytes>     standard input and output of worker 7
+//          signal 7 15 SUM                  alive                every second
+//          close 7 SUM                      ended 7 9 33 SUM <log>   its status as of waitpid(2), the last it wrote
+//          lease                                                     to standard error
 //
 // `close`: the worker's pipes are closed; its end is still told. End of file in either direction means that the other
 // side is gone.
@@ -22,7 +23,7 @@
 
 namespace grainsweep::workers::frames {
 
-inline constexpr std::int64_t host_protocol = 1;
+inline constexpr std::int64_t host_protocol = 2;
 /// Bytes that one frame carries.
 inline constexpr std::size_t longest_piece = std::size_t{64} << 10U;
 

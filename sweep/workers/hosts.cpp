@@ -10,6 +10,7 @@ namespace grainsweep::workers {
 namespace {
 
 constexpr auto time_to_end_workers = std::chrono::seconds(5);
+constexpr int most_unsound = 10;     // hosts lost to changed frames: what lies between changes every answer of a case
 constexpr double time_to_kill = 10;  // s; a worker that cannot be ended would keep its place for ever
 
 std::vector<std::string> with_host_number(std::vector<std::string> argv, std::size_t number) {
@@ -65,7 +66,9 @@ void Hosts::gone(const std::shared_ptr<RemoteHost>& host, const std::string& rea
     std::erase(hosts_, host);
     leaving_.hurry(host->process(), true, now);
     if (retired_) return;
-    if (host->was_of_use()) {
+    if (host->was_unsound() && ++unsound_ == most_unsound) {
+        fruitless_.give_up(reason);
+    } else if (host->was_of_use()) {
         fruitless_.fruitful();
         listener_.say(fmt::format("host {} is gone: {}", host->number(), reason));
     } else if (auto remark = fruitless_.ended(reason, host->is_ready(), hosts_.size(), now)) {

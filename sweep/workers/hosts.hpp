@@ -53,6 +53,7 @@ private:
     Listener listener_;
     std::vector<std::shared_ptr<RemoteHost>> hosts_;
     FruitlessLaunches fruitless_;
+    int unsound_ = 0;  ///< hosts lost because a frame was not as it was written
     Departures leaving_;
     bool retired_ = false;
 };

@@ -1,6 +1,9 @@
 #include "sweep/workers/remote_host.hpp"
 
+#include "sweep/workers/host.hpp"
+
 #include <fmt/format.h>
+#include <sys/wait.h>
 
 #include <algorithm>
 #include <csignal>
@@ -24,14 +27,18 @@ void RemoteHost::listen(Listener listener, std::function<double()> clock) {
                           const bool sound = reader_.feed(piece, [this](const frames::Frame& frame) {
                               if (!gone_) take(frame);
                           });
-                          if (!sound && !gone_) lose("it wrote something that no host writes");
+                          if (sound || gone_) return;
+                          unsound_ = true;
+                          lose("it wrote something that no host writes, or it was changed on its way");
                       },
                       [this, known = weak_from_this()] {
                           const auto self = known.lock();
                           if (!self || gone_) return;
                           process_->signal(SIGKILL);  // whatever is left of its process group
                           process_->wait(2s);
-                          lose(describe_end("it", process_->status()));
+                          const int status = process_->status();
+                          unsound_ = WIFEXITED(status) && WEXITSTATUS(status) == no_frames;
+                          lose(describe_end("it", status));
                       }});
 }
 

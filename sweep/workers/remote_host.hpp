@@ -40,6 +40,8 @@ public:
     [[nodiscard]] bool is_ready() const { return ready_; }
     /// One of its workers began a case.
     [[nodiscard]] bool was_of_use() const { return of_use_; }
+    /// It ended because a frame, in either direction, was not as it was written.
+    [[nodiscard]] bool was_unsound() const { return unsound_; }
     /// Not known to have ended.
     [[nodiscard]] std::size_t workers() const { return workers_.size(); }
     [[nodiscard]] double launched() const { return launched_; }
@@ -62,7 +64,7 @@ private:
     std::map<frames::WorkerNumber, std::weak_ptr<HostedWorker>> workers_;
     std::map<frames::WorkerNumber, double> killed_;  ///< when, of those whose end is not told yet
     frames::WorkerNumber last_ = 0;
-    bool ready_ = false, of_use_ = false, gone_ = false;
+    bool ready_ = false, of_use_ = false, unsound_ = false, gone_ = false;
     double launched_, heard_;
 };
 

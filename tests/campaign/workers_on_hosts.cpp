@@ -192,8 +192,11 @@ TEST(Hosts, AHostThatFallsSilentIsReplaced) {
 
 /// A script in the place of a host with one worker: `say` writes as its worker, which is number 1.
 const char* as_host = R"(ready=$("$1" worker "${@:3}" </dev/null | head -n1)
-printf 'grainsweep host 1\n'
-say() { printf '1 %d\n%s\n\n' $(( ${#1} + 1 )) "$1"; }
+printf 'grainsweep host 2\n'
+sum() { printf '%s\n%s' "$1" "$2" | cksum | cut -d' ' -f1; }
+say() { local head="1 $(( ${#1} + 1 ))";
+printf '%s %s\n%s\n\n' "$head" "$(sum "$head" "$1"$'\n')" "$1";
+}
 )";
 
 ScriptedCampaign scripted_host(const std::string& script) {
@@ -216,6 +219,23 @@ TEST(Hosts, NothingCountsAfterWhatIsNoFrame) {
     EXPECT_EQ(campaign.ask("SELECT count(*) FROM attempt"), 0);
 }
 
+// What lies between a host and the main program changes a digit of an answer.
+TEST(Hosts, AnAnswerThatWasChangedOnItsWayIsNotBelieved) {
+    const auto once = scripted_host(R"(say "$ready"; while next; do begun
+if mkdir flipped 2>/dev/null; then done_with completed '"y":2' | sed 's/"y":2/"y":3/'; else done_with completed '"y":2'; fi
+done)");
+    const auto run = once.run();
+    EXPECT_EQ(run.code, 0) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("was changed on its way"));
+    EXPECT_EQ(once.ask("SELECT count(*) FROM scripted WHERE y = 2"), 3);
+    const auto always = scripted_host(
+        R"(say "$ready"; while next; do begun; done_with completed '"y":2' | sed 's/"y":2/"y":3/'; done)");
+    const auto ended = always.run();
+    EXPECT_EQ(ended.code, 3) << ended.err;
+    EXPECT_THAT(ended.err, HasSubstr("was changed on its way"));
+    EXPECT_EQ(always.ask("SELECT count(*) FROM scripted WHERE y IS NOT NULL"), 0);
+}
+
 TEST(Hosts, AHostThatFloodsEndsTheRun) {
     for (const char* flood : {"yes | tr -d '\\n'", "while :; do printf '1 99999999\\n'; done", "exec yes"}) {
         const auto campaign = scripted_host(flood);
@@ -228,7 +248,7 @@ TEST(Hosts, AHostThatFloodsEndsTheRun) {
 // What its worker may write is judged by the same rules as of one without a host.
 TEST(Hosts, AWorkerThatFloodsThroughAHostIsDismissed) {
     const auto campaign = scripted_host(
-        R"(say "$ready"; next; begun; long=$(printf '%060000d' 0); for k in $(seq 300); do printf '1 60000\n%s\n' "$long"; done
+        R"(say "$ready"; next; begun; long=$(printf '%060000d' 0); sum=$(sum '1 60000' "$long"); for k in $(seq 300); do printf '1 60000 %s\n%s\n' "$sum" "$long"; done
 while read -r line; do [[ $line == signal* ]] && exit 0; done)");
     const auto run = campaign.run();
     EXPECT_EQ(run.code, 1) << run.err;
@@ -237,7 +257,7 @@ while read -r line; do [[ $line == signal* ]] && exit 0; done)");
 
 TEST(Hosts, HalfAnAnswerIsNone) {
     const auto campaign = scripted_host(R"(say "$ready"; next; begun
-printf '1 500\n{"done":{%s,"outcome":"completed","mess' "$attempt")");
+printf '1 500 1\n{"done":{%s,"outcome":"completed","mess' "$attempt")");
     const auto run = campaign.run({"--max-cases", "1"});
     EXPECT_NE(run.code, 0) << run.err;
     EXPECT_EQ(campaign.ask("SELECT count(*) FROM scripted WHERE outcome = 'completed'"), 0);

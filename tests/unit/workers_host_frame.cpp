@@ -53,7 +53,7 @@ TEST(HostFrames, AreTheSameInPiecesOfAnyLength) {
     add_piece(text, 12, "ne\n\n5 5\n");
     add_ended(text, 7, 9, "two\nlines");
     add_ended(text, 12, 0, "");
-    const std::vector<std::string> expected = {"greeting welcome to node 7", "greeting second line", "hello 1",
+    const std::vector<std::string> expected = {"greeting welcome to node 7", "greeting second line", "hello 2",
                                                "7 says {\"ready\":{}}\n",    "12 says half a li",    "beat",
                                                "12 says ne\n\n5 5\n",        "ended 7 9 two\nlines", "ended 12 0 "};
     for (std::size_t length = 1; length <= text.size(); ++length)
@@ -89,12 +89,57 @@ TEST(HostFrames, ALongPieceTravelsInSeveral) {
 }
 
 TEST(HostFrames, WhatIsNoneIsNoticed) {
-    for (const std::string text : {"nonsense\n", "\n", "7\n", "7 x\n", "7 5 5\n", "-7 5\n", "7 -5\n", "7 65537\n",
-                                   "7 5\nabcdefgh", "start\n", "start x\n", "start 1 2\n", "signal 1\n", "alive 1\n",
-                                   "ended 1 2\n", "ended 1 2 99999999\n", "99999999999999999999999 1\n"}) {
+    for (const std::string text : {"nonsense\n",
+                                   "\n",
+                                   "7\n",
+                                   "7 x 1\n",
+                                   "7 5 5 1\n",
+                                   "-7 5 1\n",
+                                   "7 -5 1\n",
+                                   "7 5 x\n",
+                                   "7 65537 1\n",
+                                   "7 5 4294967296\n",
+                                   "7 5 1\nabcdefgh",
+                                   "7 3 1\nabc\n",
+                                   "start\n",
+                                   "start 1\n",
+                                   "start x 1\n",
+                                   "start 1 2 3\n",
+                                   "signal 1 15\n",
+                                   "alive 1\n",
+                                   "ended 1 2 0\n",
+                                   "ended 1 2 99999999 1\n",
+                                   "99999999999999999999999 1 1\n"}) {
         const auto frames = read_in_pieces(Reader::Side::host, text, 3);
         EXPECT_EQ(frames, std::vector<std::string>{"nonsense"}) << text;
     }
+}
+
+// printf '7 14\n{"y":3.141592}' | cksum, printf 'start 7\n' | cksum
+TEST(HostFrames, TheirSumIsThatOfCksum) {
+    std::string text;
+    add_piece(text, 7, "{\"y\":3.141592}");
+    EXPECT_EQ(text, "7 14 3960313895\n{\"y\":3.141592}\n");
+    text.clear();
+    add_start(text, 7);
+    EXPECT_EQ(text, "start 7 3397496786\n");
+}
+
+TEST(HostFrames, AChangedBitIsNoticed) {
+    std::string text;
+    add_hello(text);
+    add_piece(text, 12, "{\"done\":{\"y\":0.25}}\n");
+    add_ended(text, 7, 9, "a log");
+    const std::vector<std::string> written = {"hello 2", "12 says {\"done\":{\"y\":0.25}}\n", "ended 7 9 a log"};
+    ASSERT_EQ(read_in_pieces(Reader::Side::main_program, text, text.size()), written);
+    const std::size_t begin = text.find('\n') + 1;  // a changed first line is a launcher's
+    for (std::size_t at = begin; at < text.size(); ++at)
+        for (int bit = 0; bit < 8; ++bit) {
+            std::string changed = text;
+            changed[at] = static_cast<char>(changed[at] ^ (1 << bit));
+            const auto frames = read_in_pieces(Reader::Side::main_program, changed, changed.size());
+            EXPECT_TRUE(frames.back() == "nonsense" || frames.size() < written.size()) << at << ", bit " << bit;
+        }
 }
 
 TEST(HostFrames, NothingGrowsWithoutBound) {
