@@ -159,8 +159,7 @@ struct Pool::Impl {
     void report(const Worker& worker, Lost lost, bool killed) {
         const bool owed = lost.running || !lost.queued.empty();
         const bool begun = worker.state.has_begun_any() || worker.child->lost_with_host();
-        if (!begun && (owed || !worker.state.was_ready() || worker.stop_sent) && !retired)
-            say(fruitless.ended(lost.reason, killed, workers.size(), clock.now()));
+        if (!begun && !retired) say(fruitless.ended(lost.reason, killed, workers.size(), clock.now()));
         if (owed) events.emplace_back(std::move(lost));
     }
 

@@ -181,6 +181,18 @@ TEST(WorkerProtocol, AWorkerThatBeginsNothingIsABrokenWorld) {
     EXPECT_LT(campaign.ask("SELECT count(*) FROM attempt").get<int>(), 20);
 }
 
+// Little address space, no threads left: whether it ends before or after its first case is written to it is chance.
+TEST(WorkerProtocol, AWorkerThatEndsOnceItIsReadyIsABrokenWorld) {
+    for (const char* workers : {"1", "2", "3"}) {
+        const ScriptedCampaign campaign(R"(echo >> launches; say "$ready"; echo no threads left >&2; exit 1)");
+        const auto run = campaign.run({"-j", workers});
+        EXPECT_EQ(run.code, 3) << run.err;
+        EXPECT_THAT(run.err, HasSubstr("cannot start workers with"));
+        EXPECT_THAT(run.err, HasSubstr("no threads left"));
+        EXPECT_LT(std::filesystem::file_size(campaign.folder() / "launches"), 20U) << "launches";
+    }
+}
+
 TEST(WorkerProtocol, MoreWorkersThanDescriptorsAreAsManyAsCanBe) {
     const Folder folder;
     folder.write("c.json", R"({"campaign": "many", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
