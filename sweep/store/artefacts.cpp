@@ -96,9 +96,14 @@ void sweep_leftovers(const std::filesystem::path& folder, Gone&& gone) {
 
 std::optional<Bytes> ArtefactFolder::read(const std::filesystem::path& file, std::string_view key,
                                           std::string& damage) const {
+    std::error_code error;
+    if (const auto status = std::filesystem::status(file, error);
+        std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+        damage = "it is no regular file";  // to open a named pipe waits for a writer
+        return std::nullopt;
+    }
     std::ifstream stream(file, std::ios::binary | std::ios::ate);
     if (!stream) {
-        std::error_code error;
         if (std::filesystem::exists(std::filesystem::symlink_status(file, error))) damage = "it cannot be read";
         return std::nullopt;
     }

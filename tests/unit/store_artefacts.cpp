@@ -4,6 +4,7 @@
 #include "tests/support/archive.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -152,6 +153,31 @@ TEST_F(StoreArtefacts, DamageIsNamed) {
     EXPECT_NE(damaged(std::string(100, 'x')).find("no such file"), std::string::npos);
     EXPECT_NE(damaged(flipped).find("its checksum does not fit"), std::string::npos);
     EXPECT_NE(damaged(flipped).find("computed anew"), std::string::npos);
+}
+
+// Opening a named pipe would wait for a writer; a folder has a size, and nothing to read.
+TEST_F(StoreArtefacts, WhatIsNoRegularFileIsDamaged) {
+    std::vector<std::string> sentences;
+    ArtefactFolder watched(place, [&](const std::string& sentence) { sentences.push_back(sentence); });
+    watched.put("key", bytes(50));
+    const auto file = only_file();
+    const auto all = [](std::string_view) { return true; };
+    std::filesystem::remove(file);
+    ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
+    EXPECT_FALSE(watched.get("key"));
+    watched.sweep(all);
+    watched.put("key", bytes(50));  // takes its place
+    EXPECT_EQ(watched.get("key"), bytes(50));
+    std::filesystem::remove(file);
+    std::filesystem::create_directory(file);
+    EXPECT_FALSE(watched.get("key"));
+    watched.sweep(all);
+    std::filesystem::remove(file);
+    std::filesystem::create_symlink(file.filename(), file);
+    EXPECT_FALSE(watched.get("key"));
+    ASSERT_EQ(sentences.size(), 3U);
+    EXPECT_NE(sentences[0].find("it is no regular file"), std::string::npos);
+    EXPECT_NE(sentences[1].find("it is no regular file"), std::string::npos);
 }
 
 TEST_F(StoreArtefacts, WhatADeadProcessLeftIsSweptAtOnce) {
