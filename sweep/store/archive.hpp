@@ -3,6 +3,7 @@
 
 #include "sweep/campaign/identity.hpp"
 #include "sweep/store/database.hpp"
+#include "sweep/store/moment.hpp"
 #include "sweep/store/placing.hpp"
 #include "sweep/store/soundness.hpp"
 #include "sweep/store/store.hpp"
@@ -39,6 +40,7 @@ struct Store::Impl {
 
     std::optional<std::int64_t> provenance;  ///< of this run, once a campaign is enrolled
     std::int64_t provenance_campaign = 0;
+    RunClock run_clock;              ///< of provenance: its start and its last result
     std::optional<Placing> placing;  ///< of the campaign enrolled last, while some of its places are not entered
     bool dead_attempts_closed = false;
     bool in_group = false;

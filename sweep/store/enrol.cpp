@@ -170,11 +170,12 @@ std::int64_t store_campaign(Store::Impl& archive, const Campaign& campaign, cons
 
 void store_provenance(Store::Impl& archive, const Campaign& campaign, std::int64_t key, const Provenance& by) {
     if (archive.provenance && archive.provenance_campaign == key) return;  // the same run, its design refined
+    archive.run_clock = {};
     archive.db.run(
         "INSERT INTO provenance (campaign_id, version, \"commit\", compiler, flags, instruction_path, processor, host, "
         "start, campaign_text, campaign_hash, process) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-        key, by.version, by.commit, by.compiler, by.flags, by.instruction_path, by.processor, by.host, utc_now(),
-        campaign.text, campaign::content_hash(campaign.text), std::int64_t{getpid()});
+        key, by.version, by.commit, by.compiler, by.flags, by.instruction_path, by.processor, by.host,
+        archive.run_clock.start(), campaign.text, campaign::content_hash(campaign.text), std::int64_t{getpid()});
     archive.provenance = archive.db.last_row();
     archive.provenance_campaign = key;
 }

@@ -18,7 +18,7 @@ Table Store::status() const {
         "WITH count AS (SELECT p.campaign_id, c.outcome, count(*) AS cases FROM campaign_case AS p "
         "  JOIN sim_case AS c ON c.case_key = p.case_key GROUP BY p.campaign_id, c.outcome), "
         "last AS (SELECT campaign_id, max(provenance_id), "
-        "  settled / nullif((julianday(last_result) - julianday(start)) * 86400.0, 0) AS rate "
+        "  iif(last_result > start, settled / ((julianday(last_result) - julianday(start)) * 86400.0), NULL) AS rate "
         "  FROM provenance WHERE settled > 0 GROUP BY campaign_id), "
         "total AS (SELECT g.campaign_id, g.name, g.scene, g.stopped_at, "
         "  coalesce((SELECT sum(cases) FROM count AS n WHERE n.campaign_id = g.campaign_id), 0) AS cases, "

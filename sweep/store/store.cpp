@@ -304,7 +304,7 @@ void Store::group(const std::function<void()>& writes) {
     writes();
     if (impl_->settled_in_group > 0) {
         impl_->db.run("UPDATE provenance SET settled = settled + ?, last_result = ? WHERE provenance_id = ?",
-                      impl_->settled_in_group, utc_now(), impl_->provenance);
+                      impl_->settled_in_group, impl_->run_clock.now(), impl_->provenance);
     }
     transaction.commit();
     membership.committed = true;

@@ -175,3 +175,18 @@ int remove(const char* path) noexcept {
 }
 
 }  // extern "C"
+
+/// GRAINSWEEP_CLOCK_SET_BACK=SECONDS: by so many the clock of the day is set back, 0.3 s after it is first read.
+extern "C" int clock_gettime(clockid_t clock, timespec* time) noexcept {
+    static const char* const seconds = std::getenv("GRAINSWEEP_CLOCK_SET_BACK");
+    const int result = static_cast<int>(syscall(SYS_clock_gettime, clock, time));
+    if (seconds == nullptr || clock != CLOCK_REALTIME) return result;
+    static std::atomic<long> first = 0;
+    timespec now{};
+    syscall(SYS_clock_gettime, CLOCK_MONOTONIC, &now);
+    const long milliseconds = now.tv_sec * 1000 + now.tv_nsec / 1'000'000;
+    long none = 0;
+    first.compare_exchange_strong(none, milliseconds);
+    if (milliseconds - first > 300) time->tv_sec -= std::atol(seconds);
+    return result;
+}
