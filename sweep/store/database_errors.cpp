@@ -33,10 +33,7 @@ void fail(sqlite3* database, int code) {
         case SQLITE_CORRUPT:
         case SQLITE_NOTADB:
         case SQLITE_FORMAT:
-            throw BrokenWorld(
-                fmt::format("{}: damaged ({}); what is readable can be copied out with "
-                            "`sqlite3 FILE .recover`",
-                            file, words));
+            throw BrokenWorld(fmt::format("{}: damaged ({}); {}", file, words, how_to_copy_out));
         case SQLITE_IOERR:
             throw BrokenWorld(fmt::format("{}: reading or writing failed: {}", file, cause()));
         case SQLITE_CANTOPEN:

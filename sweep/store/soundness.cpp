@@ -1,5 +1,7 @@
 #include "sweep/store/soundness.hpp"
 
+#include "sweep/store/database_errors.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -167,9 +169,8 @@ std::vector<DamagedTable> tables_out_of_order(const Connection& db) {
         while (rows.step()) {
             for (int k = 0; k < keys; ++k) now[static_cast<std::size_t>(k)] = rows.cell(k);
             if (!before.empty() && !(before < now)) {
-                found.push_back({table, 0,
-                                 "its rows are not in the order of their keys; what is readable can be copied out with "
-                                 "`sqlite3 FILE .recover`"});
+                found.push_back(
+                    {table, 0, fmt::format("its rows are not in the order of their keys; {}", how_to_copy_out)});
                 break;
             }
             before = now;

@@ -4,6 +4,7 @@
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/store/aggregates.hpp"
 #include "sweep/store/archive.hpp"
+#include "sweep/store/database_errors.hpp"
 #include "sweep/store/file_checksum.hpp"
 #include "sweep/store/moment.hpp"
 #include "sweep/store/schema.hpp"
@@ -165,8 +166,8 @@ void check_structure(const Connection& db, const std::filesystem::path& file) {
             if (rows.get<std::string_view>(0) == "ok") continue;
             throw BrokenWorld(
                 fmt::format("database '{}': damaged ({}); `grainsweep verify {}` names all that is "
-                            "damaged, and what is readable can be copied out with `sqlite3 FILE .recover`",
-                            file.string(), rows.get<std::string_view>(0), file.string()));
+                            "damaged, and {}",
+                            file.string(), rows.get<std::string_view>(0), file.string(), how_to_copy_out));
         }
     }
 }

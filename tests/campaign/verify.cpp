@@ -55,10 +55,45 @@ struct Damaged : testing::Test {
     }
 };
 
+/// The command between backquotes of a sentence.
+std::string advised(const std::string& sentence) {
+    const auto begin = sentence.rfind("`sqlite3"), end = sentence.find('`', begin + 1);
+    return begin == std::string::npos ? "" : sentence.substr(begin + 1, end - begin - 1);
+}
+
+/// Runs a line of shell; what it prints.
+std::string shell(const Folder& folder, const std::string& line) {
+    return Process({"/bin/sh", "-c", line}, folder.path()).wait().out;
+}
+
 void await_results(Process& run, const std::filesystem::path& log) {
     std::error_code none;
     while (run.running() && !(std::filesystem::file_size(log, none) > 150'000 && !none))
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+// A page of the inputs is gone. The advised command copies what is left, and a run computes the rest again.
+TEST_F(Damaged, WhatIsReadableIsCopiedOutByTheAdvisedCommand) {
+    if (shell(folder, "command -v sqlite3").empty()) GTEST_SKIP() << "there is no sqlite3";
+    const std::string root =
+        shell(folder, "sqlite3 c.db \"SELECT rootpage FROM sqlite_schema WHERE name = 'case_input'\"");
+    std::string file = contents(folder / "c.db");
+    constexpr std::size_t page = 4096;
+    std::fill_n(file.begin() + static_cast<std::ptrdiff_t>((std::stoul(root) - 1) * page), page, '\0');
+    folder.write("c.db", file);
+    std::string command = advised(run({"run", "c.json", "--quiet"}).err);
+    ASSERT_FALSE(command.empty()) << run({"run", "c.json", "--quiet"}).err;
+    command.replace(command.find("FILE"), 4, "c.db");
+    command.replace(command.find("COPY"), 4, "copy.db");
+    shell(folder, command);
+    for (const char* table : {"sim_case", "attempt", "observation", "campaign_case"})
+        EXPECT_EQ(shell(folder, std::string("sqlite3 copy.db 'SELECT count(*) FROM ") + table + "'"), "40\n") << table;
+    shell(folder,
+          "sqlite3 copy.db \"PRAGMA application_id = 1735620464; PRAGMA user_version = $(sqlite3 c.db 'PRAGMA "
+          "user_version')\"");
+    EXPECT_EQ(run({"run", "c.json", "--db", "copy.db", "--quiet"}).code, 0);
+    EXPECT_EQ(run({"verify", "copy.db"}).code, 0);
+    EXPECT_TRUE(run({"dump", "copy.db"}).out == dump);
 }
 
 }  // namespace
