@@ -1,40 +1,59 @@
 #include "stats/model_indices.hpp"
 
 #include "stats/confidence.hpp"
+#include "stats/random.hpp"
+#include "stats/response/fit.hpp"
 #include "stats/response/state.hpp"
 #include "stats/sobol_sequence.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
 #include <stdexcept>
 #include <utility>
 
 namespace grainsweep::stats {
 namespace {
 
-constexpr std::size_t base_points = 2048, stretches = 8;
+constexpr std::size_t scramblings = 8, points_each = 1024, base_points = scramblings * points_each, stretches = 8;
 
-/// Base points: two halves of one Sobol sequence of twice the dimensions, its first point (a corner) left out.
+/// A seed of the responses: other campaigns are integrated over other points, so that no one error of integration is in
+/// the indices of all of them.
+std::uint64_t seed_of(const Eigen::VectorXd& values) {
+    std::uint64_t seed = 0x696e6469636573;
+    for (const double value : values) seed = splitmix64(seed ^ std::bit_cast<std::uint64_t>(value));
+    return seed;
+}
+
+/// Base points A and B: the halves of a Sobol sequence of twice the dimensions, in independent scramblings one after
+/// the other.
 struct Base {
     std::vector<double> a, b;
     std::size_t dimensions;
 
-    /// A with the columns j (and k) of B.
-    [[nodiscard]] std::vector<double> exchanged(std::size_t j, std::size_t k) const {
-        std::vector<double> points = a;
+    /// One half with the columns j (and k) of the other.
+    [[nodiscard]] std::vector<double> exchanged(std::vector<double> points, const std::vector<double>& from,
+                                                std::size_t j, std::size_t k) const {
         for (std::size_t i = 0; i < base_points; ++i)
-            for (const std::size_t column : {j, k}) points[i * dimensions + column] = b[i * dimensions + column];
+            for (const std::size_t column : {j, k}) points[i * dimensions + column] = from[i * dimensions + column];
         return points;
     }
 };
 
-Base base_of(std::size_t d) {
-    SobolSequence sequence(2 * d);
+Base base_of(std::size_t d, std::uint64_t seed) {
     Base base{{}, {}, d};
-    const auto next = [&] { return sequence.next_fraction(); };
-    for (std::size_t j = 0; j < 2 * d; ++j) (void)next();
-    for (std::size_t i = 0; i < base_points; ++i) {
-        for (std::size_t j = 0; j < d; ++j) base.a.push_back(next());
-        for (std::size_t j = 0; j < d; ++j) base.b.push_back(next());
+    base.a.resize(base_points * d);
+    base.b.resize(base_points * d);
+    SobolSequence sequence(2 * d);
+    std::vector<std::uint64_t> fractions(2 * d, 0);  // the point of index 0, with which the first 2^k are balanced
+    for (std::size_t i = 0; i < points_each; ++i) {
+        for (std::size_t s = 0; s < scramblings; ++s)
+            for (std::size_t j = 0; j < 2 * d; ++j) {
+                auto& half = j < d ? base.a : base.b;
+                half[(s * points_each + i) * d + j % d] = scrambled_unit(fractions[j], bits_at(seed, s, j));
+            }
+        for (auto& fraction : fractions) fraction = sequence.next() >> (64U - scrambled_digits);
     }
     return base;
 }
@@ -84,15 +103,40 @@ private:
     response::FoldWeights folds_;
 };
 
-/// Half the mean squared difference of every version.
-Eigen::ArrayXd half_square(const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) {
-    return (x - y).array().square().colwise().mean().transpose() / 2;
+/// A part of the variance: (scramblings, versions).
+using Part = Eigen::ArrayXXd;
+
+Part means_of(const Eigen::ArrayXXd& each) {
+    Part means(scramblings, each.cols());
+    for (std::size_t s = 0; s < scramblings; ++s)
+        means.row(static_cast<Eigen::Index>(s)) =
+            each.middleRows(static_cast<Eigen::Index>(s * points_each), points_each).colwise().mean();
+    return means;
 }
 
-/// Value of the whole model, half-width from those without a group.
-SensitivityIndex index_of(const Eigen::ArrayXd& versions) {
-    std::vector<double> without(versions.begin() + 1, versions.end());
-    return {versions(0), jackknife_half_width(without)};
+/// What every index needs.
+struct Whole {
+    Part variance;
+    double unseen;  ///< share of the variance of the mean response that is not in the model
+
+    /// Value of the whole model; its half-width from models without a group, the scramblings and what is unseen.
+    [[nodiscard]] SensitivityIndex index_of(const Part& part) const {
+        const Eigen::ArrayXd all = variance.colwise().mean(), versions = part.colwise().mean().transpose() / all;
+        const double value = versions(0);
+        const std::vector<double> without(versions.begin() + 1, versions.end());
+        const Eigen::ArrayXd integrals = (part.col(0) - value * variance.col(0)) / all(0);
+        const auto groups = static_cast<double>(without.size());
+        const double bias = (groups - 1) * (versions.tail(versions.size() - 1).mean() - value);
+        const double by_points = student_half_width({integrals.data(), scramblings});
+        return {value, std::hypot(std::hypot(jackknife_half_width(without), bias), std::hypot(by_points, unseen))};
+    }
+};
+
+/// Leave-one-out error^2 less the scatter of single runs. Noise at the bound of the fit is none.
+double unseen_share(const ResponseModel& model) {
+    const ModelQuality& quality = model.quality();
+    const bool scatters = model.state().kriging.h.noise() > 2 * response::smallest_noise;
+    return std::max(0.0, std::pow(quality.leave_one_out_error, 2) - (scatters ? quality.noise_share : 0));
 }
 
 }  // namespace
@@ -102,27 +146,31 @@ ModelIndices model_indices(const ResponseModel& model, std::size_t factors, std:
     if (factors == 0 || (!features && factors != model.dimensions()))
         throw std::invalid_argument("indices of a model: factors and features are of different numbers");
     const Versions versions(model, groups, features);
-    const Base base = base_of(factors);
+    const Base base = base_of(factors, seed_of(model.state().kriging.values));
     const Eigen::MatrixXd a = versions.at(base.a, factors), b = versions.at(base.b, factors);
-    Eigen::MatrixXd both(a.rows() + b.rows(), a.cols());
-    both << a, b;
-    const Eigen::ArrayXd variance =
-        (both.rowwise() - both.colwise().mean()).array().square().colwise().mean().transpose();
+    const Eigen::RowVectorXd centre = (a.colwise().mean() + b.colwise().mean()) / 2;
+    const Whole whole{means_of(((a.rowwise() - centre).array().square() + (b.rowwise() - centre).array().square()) / 2),
+                      unseen_share(model)};
     ModelIndices result;
-    std::vector<Eigen::ArrayXd> first;
+    std::vector<Eigen::MatrixXd> forth, back;  // f(A_j) - f(A), f(B_j) - f(B)
     for (std::size_t j = 0; j < factors; ++j) {
-        const Eigen::MatrixXd moved = versions.at(base.exchanged(j, j), factors);
-        first.emplace_back(1 - half_square(b, moved) / variance);
-        const Eigen::ArrayXd total = half_square(a, moved) / variance;
-        result.first.push_back(index_of(first.back()));
-        result.total.push_back(index_of(total));
-        result.interactions.push_back(index_of(total - first.back()));
+        forth.emplace_back(versions.at(base.exchanged(base.a, base.b, j, j), factors) - a);
+        back.emplace_back(versions.at(base.exchanged(base.b, base.a, j, j), factors) - b);
+        const Part first = means_of(-forth[j].array() * back[j].array() / 2);
+        const Part interactions = means_of((forth[j] + back[j]).array().square() / 4);
+        result.first.push_back(whole.index_of(first));
+        result.total.push_back(whole.index_of(first + interactions));
+        result.interactions.push_back(whole.index_of(interactions));
     }
+    const auto second_difference = [&](const std::vector<double>& points, const std::vector<double>& from,
+                                       const Eigen::MatrixXd& at, const std::vector<Eigen::MatrixXd>& moved,
+                                       std::size_t j, std::size_t k) {
+        return Eigen::ArrayXXd(versions.at(base.exchanged(points, from, j, k), factors) - at - moved[j] - moved[k]);
+    };
     for (std::size_t j = 0; j < factors; ++j)
-        for (std::size_t k = j + 1; k < factors; ++k) {
-            const Eigen::MatrixXd moved = versions.at(base.exchanged(j, k), factors);
-            result.pairs.push_back(index_of(1 - half_square(b, moved) / variance - first[j] - first[k]));
-        }
+        for (std::size_t k = j + 1; k < factors; ++k)
+            result.pairs.push_back(whole.index_of(means_of(second_difference(base.a, base.b, a, forth, j, k) *
+                                                           second_difference(base.b, base.a, b, back, j, k) / 4)));
     return result;
 }
 

@@ -1,12 +1,22 @@
 // Sobol indices of the mean response from its model: total effects and interactions without a design made for them.
 //
-//   S_j = 1 - E[(f(B) - f(A with x_j of B))^2]/2V       (first order; Jansen 1999, eq. 17)
-//   T_j =     E[(f(A) - f(A with x_j of B))^2]/2V       (total; Jansen 1999, eq. 18)
-//   S_jk = 1 - E[(f(B) - f(A with x_j, x_k of B))^2]/2V - S_j - S_k      (interaction of two factors)
+// A, B: two independent points; A_u, B_u: each with the coordinates u of the other.
 //
-// over 2,048 Sobol points (A, B) of twice the dimensions; f: the model's mean, so the scatter of runs is in no share.
-// Half-widths: jackknife over models each without one group of cases (hyperparameters kept, response/kriging.hpp). A
-// model is smoother than what it learns from: what it does not see, 1 - leave-one-out error^2 at worst, is missing.
+//   V S_j       =  E[(f(A_j) - f(A)) (f(B) - f(B_j))]/2                                 first order
+//   V (T_j-S_j) =  E[(f(A_j) - f(A) + f(B_j) - f(B))^2]/4                               interactions; T_j: total
+//   V S_jk      =  E[(f(A_jk) - f(A_j) - f(A_k) + f(A)) (f(B_jk) - f(B_j) - f(B_k) + f(B))]/4   of two factors
+//
+// f: the model's mean, so the scatter of runs is in no share. Each follows from the Hoeffding decomposition of f: the
+// differences remove all parts without the factors (Liu & Owen 2006, J. Am. Stat. Assoc. 101, 712), the product of the
+// differences at A and at B those that have others besides (Owen, Dick & Chen 2014, Inf. Inference 3, 59). Of an
+// additive f, interactions are 0 at every single point, not only on average. Points: 8 independent scramblings of 1,024
+// points of a Sobol sequence of twice the dimensions.
+//
+// Half-widths, in quadrature:
+//   jackknife over models each without one group of cases (hyperparameters kept, response/kriging.hpp),
+//   the bias that the jackknife estimates, (G - 1) (mean of these models - the whole one),
+//   Student t over the scramblings,
+//   what the model does not see: leave-one-out error^2 less the share of scatter (any index may lack as much).
 #pragma once
 
 #include "stats/response_model.hpp"

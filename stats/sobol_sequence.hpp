@@ -29,4 +29,15 @@ private:
     std::unique_ptr<Engine> engine_;
 };
 
+/// Binary digits of a scrambled fraction.
+inline constexpr unsigned scrambled_digits = 53;
+
+/// Owen's (1995) nested uniform scrambling of a fraction of 53 binary digits: digit l is flipped by a random bit
+/// addressed by the key and the digits before it, so that other keys give independent scramblings.
+[[nodiscard]] std::uint64_t owen_scrambled(std::uint64_t fraction, std::uint64_t key);
+/// The same as a number in [0, 1).
+[[nodiscard]] inline double scrambled_unit(std::uint64_t fraction, std::uint64_t key) {
+    return static_cast<double>(owen_scrambled(fraction, key)) * 0x1p-53;
+}
+
 }  // namespace grainsweep::stats

@@ -2,9 +2,8 @@
 // 2635-2654, as Boost.Random carries them. The point of index 0 (all zero before scrambling) is kept: the
 // balance of the first 2^k points depends on it (Owen 2020, arXiv:2008.08051).
 //
-// random: Owen's (1995) nested uniform scrambling. Binary digit l is flipped by a random bit addressed by
-// (seed, sequence, factor, the digits before it), so points extend and sequences are independent.
-#include "stats/random.hpp"
+// random: Owen's (1995) nested uniform scrambling, addressed by (seed, sequence, factor), so points extend and
+// sequences are independent.
 #include "stats/sobol_sequence.hpp"
 #include "sweep/designs/kinds.hpp"
 
@@ -12,21 +11,6 @@
 
 namespace grainsweep::designs {
 namespace {
-
-constexpr unsigned digits = 53;
-
-/// Scrambles a 53-bit fraction; `key` addresses seed, sequence and factor.
-std::uint64_t owen_scrambled(std::uint64_t fraction, std::uint64_t key) {
-    std::uint64_t scrambled = 0;
-    std::uint64_t path = 1;  // a leading one, then the digits so far: the node of the binary tree
-    for (unsigned l = digits; l-- > 0;) {
-        const std::uint64_t digit = (fraction >> l) & 1U;
-        const std::uint64_t flip = stats::splitmix64(key ^ path) >> 63U;
-        scrambled = (scrambled << 1U) | (digit ^ flip);
-        path = (path << 1U) | digit;
-    }
-    return scrambled;
-}
 
 PointSet sobol_points(const DesignRequest& request) {
     const auto sequences = static_cast<std::size_t>(request.count("sequences"));
@@ -51,9 +35,9 @@ PointSet sobol_points(const DesignRequest& request) {
     for (std::size_t p = 0; p < set.size(); ++p) {
         const std::size_t sequence = p % sequences;
         if (p >= sequences && sequence == 0)
-            for (auto& fraction : fractions) fraction = engine.next() >> (64U - digits);
+            for (auto& fraction : fractions) fraction = engine.next() >> (64U - stats::scrambled_digits);
         for (std::size_t j = 0; j < d; ++j) {
-            const std::uint64_t x = random ? owen_scrambled(fractions[j], keys[sequence * d + j]) : fractions[j];
+            const std::uint64_t x = random ? stats::owen_scrambled(fractions[j], keys[sequence * d + j]) : fractions[j];
             set.coordinates[p * d + j] = static_cast<double>(x) * 0x1.0p-53;
         }
     }

@@ -115,6 +115,11 @@ std::vector<std::string> model_influence_lines(const ModelInfluence& influence) 
         "shares of the variance of the mean response, by a model of {} cases with a leave-one-out error of {:.3f} "
         "standard deviations; {:.1f} % of the variance of single runs is scatter",
         quality.rests_on, quality.leave_one_out_error, 100 * quality.noise_share));
+    if (quality.excluded > 0)
+        lines.push_back(
+            fmt::format("{} of {} cases have no value: the shares by the model are of the whole box, extrapolated into "
+                        "the settings that failed",
+                        quality.excluded, quality.excluded + quality.cases));
     for (const auto& note : influence.model->notes) lines.push_back(note);
     return lines;
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -84,4 +85,37 @@ TEST(ModelIndices, FeaturesMayBeFunctionsOfTheFactors) {
     EXPECT_NEAR(indices.total[1].value, 0.5, 0.005);
     EXPECT_THROW((void)model_indices(model, 2), std::invalid_argument);
     EXPECT_THROW((void)model_indices(model, 2, std::vector<std::size_t>(3, 0), sum), std::invalid_argument);
+}
+
+TEST(ModelIndices, OfAnAdditiveResponseHaveNoInteractionsAndErrorsThatHold) {
+    // 0.8, 0.2 and 0, and nothing together: a factor that does nothing is no more than its error from 0.
+    const auto learned = learn(3, 240, [](auto u) { return u[0] + 0.5 * u[1]; });
+    const auto indices = model_indices(learned.model, 3, learned.groups);
+    const double first[] = {0.8, 0.2, 0};
+    for (std::size_t j = 0; j < 3; ++j) {
+        EXPECT_LE(std::abs(indices.first[j].value - first[j]), indices.first[j].half_width) << j;
+        EXPECT_LE(std::abs(indices.total[j].value - first[j]), indices.total[j].half_width) << j;
+        EXPECT_LT(indices.first[j].half_width, 0.01);
+    }
+    for (const auto& pair : indices.pairs) {
+        EXPECT_LT(std::abs(pair.value), 1e-6);
+        EXPECT_LE(std::abs(pair.value), pair.half_width);
+    }
+    for (const auto* kind : {&indices.first, &indices.total, &indices.interactions, &indices.pairs})
+        EXPECT_TRUE(std::ranges::all_of(*kind, [](const auto& index) { return index.half_width > 0; }));
+}
+
+TEST(ModelIndices, IntervalsHoldTheTruthOfIshigami) {
+    const auto learned = learn(3, 400, [](auto u) {
+        const auto x = [&](std::size_t j) { return std::numbers::pi * (2 * u[j] - 1); };
+        return std::sin(x(0)) + 7 * std::pow(std::sin(x(1)), 2) + 0.1 * std::pow(x(2), 4) * std::sin(x(0));
+    });
+    const auto indices = model_indices(learned.model, 3, learned.groups);
+    const double first[] = {0.3139, 0.4424, 0}, total[] = {0.5576, 0.4424, 0.2437}, pairs[] = {0, 0.2437, 0};
+    for (std::size_t j = 0; j < 3; ++j) {
+        EXPECT_LE(std::abs(indices.first[j].value - first[j]), indices.first[j].half_width) << j;
+        EXPECT_LE(std::abs(indices.total[j].value - total[j]), indices.total[j].half_width) << j;
+        EXPECT_LE(std::abs(indices.pairs[j].value - pairs[j]), indices.pairs[j].half_width) << j;
+        EXPECT_LT(indices.total[j].half_width, 0.05);
+    }
 }
