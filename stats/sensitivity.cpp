@@ -28,46 +28,65 @@ struct Entry {
     std::size_t group;
 };
 
-/// Ends of the bins over entries sorted by x: one bin per value where they are few, else equal counts.
-std::vector<std::size_t> bin_ends(std::span<const Entry> sorted, std::size_t bins) {
+struct Bins {
+    std::vector<std::size_t> ends;
+    bool per_value;
+};
+
+/// Bins over entries sorted by x: one per value where they are few, else of equal counts.
+Bins bins_of(std::span<const Entry> sorted, std::size_t bins) {
     std::vector<std::size_t> ends;
     for (std::size_t i = 1; i <= sorted.size() && ends.size() <= bins; ++i)
         if (i == sorted.size() || sorted[i].x != sorted[i - 1].x) ends.push_back(i);
-    if (ends.size() <= bins) return ends;
+    if (ends.size() <= bins) return {ends, true};
     ends.resize(bins);
     const std::size_t larger = sorted.size() % bins;
     for (std::size_t k = 0; k < bins; ++k) ends[k] = (k + 1) * (sorted.size() / bins) + std::min(k + 1, larger);
-    return ends;
+    return {ends, false};
 }
 
-/// Variance of the bin means over the variance.
-double binned_index(std::span<const Entry> sorted, std::size_t bins) {
-    if (sorted.size() < 2 * bins) return undefined;
+/// Shares of the variance: of the bin means, and of what varies within the bins.
+struct BinnedIndex {
+    double between = undefined, within = undefined;
+    [[nodiscard]] double value() const { return between + within; }
+};
+
+BinnedIndex binned_index(std::span<const Entry> sorted, std::size_t bins) {
+    if (sorted.size() < 2 * bins) return {};
     Moments moments;
     for (const Entry& entry : sorted) moments.add(entry.y);
     const Summary summary = moments.summary();
-    if (!(summary.sd > 0)) return undefined;
-    double between = 0;
+    if (!(summary.sd > 0)) return {};
+    const auto [ends, per_value] = bins_of(sorted, bins);
+    double between = 0, steps = 0, before = 0;
     std::size_t first = 0;
-    for (const std::size_t end : bin_ends(sorted, bins)) {
+    for (const std::size_t end : ends) {
         double mean = 0;
         for (std::size_t i = first; i < end; ++i) mean += sorted[i].y - summary.mean;
         mean /= static_cast<double>(end - first);
         between += static_cast<double>(end - first) * square(mean);
+        if (first > 0) steps += square(mean - before);
+        before = mean;
         first = end;
     }
-    return between / static_cast<double>(sorted.size()) / square(summary.sd);
+    const double variance = square(summary.sd);
+    return {between / static_cast<double>(sorted.size()) / variance,
+            per_value ? 0 : steps / (12 * static_cast<double>(ends.size() - 1)) / variance};
 }
 
-SensitivityIndex binned_with_error(std::span<const Entry> sorted, std::size_t groups, std::size_t bins) {
+/// Value, and half-width with what scatter in the bins may have added: the bias that the jackknife estimates.
+SensitivityIndex binned_with_error(std::span<const Entry> sorted, const BinnedIndex& all, std::size_t groups,
+                                   std::size_t bins) {
     std::vector<double> leave_one_out;
     std::vector<Entry> others;
+    double bias = 0;
     for (std::size_t g = 0; g < groups; ++g) {
         others.clear();
         std::ranges::copy_if(sorted, std::back_inserter(others), [&](const Entry& entry) { return entry.group != g; });
-        leave_one_out.push_back(binned_index(others, bins));
+        leave_one_out.push_back(binned_index(others, bins).value());
+        bias += (leave_one_out.back() - all.value()) * static_cast<double>(groups - 1) / static_cast<double>(groups);
     }
-    return {.value = binned_index(sorted, bins), .half_width = jackknife_half_width(leave_one_out)};
+    return {all.value(), std::hypot(jackknife_half_width(leave_one_out), all.within) + std::max(0.0, bias)};
 }
 
 /// Base rows of a Saltelli design whose d + 2 values are all there.
@@ -133,7 +152,9 @@ GivenDataIndices first_order_indices(std::span<const double> points, std::size_t
                           .y = values[used[i]],
                           .group = groups.empty() ? i * stretches / used.size() : groups[used[i]]};
         std::ranges::stable_sort(entries, {}, &Entry::x);
-        indices.first.push_back(binned_with_error(entries, group_count, bins));
+        const BinnedIndex all = binned_index(entries, bins);
+        indices.first.push_back(binned_with_error(entries, all, group_count, bins));
+        indices.within_bins.push_back(all.within);
     }
     return indices;
 }

@@ -2,10 +2,14 @@
 //
 //   S_j = V[E(y | x_j)] / V[y]  (first order)      T_j = 1 - V[E(y | x_not j)] / V[y]  (total)
 //
-// From any sampled design, without extra runs: S_j as the variance of the means of y in 16 bins of x_j with
-// equal counts. On low-discrepancy points its error is 0.0013 at 2400 points of a smooth response over 4
-// factors, a tenth of Saltelli's at equal cost. (The rank estimator of Gamboa et al. 2022 is not offered: it
-// assumes independent points, and on low-discrepancy ones it is off by 0.05-0.24 however many there are.)
+// From any sampled design, without extra runs: S_j from the means of y in K bins of x_j with equal counts,
+//
+//   V S_j = sum_k n_k (m_k - m)^2/n + sum_k (m_{k+1} - m_k)^2/(12 (K - 1))
+//
+// the second term for what varies within the bins (exact for straight pieces; without it 16 bins lose 0.4 % of a
+// linear response and 5 % of two waves). On low-discrepancy points its error is 0.0013 at 2400 points of a smooth
+// response over 4 factors, a tenth of Saltelli's at equal cost. (The rank estimator of Gamboa et al. 2022 is not
+// offered: it assumes independent points, and on low-discrepancy ones it is off by 0.05-0.24 however many there are.)
 //
 // Values that are not finite (failed cases) are left out with what belongs to them, and counted.
 #pragma once
@@ -25,15 +29,18 @@ struct SensitivityIndex {
 
 struct GivenDataIndices {
     std::vector<SensitivityIndex> first;  ///< per factor
+    std::vector<double> within_bins;      ///< per factor, part of it: the second term
     std::int64_t count = 0;               ///< rows used
     std::int64_t excluded = 0;
 };
 
 /// First-order indices from points of any design: n rows of d coordinates, row-major, and n values.
 /// Bins hold equal counts of the rows sorted by x_j (sizes differ by one at most, the first ones larger);
-/// a factor with no more distinct values than bins has one bin per value. Scatter within the bins adds about
-/// (bins - 1)(1 - S)/n for independent points. `groups` labels the rows 0 ... G-1 for the half-widths, e.g.
-/// by sequence; empty: 8 consecutive stretches. NaN where there are fewer than two rows per bin or no variance.
+/// a factor with no more distinct values than bins has one bin per value, in which nothing varies. Scatter within the
+/// bins adds about (bins - 1)(1 - S)/n for independent points, less on low-discrepancy ones. Half-widths: jackknife and
+/// second term in quadrature, plus the bias that the jackknife estimates, which is that of scatter. `groups` labels the
+/// rows 0 ... G-1, e.g. by sequence; empty: 8 consecutive stretches. NaN where there are fewer than two rows per bin or
+/// no variance.
 [[nodiscard]] GivenDataIndices first_order_indices(std::span<const double> points, std::size_t dimensions,
                                                    std::span<const double> values,
                                                    std::span<const std::size_t> groups = {}, std::size_t bins = 16);
