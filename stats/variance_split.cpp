@@ -21,6 +21,7 @@ using Eigen::VectorXd;
 
 constexpr std::size_t fewest_parts = 4;
 constexpr std::size_t most_columns = 240;
+constexpr std::size_t least_degree = 3, most_degree = 10;  // of products
 
 /// A design point with its replicates taken together.
 struct Point {
@@ -45,10 +46,13 @@ std::vector<Point> collapse(std::span<const std::int64_t> points, std::span<cons
     return all;
 }
 
+/// How finely the models resolve the response; the coarse ones show what finer ones may still lack.
+enum class Resolution { fine, coarse };
+
 /// The functions of one factor: columns of the additive model, and those that enter products.
 class FactorFunctions {
 public:
-    FactorFunctions(const SplitFactor& factor, std::span<const Point> points)
+    FactorFunctions(const SplitFactor& factor, std::span<const Point> points, Resolution resolution)
         : coordinates_(factor.coordinates), ordered_(factor.ordered) {
         std::vector<double> sorted;
         for (const auto& point : points) sorted.push_back(coordinates_[point.row]);
@@ -57,16 +61,18 @@ public:
         knots_.erase(std::unique(knots_.begin(), knots_.end()), knots_.end());
         per_value_ = factor.pieces == 0 || knots_.size() <= factor.pieces + 1;
         if (!per_value_) {
-            for (std::size_t k = 0; k <= factor.pieces; ++k)
-                knots_[k] = sorted[k * (sorted.size() - 1) / factor.pieces];
-            knots_.resize(factor.pieces + 1);
+            const std::size_t pieces =
+                resolution == Resolution::fine ? factor.pieces : std::max<std::size_t>(1, factor.pieces / 2);
+            for (std::size_t k = 0; k <= pieces; ++k) knots_[k] = sorted[k * (sorted.size() - 1) / pieces];
+            knots_.resize(pieces + 1);
             knots_.erase(std::unique(knots_.begin(), knots_.end()), knots_.end());
         }
     }
 
     [[nodiscard]] std::size_t alone() const { return knots_.size() - 1; }
-    [[nodiscard]] std::size_t in_products() const {
-        return ordered_ ? std::min<std::size_t>(2, knots_.size() - 1) : knots_.size() - 1;
+    /// Functions that enter products of so many degrees in total.
+    [[nodiscard]] std::size_t in_products(std::size_t degree) const {
+        return ordered_ ? std::min(degree - 1, knots_.size() - 1) : knots_.size() - 1;
     }
     /// Degree of the k-th function that enters products; words have no degree to speak of.
     [[nodiscard]] std::size_t degree(std::size_t k) const { return ordered_ ? k + 1 : 1; }
@@ -87,7 +93,7 @@ public:
     [[nodiscard]] double in_product(std::size_t row, std::size_t k) const {
         const double x = coordinates_[row];
         if (!ordered_) return x == knots_[k + 1] ? 1 : 0;
-        return k == 0 ? 2 * x - 1 : 6 * x * (x - 1) + 1;  // Legendre polynomials on [0, 1]
+        return std::legendre(static_cast<unsigned>(k + 1), 2 * x - 1);
     }
 
 private:
@@ -100,20 +106,19 @@ private:
 /// Columns of both models: the constant, the factors alone, the products.
 class Columns {
 public:
-    Columns(std::span<const SplitFactor> factors, std::span<const Point> points, bool with_products) {
+    Columns(std::span<const SplitFactor> factors, std::span<const Point> points, bool with_products,
+            Resolution resolution) {
         for (const auto& factor : factors) {
-            factors_.emplace_back(factor, points);
+            factors_.emplace_back(factor, points, resolution);
             additive_ += factors_.back().alone();
         }
-        all_ = additive_;
-        if (!with_products) return;
-        for (std::size_t a = 0; a < factors_.size(); ++a)
-            for (std::size_t b = a + 1; b < factors_.size(); ++b)
-                for (std::size_t i = 0; i < factors_[a].in_products(); ++i)
-                    for (std::size_t j = 0; j < factors_[b].in_products(); ++j)
-                        if (factors_[a].degree(i) + factors_[b].degree(j) <= 3) products_.push_back({a, i, b, j});
-        if (additive_ + products_.size() > std::min(most_columns, points.size() / 3)) products_.clear();
-        all_ += products_.size();
+        const std::size_t most = std::min(most_columns, points.size() / 3);
+        std::size_t degree = with_products ? least_degree : 0;
+        while (degree >= least_degree && degree < most_degree && additive_ + products(degree + 1).size() <= most)
+            ++degree;
+        if (with_products && additive_ + products(degree).size() <= most)
+            products_ = products(resolution == Resolution::fine ? degree : degree - 2);
+        all_ = additive_ + products_.size();
     }
     [[nodiscard]] std::size_t additive() const { return additive_; }
     [[nodiscard]] std::size_t all() const { return all_; }
@@ -135,6 +140,18 @@ private:
     struct Product {
         std::size_t a, i, b, j;
     };
+
+    /// Of two factors each, up to a degree in total.
+    [[nodiscard]] std::vector<Product> products(std::size_t degree) const {
+        std::vector<Product> all;
+        for (std::size_t a = 0; a < factors_.size(); ++a)
+            for (std::size_t b = a + 1; b < factors_.size(); ++b)
+                for (std::size_t i = 0; i < factors_[a].in_products(degree); ++i)
+                    for (std::size_t j = 0; j < factors_[b].in_products(degree); ++j)
+                        if (factors_[a].degree(i) + factors_[b].degree(j) <= degree) all.push_back({a, i, b, j});
+        return all;
+    }
+
     std::vector<FactorFunctions> factors_;
     std::vector<Product> products_;
     std::size_t additive_ = 1, all_ = 1;
@@ -270,6 +287,38 @@ PureError pure_error(std::span<const std::int64_t> points, std::span<const doubl
     return error;
 }
 
+namespace {
+
+/// Shares of the whole sample, and of the sample without each of its groups.
+struct Estimates {
+    Parts parts;
+    std::vector<Parts> leave_one_out;
+    Sums sums;
+};
+
+Estimates estimate(const Columns& columns, std::span<const Point> points, std::span<const std::size_t> groups,
+                   bool all_points) {
+    double centre = 0;
+    for (const auto& point : points) centre += point.mean / static_cast<double>(points.size());
+    const std::size_t group_count = groups.empty() ? 1 : *std::ranges::max_element(groups) + 1;
+    std::vector<Sums> by_group(group_count, Sums(columns.all()));
+    for (const auto& point : points)
+        by_group[groups.empty() ? 0 : groups[point.row]].add(point, columns.of(point.row), point.mean - centre);
+    Estimates estimates{{}, {}, Sums(columns.all())};
+    for (const auto& group : by_group) estimates.sums.add(group, 1);
+    estimates.parts = parts_of(estimates.sums, columns, all_points);
+    if (all_points || groups.empty()) return estimates;
+    for (const auto& group : by_group) {
+        if (group.points == 0) continue;
+        Sums others = estimates.sums;
+        others.add(group, -1);
+        estimates.leave_one_out.push_back(parts_of(others, columns, all_points));
+    }
+    return estimates;
+}
+
+}  // namespace
+
 VarianceSplit split_variance(std::span<const std::int64_t> points, std::span<const SplitFactor> factors,
                              std::span<const double> values, std::span<const std::size_t> groups, bool all_points) {
     assert(points.size() == values.size() && groups.size() == values.size());
@@ -278,42 +327,35 @@ VarianceSplit split_variance(std::span<const std::int64_t> points, std::span<con
     const auto collapsed = collapse(points, values);
     split.points = std::ssize(collapsed);
     if (collapsed.empty()) return split;
-    const Columns columns(factors, collapsed, !all_points && split.pure.freedom == 0);
+    const bool with_products = !all_points && split.pure.freedom == 0;
+    const Columns columns(factors, collapsed, with_products, Resolution::fine);
     if (columns.additive() > most_columns) return split;
-    double centre = 0;
-    for (const auto& point : collapsed) centre += point.mean / static_cast<double>(collapsed.size());
-
-    const std::size_t group_count = groups.empty() ? 0 : *std::ranges::max_element(groups) + 1;
-    std::vector<Sums> by_group(group_count, Sums(columns.all()));
-    for (const auto& point : collapsed)
-        by_group[groups[point.row]].add(point, columns.of(point.row), point.mean - centre);
-    Sums sums(columns.all());
-    for (const auto& group : by_group) sums.add(group, 1);
-
-    const Parts parts = parts_of(sums, columns, all_points);
+    const auto [parts, leave_one_out, sums] = estimate(columns, collapsed, groups, all_points);
     split.coefficients = static_cast<std::size_t>(parts.coefficients);
-    std::vector<Parts> leave_one_out;
-    if (!all_points) {
-        for (const auto& group : by_group) {
-            if (group.points == 0) continue;
-            Sums others = sums;
-            others.add(group, -1);
-            leave_one_out.push_back(parts_of(others, columns, all_points));
-        }
-    }
-    const auto share = [&](const auto& part) {
+    Parts coarse =
+        all_points
+            ? parts
+            : estimate(Columns(factors, collapsed, with_products, Resolution::coarse), collapsed, {}, false).parts;
+    if (std::isfinite(parts.pairs) && !std::isfinite(coarse.pairs)) coarse.pairs = 0;
+    // Of interactions over points more even than random ones: the coefficients take nothing from their residuals.
+    const double evenness =
+        std::abs((std::isfinite(parts.interactions) ? parts.interactions : parts.rest) / parts.total) *
+        parts.coefficients / static_cast<double>(collapsed.size());
+    const auto share = [&](const auto& part, double allowance) {
         SensitivityIndex index{.value = part(parts) / parts.total};
         std::vector<double> others;
         for (const auto& one : leave_one_out) others.push_back(part(one) / one.total);
-        if (others.size() >= fewest_parts) index.half_width = jackknife_half_width(others);
+        if (others.size() >= fewest_parts)
+            index.half_width =
+                std::hypot(jackknife_half_width(others), part(coarse) / coarse.total - index.value) + allowance;
         return index;
     };
-    split.main_effects = share([](const Parts& p) { return p.main; });
-    split.unexplained = share([](const Parts& p) { return p.rest; });
-    split.scatter = share([](const Parts& p) { return p.scatter; });
-    split.interactions = share([](const Parts& p) { return p.interactions; });
-    split.pairs = share([](const Parts& p) { return p.pairs; });
-    split.remainder = share([](const Parts& p) { return p.rest - p.pairs; });
+    split.main_effects = share([](const Parts& p) { return p.main; }, evenness);
+    split.unexplained = share([](const Parts& p) { return p.rest; }, evenness);
+    split.scatter = share([](const Parts& p) { return p.scatter; }, 0);
+    split.interactions = share([](const Parts& p) { return p.interactions; }, evenness);
+    split.pairs = share([](const Parts& p) { return p.pairs; }, evenness);
+    split.remainder = share([](const Parts& p) { return p.rest - p.pairs; }, 0);
     if (all_points && std::isfinite(parts.total)) normal_errors(split, parts, sums);
     return split;
 }

@@ -125,6 +125,21 @@ TEST(VarianceSplitOfASample, SequencesWithoutReplicatesShowPairsOfFactors) {
     EXPECT_NEAR(split.pairs.value + split.remainder.value, split.unexplained.value, 1e-12);
 }
 
+TEST(VarianceSplitOfASample, InteractionsOfHigherDegreeAreNoScatter) {
+    // Ishigami: all interaction is of x1 and x3, sin(pi x1) x3^4, a share of 0.2437; nothing is left.
+    for (const std::int64_t n : {128, 512, 1024}) {
+        const auto set = ask_design("halton", 3, {{"points", n}, {"sequences", std::int64_t{8}}});
+        const Rows rows(set, 1, 0, 1, [](auto u) {
+            const auto x = [&](std::size_t j) { return std::numbers::pi * (2 * u[j] - 1); };
+            return std::sin(x(0)) + 7 * std::pow(std::sin(x(1)), 2) + 0.1 * std::pow(x(2), 4) * std::sin(x(0));
+        });
+        const auto split = rows.split(static_cast<std::size_t>(n == 128 ? 8 : 15));
+        EXPECT_LE(std::abs(split.pairs.value - 0.2437), split.pairs.half_width) << n;
+        EXPECT_LE(std::abs(split.remainder.value), split.remainder.half_width) << n;
+        if (n > 128) EXPECT_LT(split.remainder.half_width, 0.1);
+    }
+}
+
 TEST(VarianceSplitOfASample, AnAdditiveResponseWithoutScatterIsExplained) {
     const auto set = ask_design("halton", 3, {{"points", 800}, {"sequences", 8}});
     const Rows rows(set, 1, 0, 1, [](auto u) { return std::sin(3 * u[0]) + u[1] * u[1] + 0.1 * u[2]; });
