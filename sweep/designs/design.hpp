@@ -58,7 +58,7 @@ struct DesignRequest {
     std::vector<std::size_t> levels;  ///< per factor: number of its levels, 0 where it is continuous
     std::map<std::string, OptionValue, std::less<>> options;  ///< complete: defaults filled in
     std::uint64_t seed = 1;                                   ///< the campaign's
-    std::vector<FactorRange> factors = {};                    ///< looked at by designs that grow only
+    std::vector<FactorRange> factors = {};                    ///< names, and values for designs that grow
     /// What is known of the points asked so far, by observable and number: none where a point is not settled, NaN where
     /// it is without an answer. Looked at by designs that grow only.
     std::map<std::string, std::vector<std::optional<double>>, std::less<>> answers = {};

@@ -2,11 +2,17 @@
 // levels per factor, i/(L-1); each step moves one factor, in random order, by Delta = L/(2(L-1)).
 //
 // Trajectory t is points t (d+1) ... t (d+1) + d. The set counts d + 1 sequences: a point's sequence is its
-// place in its trajectory. L is even, so that every level is as likely as every other.
+// place in its trajectory. L is even, so that every place is as likely as every other.
+//
+// A factor with k levels has them for its grid, unless L is a multiple of k: then each level is L/k places of the grid.
+// Steps are floor(k/2) levels; where k is odd, the middle level moves to either end, and it is met twice as often as
+// the others. Trajectories begin at a random permutation of the levels, then at another: k of them meet all levels.
 #include "stats/random.hpp"
 #include "sweep/designs/kinds.hpp"
 
+#include <set>
 #include <stdexcept>
+#include <string>
 
 namespace grainsweep::designs {
 namespace {
@@ -17,6 +23,93 @@ std::size_t block_of(std::size_t factors) {
 
 std::int64_t size(const DesignRequest& request) {
     return request.count("trajectories") * static_cast<std::int64_t>(block_of(request.dimensions()));
+}
+
+std::string name_of(const DesignRequest& request, std::size_t j) {
+    return j < request.factors.size() ? "factor '" + request.factors[j].name + "'" : "factor " + std::to_string(j + 1);
+}
+
+/// Where one factor stands on its trajectories.
+class Axis {
+public:
+    Axis(const DesignRequest& request, std::size_t j)
+        : seed_(request.seed),
+          factor_(j),
+          levels_(request.levels[j]),
+          places_(static_cast<std::uint64_t>(request.count("grid"))) {
+        if (levels_ == 1)
+            throw std::invalid_argument(name_of(request, j) + " has one level, which no trajectory can leave: fix it");
+        own_ = levels_ > 0 && places_ % levels_ != 0;
+        if (own_) places_ = levels_;
+    }
+
+    /// The first place on trajectory t; `generator`: of all factors of the trajectory, one after the other.
+    [[nodiscard]] std::uint64_t begin(std::uint64_t t, stats::Generator& generator) const {
+        if (!own_) return generator.below(places_);
+        const auto key = draw_key(seed_, DrawPurpose::morris, t / places_, 2, factor_);
+        return stats::permutation(static_cast<std::uint32_t>(places_), stats::Generator(key))[t % places_];
+    }
+    [[nodiscard]] std::uint64_t moved(std::uint64_t place, std::uint64_t t) const {
+        const std::uint64_t step = places_ / 2;
+        if (places_ % 2 == 1 && place == step)
+            return stats::Generator(draw_key(seed_, DrawPurpose::morris, t, 3, factor_)).below(2) == 0 ? 0
+                                                                                                       : places_ - 1;
+        return place < step ? place + step : place - step;
+    }
+    [[nodiscard]] double coordinate(std::uint64_t place) const {
+        return static_cast<double>(place) / static_cast<double>(places_ - 1);
+    }
+    /// The level at a place, or the place of a continuous factor.
+    [[nodiscard]] std::uint64_t level(std::uint64_t place) const {
+        return levels_ == 0 ? place : place / (places_ / levels_);
+    }
+    [[nodiscard]] std::size_t levels() const { return levels_; }
+
+private:
+    std::uint64_t seed_, factor_;
+    std::size_t levels_;
+    std::uint64_t places_;
+    bool own_ = false;  ///< its grid is its levels
+};
+
+/// Places of every factor along trajectory t, one row per point.
+std::vector<std::vector<std::uint64_t>> trajectory(const std::vector<Axis>& axes, std::uint64_t seed, std::uint64_t t) {
+    stats::Generator generator(draw_key(seed, DrawPurpose::morris, t, 0));
+    std::vector<std::uint64_t> places;
+    for (const auto& axis : axes) places.push_back(axis.begin(t, generator));
+    const stats::Generator shuffler(draw_key(seed, DrawPurpose::morris, t, 1));
+    std::vector<std::vector<std::uint64_t>> points = {places};
+    for (const auto j : stats::permutation(static_cast<std::uint32_t>(axes.size()), shuffler)) {
+        places[j] = axes[j].moved(places[j], t);
+        points.push_back(places);
+    }
+    return points;
+}
+
+/// Throws where the trajectories miss a level, and says how many do not.
+void check_levels(const DesignRequest& request, const std::vector<Axis>& axes) {
+    const auto trajectories = static_cast<std::uint64_t>(request.count("trajectories"));
+    std::vector<std::set<std::uint64_t>> met(axes.size());
+    std::string missed;
+    const auto first_missed = [&]() -> std::string {
+        for (std::size_t j = 0; j < axes.size(); ++j)
+            if (met[j].size() < axes[j].levels())
+                return name_of(request, j) + ", " + std::to_string(met[j].size()) + " of its " +
+                       std::to_string(axes[j].levels()) + " levels";
+        return {};
+    };
+    for (std::uint64_t t = 0;; ++t) {
+        if (t == trajectories) missed = first_missed();
+        if (t >= trajectories && first_missed().empty()) {
+            if (missed.empty()) return;
+            throw std::invalid_argument(std::to_string(trajectories) + " trajectories meet, of " + missed + ": give " +
+                                        std::to_string(t) + " trajectories or more, which meet every level");
+        }
+        for (const auto& point : trajectory(axes, request.seed, t))
+            for (std::size_t j = 0; j < axes.size(); ++j)
+                if (axes[j].levels() > 0) met[j].insert(axes[j].level(point[j]));
+        if (t < trajectories && first_missed().empty()) return;
+    }
 }
 
 PointSet morris_points(const DesignRequest& request) {
@@ -30,24 +123,13 @@ PointSet morris_points(const DesignRequest& request) {
                  .sequences = length,
                  .coordinates = room_for(trajectories * static_cast<std::int64_t>(length), d),
                  .rows = {}};
-    const auto coordinate = [&](std::uint64_t level) {
-        return static_cast<double>(level) / static_cast<double>(grid - 1);
-    };
-    const auto half = static_cast<std::uint64_t>(grid) / 2;
-    std::vector<std::uint64_t> level(d);
-    for (std::size_t t = 0; t < static_cast<std::size_t>(trajectories); ++t) {
-        stats::Generator generator(draw_key(request.seed, DrawPurpose::morris, t, 0));
-        for (auto& l : level) l = generator.below(static_cast<std::uint64_t>(grid));
-        const stats::Generator shuffler(draw_key(request.seed, DrawPurpose::morris, t, 1));
-        const auto order = stats::permutation(static_cast<std::uint32_t>(d), shuffler);
-        for (std::size_t step = 0; step < length; ++step) {
-            if (step > 0) {
-                auto& moved = level[order[step - 1]];
-                moved = moved < half ? moved + half : moved - half;
-            }
-            for (std::size_t j = 0; j < d; ++j) set.coordinates[(t * length + step) * d + j] = coordinate(level[j]);
-        }
-    }
+    std::vector<Axis> axes;
+    for (std::size_t j = 0; j < d; ++j) axes.emplace_back(request, j);
+    check_levels(request, axes);
+    auto coordinate = set.coordinates.begin();
+    for (std::size_t t = 0; t < static_cast<std::size_t>(trajectories); ++t)
+        for (const auto& point : trajectory(axes, request.seed, t))
+            for (std::size_t j = 0; j < d; ++j) *coordinate++ = axes[j].coordinate(point[j]);
     return set;
 }
 
@@ -68,7 +150,7 @@ DesignInfo morris_design() {
                      .words = {},
                      .extent = true},
                     {.name = "grid",
-                     .meaning = "levels per factor, even",
+                     .meaning = "places per continuous factor, even; a factor with levels has these for its grid",
                      .kind = OptionSpec::Kind::count,
                      .default_value = std::int64_t{4},
                      .minimum = 2,

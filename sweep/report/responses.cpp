@@ -62,7 +62,7 @@ std::string key_of_cell(const Cell& cell) {
     return word == nullptr ? campaign::shortest(number(cell)) : key_of_level(campaign::identity_text(*word));
 }
 
-/// Levels that occur, in the order of the campaign file.
+/// Levels that occur, in the order of the campaign file, and their places among all.
 void read_levels(FactorColumn& factor, const std::vector<Cell>& cells, const std::vector<std::string>& listed) {
     std::map<std::string, std::string> texts;
     std::vector<std::string> keys;
@@ -71,12 +71,23 @@ void read_levels(FactorColumn& factor, const std::vector<Cell>& cells, const std
         keys.push_back(key_of_cell(cell));
         texts.try_emplace(keys.back(), level_text(cell));
     }
-    std::map<std::string, std::size_t> index;
-    for (const auto& level : listed)
-        if (const auto key = key_of_level(level); texts.contains(key)) index.try_emplace(key, index.size());
-    for (const auto& key : keys) index.try_emplace(key, index.size());
+    std::map<std::string, std::size_t> index, place_of;
+    for (const auto& level : listed) {
+        const auto key = key_of_level(level);
+        place_of.try_emplace(key, place_of.size());
+        if (texts.contains(key)) index.try_emplace(key, index.size());
+    }
+    for (const auto& key : keys) {
+        index.try_emplace(key, index.size());
+        place_of.try_emplace(key, place_of.size());
+    }
     factor.levels.resize(index.size());
-    for (const auto& [key, place] : index) factor.levels[place] = texts.at(key);
+    factor.places.resize(index.size());
+    const auto last = static_cast<double>(std::max<std::size_t>(place_of.size(), 2) - 1);
+    for (const auto& [key, place] : index) {
+        factor.levels[place] = texts.at(key);
+        factor.places[place] = static_cast<double>(place_of.at(key)) / last;
+    }
     for (const auto& key : keys) factor.values.push_back(static_cast<double>(index.at(key)));
 }
 
@@ -191,7 +202,7 @@ bool has_final_outcome(const std::optional<campaign::Outcome>& outcome) {
 
 double FactorColumn::coordinate(std::size_t row) const {
     const double value = values[row];
-    if (!continuous()) return levels.size() < 2 ? 0 : value / static_cast<double>(levels.size() - 1);
+    if (!continuous()) return places[static_cast<std::size_t>(value)];
     return log ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
 }
 

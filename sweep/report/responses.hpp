@@ -21,9 +21,10 @@ struct FactorColumn {
     double low = 0, high = 0;         ///< continuous: the range
     bool log = false;                 ///< the range is divided logarithmically
     std::vector<double> values;       ///< one per row
+    std::vector<double> places;       ///< of the levels among those of the campaign: 0 the first, 1 the last
 
     [[nodiscard]] bool continuous() const { return levels.empty(); }
-    /// Where the row stands in the range: 0 to 1; a level by its index over their number less one.
+    /// Where the row stands in the range: 0 to 1; a level by its place among those of the campaign, run or not.
     [[nodiscard]] double coordinate(std::size_t row) const;
 };
 

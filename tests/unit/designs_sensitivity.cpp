@@ -1,8 +1,13 @@
 #include "tests/support/ask_design.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 using namespace grainsweep;
 using grainsweep::testing::ask_design;
@@ -41,4 +46,46 @@ TEST(MorrisDesign, EachStepMovesOneFactorByDelta) {
 
 TEST(MorrisDesign, GridMustBeEven) {
     EXPECT_THROW((void)ask_design("morris", 2, {{"trajectories", 4}, {"grid", 5}}), std::invalid_argument);
+}
+
+TEST(MorrisDesign, EveryLevelIsMetAndStepsAreHalfTheLevels) {
+    for (const std::size_t k : {2U, 3U, 4U, 5U, 6U, 7U, 8U, 9U}) {
+        const auto set = ask_design("morris", std::vector<std::size_t>{0, k}, {{"trajectories", 90}});
+        const auto level = [&](std::size_t p) {
+            return std::min(k - 1, static_cast<std::size_t>(static_cast<double>(k) * set.point(p)[1]));
+        };
+        std::map<std::size_t, int> met;
+        for (std::size_t p = 0; p < set.size(); ++p) {
+            ++met[level(p)];
+            if (p % 3 != 0 && set.point(p)[1] != set.point(p - 1)[1]) {
+                const auto step = std::max(level(p), level(p - 1)) - std::min(level(p), level(p - 1));
+                EXPECT_EQ(step, k / 2) << k;
+            }
+        }
+        ASSERT_EQ(met.size(), k);
+        // 270 points; of an odd number of levels the ends are met half to once as often as the others.
+        for (const auto& [at, times] : met) EXPECT_GT(times, 0.6 * 270 / static_cast<double>(k)) << k << ' ' << at;
+    }
+}
+
+TEST(MorrisDesign, PointsOfGridsThatLevelsDivideStay) {
+    // As many levels as places, or half of them: what is drawn is what is drawn for a continuous factor.
+    for (const std::size_t k : {2U, 4U})
+        EXPECT_EQ(ask_design("morris", std::vector<std::size_t>{0, k, 0}, {{"trajectories", 30}}).coordinates,
+                  ask_design("morris", 3, {{"trajectories", 30}}).coordinates);
+}
+
+TEST(MorrisDesign, LevelsThatNoTrajectoryMeetsAreRefused) {
+    const auto said = [](std::size_t levels, std::int64_t trajectories) -> std::string {
+        try {
+            (void)ask_design("morris", std::vector<std::size_t>{0, levels}, {{"trajectories", trajectories}});
+        } catch (const std::invalid_argument& error) {
+            return error.what();
+        }
+        return {};
+    };
+    EXPECT_THAT(said(9, 3), ::testing::HasSubstr("3 trajectories meet, of factor 2, "));
+    EXPECT_THAT(said(9, 3), ::testing::HasSubstr("of its 9 levels: give "));
+    EXPECT_EQ(said(9, 9), "");
+    EXPECT_THAT(said(1, 9), ::testing::HasSubstr("factor 2 has one level"));
 }

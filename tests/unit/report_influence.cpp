@@ -76,6 +76,41 @@ TEST_F(Study, TotalIndicesFromSaltelliAndElementaryEffectsFromMorris) {
     EXPECT_NEAR(morris.factors[1].effects->sigma, 0, 1e-12);
 }
 
+TEST_F(Study, ElementaryEffectsOfLevelsAreOnTheScaleOfTheRange) {
+    // Linear in the place of a level: slope k - 1, whatever the numbers or words; trajectories that share cases count.
+    answer_by(store, R"({"campaign": "m", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]},
+        {"name": "x2", "levels": [0, 0.2, 0.4, 0.6, 0.8]}, {"name": "response", "levels": ["sum", "ishigami", "spreading_a"]}],
+        "design": {"kind": "morris", "trajectories": 30}})",
+              [](const Inputs& inputs) {
+                  const auto& word = std::get<std::string>(inputs.at("response"));
+                  const double place = word == "sum" ? 0 : word == "ishigami" ? 1 : 2;
+                  return 3 * input(inputs, "x1") + 5 * input(inputs, "x2") + place;
+              });
+    const auto responses = ask("m");
+    const auto influence = influence_of(responses, responses.observable("y"));
+    const double slopes[] = {3, 4, 2};
+    for (std::size_t j = 0; j < 3; ++j) {
+        ASSERT_TRUE(influence.factors[j].effects);
+        EXPECT_NEAR(influence.factors[j].effects->mu_star, slopes[j], 1e-9) << j;
+        EXPECT_NEAR(influence.factors[j].effects->sigma, 0, 1e-9) << j;
+        EXPECT_EQ(influence.factors[j].effects->count, 30) << j;
+    }
+}
+
+TEST_F(Study, PlacesOfLevelsAreThoseOfTheCampaign) {
+    // A condition leaves the levels 0.25 and 0.5 out: the others keep their places, 0, 3/4 and 1.
+    answer_by(store, R"({"campaign": "c", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]},
+        {"name": "x2", "levels": [0, 0.25, 0.5, 0.75, 1]}], "where": "x2 < 0.1 or x2 > 0.6",
+        "design": {"kind": "halton", "points": 64}})",
+              [](const Inputs& inputs) { return input(inputs, "x1"); });
+    const auto responses = ask("c");
+    EXPECT_EQ(responses.factors[1].levels.size(), 3U);
+    for (std::size_t row = 0; row < responses.rows(); ++row) {
+        const double level = responses.factors[1].values[row];
+        EXPECT_DOUBLE_EQ(responses.factors[1].coordinate(row), level == 0 ? 0 : level == 1 ? 0.75 : 1);
+    }
+}
+
 TEST_F(Study, SensitivityTellsInteractionFromScatterWhereReplicatesAllow) {
     std::uint64_t count = 0;
     const auto response = [&](const Inputs& inputs) {  // V: 1/12 + 1/12 + 1/144 x 12 of interaction + 1/12 of scatter
