@@ -331,12 +331,14 @@ void choose(AssistedMoments& result, const AssistedSettings& settings, const Ass
         const double joint = std::hypot(s.plain.half_width, s.assisted.half_width);
         s.takes_assisted = good && (previous == nullptr || previous->statistics[k].shorter);
         if (!std::isfinite(s.assisted.half_width) || !std::isfinite(s.assisted.value)) s.takes_assisted = false;
-        if (!s.takes_assisted || !(std::abs(s.assisted.value - s.plain.value) > contradiction * joint)) continue;
+        const bool contradicts = good && std::abs(s.assisted.value - s.plain.value) > contradiction * joint;
+        s.withdrawn = !good || contradicts;
+        if (!contradicts) continue;
         s.takes_assisted = false;
-        result.remark = "the model-assisted " + std::string(to_string(assisted_statistics[k])) + " " +
-                        shown(s.assisted.value) + " +- " + shown(s.assisted.half_width) +
-                        " is withdrawn: it contradicts the plain " + shown(s.plain.value) + " +- " +
-                        shown(s.plain.half_width);
+        result.remark += (result.remark.empty() ? "the model-assisted " : "; the model-assisted ") +
+                         std::string(to_string(assisted_statistics[k])) + " " + shown(s.assisted.value) + " +- " +
+                         shown(s.assisted.half_width) + " is withdrawn: it contradicts the plain " +
+                         shown(s.plain.value) + " +- " + shown(s.plain.half_width);
     }
 }
 

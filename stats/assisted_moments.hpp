@@ -33,6 +33,9 @@
 // sequences is below 0.6 sd and, at the previous check, the assisted half-width was below the plain one (taking the
 // shorter one each time costs 3 to 10 % of coverage). Where both differ by more than twice their joint half-width the
 // model has gone wrong and the plain estimate stands, with a sentence.
+//
+// Cases without a value: the plain estimate is of the cases that answer. The assisted one integrates over the whole box
+// and is extrapolated into the settings that failed.
 #pragma once
 
 #include "stats/moments.hpp"
@@ -86,6 +89,7 @@ struct AssistedStatistic {
     AssistedEstimate assisted;         ///< with scatter, as the plain one
     AssistedEstimate without_scatter;  ///< NaN where the noise is unknown
     bool takes_assisted = false;       ///< decided beforehand, see above
+    bool withdrawn = false;            ///< the two with a model: it is refused, or contradicts the plain estimate
     bool shorter = false;              ///< the assisted half-width is below the plain one: decides the next check
 
     [[nodiscard]] const AssistedEstimate& chosen() const { return takes_assisted ? assisted : plain; }
@@ -104,7 +108,7 @@ struct AssistedMoments {
     double model_error = std::numeric_limits<double>::quiet_NaN();  ///< rms on left-out sequences over the sd
     std::array<AssistedStatistic, assisted_statistics.size()> statistics;
     std::array<ScatterBudget, 3> budget;  ///< variance, third, fourth central moment; NaN where the noise is unknown
-    /// Why an assisted estimate was withdrawn, or is not taken: one sentence; empty: no reason to say anything.
+    /// Why assisted estimates were withdrawn: one sentence for each, with semicolons; empty: none was.
     std::string remark;
 
     [[nodiscard]] const AssistedStatistic& of(Statistic statistic) const;

@@ -77,8 +77,21 @@ Json json_of(double value, double error) {
     return {{"value", json_number(value)}, {"error", json_number(error)}};
 }
 
+/// An estimate with a model, marked where it is withdrawn.
+std::string shown(const stats::AssistedStatistic& statistic, const stats::AssistedEstimate& estimate) {
+    return (statistic.withdrawn ? "withdrawn: " : "") + with_error(estimate.value, estimate.half_width);
+}
+
 std::string key(stats::Statistic statistic) {
     return std::string(stats::to_string(statistic));
+}
+
+/// Of which population both estimates are, where some cases have no value.
+std::string population_line(const stats::AssistedMoments& assisted) {
+    return fmt::format(
+        "{} of {} cases have no value: the estimates with a model are of the whole box, extrapolated into the settings "
+        "that failed; the plain ones are of the cases that answer",
+        assisted.excluded, assisted.excluded + assisted.cases);
 }
 
 }  // namespace
@@ -141,10 +154,9 @@ store::Table estimators_table(const Estimators& estimators) {
     if (!estimators.assisted) return table;
     for (const auto statistic : stats::assisted_statistics) {
         const auto& one = estimators.assisted->of(statistic);
-        std::vector<store::Table::Cell> row = {key(statistic)};
-        for (const auto* estimate : {&one.plain, &one.assisted})
-            row.emplace_back(with_error(estimate->value, estimate->half_width));
-        if (scatter_known) row.emplace_back(with_error(one.without_scatter.value, one.without_scatter.half_width));
+        std::vector<store::Table::Cell> row = {key(statistic), with_error(one.plain.value, one.plain.half_width),
+                                               shown(one, one.assisted)};
+        if (scatter_known) row.emplace_back(shown(one, one.without_scatter));
         table.rows.push_back(std::move(row));
     }
     return table;
@@ -160,6 +172,7 @@ std::vector<std::string> estimator_lines(const Estimators& estimators) {
     if (!estimators.scatter_from.empty())
         lines.push_back(fmt::format("scatter of single runs, by {}: {:.2g} % of the variance", estimators.scatter_from,
                                     100 * assisted.budget[0].scatter));
+    if (assisted.excluded > 0) lines.push_back(population_line(assisted));
     if (!assisted.remark.empty()) lines.push_back(assisted.remark);
     return lines;
 }
@@ -174,6 +187,7 @@ Json estimators_json(const History& history, const Estimators& estimators) {
     value["scatter_from"] = nullptr;
     value["scatter_share"] = nullptr;
     value["note"] = estimators.refused;
+    value["population"] = "";
     if (!estimators.assisted) return value;
     const auto& assisted = *estimators.assisted;
     const bool scatter_known = !estimators.scatter_from.empty();
@@ -181,12 +195,14 @@ Json estimators_json(const History& history, const Estimators& estimators) {
         const auto& one = assisted.of(statistic);
         value["model_assisted"][key(statistic)] = json_of(one.assisted.value, one.assisted.half_width);
         value["model_assisted"][key(statistic)]["taken"] = one.takes_assisted;
-        if (scatter_known)
-            value["without_scatter"][key(statistic)] =
-                json_of(one.without_scatter.value, one.without_scatter.half_width);
+        value["model_assisted"][key(statistic)]["withdrawn"] = one.withdrawn;
+        if (!scatter_known) continue;
+        value["without_scatter"][key(statistic)] = json_of(one.without_scatter.value, one.without_scatter.half_width);
+        value["without_scatter"][key(statistic)]["withdrawn"] = one.withdrawn;
     }
     value["model_error"] = json_number(assisted.model_error);
     value["note"] = assisted.remark;
+    if (assisted.excluded > 0) value["population"] = population_line(assisted);
     if (!scatter_known) return value;
     value["scatter_from"] = estimators.scatter_from;
     const auto share = [&](std::size_t p) {

@@ -35,12 +35,14 @@ struct Estimators {
 [[nodiscard]] Estimators estimators_of(const store::Store& store, const Responses& responses,
                                        const ResponseColumn& response);
 
-/// One row per statistic that both give: plain, with the model, without scatter (where it is known).
+/// One row per statistic that both give: plain, with the model, without scatter (where it is known). What is withdrawn
+/// is marked.
 [[nodiscard]] store::Table estimators_table(const Estimators& estimators);
 /// What the model rests on, and what must be said of it, in a sentence each.
 [[nodiscard]] std::vector<std::string> estimator_lines(const Estimators& estimators);
-/// {"plain": {"mean": {"value", "error"}, ...}, "model_assisted": {..., "taken"} or null, "without_scatter": the same
-/// or null, "model_error", "scatter_from", "scatter_share": {"variance", "third_moment", "fourth_moment"}, "note"}
+/// {"plain": {"mean": {"value", "error"}, ...}, "model_assisted": {..., "taken", "withdrawn"} or null,
+/// "without_scatter": {..., "withdrawn"} or null, "model_error", "scatter_from", "scatter_share": {"variance",
+/// "third_moment", "fourth_moment"}, "note", "population"}
 [[nodiscard]] nlohmann::ordered_json estimators_json(const History& history, const Estimators& estimators);
 
 }  // namespace grainsweep::report

@@ -117,6 +117,11 @@ void warn(History& history, const Responses& responses, const ResponseColumn& re
             "the checks, and the measures, are of estimates with a model of the response, as the run judged them; "
             "value "
             "and error over all points are plain");
+        if (history.all.excluded > 0)
+            history.warnings.push_back(fmt::format(
+                "the estimates with a model are of the whole box, extrapolated into the settings of the {} cases "
+                "without a value; plain ones are of the cases that answer",
+                history.all.excluded));
     }
     if (record.convergence && record.convergence->observable != response.name) {
         history.warnings.push_back(

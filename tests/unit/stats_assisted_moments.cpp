@@ -181,6 +181,15 @@ TEST(AssistedMoments, ContradictedByThePlainOnesTheyAreWithdrawn) {
     const auto a = answered(asked);
     EXPECT_FALSE(a.of(Statistic::mean).takes_assisted);
     EXPECT_NE(a.remark.find("is withdrawn: it contradicts the plain "), std::string::npos);
+    // Each that is withdrawn has its sentence, and no other one has.
+    std::size_t withdrawn = 0;
+    for (const Statistic statistic : assisted_statistics) {
+        const bool named = a.remark.find("model-assisted " + std::string(to_string(statistic))) != std::string::npos;
+        EXPECT_EQ(named, a.of(statistic).withdrawn) << to_string(statistic);
+        EXPECT_FALSE(a.of(statistic).withdrawn && a.of(statistic).takes_assisted);
+        withdrawn += named ? 1 : 0;
+    }
+    EXPECT_GE(withdrawn, 2U);
 }
 
 TEST(AssistedMoments, MissingValuesAreLeftOut) {
