@@ -28,12 +28,15 @@ struct Sampled {
 
 using Series = std::map<std::string, std::vector<Sampled>, std::less<>>;
 
-Series series_of(const store::Store& store, const std::string& campaign, const std::string& case_id) {
+Series series_of(const store::Store& store, const std::string& case_id) {
     Series all;
+    // Of the tables: what a database has under the name of the view `series` is its own affair.
     const auto table = store.query(
-        fmt::format("SELECT observable, time, bin, value FROM series WHERE campaign = '{}' AND case_id = '{}' "
-                    "ORDER BY observable, time, bin",
-                    campaign, case_id));
+        fmt::format("SELECT b.name, o.time, o.bin, o.value FROM sim_case AS c "
+                    "JOIN observable AS b ON b.scene = c.scene AND b.revision = c.revision AND b.shape <> 'scalar' "
+                    "JOIN observation AS o ON o.case_key = c.case_key AND o.observable_id = b.observable_id "
+                    "WHERE c.case_id = '{}' ORDER BY 1, 2, 3",
+                    case_id));
     for (const auto& row : table.rows)
         all[std::get<std::string>(row[0])].push_back(
             {number_or_nan(row[1]), number_or_nan(row[2]), number_or_nan(row[3])});
@@ -106,7 +109,7 @@ Curves read_curves(const store::Store& store, const Responses& responses, const 
     const auto rows = random_rows(std::move(completed), choice.most_curves);
     curves.drawn = rows.size();
     for (const auto row : rows) {
-        const Series series = series_of(store, responses.campaign.name, responses.case_ids[row]);
+        const Series series = series_of(store, responses.case_ids[row]);
         for (auto& family : curves.families) {
             const auto found = series.find(family.name);
             if (found != series.end()) add(family, row, label_of(responses, row), found->second, choice.most_samples);

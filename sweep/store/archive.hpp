@@ -44,7 +44,7 @@ struct Store::Impl {
     std::optional<Placing> placing;  ///< of the campaign enrolled last, while some of its places are not entered
     bool dead_attempts_closed = false;
     bool in_group = false;
-    bool sound = false;              ///< checked: what is read is what was written
+    bool sound = false;              ///< checked since this store last wrote: what is read is what was written
     bool as_remembered = false;      ///< so was the whole file when it was opened to write, by its checksum
     bool whole = false;              ///< everything in the file is sound, as of the last enrol
     std::vector<std::string> notes;  ///< damage met by the last enrol, and what became of it
@@ -62,6 +62,9 @@ struct Store::Impl {
     void require_in_place() const;
     /// Throws BrokenWorld naming the first damage among all that is data; checked once.
     void require_sound();
+    /// The same, of every row, whatever is remembered of the file. False where rows belong to no case, which nobody
+    /// reads.
+    [[nodiscard]] bool check_rows() const;
     /// The same for one case.
     void require_sound(std::int64_t key);
     void require_order() const;
@@ -120,7 +123,7 @@ void store_program_facts(Connection& db, std::int64_t key, std::int64_t number, 
 /// What of programs is not as it was written, a sentence each.
 [[nodiscard]] std::vector<std::string> damaged_programs(const Connection& db);
 
-/// Creates or renews the view that bears the campaign's name.
-void make_campaign_view(Store::Impl& archive, const campaign::Campaign& campaign, std::int64_t campaign_key);
+/// Creates or renews the view that bears the campaign's name; where a view of ours was dropped or altered, all of them.
+void make_views(Store::Impl& archive, const campaign::Campaign& campaign, std::int64_t campaign_key);
 
 }  // namespace grainsweep::store

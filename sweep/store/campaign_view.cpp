@@ -1,6 +1,6 @@
 // The view that bears a campaign's name: one row per case, a column per factor and per scalar observable.
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/store/archive.hpp"
+#include "sweep/store/schema.hpp"
 
 #include <fmt/format.h>
 
@@ -41,57 +41,93 @@ private:
     std::string text_;
 };
 
-std::int64_t key_of(const Connection& db, std::string_view sql, const campaign::Campaign& campaign,
-                    const std::string& name) {
-    auto rows = db.ask(sql, campaign.scene().name, campaign.scene().revision, name);
-    return rows.next() ? rows.get<std::int64_t>(0) : 0;
-}
+/// What a view shows of a campaign.
+struct Shown {
+    std::string name, scene;
+    std::int64_t key = 0, revision = 0;
+    std::vector<std::string> factors, scalars;
+};
 
-std::string view_text(const Connection& db, const campaign::Campaign& campaign, std::int64_t campaign_key) {
+std::string view_text(const Connection& db, const Shown& shown) {
     Columns columns;
     for (const char* name : {"point", "sequence", "replicate"}) columns.add(name, "_", fmt::format("p.{}", name));
     for (const char* name : {"case_id", "seed", "outcome", "attempts", "wall_seconds"}) {
         columns.add(name, "_", fmt::format("c.{}", name));
     }
-    for (const auto& factor : campaign.space.factors) {
-        const auto* spec = campaign.scene().find_parameter(factor.name);
-        if (spec == nullptr) throw std::logic_error(fmt::format("factor {} is no parameter of the scene", factor.name));
-        const auto key = key_of(db, "SELECT parameter_id FROM parameter WHERE scene = ? AND revision = ? AND name = ?",
-                                campaign, factor.name);
-        columns.add(factor.name, "_input",
+    for (const auto& factor : shown.factors) {
+        auto rows =
+            db.ask("SELECT parameter_id, default_value FROM parameter WHERE scene = ? AND revision = ? AND name = ?",
+                   shown.scene, shown.revision, factor);
+        if (!rows.next()) throw std::logic_error(fmt::format("factor {} is no parameter of the scene", factor));
+        columns.add(factor, "_input",
                     fmt::format("coalesce((SELECT i.value FROM case_input AS i WHERE i.case_key = p.case_key AND "
                                 "i.parameter_id = {}), {})",
-                                key, literal(spec->default_value)));
+                                rows.get<std::int64_t>(0), literal(rows.value(1))));
     }
-    for (const auto& observable : campaign.scene().observables) {
-        if (observable.shape != Shape::scalar) continue;
-        const auto key =
-            key_of(db, "SELECT observable_id FROM observable WHERE scene = ? AND revision = ? AND name = ?", campaign,
-                   observable.name);
-        columns.add(observable.name, "_observed",
+    for (const auto& scalar : shown.scalars) {
+        auto rows = db.ask("SELECT observable_id FROM observable WHERE scene = ? AND revision = ? AND name = ?",
+                           shown.scene, shown.revision, scalar);
+        columns.add(scalar, "_observed",
                     fmt::format("(SELECT o.value FROM observation AS o WHERE o.case_key = p.case_key AND "
                                 "o.observable_id = {} AND o.sample = 0)",
-                                key));
+                                rows.next() ? rows.get<std::int64_t>(0) : 0));
     }
     return fmt::format(
         "CREATE VIEW {} AS\nSELECT {}\nFROM campaign_case AS p\nJOIN sim_case AS c ON c.case_key = p.case_key\n"
         "WHERE p.campaign_id = {}",
-        quoted_name(campaign.name), columns.text(), campaign_key);
+        quoted_name(shown.name), columns.text(), shown.key);
+}
+
+void make_view(Connection& db, const Shown& shown) {
+    const std::string text = view_text(db, shown);
+    std::optional<std::string> present;
+    {
+        auto rows = db.ask("SELECT sql FROM sqlite_schema WHERE name = ?", shown.name);
+        if (rows.next()) present = rows.get<std::string>(0);
+    }
+    if (present == text) return;
+    if (present) db.execute(fmt::format("DROP VIEW {}", quoted_name(shown.name)));
+    db.execute(text);
+}
+
+/// Every campaign, as the archive describes it.
+std::vector<Shown> stored_campaigns(const Connection& db) {
+    std::vector<Shown> all;
+    auto rows = db.ask(fmt::format("SELECT campaign_id, {} FROM campaign NOT INDEXED", identity_columns));
+    while (rows.next()) {
+        const auto identity = identity_at(rows, 1);
+        Shown shown{identity.name,
+                    identity.scene,
+                    rows.get<std::int64_t>(0),
+                    identity.revision,
+                    campaign::factor_names(identity),
+                    {}};
+        auto scalars = db.ask(
+            "SELECT name FROM observable NOT INDEXED WHERE scene = ? AND revision = ? AND shape = 'scalar' ORDER BY "
+            "observable_id",
+            shown.scene, shown.revision);
+        while (scalars.next()) shown.scalars.push_back(scalars.get<std::string>(0));
+        all.push_back(std::move(shown));
+    }
+    return all;
 }
 
 }  // namespace
 
-void make_campaign_view(Store::Impl& archive, const campaign::Campaign& campaign, std::int64_t campaign_key) {
+void make_views(Store::Impl& archive, const campaign::Campaign& campaign, std::int64_t campaign_key) {
     auto& db = archive.db;
-    const std::string text = view_text(db, campaign, campaign_key);
-    std::optional<std::string> present;
-    {
-        auto rows = db.ask("SELECT sql FROM sqlite_schema WHERE name = ?", campaign.name);
-        if (rows.next()) present = rows.get<std::string>(0);
+    if (!damaged_views(db).empty()) {
+        archive.notes.push_back("views of the database were dropped or altered and are made anew");
+        db.execute(schema_views());
+        for (const auto& other : stored_campaigns(db))
+            if (other.key != campaign_key) make_view(db, other);
     }
-    if (present == text) return;
-    if (present) db.execute(fmt::format("DROP VIEW {}", quoted_name(campaign.name)));
-    db.execute(text);
+    const auto& scene = campaign.scene();
+    Shown shown{campaign.name, scene.name, campaign_key, scene.revision, {}, {}};
+    for (const auto& factor : campaign.space.factors) shown.factors.push_back(factor.name);
+    for (const auto& observable : scene.observables)
+        if (observable.shape == Shape::scalar) shown.scalars.push_back(observable.name);
+    make_view(db, shown);
 }
 
 }  // namespace grainsweep::store

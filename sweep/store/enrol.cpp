@@ -1,6 +1,7 @@
 // Enrolling: a campaign and its cases enter the archive, or meet what is there already.
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/store/archive.hpp"
+#include "sweep/store/campaign_name.hpp"
 #include "sweep/store/moment.hpp"
 #include "sweep/store/soundness.hpp"
 
@@ -8,7 +9,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <stdexcept>
 
 namespace grainsweep::store {
@@ -19,14 +19,10 @@ namespace {
 
 /// A campaign's name becomes that of a view: no table, fixed view or index may have it.
 void refuse_taken_name(const Connection& db, const Campaign& campaign) {
-    std::string start = campaign.name.substr(0, 7);
-    std::ranges::transform(start, start.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     auto rows = db.ask("SELECT type FROM sqlite_schema WHERE name = ? COLLATE NOCASE", campaign.name);
-    const bool found = rows.next();
-    if (!found && start != "sqlite_") return;
+    if (!rows.next()) return;
     throw campaign::wrong_question("$.campaign", campaign.name,
-                                   found ? fmt::format("the database has a {} of that name", rows.get<std::string>(0))
-                                         : "names that begin with sqlite_ are SQLite's own");
+                                   fmt::format("the database has a {} of that name", rows.get<std::string_view>(0)));
 }
 
 /// Declares what the scene takes and measures; returns its parameters sorted by name.
@@ -154,6 +150,7 @@ std::int64_t store_campaign(Store::Impl& archive, const Campaign& campaign, cons
     auto key = match_campaign(archive, campaign);
     const auto identity = campaign::identity_of(campaign);
     if (!key) {
+        check_campaign_name(campaign.name);
         refuse_taken_name(db, campaign);
         db.run(
             "INSERT INTO campaign (name, scene, revision, seed, factors, fixed, condition, design, design_options, "
@@ -255,7 +252,8 @@ std::vector<CaseState> Store::enrol(const Campaign& campaign, const campaign::Ca
         place_anew(*impl_, campaign, key, cases, placing);
         placing = {{}, {}, {}, key};
     }
-    make_campaign_view(*impl_, campaign, key);
+    impl_->refuse_damage(damaged_numbers(db, key), {});
+    make_views(*impl_, campaign, key);
     renew_descriptions(db);
     transaction.commit();
     impl_->sound = true;
@@ -277,6 +275,7 @@ void Store::enrol_more(std::size_t places) {
     Transaction transaction(impl_->db);
     placing.enter(impl_->db, places);
     transaction.commit();
+    impl_->sound = false;
     if (!placing.done()) impl_->placing.emplace(std::move(placing));
 }
 

@@ -78,7 +78,7 @@ bool is_as_remembered(const Connection& db, const std::filesystem::path& file) {
     return stored && !log_waits(file) && sum_of_file(db) == stored;
 }
 
-void remember_file(Connection& db) {
+void remember_file(Connection& db, const std::function<bool()>& is_sound) {
     // The row first: that it is there decides how many pages there are.
     db.run("INSERT INTO file_checksum VALUES (1, 0, 0) ON CONFLICT (only) DO UPDATE SET pages = 0");
     {
@@ -89,6 +89,8 @@ void remember_file(Connection& db) {
     }
     const auto sum = sum_of_file(db);
     if (!sum) return;
+    db.execute("PRAGMA shrink_memory");  // forgets the pages that this connection holds in memory
+    if (!is_sound()) return;
     db.run("UPDATE file_checksum SET pages = ?, checksum = ?", sum->pages, static_cast<std::int64_t>(sum->sum));
 }
 

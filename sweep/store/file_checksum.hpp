@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 
 namespace grainsweep::store {
 
@@ -18,8 +19,10 @@ namespace grainsweep::store {
 /// or a write-ahead log is waiting. Inside a transaction, of reading at least.
 [[nodiscard]] bool is_as_remembered(const Connection& db, const std::filesystem::path& file);
 
-/// Stores the checksum of the file as it is. Does nothing where a reader keeps the write-ahead log from being brought
-/// home. Not inside a transaction.
-void remember_file(Connection& db);
+/// Adds up the file, then checks what is in it, then stores the sum: a byte that changes after it was added up makes
+/// the file another one, a byte that changed before it is found by `is_sound`, which therefore reads from the disk and
+/// not from memory. Stores nothing where the check fails, or where a reader keeps the write-ahead log from being
+/// brought home. Not inside a transaction.
+void remember_file(Connection& db, const std::function<bool()>& is_sound);
 
 }  // namespace grainsweep::store

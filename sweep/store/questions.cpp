@@ -45,9 +45,14 @@ std::optional<std::int64_t> case_key(const Connection& db, std::string_view case
     return rows.next() ? std::optional(rows.get<std::int64_t>(0)) : std::nullopt;
 }
 
+/// The tables, not the view `inputs`: what a database has under that name is its own affair.
 Inputs inputs_of(const Connection& db, std::string_view case_id) {
     Inputs inputs;
-    auto rows = db.ask("SELECT name, value FROM inputs WHERE case_id = ?", case_id);
+    auto rows = db.ask(
+        "SELECT q.name, coalesce(i.value, q.default_value) FROM sim_case AS c JOIN parameter AS q ON q.scene = c.scene "
+        "AND q.revision = c.revision LEFT JOIN case_input AS i ON i.case_key = c.case_key AND i.parameter_id = "
+        "q.parameter_id WHERE c.case_id = ?",
+        case_id);
     while (rows.next()) inputs.emplace(rows.get<std::string>(0), rows.value(1));
     return inputs;
 }
@@ -87,8 +92,7 @@ std::int64_t Store::Impl::campaign_key(std::string_view name) const {
 }
 
 bool Store::Impl::keeps_extents() const {
-    auto rows = db.ask("SELECT count(*) FROM pragma_table_info('campaign') WHERE name = 'candidates'");
-    return rows.next() && rows.get<std::int64_t>(0) > 0;
+    return has_column(db, "campaign", "candidates");
 }
 
 std::vector<CampaignRecord> Store::campaigns() const {
@@ -143,6 +147,7 @@ bool Store::is_settled(std::string_view case_id) const {
 }
 
 StoredPlaces Store::placement(std::string_view campaign) const {
+    impl_->require_sound();
     StoredPlaces stored;
     auto rows = impl_->db.ask(
         "SELECT p.point, p.sequence, p.replicate, c.case_id, c.attempts, c.failures, c.outcome FROM campaign_case AS p "

@@ -1,5 +1,6 @@
 #include "sweep/store/soundness.hpp"
 
+#include "sweep/campaign/case.hpp"
 #include "sweep/store/database_errors.hpp"
 
 #include <fmt/format.h>
@@ -19,6 +20,8 @@ struct Summed {
     bool by_campaign = false;
 };
 
+constexpr std::string_view views = "sqlite_schema";
+
 constexpr std::array summed_tables = {
     Summed{"campaign",
            "SELECT campaign_id, name, scene, revision, seed, factors, fixed, condition, design, design_options, "
@@ -37,7 +40,7 @@ constexpr std::array summed_tables = {
         "SELECT computer_id, version, \"commit\", build, instruction_path, processor, host FROM attempt_computer NOT "
         "INDEXED"},
     // Our own: what a user adds is no damage.
-    Summed{"sqlite_schema",
+    Summed{views,
            "SELECT name, sql FROM sqlite_schema WHERE type = 'view' AND (name IN ('series', 'inputs', "
            "'convergence_history') OR name IN (SELECT name FROM campaign NOT INDEXED))"},
     Summed{"campaign_case",
@@ -104,13 +107,22 @@ void compare(const Connection& db, std::string_view table, std::int64_t part, st
 }  // namespace
 
 bool has_checksums(const Connection& db) {
-    auto rows = db.ask("SELECT 1 FROM sqlite_schema WHERE name = 'table_checksum'");
-    return rows.next();
+    constexpr std::int64_t first_with_checksums = 5;  // results_schema/005_checksums.sql
+    auto version = db.prepare("PRAGMA user_version");
+    return version.step() && version.get<std::int64_t>(0) >= first_with_checksums;
 }
 
 bool has_threads(const Connection& db) {
-    auto rows = db.ask("SELECT 1 FROM pragma_table_info('attempt') WHERE name = 'threads'");
-    return rows.next();
+    return has_column(db, "attempt", "threads");
+}
+
+// The statement, not the function pragma_table_info(): a view of that name would stand before it.
+bool has_column(const Connection& db, std::string_view table, std::string_view column) {
+    auto rows = db.prepare(fmt::format("PRAGMA table_info({})", quoted_name(table)));
+    while (rows.step()) {
+        if (rows.get<std::string_view>(1) == column) return true;
+    }
+    return false;
 }
 
 RowSum sum_of_table(const Connection& db, std::string_view name, std::int64_t part) {
@@ -146,12 +158,72 @@ void renew_sum(Connection& db, std::string_view name, std::int64_t part) {
     store_sum(db, name, part, sum_of_table(db, name, part));
 }
 
+void change_summed(Connection& db, std::string_view name, const std::function<void()>& change) {
+    const bool as_written = sum_of_table(db, name) == stored_sum(db, name);
+    change();
+    if (as_written) renew_sum(db, name);
+}
+
 std::vector<DamagedTable> damaged_descriptions(const Connection& db) {
     std::vector<DamagedTable> damaged;
     if (!has_checksums(db)) return damaged;
     for (const auto& table : summed_tables) {
-        if (!table.by_campaign) compare(db, table.name, 0, damaged);
+        if (!table.by_campaign && table.name != views) compare(db, table.name, 0, damaged);
     }
+    return damaged;
+}
+
+std::vector<DamagedTable> damaged_views(const Connection& db) {
+    std::vector<DamagedTable> damaged;
+    if (has_checksums(db)) compare(db, views, 0, damaged);
+    return damaged;
+}
+
+std::vector<DamagedTable> damaged_texts(const Connection& db, bool of_all_runs) {
+    std::vector<DamagedTable> damaged;
+    auto rows = db.ask(
+        "SELECT campaign_id, provenance_id, campaign_text, campaign_hash FROM provenance AS v NOT INDEXED WHERE ?1 OR "
+        "provenance_id = (SELECT max(provenance_id) FROM provenance AS w NOT INDEXED WHERE w.campaign_id = "
+        "v.campaign_id)",
+        of_all_runs);
+    while (rows.next()) {
+        if (campaign::content_hash(rows.get<std::string_view>(2)) == rows.get<std::string_view>(3)) continue;
+        damaged.push_back({"provenance", rows.get<std::int64_t>(0),
+                           fmt::format("the campaign file of run {} is not as written", rows.get<std::int64_t>(1))});
+    }
+    return damaged;
+}
+
+std::vector<DamagedTable> damaged_numbers(const Connection& db, std::int64_t campaign) {
+    // Points, repeats and attempts are counted one by one: none of them comes near these.
+    constexpr std::int64_t most_counted = 100'000'000, most_attempts = 1'000'000;
+    struct Bounded {
+        std::string_view table, campaign, what, condition;
+    };
+    const std::array bounded = {
+        Bounded{"campaign", "campaign_id", "it has a count, a block or a revision out of range",
+                "revision NOT BETWEEN 0 AND ?1 OR sequences NOT BETWEEN 1 AND ?1 OR replicates NOT BETWEEN 1 AND ?1 OR "
+                "stopped_at NOT BETWEEN 0 AND ?1 OR convergence_block NOT BETWEEN 1 AND ?1"},
+        Bounded{"campaign_case", "campaign_id", "it has a point, replicate or sequence out of range",
+                "point NOT BETWEEN 0 AND ?1 OR replicate NOT BETWEEN 0 AND ?1 OR sequence NOT BETWEEN 0 AND ?1"},
+        Bounded{"convergence", "campaign_id", "it has a count of points or cases out of range",
+                "points NOT BETWEEN 0 AND ?1 OR excluded NOT BETWEEN 0 AND ?1"},
+        Bounded{"sim_case", "0", "it has a count of attempts or a revision out of range",
+                "attempts NOT BETWEEN 0 AND ?2 OR failures NOT BETWEEN 0 AND ?2 OR revision NOT BETWEEN 0 AND ?1"},
+        Bounded{"attempt", "0", "it has an attempt whose number is out of range", "number NOT BETWEEN 1 AND ?2"},
+    };
+    std::vector<DamagedTable> damaged;
+    const auto find = [&](const Bounded& one) {
+        auto rows = db.ask(fmt::format("SELECT {} FROM {} NOT INDEXED WHERE ({}) AND (?3 = 0 OR ?3 = {}) LIMIT 1",
+                                       one.campaign, one.table, one.condition, one.campaign),
+                           most_counted, most_attempts, campaign);
+        if (rows.next()) damaged.push_back({std::string(one.table), rows.get<std::int64_t>(0), std::string(one.what)});
+    };
+    for (const auto& one : bounded) find(one);
+    if (has_column(db, "campaign", "candidates"))
+        find({"campaign", "campaign_id", "it has a count of points or repeats out of range",
+              "candidates NOT BETWEEN 0 AND ?1 OR asked_candidates NOT BETWEEN 0 AND ?1 OR asked_replicates NOT "
+              "BETWEEN 1 AND ?1"});
     return damaged;
 }
 

@@ -7,6 +7,7 @@
 #include "sweep/store/database.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -30,17 +31,26 @@ struct DamagedTable {
     std::string what;
 };
 
+/// Whether the file is of a version that has them: a table of them that is missing there is damage.
 [[nodiscard]] bool has_checksums(const Connection& db);
 /// Whether attempts have a column `threads`: an archive that is only read may be of an older form.
 [[nodiscard]] bool has_threads(const Connection& db);
+[[nodiscard]] bool has_column(const Connection& db, std::string_view table, std::string_view column);
 
 /// Among the cases with these keys, in order of key. Rows of cases that are not there are counted in `strays`.
 [[nodiscard]] std::vector<DamagedCase> damaged_cases(const Connection& db, std::int64_t first = 0,
                                                      std::int64_t last = std::numeric_limits<std::int64_t>::max(),
                                                      std::int64_t* strays = nullptr);
 
-/// Tables that describe cases and campaigns: campaign, parameter, observable, provenance and the schema itself.
+/// Tables that describe cases and campaigns: campaign, parameter, observable, provenance.
 [[nodiscard]] std::vector<DamagedTable> damaged_descriptions(const Connection& db);
+/// Our views, which users alone read: they are no data, and the next run makes them anew.
+[[nodiscard]] std::vector<DamagedTable> damaged_views(const Connection& db);
+/// Campaign files as the runs read them: those of the last run of each campaign, or all.
+[[nodiscard]] std::vector<DamagedTable> damaged_texts(const Connection& db, bool of_all_runs);
+/// Numbers that no run writes, with or without checksums: a negative point, a case tried a million times. 0: of every
+/// campaign.
+[[nodiscard]] std::vector<DamagedTable> damaged_numbers(const Connection& db, std::int64_t campaign = 0);
 /// Tables that are kept in the order of their keys and are not: their rows cannot be found, nor safely written.
 /// SQLite's quick check does not see it.
 [[nodiscard]] std::vector<DamagedTable> tables_out_of_order(const Connection& db);
@@ -57,6 +67,8 @@ struct DamagedTable {
 void store_sum(Connection& db, std::string_view name, std::int64_t part, const RowSum& sum);
 /// After a change: makes the stored checksum that of the rows.
 void renew_sum(Connection& db, std::string_view name, std::int64_t part = 0);
+/// Changes a table and its stored checksum. Rows that are not as written before the change stay damaged after it.
+void change_summed(Connection& db, std::string_view name, const std::function<void()>& change);
 /// renew_sum of every table of damaged_descriptions().
 void renew_descriptions(Connection& db);
 

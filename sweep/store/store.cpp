@@ -96,6 +96,42 @@ std::int64_t schema_version(const Connection& db, const std::filesystem::path& f
     return version;
 }
 
+/// The file may be anybody's. A view in the place of a table could be read without end, a column that is computed could
+/// answer anything.
+void check_tables(const Connection& db, const std::filesystem::path& file) {
+    constexpr std::array tables = {"campaign",      "provenance",       "parameter",       "observable",
+                                   "sim_case",      "case_input",       "attempt",         "observation",
+                                   "campaign_case", "convergence",      "table_checksum",  "file_checksum",
+                                   "program",       "attempt_computer", "program_content", "attempt_program"};
+    constexpr std::size_t of_the_first_version = 10;
+    const auto refuse = [&](std::string_view what) {
+        throw BrokenWorld(fmt::format("database '{}': not as this program made it: {}", file.string(), what));
+    };
+    for (std::size_t k = 0; k < tables.size(); ++k) {
+        auto objects = db.prepare("SELECT type, rootpage FROM sqlite_schema WHERE name = ?1 COLLATE NOCASE");
+        objects.bind(1, tables[k]);
+        if (!objects.step()) {
+            if (k < of_the_first_version) refuse(fmt::format("it has no table {}", tables[k]));
+            continue;
+        }
+        if (objects.get<std::string_view>(0) != "table" || objects.get<std::int64_t>(1) == 0)
+            refuse(fmt::format(
+                "{} is a {}", tables[k],
+                objects.get<std::string_view>(0) == "table" ? "virtual table" : objects.get<std::string_view>(0)));
+        auto columns = db.prepare(fmt::format("PRAGMA table_xinfo({})", tables[k]));
+        constexpr int hidden = 6;  // of the row of a column; not 0: computed
+        while (columns.step())
+            if (columns.get<std::int64_t>(hidden) != 0)
+                refuse(fmt::format("column {} of table {} is computed", columns.get<std::string_view>(1), tables[k]));
+    }
+}
+
+/// Numbers that no run writes, of a file without checksums: with them they would become the truth.
+void refuse_impossible(const Connection& db, const std::filesystem::path& file) {
+    for (const auto& one : damaged_numbers(db))
+        throw BrokenWorld(fmt::format("database '{}': damaged: table {}: {}", file.string(), one.name, one.what));
+}
+
 /// Brings the file to the newest schema, in one transaction.
 void migrate(Connection& db, const std::filesystem::path& file) {
     const auto migrations = schema_migrations();
@@ -103,12 +139,14 @@ void migrate(Connection& db, const std::filesystem::path& file) {
     Transaction transaction(db);
     const auto seen = static_cast<std::size_t>(schema_version(db, file));
     const bool unprotected = !has_checksums(db);
+    const bool views_as_written = damaged_views(db).empty();
+    if (unprotected && seen > 0) refuse_impossible(db, file);
     for (const auto migration : migrations.subspan(seen)) db.execute(migration);
     db.execute(schema_views());
     // A migration that changes what has a checksum renews it itself: here damage would become the truth.
     if (unprotected)
         renew_everything(db);
-    else
+    else if (views_as_written)
         renew_sum(db, "sqlite_schema");
     db.execute(fmt::format("PRAGMA user_version = {}; PRAGMA application_id = {}", migrations.size(), application));
     transaction.commit();
@@ -189,6 +227,7 @@ std::unique_ptr<Store::Impl> open_to_write(const std::filesystem::path& file, St
     const bool empty = schema_version(db, file) == 0;  // before anything is changed in a foreign file
     db.use(disk == Store::Disk::network ? Connection::Journal::rollback : Connection::Journal::write_ahead);
     const bool as_remembered = !empty && is_as_remembered_now(db, file);
+    if (!empty) check_tables(db, file);
     if (!empty && !as_remembered) check_structure(db, file);
     migrate(db, file);
     enter_programs(db);
@@ -204,6 +243,7 @@ std::unique_ptr<Store::Impl> open_to_read(const std::filesystem::path& file) {
     const std::int64_t version = schema_version(db, file);
     if (version == 0)
         throw WrongQuestion(fmt::format("'{}' is empty: no campaign has been run into it.", file.string()));
+    check_tables(db, file);
     // An older schema is read as it is, and brought up to date by the next run: what a migration added is asked for
     // only where it is (keeps_extents).
     enter_programs(db);
@@ -256,11 +296,12 @@ std::int64_t Store::Impl::observable_key(const std::string& scene, std::int64_t 
 std::int64_t Store::Impl::computer_key(const campaign::Computer& by) {
     const auto [found, fresh] = computers.try_emplace(by, 0);
     if (!fresh) return found->second;
-    db.run(
-        "INSERT INTO attempt_computer (version, \"commit\", build, instruction_path, processor, host) "
-        "VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING",
-        by.version, by.commit, by.build, by.instruction_path, by.processor, by.host);
-    renew_sum(db, "attempt_computer");
+    change_summed(db, "attempt_computer", [&] {
+        db.run(
+            "INSERT INTO attempt_computer (version, \"commit\", build, instruction_path, processor, host) "
+            "VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING",
+            by.version, by.commit, by.build, by.instruction_path, by.processor, by.host);
+    });
     auto rows = db.ask(
         "SELECT computer_id FROM attempt_computer WHERE (version, \"commit\", build, instruction_path, processor, "
         "host) "
@@ -275,10 +316,20 @@ void Store::remember_file() {
     if (impl_->in_group) throw std::logic_error("the file is remembered inside a group");
     if (!impl_->whole || enrols() || impl_->db.file_bytes() > most_remembered_bytes) return;
     impl_->require_in_place();
+    std::optional<BrokenWorld> damage;
     try {
-        store::remember_file(impl_->db);
+        store::remember_file(impl_->db, [&] {
+            const Transaction one_state(impl_->db, Transaction::Kind::read);
+            try {
+                return impl_->check_rows();
+            } catch (const BrokenWorld& found) {
+                damage = found;
+                return false;
+            }
+        });
     } catch (const BrokenWorld&) {  // all results are on disk; the next to open the file checks its rows
     }
+    if (damage) throw *damage;
 }
 
 void Store::group(const std::function<void()>& writes) {
@@ -308,6 +359,7 @@ void Store::group(const std::function<void()>& writes) {
                       impl_->settled_in_group, impl_->run_clock.now(), impl_->provenance);
     }
     transaction.commit();
+    impl_->sound = false;
     membership.committed = true;
     impl_->require_in_place();  // else what was written is not where it will be looked for
 }

@@ -168,8 +168,8 @@ public:
     /// Throws BrokenWorld where the file was moved, deleted or replaced since it was opened; group() does, too.
     void require_in_place() const;
 
-    /// At the end of a run: stores a checksum of the whole file, so that a run that opens it unchanged need not check
-    /// every row. Does nothing where something in the file is damaged or was not checked.
+    /// Checks every row, then stores a checksum of the file: unchanged, it need not be checked again. Throws
+    /// BrokenWorld naming what was damaged during the run. Does nothing where something was damaged before.
     void remember_file();
 
     /// Runs `writes` in one durable transaction: on disk when this returns, absent when it throws.

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 #include <utility>
@@ -55,18 +57,6 @@ void check_structure(const Connection& db, std::vector<Damage>& found) {
     }
 }
 
-void check_texts(const Connection& db, std::vector<Damage>& found) {
-    auto rows = db.ask(
-        "SELECT g.name, v.provenance_id, v.campaign_text, v.campaign_hash FROM provenance AS v NOT INDEXED "
-        "JOIN campaign AS g ON g.campaign_id = v.campaign_id");
-    while (rows.next()) {
-        if (campaign::content_hash(rows.get<std::string_view>(2)) == rows.get<std::string_view>(3)) continue;
-        found.push_back({"table", "", rows.get<std::string>(0), "",
-                         fmt::format("table provenance: the campaign file of run {} is not as written",
-                                     rows.get<std::int64_t>(1))});
-    }
-}
-
 void check_cases(const Connection& db, std::vector<Damage>& found) {
     std::int64_t strays = 0;
     for (const auto& one :
@@ -100,18 +90,19 @@ std::vector<Damage> Store::verify() const {
     std::vector<Damage> found;
     guarded([&] { check_structure(db, found); }, found);
     std::vector<DamagedTable> tables;
-    guarded([&] { tables = damaged_descriptions(db); }, found);
-    guarded(
-        [&] {
-            for (auto& part : damaged_parts(db)) tables.push_back(std::move(part));
-        },
-        found);
+    const auto gather = [&](auto&& part) {
+        guarded([&] { std::ranges::move(part(), std::back_inserter(tables)); }, found);
+    };
+    gather([&] { return damaged_descriptions(db); });
+    gather([&] { return damaged_views(db); });
+    gather([&] { return damaged_parts(db); });
+    gather([&] { return damaged_numbers(db); });
+    gather([&] { return damaged_texts(db, true); });
     guarded(
         [&] {
             for (const auto& table : tables) found.push_back(described(db, table));
         },
         found);
-    guarded([&] { check_texts(db, found); }, found);
     guarded([&] { check_cases(db, found); }, found);
     guarded(
         [&] {
@@ -139,13 +130,24 @@ void Store::Impl::require_sound() {
     if (sound) return;
     std::optional<Transaction> one_state;
     if (!db.in_transaction()) one_state.emplace(db, Transaction::Kind::read);
-    sound = is_as_remembered(db, file);
-    if (sound) return;
+    if (is_as_remembered(db, file))
+        refuse_damage(damaged_numbers(db), {});
+    else
+        (void)check_rows();
+    sound = true;
+}
+
+bool Store::Impl::check_rows() const {
     require_order();
     auto tables = damaged_descriptions(db);
-    for (auto& part : damaged_parts(db)) tables.push_back(std::move(part));
-    refuse_damage(tables, tables.empty() ? damaged_cases(db) : std::vector<DamagedCase>{});
-    sound = true;
+    std::ranges::move(damaged_parts(db), std::back_inserter(tables));
+    std::ranges::move(damaged_texts(db, false), std::back_inserter(tables));
+    refuse_damage(tables, {});
+    std::int64_t strays = 0;
+    refuse_damage({}, damaged_cases(db, std::numeric_limits<std::int64_t>::min(),
+                                    std::numeric_limits<std::int64_t>::max(), &strays));
+    refuse_damage(damaged_numbers(db), {});
+    return strays == 0;
 }
 
 /// Rows that are whole and not in their order are passed by when they are looked for.

@@ -172,11 +172,12 @@ void Store::stop(std::string_view campaign, std::optional<std::int64_t> points) 
     impl_->require_group();
     constexpr std::string_view update = "UPDATE campaign SET stopped_at = ? WHERE campaign_id = ?";
     const auto key = impl_->campaign_key(campaign);
-    if (points)
-        impl_->db.run(update, *points, key);
-    else
-        impl_->db.run(update, std::nullopt, key);
-    renew_sum(impl_->db, "campaign");
+    change_summed(impl_->db, "campaign", [&] {
+        if (points)
+            impl_->db.run(update, *points, key);
+        else
+            impl_->db.run(update, std::nullopt, key);
+    });
 }
 
 }  // namespace grainsweep::store
