@@ -68,8 +68,8 @@ const std::vector<Rule>& rules() {
         {"scenes NAME", {.words = campaign::scene_words()}},
         {"designs NAME", {.words = design_names()}},
         {"completion SHELL", {.words = {"bash", "zsh"}}},
-        {"--campaign", {.sql = "SELECT name FROM campaign"}},
-        {"--observable", {.sql = "SELECT DISTINCT name FROM observable WHERE shape = 'scalar'"}},
+        {"--campaign", {.sql = "SELECT name FROM campaign LIMIT 256"}},
+        {"--observable", {.sql = "SELECT DISTINCT name FROM observable WHERE shape = 'scalar' LIMIT 256"}},
         {"CASE", {.sql = "SELECT case_id FROM sim_case WHERE case_id GLOB '@*' LIMIT 64"}},
     };
     return table;
@@ -113,9 +113,13 @@ std::string bash_action(const Values* values) {
 constexpr std::string_view bash_head =
     R"sh(# Completion of grainsweep for bash; printed by `grainsweep completion bash`.
 
+# Of the words, which white space separates, those that begin so. They are compared and never expanded, as `compgen -W`
+# would; what is no plain word is left out, because it would be expanded where the command is entered.
 _grainsweep_words() {
     local word
-    while read -r word; do COMPREPLY+=("$word"); done < <(compgen -W "$1" -- "$cur")
+    while IFS= read -r word; do
+        [[ $word == "$cur"* && $word != *[!A-Za-z0-9_=-]* ]] && COMPREPLY+=("$word")
+    done <<< "${1//[[:space:]]/$'\n'}"
     [[ ${COMPREPLY[0]} == *= ]] && compopt -o nospace 2>/dev/null
     return 0
 }
@@ -137,7 +141,8 @@ _grainsweep_ask() {
         [[ -f $word ]] && { database=$word; break; }
     done
     [[ -n $database ]] || return 0
-    _grainsweep_words "$("${COMP_WORDS[0]}" query "$database" "${1//@/$cur}" --format csv 2>/dev/null | tail -n +2)"
+    _grainsweep_words "$("${COMP_WORDS[0]}" query "$database" "${1//@/$cur}" --format csv --limit-seconds 2 2>/dev/null |
+        tail -n +2)"
 }
 
 _grainsweep() {
@@ -242,7 +247,8 @@ _grainsweep_ask() {
         [[ -f $word ]] && { database=$word; break; }
     done
     [[ -n $database ]] || return 1
-    answers=(${(f)"$(grainsweep query $database "${1//@/$typed}" --format csv 2>/dev/null | tail -n +2)"})
+    answers=(${(f)"$(grainsweep query $database "${1//@/$typed}" --format csv --limit-seconds 2 2>/dev/null | tail -n +2)"})
+    answers=(${answers:#*[^A-Za-z0-9_]*})  # what is no plain word is left out
     compadd -a answers
 }
 

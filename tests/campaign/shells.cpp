@@ -1,4 +1,5 @@
 // Completion and manual page: what shells and man(1) make of them.
+#include "sweep/store/database.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/process.hpp"
 
@@ -6,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -91,6 +93,68 @@ TEST_F(Shells, BashCompletesFilesAndWhatADatabaseHolds) {
     const auto ids = offered({"explain", "first_one.db", ""});
     ASSERT_EQ(ids.size(), 5U);
     EXPECT_THAT(offered({"explain", "first_one.db", ids[2].substr(0, 6)}), ElementsAre(ids[2]));
+}
+
+/// Names as a database from elsewhere may have them.
+const std::vector<std::string>& hostile_names() {
+    static const std::vector<std::string> names = {"$(touch RAN)",
+                                                   "`touch RAN`",
+                                                   "x';touch RAN;'",
+                                                   "a$(touch RAN)b",
+                                                   "\"; touch RAN; \"",
+                                                   "a:b$(touch RAN)",
+                                                   "two words",
+                                                   "<(touch RAN)",
+                                                   "x\n$(touch RAN)",
+                                                   "x\ntouch RAN",
+                                                   "${x:=$(touch RAN)}",
+                                                   "*",
+                                                   "~",
+                                                   "a&b",
+                                                   "-n",
+                                                   "(e:touch RAN:)",
+                                                   "=ls",
+                                                   "$((RAN[$(touch RAN)]))",
+                                                   "\x1b]0;x\x07"};
+    return names;
+}
+
+TEST_F(Shells, TabRunsNothingThatADatabaseHolds) {
+    folder.write("c.json", R"({"campaign": "first_one", "scene": "rehearsal",
+        "factors": [{"name": "x1", "between": [0, 1]}], "design": {"kind": "halton", "points": 5}})");
+    ASSERT_EQ(run({"run", "c.json", "--quiet"}).code, 0);
+    std::filesystem::create_symlink(grainsweep::tests::executable(), folder / "grainsweep");
+    folder.write("_grainsweep", run({"completion", "zsh"}).out);
+    folder.write("ask.zsh", R"(zmodload zsh/zpty
+zpty asked zsh -f -i
+zpty -w asked 'PS1=; PS2=; path=('$PWD' $path); fpath=('$PWD' $fpath); autoload -U compinit; compinit -u -D; LISTMAX=0; print ready-$((40+2))'
+zpty -r asked answer '*ready-42*'
+zpty -w -n asked $'grainsweep converge first_one.db --campaign \t\t\C-ugrainsweep explain first_one.db \t\t\C-uprint end-$((40+2))\n'
+zpty -r asked answer '*end-42*'
+zpty -d asked
+)");
+    for (const auto& name : hostile_names()) {
+        {
+            grainsweep::store::Connection db(folder / "first_one.db", grainsweep::store::Connection::Access::write);
+            for (const char* change : {"UPDATE campaign SET name = ?", "UPDATE observable SET name = ?",
+                                       "UPDATE sim_case SET case_id = ? WHERE case_key = 1"}) {
+                auto statement = db.prepare(change);
+                statement.bind(1, name);
+                (void)statement.step();
+            }
+        }
+        for (const auto& words : {std::vector<std::string>{"converge", "first_one.db", "--campaign", ""},
+                                  {"converge", "first_one.db", "--observable", ""},
+                                  {"explain", "first_one.db", ""}}) {
+            // What would be entered with the command is a plain word, too.
+            for (const auto& offer : offered(words))
+                EXPECT_EQ(offer.find_first_not_of("0123456789abcdefghijklmnopqrstuvwxyz_"), std::string::npos) << offer;
+            EXPECT_FALSE(std::filesystem::exists(folder / "RAN")) << "bash: " << name;
+        }
+        if (!has("zsh")) continue;
+        EXPECT_EQ(bash("timeout 20 zsh -f ask.zsh").code, 0) << name;
+        EXPECT_FALSE(std::filesystem::exists(folder / "RAN")) << "zsh: " << name;
+    }
 }
 
 TEST_F(Shells, ZshReadsItsCompletion) {
