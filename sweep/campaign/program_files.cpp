@@ -1,5 +1,6 @@
 // "files" and "templates" of a program: what lies in every case's folder.
 #include "sweep/campaign/case.hpp"
+#include "sweep/campaign/program_file_name.hpp"
 #include "sweep/campaign/program_section.hpp"
 #include "sweep/campaign/whole_file.hpp"
 #include "sweep/campaign/wrong_question.hpp"
@@ -63,23 +64,27 @@ void read_one(const Cursor& place, const fs::path& folder, bool is_template, Pro
 
 }  // namespace
 
-std::string read_file_name(const Cursor& place) {
-    const auto name = place.text();
-    const auto refuse = [&](std::string_view why) {
-        place.refuse(fmt::format("must be a file name within the case's folder: {}", why));
-    };
-    if (name.size() > longest_name) refuse(fmt::format("at most {} bytes", longest_name));
-    if (name.front() == '/') refuse("no absolute path");
+std::string_view flaw_of_file_name(std::string_view name) {
+    if (name.empty()) return "no empty name";
+    if (name.size() > longest_name) return "at most 1000 bytes";
+    if (name.front() == '/') return "no absolute path";
     if (std::ranges::any_of(name, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }))
-        refuse("no control characters");
+        return "no control characters";
     for (std::size_t from = 0; from <= name.size();) {
         const auto to = std::min(name.find('/', from), name.size());
         const auto part = name.substr(from, to - from);
-        if (part.empty() || part == ".") refuse("no empty part and no '.'");
-        if (part == "..") refuse("no '..'");
-        if (part.size() > longest_part) refuse(fmt::format("at most {} bytes between slashes", longest_part));
+        if (part.empty() || part == ".") return "no empty part and no '.'";
+        if (part == "..") return "no '..'";
+        if (part.size() > longest_part) return "at most 200 bytes between slashes";
         from = to + 1;
     }
+    return {};
+}
+
+std::string read_file_name(const Cursor& place) {
+    auto name = place.text();
+    if (const auto flaw = flaw_of_file_name(name); !flaw.empty())
+        place.refuse(fmt::format("must be a file name within the case's folder: {}", flaw));
     return name;
 }
 

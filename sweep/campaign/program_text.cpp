@@ -1,6 +1,7 @@
 // A program's definition as JSON, and the hash of the part of it that changes an answer.
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/program.hpp"
+#include "sweep/campaign/program_file_name.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -138,6 +139,29 @@ void read_observables(const Json& measured, const Json& settings, Program& progr
     }
 }
 
+void require_within_folder(const std::string& name) {
+    if (const auto flaw = flaw_of_file_name(name); !flaw.empty())
+        throw std::invalid_argument(fmt::format("it names a file '{}' outside of the case's folder: {}", name, flaw));
+}
+
+/// The same rules as of a campaign file: the text may come from anybody, and its hash is no signature.
+void require_harmless(const Program& program) {
+    constexpr std::size_t digits = 32;
+    if (program.command.empty() || program.command.front().empty()) throw std::invalid_argument("its command is empty");
+    for (const auto& file : program.files) {
+        require_within_folder(file.name);
+        if (file.hash.size() != digits || file.hash.find_first_not_of("0123456789abcdef") != std::string::npos)
+            throw std::invalid_argument(fmt::format("'{}' is no hash of a file's contents", file.hash));
+    }
+    for (const auto& observable : program.observables) {
+        if (const auto* json = std::get_if<FromJson>(&observable.from)) require_within_folder(json->file);
+        if (const auto* csv = std::get_if<FromCsv>(&observable.from)) require_within_folder(csv->file);
+    }
+    const bool in_range = program.cores >= 1 && program.memory >= 0 && program.disk >= 0 && program.cost_seconds >= 0 &&
+                          program.tolerance >= 0;
+    if (!in_range) throw std::invalid_argument("a number of its settings is out of range");
+}
+
 }  // namespace
 
 std::string program_scene_name(const Program& program) {
@@ -170,6 +194,7 @@ Program program_in(std::string_view text) {
         program.tolerance = settings.at("tolerance").get<double>();
         program.version_command = settings.at("version_command").get<std::vector<std::string>>();
         program.version_match = settings.at("version_match").get<std::string>();
+        require_harmless(program);
         return program;
     } catch (const Json::exception& error) {
         throw std::invalid_argument(fmt::format("no definition of a program: {}", error.what()));

@@ -8,6 +8,7 @@
 #include "sweep/workers/compute.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -126,7 +127,9 @@ Expectation expectation_of(const ReplayRequest& request, const campaign::Program
 
 int replay(const ReplayRequest& request, Format format) {
     const Store archive(request.database, Store::Mode::read);
-    const campaign::Case question = as_asked_today(require_case(archive, request.id));
+    const campaign::Case as_stored = require_case(archive, request.id);
+    const auto program = archive.program(as_stored.scene);
+    const campaign::Case question = as_asked_today(as_stored);
     const auto stored = archive.result(question.id);
     if (!stored) throw campaign::wrong_question("CASE", request.id, "has no result to compare with yet");
     if (stored->outcome == Outcome::abandoned)
@@ -142,10 +145,12 @@ int replay(const ReplayRequest& request, Format format) {
     else if (then != attempts.end())
         use_path_of_old(then->computer.instruction_path);
     const bool same_path = then != attempts.end() && gives_the_same_bits(then->computer, this_computer());
-    const auto program = archive.program(question.scene);
     if (program == nullptr && !request.keep.empty())
         throw campaign::wrong_question("--keep", request.keep, "is for cases that a program answers");
 
+    if (program != nullptr)
+        std::cerr << fmt::format("grainsweep: runs the command that is stored with this case: {}\n",
+                                 fmt::join(program->command, " "));
     Pictures pictures(request.pictures, question);
     const auto now = [&] {
         if (program != nullptr)

@@ -21,12 +21,15 @@ std::uint64_t sum_of_facts(std::int64_t key, std::int64_t number, const std::opt
     return digest.add(peak_memory).add(status).value();
 }
 
-/// None where the text is no definition, or that of another scene.
-std::optional<campaign::Program> definition_in(const std::string& text, std::string_view scene) {
+/// None where the text is no definition, that of another scene, or of a program that no campaign file may ask for;
+/// `why` says so.
+std::optional<campaign::Program> definition_in(const std::string& text, std::string_view scene, std::string& why) {
+    why = "is not as written";
     try {
         auto program = campaign::program_in(text);
         if (campaign::program_scene_name(program) == scene) return program;
-    } catch (const std::invalid_argument&) {  // damaged
+    } catch (const std::invalid_argument& refused) {
+        why = fmt::format("is refused: {}", refused.what());
     }
     return std::nullopt;
 }
@@ -50,7 +53,8 @@ void enter_programs(const Connection& db) {
     if (!has_programs(db)) return;
     for (const auto& [scene, text] : definitions(db)) {
         if (campaign::known_scene(scene) != nullptr) continue;
-        if (auto program = definition_in(text, scene))
+        std::string why;
+        if (auto program = definition_in(text, scene, why))
             campaign::enter_program(std::make_shared<const campaign::Program>(std::move(*program)));
     }
 }
@@ -79,8 +83,9 @@ std::shared_ptr<const campaign::Program> Store::program(std::string_view scene) 
     {
         auto rows = db.ask("SELECT definition FROM program WHERE scene = ?", scene);
         if (!rows.next()) return nullptr;
-        program = definition_in(rows.get<std::string>(0), scene);
-        if (!program) throw damaged(fmt::format("the definition of {} is not as written", scene));
+        std::string why;
+        program = definition_in(rows.get<std::string>(0), scene, why);
+        if (!program) throw damaged(fmt::format("the definition of {} {}", scene, why));
     }
     for (auto& file : program->files) {
         auto rows = db.ask("SELECT contents FROM program_content WHERE hash = ?", file.hash);
@@ -103,11 +108,18 @@ void store_program_facts(Connection& db, std::int64_t key, std::int64_t number, 
 std::map<std::int64_t, campaign::ProgramFacts> program_facts(const Connection& db, std::int64_t key) {
     std::map<std::int64_t, campaign::ProgramFacts> facts;
     if (!has_programs(db)) return facts;
-    auto rows = db.ask("SELECT number, version, peak_memory, exit_status FROM attempt_program WHERE case_key = ?", key);
-    while (rows.next())
-        facts.emplace(rows.get<std::int64_t>(0),
-                      campaign::ProgramFacts{rows.get<std::optional<std::string>>(1).value_or(""), rows.get<double>(2),
-                                             rows.get<std::optional<std::int64_t>>(3)});
+    auto rows = db.ask(
+        "SELECT number, version, peak_memory, exit_status, checksum FROM attempt_program WHERE case_key = ?", key);
+    while (rows.next()) {
+        const auto number = rows.get<std::int64_t>(0);
+        const auto version = rows.get<std::optional<std::string>>(1);
+        const auto status = rows.get<std::optional<std::int64_t>>(3);
+        if (as_sql(sum_of_facts(key, number, version, rows.get<double>(2), status)) != rows.get<std::int64_t>(4))
+            throw BrokenWorld(
+                fmt::format("the database is damaged: table attempt_program: attempt {} of case {} is not as written",
+                            number, key));
+        facts.emplace(number, campaign::ProgramFacts{version.value_or(""), rows.get<double>(2), status});
+    }
     return facts;
 }
 
@@ -116,8 +128,9 @@ std::vector<std::string> damaged_programs(const Connection& db) {
     if (!has_programs(db)) return damaged;
     std::set<std::string> needed;
     for (const auto& [scene, text] : definitions(db)) {
-        const auto program = definition_in(text, scene);
-        if (!program) damaged.push_back(fmt::format("table program: {} is not as written", scene));
+        std::string why;
+        const auto program = definition_in(text, scene, why);
+        if (!program) damaged.push_back(fmt::format("table program: {} {}", scene, why));
         if (program)
             for (const auto& file : program->files) needed.insert(file.hash);
     }
