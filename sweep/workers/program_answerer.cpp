@@ -61,12 +61,13 @@ public:
     }
     bool writes_too_much(CaseResult& result) const {
         const auto size = folder_.size(program_.disk);
-        if (size.bytes < program_.disk && size.files < most_files) return false;
+        if (size.bytes < program_.disk && size.files < most_files && !size.too_deep) return false;
         close_result(result, Outcome::rejected,
-                     size.files >= most_files ? fmt::format("it wrote {} files, more than a case may", size.files)
-                                              : fmt::format("it wrote {:.3g} MB, and \"disk\" allows a case {:.3g}",
-                                                            1e-6 * static_cast<double>(size.bytes),
-                                                            1e-6 * static_cast<double>(program_.disk)));
+                     size.too_deep              ? std::string("it made folders within folders, more than 100 deep")
+                     : size.files >= most_files ? fmt::format("it wrote {} files, more than a case may", size.files)
+                                                : fmt::format("it wrote {:.3g} MB, and \"disk\" allows a case {:.3g}",
+                                                              1e-6 * static_cast<double>(size.bytes),
+                                                              1e-6 * static_cast<double>(program_.disk)));
         return true;
     }
     [[nodiscard]] double seconds() const { return elapsed(start_); }

@@ -2,6 +2,7 @@
 
 #include "sweep/store/broken_world.hpp"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <linux/fs.h>
@@ -13,6 +14,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <memory>
 #include <utility>
 
 namespace grainsweep::workers {
@@ -42,18 +44,87 @@ private:
     int descriptor_;
 };
 
-/// Removes a folder whose owner may have taken away the right to.
+struct CloseDir {
+    void operator()(DIR* folder) const { ::closedir(folder); }
+};
+using Entries = std::unique_ptr<DIR, CloseDir>;
+
+/// A folder within another, no link; empty where it cannot be opened.
+Entries entries_of(int parent, const char* name) {
+    const int at = ::openat(parent, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    Entries entries(at < 0 ? nullptr : ::fdopendir(at));
+    if (!entries && at >= 0) ::close(at);
+    return entries;
+}
+
+/// The next name but "." and "..".
+const char* next_name(const Entries& entries) {
+    while (const auto* entry = ::readdir(entries.get())) {
+        const std::string_view name = entry->d_name;
+        if (name != "." && name != "..") return entry->d_name;
+    }
+    return nullptr;
+}
+
+bool is_folder(int parent, const char* name) {
+    struct stat status {};
+    return ::fstatat(parent, name, &status, AT_SYMLINK_NOFOLLOW) == 0 && S_ISDIR(status.st_mode);
+}
+
+/// Removes a folder of any depth with two open files: folders within folders are lifted to the top first. Its owner may
+/// have taken away the right to.
+void take_down(const fs::path& folder) {
+    ::chmod(folder.c_str(), S_IRWXU);
+    std::int64_t lifted = 0;
+    for (bool again = true; std::exchange(again, false);) {
+        const auto top = entries_of(AT_FDCWD, folder.c_str());
+        if (!top) break;
+        const int at = ::dirfd(top.get());
+        while (const char* name = next_name(top)) {
+            if (!is_folder(at, name)) {
+                again = ::unlinkat(at, name, 0) == 0 || again;
+                continue;
+            }
+            ::fchmodat(at, name, S_IRWXU, 0);
+            if (const auto inner = entries_of(at, name)) {
+                const int within = ::dirfd(inner.get());
+                while (const char* part = next_name(inner)) {
+                    if (!is_folder(within, part)) {
+                        ::unlinkat(within, part, 0);
+                        continue;
+                    }
+                    ::fchmodat(within, part, S_IRWXU, 0);
+                    ::renameat(within, part, at, fmt::format(".lifted.{}.{}", ::getpid(), lifted++).c_str());
+                }
+            }
+            again = ::unlinkat(at, name, AT_REMOVEDIR) == 0 || again;
+        }
+    }
+    ::rmdir(folder.c_str());
+}
+
 void clear_away(const fs::path& folder) {
     std::error_code error;
     fs::remove_all(folder, error);
-    if (!error) return;
-    std::error_code ignored;
-    for (auto entry = fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied, ignored);
-         entry != fs::recursive_directory_iterator(); entry.increment(ignored)) {
-        if (entry->is_directory(ignored) && !entry->is_symlink(ignored))
-            fs::permissions(entry->path(), fs::perms::owner_all, fs::perm_options::add, ignored);
+    if (error) take_down(folder);
+}
+
+/// What lies in a folder, up to `most` bytes. Beyond the deepest folder that a case may have nothing is looked at.
+void measure(const Entries& entries, int depth, std::int64_t most, ProgramFolder::Size& total) {
+    constexpr int deepest = 100;
+    if (!entries) return;
+    const int at = ::dirfd(entries.get());
+    while (const char* name = next_name(entries)) {
+        struct stat status {};
+        if (::fstatat(at, name, &status, AT_SYMLINK_NOFOLLOW) != 0) continue;
+        total.bytes += 512 * static_cast<std::int64_t>(status.st_blocks);
+        ++total.files;
+        if (S_ISDIR(status.st_mode)) {
+            if (depth == deepest) total.too_deep = true;
+            if (!total.too_deep) measure(entries_of(at, name), depth + 1, most, total);
+        }
+        if (total.too_deep || total.files >= most_files_counted || total.bytes >= most) return;
     }
-    fs::remove_all(folder, ignored);
 }
 
 void write_all(int file, std::string_view contents, const fs::path& name) {
@@ -199,14 +270,7 @@ std::string ProgramFolder::end_of(const std::string& name, std::size_t bytes) co
 
 ProgramFolder::Size ProgramFolder::size(std::int64_t most) const {
     Size total;
-    std::error_code ignored;
-    for (auto entry = fs::recursive_directory_iterator(path_, fs::directory_options::skip_permission_denied, ignored);
-         entry != fs::recursive_directory_iterator(); entry.increment(ignored)) {
-        struct stat status {};
-        if (::lstat(entry->path().c_str(), &status) != 0) continue;
-        total.bytes += 512 * static_cast<std::int64_t>(status.st_blocks);
-        if (++total.files >= most_files_counted || total.bytes >= most) break;
-    }
+    measure(entries_of(folder_, "."), 1, most, total);
     return total;
 }
 

@@ -39,8 +39,9 @@ public:
 
     struct Size {
         std::int64_t bytes = 0, files = 0;
+        bool too_deep = false;  ///< folders within folders, more than 100
     };
-    /// On disk, links not followed. Stops to count at `most` bytes or a million files.
+    /// On disk, links not followed. Stops to count at `most` bytes, a million files or a folder that lies too deep.
     [[nodiscard]] Size size(std::int64_t most) const;
 
     /// Keeps it under another name beside this one, in the place of what has that name.

@@ -140,6 +140,24 @@ TEST(Programs, OneThatWritesWithoutEndFillsNeitherDiskNorMemory) {
         "rejected: it wrote");
 }
 
+TEST(Programs, FoldersWithinFoldersWithoutEndAreRefusedAndRemoved) {
+    const Folder folder(in_memory());
+    auto campaign = script_campaign(1, {{"keep", "none"}});
+    campaign["limits"] = {{"attempts", 1}};
+    const std::string nests =
+        "import os\n"
+        "for k in range(3000):\n"
+        "    os.mkdir('a' * 50); os.chdir('a' * 50)\n"
+        "open('deep', 'w').write('x' * 1000)\n";
+    (void)run_script(folder, "cat > nest.py <<'END'\n" + nests + "END\npython3 nest.py\n" + sound_script, campaign);
+    expect_has(ending(folder), "rejected: it made folders within folders, more than 100 deep");
+    std::vector<std::string> left;
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+        if (entry.path().string().find("cases") != std::string::npos)
+            for (const auto& one : std::filesystem::directory_iterator(entry)) left.push_back(one.path().string());
+    EXPECT_TRUE(left.empty()) << left.front();
+}
+
 TEST(Programs, AMemoryLimitIsTheProgramsOwn) {
     const auto end = ending_of("python3 -c \"x = bytearray(2 * 10 ** 9)\"\n", {{"memory", "400 MB"}});
     expect_has(end, "crashed: the program ended with exit code");
