@@ -159,7 +159,7 @@ std::span<const Key> program_from_keys() {
          {}},
         text_key(
             "output",
-            "a regular expression (ECMAScript) whose first group is the value, in the last line of standard output "
+            "a regular expression (ECMAScript, no back-references) whose first group is the value, in the last line of standard output "
             "that has it"),
     };
     return keys;
@@ -168,7 +168,7 @@ std::span<const Key> program_from_keys() {
 std::span<const Key> program_version_keys() {
     static const std::vector<Key> keys = {
         {"command", "the program and its arguments", KeyKind::words, true, {}, {}, {}},
-        text_key("match", "regular expression (ECMAScript) whose first group in what it writes is the version", true),
+        text_key("match", "regular expression (ECMAScript, no back-references) whose first group in what it writes is the version", true),
     };
     return keys;
 }

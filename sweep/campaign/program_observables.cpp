@@ -1,4 +1,5 @@
 // "observables" of a program: what is measured, and where its value is found.
+#include "sweep/campaign/output_pattern.hpp"
 #include "sweep/campaign/placeholders.hpp"
 #include "sweep/campaign/program_keys.hpp"
 #include "sweep/campaign/program_section.hpp"
@@ -84,9 +85,9 @@ decltype(ProgramObservable::from) read_from(const Section& from) {
     const auto place = from.at("output");
     const auto pattern = place.text();
     try {
-        if (std::regex(pattern).mark_count() < 1) place.refuse("needs a group, (...), that is the value");
+        if (output_pattern(pattern).mark_count() < 1) place.refuse("needs a group, (...), that is the value");
     } catch (const std::regex_error& error) {
-        place.refuse(fmt::format("is no regular expression (ECMAScript): {}", error.what()));
+        place.refuse(fmt::format("is no regular expression (ECMAScript without back-references): {}", error.what()));
     }
     return FromOutput{pattern};
 }

@@ -1,6 +1,7 @@
 #include "sweep/campaign/program_section.hpp"
 
 #include "sweep/campaign/case.hpp"
+#include "sweep/campaign/output_pattern.hpp"
 #include "sweep/campaign/placeholders.hpp"
 #include "sweep/campaign/program_keys.hpp"
 #include "sweep/campaign/wrong_question.hpp"
@@ -36,7 +37,8 @@ void check_word(const Cursor& place) {
     const auto& word = place.json().get_ref<const std::string&>();
     const bool control =
         std::ranges::any_of(word, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
-    if (word.empty() || word.size() > longest_level) place.refuse(fmt::format("a word has 1 to {} bytes", longest_level));
+    if (word.empty() || word.size() > longest_level)
+        place.refuse(fmt::format("a word has 1 to {} bytes", longest_level));
     if (control) place.refuse("a word has no control characters");
     if (word.starts_with("file:") || word.find(" | ") != std::string::npos)
         place.refuse("a word does not begin with 'file:' and has no ' | '");
@@ -165,10 +167,11 @@ void read_version(const Section& section, Program& program) {
     check_arguments(version.at("command"), program.version_command);
     program.version_match = version.at("match").text();
     try {
-        if (std::regex(program.version_match).mark_count() < 1)
+        if (output_pattern(program.version_match).mark_count() < 1)
             version.at("match").refuse("needs a group, (...), that is the version");
     } catch (const std::regex_error& error) {
-        version.at("match").refuse(fmt::format("is no regular expression (ECMAScript): {}", error.what()));
+        version.at("match").refuse(
+            fmt::format("is no regular expression (ECMAScript without back-references): {}", error.what()));
     }
 }
 

@@ -1,4 +1,5 @@
 // What a program finds: its command, environment and files for a case; and how workers find the program itself.
+#include "sweep/campaign/output_pattern.hpp"
 #include "sweep/campaign/placeholders.hpp"
 #include "sweep/campaign/whole_file.hpp"
 #include "sweep/store/broken_world.hpp"
@@ -134,8 +135,7 @@ std::string ask_version(const Program& program, ProgramGuard& guard) {
         text = folder.read("stdout.txt", longest_answer + 1, why).value_or("");
     }
     std::smatch parts;
-    std::regex pattern(program.version_match);
-    // Line by line: the search recurs once per character.
+    const auto pattern = campaign::output_pattern(program.version_match);
     for (std::string_view rest = text; !rest.empty();) {
         const auto end = std::min(rest.find('\n'), rest.size());
         const std::string line(rest.substr(0, std::min<std::size_t>(end, 4096)));

@@ -2,6 +2,7 @@
 
 #include "solver/plain_text.hpp"
 #include "sweep/campaign/csv_record.hpp"
+#include "sweep/campaign/output_pattern.hpp"
 #include "sweep/workers/worker_state.hpp"
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -21,7 +23,8 @@ namespace grainsweep::workers {
 namespace {
 
 constexpr std::size_t most_columns = 10'000, most_rows = 10'000'000;
-constexpr std::size_t longest_searched = 4096;  // the search recurs once per character
+constexpr std::size_t longest_searched = 4096;  // a search takes up to the square of its line's length
+constexpr std::chrono::minutes longest_search{10};
 
 bool is_digit(char c) {
     return c >= '0' && c <= '9';
@@ -151,7 +154,7 @@ std::vector<double> ProgramTable::column(const std::string& name) const {
 double last_in_output(const ProgramFolder& folder, const std::string& pattern) {
     static std::map<std::string, std::regex> known;
     auto found = known.find(pattern);
-    if (found == known.end()) found = known.emplace(pattern, std::regex(pattern, std::regex::optimize)).first;
+    if (found == known.end()) found = known.emplace(pattern, campaign::output_pattern(pattern)).first;
     std::string why;
     const int file = folder.open("stdout.txt", why);
     if (file < 0) throw std::invalid_argument("standard output " + why);
@@ -165,9 +168,14 @@ double last_in_output(const ProgramFolder& folder, const std::string& pattern) {
         }
         line.clear();
     };
+    const auto began = std::chrono::steady_clock::now();
     std::array<char, 65536> piece{};
     for (ssize_t length = 0;
          (length = ::read(file, piece.data(), piece.size())) > 0 || (length < 0 && errno == EINTR);) {
+        if (std::chrono::steady_clock::now() - began > longest_search) {
+            ::close(file);
+            throw std::invalid_argument(fmt::format("standard output: to search for '{}' takes too long", pattern));
+        }
         for (ssize_t k = 0; k < length; ++k) {
             const char c = piece[static_cast<std::size_t>(k)];
             if (c == '\n')

@@ -1,4 +1,5 @@
 // "program" of a campaign file: what is read, what is refused with which sentence, and what is identity.
+#include "sweep/campaign/output_pattern.hpp"
 #include "sweep/campaign/placeholders.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/reader.hpp"
@@ -10,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <stdexcept>
 #include <string>
 
@@ -79,6 +81,60 @@ TEST(ProgramSection, IsReadAndMadeAScene) {
     const auto again = program_in(program_text(*program));
     EXPECT_EQ(program_scene_name(again), campaign.scene().name);
     EXPECT_EQ(program_text(again), program_text(*program));
+}
+
+// What a database of anybody holds is read by the rules of a campaign file: its hash is no signature.
+TEST(ProgramDefinition, FromElsewhereIsRefusedByTheRulesOfACampaignFile) {
+    const Beside beside;
+    const auto campaign = parse_campaign(sound_file().dump(), beside.path());
+    const auto sound = json::parse(program_text(*known_program(campaign.scene().name)));
+    const auto refused = [&](const json& patch) -> std::string {
+        json altered = sound;
+        altered.merge_patch(patch);
+        try {
+            (void)program_in(altered.dump());
+        } catch (const std::invalid_argument& why) {
+            return why.what();
+        }
+        return {};
+    };
+    EXPECT_EQ(refused(json::object()), "");
+    const std::string hash(32, 'a');
+    for (const std::string name :
+         {"../OWNED", "mesh/../../OWNED", "..", "/tmp/OWNED", "a//b", "./a", "", "a\nb", "mesh/"}) {
+        for (const char* kind : {"files", "templates"})
+            EXPECT_NE(refused({{"answer", {{kind, {{name, hash}}}}}}).find("outside of the case's folder"),
+                      std::string::npos)
+                << kind << ' ' << name;
+        EXPECT_NE(refused({{"answer", {{"observables", {{"angle", {{"from", {{"json", name}}}}}}}}}}), "") << name;
+        EXPECT_NE(refused({{"answer", {{"observables", {{"flow", {{"from", {{"csv", name}}}}}}}}}}), "") << name;
+    }
+    for (const std::string other : {"../../../OWNED", "", "AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA"})
+        EXPECT_NE(refused({{"answer", {{"files", {{"run.py", other}}}}}}), "") << other;
+    EXPECT_NE(refused({{"answer", {{"command", json::array()}}}}).find("its command is empty"), std::string::npos);
+    EXPECT_NE(refused({{"answer", {{"command", {""}}}}}), "");
+    EXPECT_NE(refused({{"settings", {{"cores", 0}}}}), "");
+    EXPECT_NE(refused({{"settings", {{"memory", -1}}}}), "");
+    EXPECT_NE(refused({{"settings", {{"disk", -1}}}}), "");
+    EXPECT_NE(refused({{"settings", {{"order", {"no such"}}}}}), "");
+}
+
+TEST(ProgramSection, ARegularExpressionHasAnEnd) {
+    const Beside beside;
+    auto file = sound_file();
+    file["program"]["observables"]["energy"]["from"]["output"] = R"((['"])([0-9.]+)\1)";
+    EXPECT_NE(said_of(file, beside).find("without back-references"), std::string::npos);
+    for (const char* pattern : {"(a+)+$", "(a|a)*b", "(a|aa)+$", "(.*a){12}$", "(([a-z])+.)+[A-Z]([a-z])+$"}) {
+        const auto searched = output_pattern(pattern);
+        const std::string line = std::string(60, 'a') + "!";  // one way after another: 2^60 of them
+        EXPECT_FALSE(std::regex_search(line, searched)) << pattern;
+    }
+    std::smatch found;
+    const std::string line = "step 3 E = 1.25e-3 J (total 5)";
+    ASSERT_TRUE(std::regex_search(line, found, output_pattern("E = ([-+0-9.eE]+)")));
+    EXPECT_EQ(found[1], "1.25e-3");
+    ASSERT_TRUE(std::regex_search(line, found, output_pattern(R"(\w+ .*?(\d+)\))")));
+    EXPECT_EQ(found[1], "5");
 }
 
 TEST(ProgramSection, RefusesWithOneSentence) {
