@@ -352,6 +352,11 @@ std::string safe_in_script(const Json& value) {
 
 namespace {
 
+std::string film_script() {
+    const Player with = player();
+    return std::string(with.program) + std::string(with.in_report);
+}
+
 /// Films, each in a script element of its own, with the player; nothing where there is none.
 std::string film_elements(std::span<const PageFilm> films) {
     if (films.empty()) return {};
@@ -371,7 +376,7 @@ std::string film_elements(std::span<const PageFilm> films) {
         text += base64(std::span(reinterpret_cast<const std::uint8_t*>(film.bytes.data()), film.bytes.size()));
         text += "</script>\n";
     }
-    return text + fmt::format("<script>\n{}{}</script>\n", with.program, with.in_report);
+    return text + fmt::format("<script>{}</script>\n", film_script());
 }
 
 }  // namespace
@@ -381,12 +386,16 @@ void write_page(std::ostream& out, std::span<const PageSource> sources, std::spa
     const auto files = page_files();
     const auto data = safe_in_script(page_data(sources, models));
     const auto film_text = film_elements(films);
+    const auto program = enclosed(files.program);
+    const auto scripts = films.empty() ? script_sources({files.library, program})
+                                       : script_sources({files.library, program, film_script()});
     fill(out, files.skeleton,
-         {{"style", files.style},
+         {{"scripts", scripts},
+          {"style", files.style},
           {"library", files.library},
           {"films", film_text},
           {"data", data},
-          {"program", files.program}});
+          {"program", program}});
 }
 
 }  // namespace grainsweep::report

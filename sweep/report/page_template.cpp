@@ -1,5 +1,8 @@
 #include "sweep/report/page_template.hpp"
 
+#include "sweep/report/packed_column.hpp"
+#include "sweep/report/sha256.hpp"
+
 #include <algorithm>
 #include <ostream>
 
@@ -18,6 +21,19 @@ void fill(std::ostream& out, std::string_view skeleton,
         skeleton.remove_prefix(close + 2);
     }
     out << skeleton;
+}
+
+std::string enclosed(std::string_view script) {
+    return "(function () {\n\"use strict\";\n" + std::string(script) + "\n})();\n";
+}
+
+std::string script_sources(const std::vector<std::string_view>& scripts) {
+    std::string sources;
+    for (const auto script : scripts) {
+        const auto digest = sha256(script);
+        sources += (sources.empty() ? "'sha256-" : " 'sha256-") + base64(digest) + "'";
+    }
+    return sources;
 }
 
 }  // namespace grainsweep::report

@@ -70,7 +70,10 @@ std::string watch_page(const Film& film, const Json& about) {
     const std::string text = as_text(film.bytes(about));
     std::ostringstream page;
     fill(page, GRAINSWEEP_EMBEDDED(watch_html),
-         {{"style", GRAINSWEEP_EMBEDDED(watch_css)}, {"film", text}, {"program", program}});
+         {{"scripts", script_sources({program})},
+          {"style", GRAINSWEEP_EMBEDDED(watch_css)},
+          {"film", text},
+          {"program", program}});
     return std::move(page).str();
 }
 

@@ -184,9 +184,15 @@ void write_window_page(std::ostream& out, const Json& data, std::string_view dat
     Json all = data;
     all["databases"] = {database};
     const auto text = safe_in_script(all);
-    fill(
-        out, files.skeleton,
-        {{"style", files.style}, {"library", files.library}, {"films", ""}, {"data", text}, {"program", files.window}});
+    const auto program = enclosed(files.window);
+    const auto scripts = script_sources({files.library, program});
+    fill(out, files.skeleton,
+         {{"scripts", scripts},
+          {"style", files.style},
+          {"library", files.library},
+          {"films", ""},
+          {"data", text},
+          {"program", program}});
 }
 
 }  // namespace grainsweep::report

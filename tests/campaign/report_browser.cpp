@@ -1,5 +1,6 @@
 // The report in a real browser, headless Chromium: no script fails, every figure is drawn and saved as vectors, and
 // what a reader clicks does what the page says.
+#include "sweep/report/page_template.hpp"
 #include "tests/support/process.hpp"
 
 #include <gtest/gtest.h>
@@ -61,10 +62,15 @@ const drawn = (canvas) => {
 };
 const answer = (seen) => {
   seen.complaints = complaints;
+  seen.intruder = window.intruder ?? "";
   document.documentElement.dataset.seen = JSON.stringify(seen);
   held.close();
 };
 </script>)";
+
+/// What a text of a database would be that got out of its place.
+constexpr std::string_view intruder = R"(<script>window.intruder = "a script";</script>
+<img src="data:," onerror="window.intruder = 'an attribute'" onload="window.intruder = 'an attribute'">)";
 
 /// Reads and clicks as a reader would, and writes what it saw into an attribute of the document.
 constexpr std::string_view reader = R"(<script>
@@ -166,11 +172,22 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
         text.replace(at, from.size(), to);
 }
 
+/// A script element without its tags.
+std::string_view inside(std::string_view html) {
+    constexpr std::string_view open = "<script>", close = "</script>";
+    const auto begin = html.find(open) + open.size();
+    return html.substr(begin, html.find(close) - begin);
+}
+
 /// What the reader saw on the page.
 Json read_in_browser(const Folder& folder, const std::string& page, std::string_view script = reader) {
     std::string text = contents(folder / page);
+    // Of what is added the policy of the page allows the scripts of this test and nothing else.
+    const std::string_view policy = "script-src ";
+    text.insert(text.find(policy) + policy.size(),
+                grainsweep::report::script_sources({inside(listener), inside(holder), inside(script)}) + " ");
     text.insert(text.find("<style>"), listener);
-    text.insert(text.rfind("</body>"), std::string(holder) + std::string(script));
+    text.insert(text.rfind("</body>"), std::string(intruder) + std::string(holder) + std::string(script));
     const auto file = folder.write("read.html", text);
     const auto ended = Process({browser, "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic",
                                 "--no-first-run", "--disable-background-networking", "--disable-component-update",
@@ -192,6 +209,7 @@ Json read_in_browser(const Folder& folder, const std::string& page, std::string_
 void expect_quiet(const Json& seen) {
     EXPECT_FALSE(seen.contains("failed")) << seen.value("failed", "");
     EXPECT_EQ(seen.value("complaints", Json::array()), Json::array());
+    EXPECT_EQ(seen.value("intruder", "no answer"), "") << "a script ran that is not the page's";
 }
 
 struct ReportInABrowser : ::testing::Test {

@@ -2,6 +2,7 @@
 #include "sweep/report/packed_column.hpp"
 #include "sweep/report/page.hpp"
 #include "sweep/report/page_files.hpp"
+#include "sweep/report/page_template.hpp"
 #include "sweep/report/summary.hpp"
 #include "tests/support/answered.hpp"
 
@@ -10,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -252,6 +254,34 @@ TEST_F(Page, AsksNoNetwork) {
     std::smatch found;
     EXPECT_FALSE(std::regex_search(text, found, request)) << found.str();
     EXPECT_THAT(report::page_files().library.substr(0, 60), HasSubstr("Chart.js v3"));
+}
+
+TEST_F(Page, ItsPolicyNamesEveryScriptAndAllowsNoOther) {
+    answer("first", 40, evil);
+    const auto text = page();
+    const auto policy = between(text, "script-src ", ";");
+    EXPECT_THAT(policy, Not(HasSubstr("unsafe")));
+    std::size_t scripts = 0;
+    std::string_view rest = text;
+    for (constexpr std::string_view open = "<script>"; rest.find(open) != std::string_view::npos; ++scripts) {
+        rest.remove_prefix(rest.find(open) + open.size());
+        EXPECT_THAT(policy, HasSubstr(report::script_sources({rest.substr(0, rest.find("</script>"))})));
+    }
+    EXPECT_EQ(scripts, 2u);
+    EXPECT_EQ(std::ranges::count(policy, ' '), 1) << "one source each";
+    EXPECT_FALSE(std::regex_search(text, std::regex(R"(<[a-z][^<>]*\son[a-z]+\s*=)"))) << "a handler in a tag";
+}
+
+TEST(PagePolicy, HashesAreThoseOfTheStandard) {
+    // FIPS 180-4, examples; base64 of the digests.
+    EXPECT_EQ(report::script_sources({""}), "'sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU='");
+    EXPECT_EQ(report::script_sources({"abc"}), "'sha256-ungWv48Bz+pBQUDeXa4iI7ADYaOWF3qctBD/YfIAFa0='");
+    EXPECT_EQ(report::script_sources({"abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"}),
+              "'sha256-JI1qYdIGOLjlwCaTDD5gOaM85Flk/yFn9uzt1BnbBsE='");
+    const std::string million(1'000'000, 'a');
+    EXPECT_EQ(report::script_sources({million, ""}),
+              "'sha256-zcduXJkU+5KBocfihNc+Z/GAmkiklyAOBG05zMcRLNA=' "
+              "'sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU='");
 }
 
 TEST_F(Page, ACampaignWithoutAnswersHasAPageToo) {
