@@ -3,6 +3,7 @@
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
+#include "sweep/cli/hard_stop.hpp"
 #include "sweep/cli/path_option.hpp"
 #include "sweep/cli/pictures.hpp"
 #include "sweep/cli/replay.hpp"
@@ -228,6 +229,8 @@ int query(const Arguments& asked, double seconds, Format format) {
     if (!(seconds >= 0)) throw campaign::wrong_question("--limit-seconds", std::to_string(seconds), "0 or more");
     const Store archive(asked.database, Store::Mode::read);
     const Store::QueryLimits limits{seconds, most_memory};
+    const HardStop stop(seconds, fmt::format("SQL: it takes too long (limits: {} s of processor time, {} MiB).",
+                                             campaign::shortest(seconds), most_memory >> 20U));
     if (format == Format::text) {  // columns are aligned over all rows
         Table table;
         archive.query(
@@ -266,7 +269,7 @@ std::vector<Command> archive_commands() {
              return [arguments, &format] { return explain(arguments->database, arguments->text, format); };
          },
          false},
-        {"replay", "computes a stored case again in this process and compares",
+        {"replay", "computes a stored case again in this process and compares; of a program, it runs the stored command",
          [](Parser& parser, const Format& format) -> Action {
              const auto request = std::make_shared<ReplayRequest>();
              parser.add_option("DB", request->database, "database")->required();

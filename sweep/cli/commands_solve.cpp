@@ -85,7 +85,7 @@ Inputs middle_of(const campaign::ParameterSpace& space) {
 /// Percents on a terminal, nothing elsewhere.
 bool show_progress(const Scene& scene) {
     static const bool terminal = ::isatty(STDERR_FILENO) == 1;
-    if (terminal) std::cerr << fmt::format("\r{:3.0f} %", 100 * scene.progress()) << std::flush;
+    if (terminal) std::fputs(fmt::format("\r{:3.0f} %", 100 * scene.progress()).c_str(), stderr);
     return true;
 }
 
@@ -225,7 +225,7 @@ int solve(const SolveRequest& request, Format format) {
     const auto& question = asked.question;
     Pictures pictures(request.pictures, question);
     const CaseResult result = answer_of(asked, request, pictures);
-    if (::isatty(STDERR_FILENO) == 1) std::cerr << "\r\033[K" << std::flush;
+    if (::isatty(STDERR_FILENO) == 1) std::fputs("\r\033[K", stderr);
     pictures.finish(result);
     if (format == Format::text) show_text(question, result);
     if (format == Format::csv) report::write(std::cout, table_of(question, result), format);

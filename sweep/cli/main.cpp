@@ -1,5 +1,6 @@
 // The front door, and the only place where an exception ends.
 #include "stats/several_responses.hpp"
+#include "sweep/campaign/visible_stream.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/store/store.hpp"
@@ -56,6 +57,7 @@ int main(int argc, char** argv) {
     occupy_standard_descriptors();
     std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is a full disk: said, not died of
     stats::allow_fits_at_once(workers::job_cores());
+    const campaign::VisibleStream output(std::cout), errors(std::cerr);
     try {
         return flushed(cli::parse_command_line(cli::all_commands(), argc, argv)());
     } catch (const campaign::WrongQuestion& error) {

@@ -1,5 +1,7 @@
 #include "sweep/cli/progress.hpp"
 
+#include "sweep/campaign/visible_text.hpp"
+
 #include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -42,6 +44,7 @@ std::string one_line(std::string text) {
     }
     std::ranges::replace_if(
         text, [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
+    text = campaign::visible(text);
     while (text.ends_with(' ')) text.pop_back();
     return cut ? text + " ..." : text;
 }

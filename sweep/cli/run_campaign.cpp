@@ -28,7 +28,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <iostream>
 #include <limits>
 #include <memory>
 #include <thread>
@@ -323,7 +323,7 @@ private:
             collected_ =
                 import_answers(request_.spool, campaign_, placed_, *store_, states_, [](const std::string& text) {
                     // Every one of them, whatever a progress line would leave out.
-                    std::fprintf(stderr, "grainsweep: %s\n", text.c_str());
+                    std::cerr << "grainsweep: " << text << '\n';
                 });
         const auto record = store_->stored(campaign_).value();
         stopped_before_ = record.stopped_at;

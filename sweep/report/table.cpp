@@ -1,6 +1,7 @@
 #include "sweep/report/table.hpp"
 
 #include "sweep/campaign/case.hpp"
+#include "sweep/campaign/visible_text.hpp"
 #include "sweep/report/text_layout.hpp"
 #include "sweep/report/text_table.hpp"
 
@@ -22,21 +23,8 @@ using Json = nlohmann::ordered_json;
 /// No text of a database moves the cursor of a terminal or is computed by a spreadsheet.
 std::string harmless(const std::string& text) {
     constexpr std::string_view formula = "=+-@\t\r";
-    std::string line;
-    if (!text.empty() && formula.find(text.front()) != std::string_view::npos) line = "'";
-    for (std::size_t k = 0; k < text.size(); ++k) {
-        const auto c = static_cast<unsigned char>(text[k]);
-        const auto next = k + 1 < text.size() ? static_cast<unsigned char>(text[k + 1]) : 0U;
-        if ((c < 0x20U && c != '\n' && c != '\t') || c == 0x7FU) {
-            line += fmt::format("\\x{:02x}", c);
-        } else if (c == 0xC2U && next >= 0x80U && next < 0xA0U) {  // U+0080 to U+009F
-            line += fmt::format("\\x{:02x}", next);
-            ++k;
-        } else {
-            line += text[k];
-        }
-    }
-    return line;
+    const bool computed = !text.empty() && formula.find(text.front()) != std::string_view::npos;
+    return (computed ? "'" : "") + campaign::visible(text);
 }
 
 std::string in_csv(const std::string& given) {
@@ -93,7 +81,16 @@ Json object_of(const std::vector<std::string>& names, const std::vector<Cell>& r
 }  // namespace
 
 std::string json_text(const Json& value) {
-    return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    // JSON leaves DEL and U+0080 to U+009F as they are, and some terminals obey them.
+    for (std::size_t at = 0; at < text.size(); ++at) {
+        const auto c = static_cast<unsigned char>(text[at]);
+        const auto next = at + 1 < text.size() ? static_cast<unsigned char>(text[at + 1]) : 0U;
+        const bool wide = c == 0xC2U && next >= 0x80U && next < 0xA0U;
+        if (c != 0x7FU && !wide) continue;
+        text.replace(at, wide ? 2 : 1, fmt::format("\\u{:04x}", wide ? next : c));
+    }
+    return text;
 }
 
 std::optional<Format> format_named(std::string_view word) {

@@ -13,6 +13,7 @@
 // Cases in order of their id, everything else in order of name or number, doubles in shortest round-trip form.
 // A case counts where a campaign counts it: answers beyond the point at which a campaign converged and stopped,
 // and those no present design asks for, are in the archive but not in this text.
+#include "sweep/campaign/visible_text.hpp"
 #include "sweep/store/archive.hpp"
 
 #include <fmt/format.h>
@@ -45,7 +46,7 @@ std::string escaped(std::string_view text) {
             line += c;
         }
     }
-    return line;
+    return campaign::visible(line);
 }
 
 void dump_inputs(const Connection& db, std::int64_t key, const Sink& sink) {

@@ -103,8 +103,13 @@ TEST(Table, CsvTextIsNoFormulaAndMovesNoCursor) {
         written(table, Format::csv),
         "'=1+1\n\"'=HYPERLINK(\"\"http://x\"\")\"\n'+1\n'-1\n'@SUM(A1)\n\\x1b[2Jgone\\x07\ncaf\xC3\xA9 \\x9b31m\n-1\n"
         "-0.5\n");
-    const auto json = nlohmann::json::parse(written(table, Format::json));
+    const auto text = written(table, Format::json);
+    const auto json = nlohmann::json::parse(text);
     EXPECT_EQ(json[1]["=1+1"], "+1") << "programs get the text as it is";
+    EXPECT_EQ(json[5]["=1+1"],
+              "caf\xC3\xA9 \xC2\x9B"
+              "31m");
+    EXPECT_EQ(text.find("\xC2\x9B"), std::string::npos) << "and no terminal obeys it";
 }
 
 TEST(Table, RowsWrittenAsTheyComeAreTheTable) {
