@@ -29,14 +29,19 @@ struct Grid {
     std::vector<double> coordinates, values;
 };
 
+/// Places in the settled beginning that repeat an earlier case.
+std::vector<RepeatedPlace> repeated_places(const Responses& responses) {
+    std::vector<RepeatedPlace> places;
+    for (const auto& place : responses.repeated)
+        if (place.row < responses.settled && place.point < responses.settled_points) places.push_back(place);
+    return places;
+}
+
 Grid grid_of(const Responses& responses, const ResponseColumn& response) {
     const std::size_t d = responses.factors.size();
+    const auto repeated = repeated_places(responses);
     auto points = responses.settled == 0 ? 0 : static_cast<std::size_t>(responses.points[responses.settled - 1] + 1);
-    const auto stands = [&](const RepeatedPlace& place) {
-        return place.row < responses.settled && place.point < responses.settled_points;
-    };
-    for (const auto& place : responses.repeated)
-        if (stands(place)) points = std::max(points, static_cast<std::size_t>(place.point) + 1);
+    for (const auto& place : repeated) points = std::max(points, static_cast<std::size_t>(place.point) + 1);
     Grid grid{std::vector<double>(points * d, none), std::vector<double>(points, none)};
     std::vector<double> sums(points), counts(points);
     const auto place_row = [&](std::size_t point, std::size_t row) {
@@ -47,8 +52,7 @@ Grid grid_of(const Responses& responses, const ResponseColumn& response) {
     };
     for (std::size_t row = 0; row < responses.settled; ++row)
         place_row(static_cast<std::size_t>(responses.points[row]), row);
-    for (const auto& place : responses.repeated)
-        if (stands(place)) place_row(static_cast<std::size_t>(place.point), place.row);
+    for (const auto& place : repeated) place_row(static_cast<std::size_t>(place.point), place.row);
     for (std::size_t p = 0; p < points; ++p)
         if (counts[p] > 0) grid.values[p] = sums[p] / counts[p];
     return grid;
@@ -285,6 +289,19 @@ void add_morris(Influence& influence, const Responses& responses, const Response
     }
 }
 
+/// Withdraws the errors of figures from blocks of points where most places repeat an earlier case: the blocks share
+/// their runs, and say of the scatter between them less than their number promises.
+void withdraw_errors_of_repeated_cases(Influence& influence, const Responses& responses) {
+    const auto repeated = repeated_places(responses).size();
+    if (repeated <= responses.settled) return;
+    for (auto& factor : influence.factors) {
+        factor.first_saltelli.half_width = factor.total.half_width = none;
+        if (factor.effects) factor.effects->mu_star_half_width = none;
+    }
+    influence.notes.push_back(fmt::format("the {} places of the design are {} different cases: errors are unknown",
+                                          repeated + responses.settled, responses.settled));
+}
+
 }  // namespace
 
 std::string_view to_string(Trend trend) {
@@ -348,6 +365,7 @@ Influence influence_of(const Responses& responses, const ResponseColumn& respons
         influence.split.pure =
             stats::pure_error(std::span(responses.points).first(responses.settled), responses.judged(response));
         add_morris(influence, responses, response);
+        withdraw_errors_of_repeated_cases(influence, responses);
         add_trends(influence, responses, response);
         return influence;
     }
@@ -357,6 +375,7 @@ Influence influence_of(const Responses& responses, const ResponseColumn& respons
     if (design.purpose == designs::Purpose::saltelli) {
         influence.method = Influence::Method::saltelli;
         add_saltelli(influence, responses, response);
+        withdraw_errors_of_repeated_cases(influence, responses);
     }
     if (influence.excluded > 0 && design.purpose != designs::Purpose::saltelli)
         influence.notes.push_back(fmt::format("{} cases without a value are left out", influence.excluded));

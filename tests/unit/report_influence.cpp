@@ -111,6 +111,33 @@ TEST_F(Study, PlacesOfLevelsAreThoseOfTheCampaign) {
     }
 }
 
+TEST_F(Study, BlocksThatShareTheirRunsGiveNoErrors) {
+    // Six different cases, asked 1,024 and 120 times: mu* and total indices of six noisy runs.
+    const auto campaign = [](const std::string& name, const std::string& design) {
+        return R"({"campaign": ")" + name + R"(", "scene": "rehearsal", "factors": [{"name": "x1", "levels": [0, 1]},
+            {"name": "x2", "levels": [0, 0.5, 1]}], "design": )" +
+               design + "}";
+    };
+    std::uint64_t run = 0;
+    const auto noise = [&](const Inputs&) { return disturbed(1, 0.5, 7, run++); };
+    answer_by(store, campaign("total", R"({"kind": "saltelli", "base_points": 256})"), noise);
+    answer_by(store, campaign("effects", R"({"kind": "morris", "trajectories": 40})"), noise);
+    for (const auto* name : {"total", "effects"}) {
+        const auto responses = ask(name);
+        ASSERT_EQ(responses.rows(), 6U) << name;
+        const auto influence = influence_of(responses, responses.observable("y"));
+        EXPECT_THAT(influence.notes, testing::Contains(testing::HasSubstr("6 different cases: errors are unknown")));
+        for (const auto& factor : influence.factors) {
+            EXPECT_TRUE(std::isnan(factor.total.half_width));
+            EXPECT_TRUE(std::isnan(factor.first_saltelli.half_width));
+            if (factor.effects) {
+                EXPECT_GT(factor.effects->mu_star, 0);
+                EXPECT_TRUE(std::isnan(factor.effects->mu_star_half_width));
+            }
+        }
+    }
+}
+
 TEST_F(Study, SensitivityTellsInteractionFromScatterWhereReplicatesAllow) {
     std::uint64_t count = 0;
     const auto response = [&](const Inputs& inputs) {  // V: 1/12 + 1/12 + 1/144 x 12 of interaction + 1/12 of scatter
