@@ -68,19 +68,23 @@ int predict(const PredictRequest& request, Format format) {
     const Store store(request.database, Store::Mode::read);
     const auto cases = report::read_model_cases(store, request.campaign);
     const auto& observable = cases.observable(request.observable);
-    const auto settings = settings_of(request, cases);
+    auto settings = settings_of(request, cases);
     if (!request.extrapolate) refuse_extrapolation(store, cases, settings);
     const auto model = report::learn_or_refuse(cases, observable);
+    const auto predicted = report::predict(cases, model, std::move(settings), request.extrapolate);
     if (format == Format::json) {
-        report::write(std::cout, report::predictions_json(cases, model, settings));
+        report::write(std::cout, report::predictions_json(cases, model, predicted));
         return 0;
     }
     if (format == Format::text) {
         const std::string unit = model.unit.empty() || model.unit == "1" ? "" : fmt::format(" ({})", model.unit);
         std::cout << fmt::format("{}: {}{}\n\n", cases.campaign.name, model.observable, unit);
     }
-    report::write(std::cout, report::predictions_table(cases, model, settings), format);
-    if (format == Format::text) std::cout << '\n' << report::model_lines(model);
+    report::write(std::cout, report::predictions_table(cases, model, predicted), format);
+    if (format == Format::text) {
+        const auto failures = report::failures_near(cases, predicted);
+        std::cout << '\n' << failures << (failures.empty() ? "" : "\n") << report::model_lines(model);
+    }
     return 0;
 }
 
@@ -103,8 +107,9 @@ Command predict_command() {
                     ->allow_extra_args(false);
                 parser.add_option("--points", request->points,
                                   "CSV file of settings: a header that names every factor, one setting a line");
-                parser.add_flag("--extrapolate", request->extrapolate,
-                                "answer outside of the ranges of the factors, too");
+                parser.add_flag(
+                    "--extrapolate", request->extrapolate,
+                    "answer outside of the ranges of the factors and where no case near has an answer, too");
                 return [request, &format] { return predict(*request, format); };
             },
             false};

@@ -100,6 +100,14 @@ private:
     }
 
     std::size_t comparison() {
+        const auto node = one_comparison();
+        skip();
+        if (at_ < text_.size() && std::string_view("<>=!").find(text_[at_]) != std::string_view::npos)
+            refuse("and with another comparison (0.2 < x and x < 0.5) is expected");
+        return node;
+    }
+
+    std::size_t one_comparison() {
         if (++comparisons_ > most_comparisons) refuse(fmt::format("no more than {} comparisons", most_comparisons));
         if (const auto number_first = number()) {
             const auto kind = sign();

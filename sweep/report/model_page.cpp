@@ -1,6 +1,7 @@
 #include "sweep/report/model_page.hpp"
 
 #include "sweep/report/box_search.hpp"
+#include "sweep/report/cases_near.hpp"
 #include "sweep/report/factor_axis.hpp"
 #include "sweep/report/model_tables.hpp"
 #include "sweep/report/table.hpp"
@@ -25,10 +26,13 @@ struct Pictured {
     const ModelCases& cases;
     const ObservableModel& model;
     const Admits& admits;
+    CasesNear near{cases};
     std::vector<BoxPoint> others = spread_points(cases.factors, {}, points_averaged);
     Setting middle = exact_setting(cases.factors, std::vector<double>(cases.factors.size(), 0.5));
 
-    [[nodiscard]] bool has(const Setting& setting) const { return !admits || admits(setting); }
+    [[nodiscard]] bool has(const Setting& setting) const {
+        return (!admits || admits(setting)) && near.at(setting).answers;
+    }
 
     /// Mean over the other factors where those of `held` are as given; nothing where hardly any setting is admitted.
     [[nodiscard]] std::vector<double> averaged(std::span<const std::size_t> held,
@@ -139,7 +143,8 @@ Json model_page_data(const ModelCases& cases, const ObservableModel& model,
     for (std::size_t j = 0; j < cases.factors.size(); ++j)
         middle["texts"].push_back(cases.factors[j].text(pictured.middle[j]));
     Json value = {{"observable", model.observable},      {"unit", model.unit}, {"says", model_lines(model)},
-                  {"factors", axes_json(cases.factors)}, {"order", order},     {"middle", middle}};
+                  {"factors", axes_json(cases.factors)}, {"order", order},     {"middle", middle},
+                  {"failed", failed_json(cases)}};
     value["curves"] = Json::array();
     for (const auto& curve : curves) value["curves"].push_back(json_of(pictured, curve));
     value["map"] = order.size() < 2 ? Json(nullptr) : map_over(pictured, order[0], order[1]);

@@ -2,7 +2,8 @@
 // most, the other factors averaged over their ranges or at the middle.
 //
 //   averaged   mean over 128 Sobol points of the other factors of the mean response; points that the campaign's `where`
-//              leaves out do not count, where less than four are left there is nothing
+//              leaves out and points whose nearest cases failed (cases_near.hpp) do not count, where less than four
+//              are left there is nothing
 //   slice      the other factors at the middle of their ranges (levels: the middle one), with the 95 % bands of the
 //   mean and of a
 //              single run about it
@@ -18,9 +19,9 @@
 namespace grainsweep::report {
 
 /// {"observable", "unit", "says": lines, "factors", "order": factors by how much they matter, "middle": {"setting",
-/// "texts"}, "curves": one per factor {"at", "averaged", "mean", "mean_half_width", "run_half_width"}, "map": of the
-/// first two of `order` or null {"across", "up", "across_edges", "up_edges", "columns", "rows", "averaged", "slice"}}.
-/// `admits`: settings that are left out are empty.
+/// "texts"}, "failed": settings and outcomes of failed cases, "curves": one per factor {"at", "averaged", "mean",
+/// "mean_half_width", "run_half_width"}, "map": of the first two of `order` or null {"across", "up", "across_edges",
+/// "up_edges", "columns", "rows", "averaged", "slice"}}. `admits`: settings that are left out are empty.
 [[nodiscard]] nlohmann::ordered_json model_page_data(const ModelCases& cases, const ObservableModel& model,
                                                      const std::function<bool(const Setting&)>& admits);
 

@@ -1,10 +1,16 @@
 #include "sweep/report/model_tables.hpp"
 
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/report/cases_near.hpp"
 #include "sweep/report/table.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
 
 namespace grainsweep::report {
 
@@ -51,37 +57,84 @@ Json inputs_json(std::span<const ModelFactor> factors, const Setting& setting) {
     return inputs;
 }
 
-store::Table predictions_table(const ModelCases& cases, const ObservableModel& model,
-                               std::span<const Setting> settings) {
+namespace {
+
+/// A prediction rests on numbers: of a feature that has none there is no sense in one.
+void refuse_undefined(const ModelCases& cases, const ObservableModel& model, std::span<const Setting> settings) {
+    for (const auto& setting : settings) {
+        const auto row = model.features.of(setting);
+        const auto bad = std::ranges::find_if_not(row, [](double x) { return std::isfinite(x); });
+        if (bad != row.end())
+            throw campaign::wrong_question(
+                "", setting_text(cases.factors, setting),
+                fmt::format("the feature '{}' of the model has no number there",
+                            model.features.names[static_cast<std::size_t>(bad - row.begin())]));
+    }
+}
+
+}  // namespace
+
+Predicted predict(const ModelCases& cases, const ObservableModel& model, std::vector<Setting> settings,
+                  bool extrapolate) {
+    refuse_undefined(cases, model, settings);
+    Predicted predicted{std::move(settings), {}, {}, {}};
+    predicted.predictions = model.predict(predicted.settings);
+    predicted.defined = model.defined(predicted.settings);
+    const CasesNear near(cases);
+    for (std::size_t i = 0; i < predicted.settings.size(); ++i) {
+        predicted.near.push_back(near.at(predicted.settings[i]));
+        constexpr double none = std::numeric_limits<double>::quiet_NaN();
+        if (!predicted.near[i].answers && !extrapolate)
+            predicted.predictions[i] = {.mean = none, .mean_error = none, .scatter = none};
+    }
+    return predicted;
+}
+
+store::Table predictions_table(const ModelCases& cases, const ObservableModel& model, const Predicted& predicted) {
     store::Table table;
     table.columns = cases.factor_names();
     for (const char* name : {"mean", "mean_error", "scatter", "inside"}) table.columns.emplace_back(name);
     if (model.undefined > 0) table.columns.emplace_back("defined");
-    const auto predictions = model.predict(settings);
-    const auto defined = model.defined(settings);
-    for (std::size_t i = 0; i < settings.size(); ++i) {
-        auto row = input_cells(cases.factors, settings[i]);
-        const auto& p = predictions[i];
+    if (!cases.failed.empty()) table.columns.insert(table.columns.end(), {"answers_near", "near_cases", "near_failed"});
+    for (std::size_t i = 0; i < predicted.settings.size(); ++i) {
+        auto row = input_cells(cases.factors, predicted.settings[i]);
+        const auto& p = predicted.predictions[i];
         for (const double x : {p.mean, p.mean_error, p.scatter}) row.push_back(to_cell(x));
-        row.emplace_back(std::int64_t{outside_text(cases.factors, settings[i]).empty()});
-        if (model.undefined > 0) row.push_back(to_cell(defined[i]));
+        row.emplace_back(std::int64_t{outside_text(cases.factors, predicted.settings[i]).empty()});
+        if (model.undefined > 0) row.push_back(to_cell(predicted.defined[i]));
+        const auto& near = predicted.near[i];
+        if (!cases.failed.empty())
+            row.insert(row.end(),
+                       {std::int64_t{near.answers}, static_cast<std::int64_t>(near.cases), std::ssize(near.failed)});
         table.rows.push_back(std::move(row));
     }
     return table;
 }
 
-Json predictions_json(const ModelCases& cases, const ObservableModel& model, std::span<const Setting> settings) {
-    const auto predictions = model.predict(settings);
-    const auto defined = model.defined(settings);
+std::string failures_near(const ModelCases& cases, const Predicted& predicted) {
+    const auto without = std::ranges::find_if_not(predicted.near, &Near::answers);
+    if (without == predicted.near.end()) return {};
+    const auto place = static_cast<std::size_t>(without - predicted.near.begin());
+    const auto n = std::ranges::count_if(predicted.near, [](const Near& near) { return !near.answers; });
+    std::string text = fmt::format("no case near {} has an answer: {}\n",
+                                   setting_text(cases.factors, predicted.settings[place]), near_text(cases, *without));
+    if (n > 1) text += fmt::format("{} of {} settings have no answered case near\n", n, predicted.near.size());
+    return text;
+}
+
+Json predictions_json(const ModelCases& cases, const ObservableModel& model, const Predicted& predicted) {
     Json points = Json::array();
-    for (std::size_t i = 0; i < settings.size(); ++i) {
-        const auto& p = predictions[i];
-        points.push_back({{"inputs", inputs_json(cases.factors, settings[i])},
+    for (std::size_t i = 0; i < predicted.settings.size(); ++i) {
+        const auto& p = predicted.predictions[i];
+        points.push_back({{"inputs", inputs_json(cases.factors, predicted.settings[i])},
                           {"mean", json_number(p.mean)},
                           {"mean_error", json_number(p.mean_error)},
                           {"scatter", json_number(p.scatter)},
-                          {"inside", outside_text(cases.factors, settings[i]).empty()},
-                          {"defined", json_number(defined[i])}});
+                          {"inside", outside_text(cases.factors, predicted.settings[i]).empty()},
+                          {"defined", json_number(predicted.defined[i])},
+                          {"answers_near", predicted.near[i].answers},
+                          {"near_cases", predicted.near[i].cases},
+                          {"near_failed", predicted.near[i].failed.size()}});
     }
     return {{"campaign", cases.campaign.name},
             {"observable", model.observable},

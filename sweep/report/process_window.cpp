@@ -22,7 +22,7 @@ class Question {
 public:
     /// `learned`: models that are there already.
     Question(const ModelCases& cases, const WindowRequest& request, std::span<const ObservableModel> learned = {})
-        : cases_(&cases), request_(&request), learned_(learned) {
+        : cases_(&cases), request_(&request), learned_(learned), near_(cases) {
         names_ = cases.observable_names();
         for (const auto& name : cases.factor_names()) names_.push_back(name);
         if (!request.where.empty()) condition_ = Condition::read(request.where, names_);
@@ -54,7 +54,11 @@ public:
             }
         }
         for (auto& one : judged) {
-            one.probability = probability(one);
+            one.near = near_.at(one.setting);
+            one.believed = one.near.answers && std::ranges::all_of(one.predictions, [](const auto& p) {
+                               return std::isfinite(p.mean) && std::isfinite(p.mean_error);
+                           });
+            one.probability = one.believed ? probability(one) : 0;
             if (factor_)
                 one.objective = {.mean = one.setting[*factor_], .mean_error = 0, .scatter = 0};
             else if (modelled_objective())
@@ -67,6 +71,7 @@ public:
     [[nodiscard]] bool better(const Judgement& a, const Judgement& b) const {
         const bool a_meets = meets(a), b_meets = meets(b);
         if (a_meets != b_meets) return a_meets;
+        if (a.believed != b.believed) return a.believed;
         if (!a_meets || request_->objective.empty()) return a.probability > b.probability;
         return cautious(a) > cautious(b);
     }
@@ -143,6 +148,7 @@ private:
     const ModelCases* cases_;
     const WindowRequest* request_;
     std::span<const ObservableModel> learned_;
+    CasesNear near_;
     std::vector<std::string> names_;
     std::optional<Condition> condition_;
     std::optional<std::size_t> factor_;  ///< the objective, where it is one
@@ -193,7 +199,7 @@ void find_front(Window& window, const Question& question, const WindowRequest& r
     std::vector<std::size_t> usable;
     for (std::size_t i = 0; i < judged.size(); ++i) {
         const auto& defined = judged[i].defined;
-        if (std::min(defined.front(), defined[*window.against]) < 1 - request.risk) continue;
+        if (!judged[i].believed || std::min(defined.front(), defined[*window.against]) < 1 - request.risk) continue;
         usable.push_back(i);
         first.push_back(judged[i].objective.mean);
         second.push_back(judged[i].predictions[*window.against].mean);
@@ -232,6 +238,7 @@ std::vector<double> gains(const Question& question, std::span<const Judgement> j
 
 /// Cases to run next: the largest gain, added to the models with its predicted responses, then the next.
 std::vector<Judgement> next_of(const Question& question, const WindowRequest& request, std::vector<Judgement> judged) {
+    std::erase_if(judged, [](const auto& one) { return !one.believed; });
     auto gain = gains(question, judged, request);
     std::vector<std::size_t> order(judged.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -259,6 +266,18 @@ std::vector<Judgement> next_of(const Question& question, const WindowRequest& re
         chosen.push_back(question.judge(std::span(&settings[best], 1)).front());
     }
     return chosen;
+}
+
+/// What the failed cases mean for the window and the chosen setting.
+void say_what_failed(Window& window, const ModelCases& cases) {
+    if (cases.failed.empty()) return;
+    window.notes.push_back(
+        fmt::format("{}; the nearest cases failed in {:.1f} % of the box, where no setting is counted or recommended",
+                    failed_text(cases), 100 * window.share_failed));
+    if (const auto& chosen = window.best ? window.best : window.surest)
+        window.notes.push_back(fmt::format("near {} {}",
+                                           window.best ? "the best setting" : "where the condition is likeliest",
+                                           near_text(cases, chosen->near)));
 }
 
 void say_what_was_found(Window& window, const WindowRequest& request) {
@@ -298,7 +317,14 @@ Window window_of(const store::Store& store, const ModelCases& cases, const Windo
     for (const auto& point : points) window.searched.push_back(point.setting);
     auto judged = question.judge(window.searched);
 
+    if (std::ranges::none_of(judged, [](const auto& one) { return one.near.answers; }))
+        throw campaign::wrong_question("window", "",
+                                       fmt::format("{}, and the nearest cases failed at every setting of the box: none "
+                                                   "can be recommended",
+                                                   failed_text(cases)));
     const auto n = static_cast<double>(judged.size());
+    window.share_failed =
+        static_cast<double>(std::ranges::count_if(judged, [](const auto& one) { return !one.near.answers; })) / n;
     window.share_of_box =
         static_cast<double>(std::ranges::count_if(judged, [&](const auto& one) { return question.meets(one); })) / n;
     window.share_error = std::sqrt(window.share_of_box * (1 - window.share_of_box) / n);
@@ -309,6 +335,7 @@ Window window_of(const store::Store& store, const ModelCases& cases, const Windo
         std::ranges::move(seen, std::back_inserter(judged));
         window.next = next_of(question, request, std::move(judged));
     }
+    say_what_failed(window, cases);
     say_what_was_found(window, request);
     return window;
 }

@@ -7,18 +7,21 @@
 //          prod_{k in U} (1 - d_k(x)) prod_{k not in U} d_k(x) P(condition holds | those in U undefined)
 //
 // with d_k(x) the probability that observable k is defined there. A comparison with an undefined value is not true, and
-// the condition does not hold where the objective is undefined. The objective may be a factor, too (the fastest setting
-// that is good enough): it has no error, and next cases are those of the largest P(x) (x_j - x_j*), the expected
-// improvement on the best x_j* of the window. The box is searched at 4,096 Sobol points (levels as they are), less
-// those that the campaign's `where` leaves out; the best is then improved by Sobol points in boxes about it that
-// shrink to a thousandth of the range. Best is the largest mean less one standard error, the effective
-// best of Huang et al. 2006 (stats/process_window.hpp), with which next cases are compared, too. Settings are rounded
-// to what an engineer can set: a two-thousandth of the range or finer. Nothing is drawn: same cases in, same window
-// out.
+// the condition does not hold where the objective is undefined. Where the nearest cases failed (cases_near.hpp), or a
+// feature of a model has no number, P is 0: no setting there is best, surest, on the front or run next, and none counts
+// for the share. The objective may be a
+// factor, too (the fastest setting that is good enough): it has no error, and next cases are those of the largest P(x)
+// (x_j - x_j*), the expected improvement on the best x_j* of the window. The box is searched at 4,096 Sobol points
+// (levels as they are), less those that the campaign's `where` leaves out; the best is then improved by Sobol points in
+// boxes about it that shrink to a thousandth of the range. Best is the largest mean less one standard error, the
+// effective best of Huang et al. 2006 (stats/process_window.hpp), with which next cases are compared, too. Settings are
+// rounded to what an engineer can set: a two-thousandth of the range or finer. Nothing is drawn: same cases in, same
+// window out.
 #pragma once
 
 #include "stats/process_window.hpp"
 #include "sweep/report/box_search.hpp"
+#include "sweep/report/cases_near.hpp"
 #include "sweep/report/condition.hpp"
 #include "sweep/report/response_models.hpp"
 
@@ -48,6 +51,8 @@ struct Judgement {
     std::vector<stats::Prediction> predictions;  ///< one per model
     std::vector<double> defined;                 ///< the same: probability that the observable is defined
     stats::Prediction objective{};               ///< where there is one; of a factor its value, without error
+    Near near;                                   ///< failed cases near the setting
+    bool believed = true;                        ///< the nearest cases have answers, every feature has a number
     double probability = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -57,6 +62,7 @@ struct Window {
     std::vector<Setting> searched;       ///< of the box
     double share_of_box = 0;             ///< of the searched points with P >= 1 - risk
     double share_error = 0;              ///< standard error of that share: sqrt(s (1 - s)/n), an upper bound for Sobol
+    double share_failed = 0;             ///< of the searched points whose nearest cases failed
     std::optional<Judgement> best;       ///< with P >= 1 - risk; none: there is no such setting
     std::optional<Judgement> surest;     ///< where there is no best: the setting of largest P
     std::vector<Judgement> front;        ///< trade-off of objective and `against`, by growing objective

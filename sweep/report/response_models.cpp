@@ -54,10 +54,6 @@ void add_cases(ModelCases& cases, const Responses& responses, std::set<std::stri
     const auto settings = settings_of(responses, factors);
     for (std::size_t row = 0; row < responses.rows(); ++row) {
         if (!has_final_outcome(responses.outcomes[row]) || !seen.insert(responses.case_ids[row]).second) continue;
-        if (!answered(responses.outcomes[row])) {
-            ++cases.failed;
-            continue;
-        }
         Setting setting = settings[row];
         bool known = true;
         for (std::size_t j = 0; j < factors.size(); ++j) {
@@ -67,6 +63,10 @@ void add_cases(ModelCases& cases, const Responses& responses, std::set<std::stri
             setting[j] = index.value_or(0);
         }
         if (!known) continue;
+        if (!answered(responses.outcomes[row])) {
+            cases.failed.push_back({std::move(setting), *responses.outcomes[row]});
+            continue;
+        }
         if (cases.case_id.empty()) cases.case_id = responses.case_ids[row];
         cases.settings.push_back(std::move(setting));
         for (auto& column : cases.observables) {
@@ -244,7 +244,7 @@ ModelCases settled_cases(const Responses& responses, std::vector<std::size_t>* r
     const auto settings = settings_of(responses, cases.factors);
     for (std::size_t row = 0; row < responses.settled; ++row) {
         if (!answered(responses.outcomes[row])) {
-            ++cases.failed;
+            cases.failed.push_back({settings[row], *responses.outcomes[row]});
             continue;
         }
         if (cases.case_id.empty()) cases.case_id = responses.case_ids[row];
@@ -323,7 +323,8 @@ std::variant<ObservableModel, stats::Refusal> learn(const ModelCases& cases, con
     if (learned.undefined > 0)
         learned.notes.push_back(fmt::format("'{}' is undefined in {} of {} answered cases, which the model leaves out",
                                             learned.observable, learned.undefined, observable.values.size()));
-    if (cases.failed > 0) learned.notes.push_back(fmt::format("{} failed cases are left out", cases.failed));
+    if (!cases.failed.empty())
+        learned.notes.push_back(fmt::format("{} failed cases are left out", cases.failed.size()));
     if (!cases.further.empty())
         learned.notes.push_back(fmt::format("cases of {} are in the model, too", campaign::listed(cases.further)));
     return learned;
@@ -348,8 +349,13 @@ std::function<bool(const Setting&)> admission(const store::Store& store, const M
     for (const auto& [name, value] : scene->defaults()) inputs.try_emplace(name, value);
     std::vector<std::string> names;
     for (const auto& [name, value] : inputs) names.push_back(name);
-    return [inputs, factors = cases.factors,
-            filter = store::make_filter(cases.campaign.condition, names)](const Setting& setting) mutable {
+    campaign::Filter filter;
+    try {
+        filter = store::make_filter(cases.campaign.condition, names);
+    } catch (const campaign::WrongQuestion&) {  // an older program took what is refused today
+        return {};
+    }
+    return [inputs, factors = cases.factors, filter](const Setting& setting) mutable {
         for (std::size_t j = 0; j < factors.size(); ++j)
             inputs[factors[j].name] = campaign::coerced(factors[j].value(setting[j]), inputs.at(factors[j].name));
         return filter(inputs);

@@ -30,6 +30,12 @@
 
 namespace grainsweep::report {
 
+/// A case with a final outcome and without an answer.
+struct FailedCase {
+    Setting setting;
+    campaign::Outcome outcome = campaign::Outcome::crashed;
+};
+
 /// What the models of a campaign are learned from.
 struct ModelCases {
     store::CampaignRecord campaign;
@@ -40,7 +46,7 @@ struct ModelCases {
     std::vector<ResponseColumn> observables;  ///< one value per setting
     std::string main;                         ///< name of the main observable; empty: none has a value
     std::string case_id;                      ///< of an answered case: it has the fixed values
-    std::size_t failed = 0;                   ///< cases with a final outcome but no answer
+    std::vector<FailedCase> failed;
 
     /// Throws WrongQuestion with the nearest name. Empty: the main observable.
     [[nodiscard]] const ResponseColumn& observable(std::string_view name) const;

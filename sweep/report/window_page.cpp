@@ -73,9 +73,10 @@ Json responses_of(const Window& window, const Judgement& one) {
     Json list = Json::array();
     for (std::size_t k = 0; k < window.models.size(); ++k) {
         const auto& p = one.predictions[k];
-        list.push_back({{"mean", json_number(p.mean)},
-                        {"mean_half_width", json_number(p.mean_half_width())},
-                        {"run_half_width", json_number(p.run_half_width())}});
+        const auto shown = [&](double x) { return one.believed ? json_number(x) : Json(nullptr); };
+        list.push_back({{"mean", shown(p.mean)},
+                        {"mean_half_width", shown(p.mean_half_width())},
+                        {"run_half_width", shown(p.run_half_width())}});
     }
     return list;
 }
@@ -124,7 +125,8 @@ Json map_of(const ModelCases& cases, const WindowRequest& request, const Window&
     for (std::size_t i = 0; i < settings.size(); ++i) {
         const bool there = !admits || admits(settings[i]);
         value["probability"].push_back(there ? json_number(judged[i].probability) : Json(nullptr));
-        if (modelled) value["objective"].push_back(there ? json_number(judged[i].objective.mean) : Json(nullptr));
+        const bool answers = there && judged[i].believed;
+        if (modelled) value["objective"].push_back(answers ? json_number(judged[i].objective.mean) : Json(nullptr));
     }
     return value;
 }
@@ -159,6 +161,8 @@ Json window_page_data(const ModelCases& cases, const WindowRequest& request, con
                   {"factors", axes_json(cases.factors)},
                   {"meets", window.best.has_value()},
                   {"best", json_of(cases, window, centre)},
+                  {"failed", failed_json(cases)},
+                  {"failed_near", cases.failed.empty() ? "" : near_text(cases, centre.near)},
                   {"order", order}};
     value["responses"] = Json::array();
     value["models"] = Json::array();

@@ -19,8 +19,9 @@
 namespace grainsweep::report {
 
 /// As the page's program reads it: {"campaign", "where", "objective", "risk", "share", "factors", "best", "meets",
-/// "order": factors by how much they matter, "curves": one per factor, "map": of the first two of `order` or null,
-/// "front", "next", "models", "notes"}. `admits`: settings that the campaign's `where` leaves out are drawn as empty.
+/// "failed": settings and outcomes of failed cases, "failed_near", "order": factors by how much they matter, "curves":
+/// one per factor, "map": of the first two of `order` or null, "front", "next", "models", "notes"}. `admits`: settings
+/// that the campaign's `where` leaves out are drawn as empty.
 [[nodiscard]] nlohmann::ordered_json window_page_data(const ModelCases& cases, const WindowRequest& request,
                                                       const Window& window, const Admits& admits);
 

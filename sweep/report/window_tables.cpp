@@ -19,6 +19,8 @@ void add_row(store::Table& table, const ModelCases& cases, std::string_view part
     if (!part.empty()) row.emplace_back(std::string(part));
     for (auto& cell : input_cells(cases.factors, one.setting)) row.push_back(std::move(cell));
     row.push_back(to_cell(one.probability));
+    if (!cases.failed.empty())
+        row.insert(row.end(), {static_cast<std::int64_t>(one.near.cases), std::ssize(one.near.failed)});
     for (const auto& p : one.predictions)
         for (const double x : {p.mean, p.mean_error, p.scatter}) row.push_back(to_cell(x));
     table.rows.push_back(std::move(row));
@@ -29,6 +31,7 @@ store::Table empty_table(const ModelCases& cases, const Window& window, bool wit
     if (with_part) table.columns.emplace_back("part");
     for (auto& name : cases.factor_names()) table.columns.push_back(std::move(name));
     table.columns.emplace_back("probability");
+    if (!cases.failed.empty()) table.columns.insert(table.columns.end(), {"near_cases", "near_failed"});
     for (const auto& model : window.models)
         for (const char* suffix : {"", "_error", "_scatter"}) table.columns.push_back(model.observable + suffix);
     return table;
@@ -48,6 +51,8 @@ Json json_of(const ModelCases& cases, const WindowRequest& request, const Window
         object["scatter"] = json_number(one.objective.scatter);
     }
     object["probability"] = json_number(one.probability);
+    object["near_cases"] = one.near.cases;
+    object["near_failed"] = one.near.failed.size();
     object["observables"] = Json::object();
     for (std::size_t k = 0; k < window.models.size(); ++k)
         object["observables"][window.models[k].observable] = {
@@ -116,6 +121,7 @@ Json window_json(const ModelCases& cases, const WindowRequest& request, const Wi
             {"judged", judged_text(request.judged)},
             {"share_of_box", window.share_of_box},
             {"share_error", window.share_error},
+            {"share_failed", window.share_failed},
             {"best", one_or_null(window.best)},
             {"surest", one_or_null(window.surest)},
             {"front", list(window.front)},

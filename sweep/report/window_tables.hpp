@@ -12,12 +12,13 @@ namespace grainsweep::report {
 
 /// Share of the box, best setting, front, next cases, models and notes.
 void write_window(std::ostream& out, const ModelCases& cases, const WindowRequest& request, const Window& window);
-/// {"campaign", "where", "objective", "risk", "judged", "share_of_box", "share_error", "best": {"inputs", "mean",
-/// "mean_error", "scatter", "probability", "observables"}, "surest", "front", "next", "models", "notes"}
+/// {"campaign", "where", "objective", "risk", "judged", "share_of_box", "share_error", "share_failed", "best":
+/// {"inputs", "mean", "mean_error", "scatter", "probability", "near_cases", "near_failed", "observables"}, "surest",
+/// "front", "next", "models", "notes"}
 [[nodiscard]] nlohmann::ordered_json window_json(const ModelCases& cases, const WindowRequest& request,
                                                  const Window& window);
-/// One row per setting: part ("best", "surest", "front", "next"), factors, probability, and for each model NAME,
-/// NAME_error, NAME_scatter.
+/// One row per setting: part ("best", "surest", "front", "next"), factors, probability, where cases failed near_cases
+/// and near_failed, and for each model NAME, NAME_error, NAME_scatter.
 [[nodiscard]] store::Table window_rows(const ModelCases& cases, const Window& window);
 
 }  // namespace grainsweep::report

@@ -4,9 +4,22 @@
 function placeOf(factor, x) { return factor.numbers.length > 0 ? factor.numbers.indexOf(x) : x; }
 function shownOf(factor) { return factor.levels.length > 0 ? { of: (x) => placeOf(factor, x), says: (x) => factor.levels[placeOf(factor, x)] } : quantity(factor); }
 
+// Crosses at places of a canvas, white below black: seen on every colour.
+function drawCrosses(ctx, places) {
+  for (const [width, tone] of [[4, "#ffffff"], [1.8, "#000000"]]) {
+    ctx.lineWidth = width;
+    ctx.strokeStyle = tone;
+    ctx.beginPath();
+    for (const [x, y] of places) for (const up of [-1, 1]) { ctx.moveTo(x - 4, y - 4 * up); ctx.lineTo(x + 4, y + 4 * up); }
+    ctx.stroke();
+  }
+}
+
+function failedSays(failed) { return failed.length > 0 ? " Crosses: failed cases; nothing is drawn where the nearest cases failed." : ""; }
+
 // Cells of a map { across, up, across_edges, up_edges, columns, rows } coloured by `values`; a line surrounds the cells
-// that are `inside`, a ring marks the `setting`.
-function cellMap(map, factors, values, { title, says, variable, tones, inside, setting, more }) {
+// that are `inside`, a ring marks the `setting`, a cross each of the `failed` cases.
+function cellMap(map, factors, values, { title, says, variable, tones, inside, setting, failed, more }) {
   const a = factors[map.across], b = factors[map.up], across = shownOf(a), up = shownOf(b);
   const edge = (factor, shown, edges, k) => (factor.levels.length > 0 ? k - 0.5 : shown.of(edges[k]));
   const at = (i, j) => j * map.columns + i, value = quantity(variable, values.filter((x) => x !== null));
@@ -42,6 +55,7 @@ function cellMap(map, factors, values, { title, says, variable, tones, inside, s
         if (cell.j + 1 < map.rows && within(cell.i, cell.j + 1) !== here) { ctx.moveTo(x0, y1); ctx.lineTo(x1, y1); }
       }
       ctx.stroke();
+      drawCrosses(ctx, failed.map((one) => [scales.x.getPixelForValue(across.of(one.setting[map.across])), scales.y.getPixelForValue(up.of(one.setting[map.up]))]));
       if (setting) {
         const x = scales.x.getPixelForValue(across.of(setting[map.across])), y = scales.y.getPixelForValue(up.of(setting[map.up]));
         ring(ctx, x, y, 5, "#ffffff");
@@ -63,8 +77,8 @@ function cellMap(map, factors, values, { title, says, variable, tones, inside, s
 }
 
 // A line through `lines.mean` against a factor, with the 95 % band of the mean and, dashed, the one of a single run; a
-// second line through `lines.averaged`.
-function bandCurve(factor, ats, lines, { title, value, limits, marker }) {
+// second line through `lines.averaged`. `failed`: the factor's values in failed cases, crosses at the lower edge.
+function bandCurve(factor, ats, lines, { title, value, limits, marker, failed }) {
   const shown = shownOf(factor), xs = ats.map((x) => shown.of(x));
   const of = (pick) => xs.map((x, i) => ({ x, y: pick(i) }));
   const build = () => {
@@ -77,7 +91,12 @@ function bandCurve(factor, ats, lines, { title, value, limits, marker }) {
     for (const [width, style] of [["mean_half_width", edge], ["run_half_width", dashed]])
       if (lines[width]) sets.push(Object.assign({ data: about(1, width) }, width === "mean_half_width" ? { fill: "+1" } : {}, style), Object.assign({ data: about(-1, width) }, style));
     if (lines.averaged) sets.push(line(lines.averaged, "averaged", colour("two")));
-    return { type: "line", data: { datasets: sets }, options: { scales: { x: variableAxis(factor), y: axis(value.title, limits || {}) },
+    const crosses = { id: "crosses", afterDatasetsDraw({ ctx, scales, chartArea }) {
+      ctx.save();
+      drawCrosses(ctx, failed.map((x) => [scales.x.getPixelForValue(shown.of(x)), chartArea.bottom]));
+      ctx.restore();
+    } };
+    return { type: "line", data: { datasets: sets }, plugins: [crosses], options: { scales: { x: variableAxis(factor), y: axis(value.title, limits || {}) },
       plugins: Object.assign(marker ? { marker: { at: shown.of(marker.at), label: marker.label } } : {}, { tooltip: { filter: (item) => Boolean(item.dataset.label),
         callbacks: lines.averaged ? { label: (item) => `${item.dataset.label}: ${show(item.parsed.y)}` } : {} } }) } };
   };

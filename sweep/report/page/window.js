@@ -11,7 +11,7 @@ function settingText(one, j) {
   const factor = factors[j], { factor: scale, unit } = factor.levels.length > 0 ? { factor: 1, unit: "" } : quantity(factor);
   return factor.levels.length > 0 ? one.texts[j] : `${show(one.setting[j] * scale, 6)}${unit ? " " + unit : ""}`;
 }
-function responseScale(k) { return quantity(responses[k], data.curves.flatMap((curve) => curve.responses.map((r) => r[k].mean))); }
+function responseScale(k) { return quantity(responses[k], data.curves.flatMap((curve) => curve.responses.map((r) => r[k].mean)).filter((x) => x !== null)); }
 function withWidth(k, mean, width) { const s = responseScale(k); return withError(s.of(mean), s.of(width)) + (s.unit ? ` ${s.unit}` : ""); }
 
 function settingSection() {
@@ -19,12 +19,13 @@ function settingSection() {
   const says = data.meets
     ? `${data.objective ? `${data.maximize ? "Largest" : "Smallest"} ${data.objective} where` : "Surest setting where"} ${data.where ? `"${data.where}" holds` : "it is defined"} with probability ${sure} or more, ${data.single_run ? "for every single run" : "for the mean of many runs"}.`
     : `The condition "${wanted}" holds nowhere with probability ${sure}; it is likeliest here.`;
+  const near = data.failed_near ? ` Here ${data.failed_near}.` : "";
   const set = table([["set"], ["to", "number"]], factors.map((f, j) => [f.name, settingText(best, j)]));
   const gives = table([["expected"], ["mean, 95 %", "number"], ["a single run, 95 %", "number"]],
     responses.map((r, k) => { const one = best.responses[k]; return [r.name, withWidth(k, one.mean, one.mean_half_width), "± " + withError(responseScale(k).of(one.run_half_width), NaN)]; }));
   const share = `${show(100 * data.share, 3)} ± ${show(100 * data.share_error, 1)} %`;
   const tile = (number, label, bad) => el("div", { class: bad ? "tile bad" : "tile" }, el("b", {}, number), el("span", {}, label));
-  return section("setting", "Setting", says,
+  return section("setting", "Setting", says + near,
     el("div", { class: "tiles" }, tile(share, "of the ranges lie in the window"), tile(show(best.probability, 3), "probability of the condition here", !data.meets)),
     el("div", { class: "grid wide" }, el("div", { class: "card" }, el("h3", {}, "Set"), set), responses.length > 0 ? el("div", { class: "card" }, el("h3", {}, "What it gives"), gives) : null));
 }
@@ -32,7 +33,7 @@ function settingSection() {
 // Cells of a map, the edge of the window, and the best setting.
 function windowMap(values, title, says, variable, tones) {
   const { map, best } = data;
-  return cellMap(map, factors, values, { title, says, variable, tones, setting: best.setting,
+  return cellMap(map, factors, values, { title, says, variable, tones, setting: best.setting, failed: data.failed,
     inside: (k) => map.probability[k] !== null && map.probability[k] >= 1 - data.risk,
     more: (k) => [`probability ${show(map.probability[k], 3)}`] });
 }
@@ -42,13 +43,13 @@ function mapSection() {
   if (!map) return null;
   const [a, b] = [factors[map.across], factors[map.up]];
   const rest = factors.map((f, j) => [f, j]).filter(([, j]) => j !== map.across && j !== map.up).map(([f, j]) => `${f.name} ${settingText(data.best, j)}`);
-  const says = `The two factors that matter most at this setting; ${rest.length > 0 ? `the others stay: ${rest.join(", ")}` : "there is no other"}. The line surrounds where the condition holds with probability ${sure}; the ring is the setting.`;
+  const says = `The two factors that matter most at this setting; ${rest.length > 0 ? `the others stay: ${rest.join(", ")}` : "there is no other"}. The line surrounds where the condition holds with probability ${sure}; the ring is the setting.` + failedSays(data.failed);
   const probability = { name: "probability", unit: "1", levels: [] };
   const whole = () => Object.assign(colouring(probability, [0, 1]), { title: "probability" });
   const maps = [windowMap(map.probability, `Process window: ${wanted}`, `Probability that it holds, over ${a.name} and ${b.name}.`, probability, whole)];
   if (map.objective) {
     const numbers = map.objective.filter((x) => x !== null);
-    maps.push(windowMap(map.objective, `${data.objective} over ${a.name} and ${b.name}`, "Mean response by the model.", responses[0], () => colouring(responses[0], numbers)));
+    if (numbers.length > 0) maps.push(windowMap(map.objective, `${data.objective} over ${a.name} and ${b.name}`, "Mean response by the model.", responses[0], () => colouring(responses[0], numbers)));
   }
   return section("map", "The window", says, el("div", { class: "grid wide" }, maps));
 }
@@ -58,14 +59,14 @@ function curveFigure(j, k) {
   const title = `${k === null ? "probability of the condition" : responses[k].name} against ${factors[j].name}`;
   const lines = k === null ? { mean: curve.probability } : { mean: one.map((r) => r.mean), mean_half_width: one.map((r) => r.mean_half_width), run_half_width: one.map((r) => r.run_half_width) };
   return bandCurve(factors[j], curve.at, lines, { title, value: k === null ? { of: (x) => x, title: "probability" } : responseScale(k),
-    limits: k === null ? { min: 0, max: 1 } : {}, marker: { at: data.best.setting[j], label: "setting" } });
+    limits: k === null ? { min: 0, max: 1 } : {}, marker: { at: data.best.setting[j], label: "setting" }, failed: data.failed.map((one) => one.setting[j]) });
 }
 
 function curvesSection() {
   const order = data.order;
   const figuresOf = (k) => order.map((j) => curveFigure(j, k));
   const all = responses.flatMap((_, k) => figuresOf(k)).concat(data.where ? figuresOf(null) : []);
-  return section("curves", "Along each factor", "Through the setting, the other factors as they are there. Shaded: the mean lies within with 95 %; dashed: a single run does.", el("div", { class: "grid" }, all));
+  return section("curves", "Along each factor", "Through the setting, the other factors as they are there. Shaded: the mean lies within with 95 %; dashed: a single run does." + failedSays(data.failed), el("div", { class: "grid" }, all));
 }
 
 function listSection(id, title, says, list) {

@@ -1,0 +1,178 @@
+// Where cases failed nothing is recommended, counted, drawn or predicted: windows, predictions, pages.
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/report/cases_near.hpp"
+#include "sweep/report/model_page.hpp"
+#include "sweep/report/model_tables.hpp"
+#include "sweep/report/process_window.hpp"
+#include "sweep/report/window_page.hpp"
+#include "sweep/report/window_tables.hpp"
+#include "tests/support/answered.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <sstream>
+
+namespace grainsweep::tests {
+using namespace report;
+
+namespace {
+
+using testing::AnyOf;
+using testing::Contains;
+using testing::Each;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// y = 1 - x1 + (x2 - 0.5)/10 where x1 > 0.3; there is no answer below.
+struct FailedCases : testing::Test {
+    Folder folder;
+    store::Store store{folder / "a.db", store::Store::Mode::create};
+
+    ModelCases cases(const Formula& formula, int points = 80, const std::string& more = "") {
+        answer_by(store,
+                  R"({"campaign": "c", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]},
+                      {"name": "x2", "between": [0, 1]}], "design": {"kind": "halton", "points": )" +
+                      std::to_string(points) + "}" + more + "}",
+                  formula);
+        return read_model_cases(store, "c");
+    }
+    static std::optional<double> jams(const Inputs& inputs) {
+        if (!(input(inputs, "x1") > 0.3)) return std::nullopt;
+        return 1 - input(inputs, "x1") + (input(inputs, "x2") - 0.5) / 10;
+    }
+};
+
+TEST_F(FailedCases, NoSettingIsRecommendedAmongThem) {
+    const auto known = cases(jams);
+    EXPECT_THAT(failed_text(known), testing::MatchesRegex("2[3-5] of 80 cases failed \\(2[3-5] unstable\\)"));
+    const WindowRequest request{.where = "y >= 0.5", .objective = "y", .next = 5};
+    const auto window = window_of(store, known, request);
+    ASSERT_TRUE(window.best);
+    EXPECT_GT(window.best->setting[0], 0.28) << "the largest y of the model is at x1 = 0";
+    EXPECT_LT(window.best->setting[0], 0.4);
+    EXPECT_TRUE(window.best->near.answers);
+    EXPECT_NEAR(window.share_failed, 0.3, 0.03);
+    EXPECT_NEAR(window.share_of_box, 0.2, 0.03) << "0.3 < x1 < 0.5";
+    for (const auto* list : {&window.front, &window.next})
+        for (const auto& one : *list) {
+            EXPECT_TRUE(one.near.answers) << one.setting[0];
+            EXPECT_GT(one.setting[0], 0.25);
+        }
+    EXPECT_THAT(window.notes, Contains(HasSubstr("the nearest cases failed in ")));
+    EXPECT_THAT(window.notes,
+                Contains(testing::MatchesRegex("near the best setting .* of the 5 nearest cases failed.*")));
+
+    std::ostringstream text;
+    write_window(text, known, request, window);
+    EXPECT_THAT(text.str(), HasSubstr("near_failed"));
+    const auto json = window_json(known, request, window);
+    EXPECT_EQ(json["share_failed"], window.share_failed);
+    EXPECT_EQ(json["best"]["near_cases"], 5);
+    EXPECT_EQ(json["best"]["near_failed"], window.best->near.failed.size());
+}
+
+TEST_F(FailedCases, AFactorAsTheObjectiveStopsBeforeThem) {
+    const auto known = cases(jams);
+    for (const bool by_factor_alone : {false, true}) {
+        const auto window = window_of(
+            store, known,
+            {.where = by_factor_alone ? "x2 >= 0" : "y >= 0.1", .objective = "x1", .maximise = false, .next = 3});
+        ASSERT_TRUE(window.best);
+        EXPECT_NEAR(window.best->setting[0], 0.3, 0.05);
+        for (const auto& one : window.next) EXPECT_GT(one.setting[0], 0.25);
+    }
+}
+
+TEST_F(FailedCases, WithoutOneNothingChanges) {
+    const auto known = cases([](const Inputs& inputs) { return 1 - input(inputs, "x1"); });
+    const WindowRequest request{.where = "y >= 0.5", .objective = "y"};
+    const auto window = window_of(store, known, request);
+    EXPECT_EQ(window.share_failed, 0);
+    EXPECT_THAT(window.notes, Each(testing::Not(HasSubstr("failed"))));
+    std::ostringstream text;
+    write_window(text, known, request, window);
+    EXPECT_THAT(text.str(), testing::Not(HasSubstr("near_")));
+}
+
+TEST_F(FailedCases, WhereNearlyAllFailedThereIsNoWindow) {
+    // An answer at every sixth case, alone among failed ones.
+    int number = 0;
+    const auto known = cases(
+        [&](const Inputs& inputs) -> std::optional<double> {
+            if (number++ % 6 != 0) return std::nullopt;
+            return 1 - input(inputs, "x1");
+        },
+        96);
+    try {
+        const auto window = window_of(store, known, {.where = "y >= 0.5", .objective = "y"});
+        EXPECT_LT(window.share_of_box, 0.1);
+        EXPECT_GT(window.share_failed, 0.8);
+    } catch (const campaign::WrongQuestion& wrong) {
+        EXPECT_THAT(wrong.what(), HasSubstr("80 of 96 cases failed (80 unstable)"));
+        EXPECT_THAT(wrong.what(), HasSubstr("none can be recommended"));
+    }
+}
+
+TEST_F(FailedCases, APredictionAmongThemSaysThatNoCaseNearHasAnAnswer) {
+    const auto known = cases(jams);
+    const auto model = learn_or_refuse(known, known.observable("y"));
+    const std::vector<Setting> settings = {{0.05, 0.5}, {0.7, 0.5}};
+    const auto predicted = report::predict(known, model, settings, false);
+    EXPECT_TRUE(std::isnan(predicted.predictions[0].mean));
+    EXPECT_TRUE(std::isnan(predicted.predictions[0].mean_error));
+    EXPECT_NEAR(predicted.predictions[1].mean, 0.3, 0.02);
+    EXPECT_THAT(
+        failures_near(known, predicted),
+        HasSubstr("no case near x1 = 0.05, x2 = 0.5 has an answer: 5 of the 5 nearest cases failed (5 unstable)"));
+    const auto json = predictions_json(known, model, predicted);
+    EXPECT_TRUE(json["points"][0]["mean"].is_null());
+    EXPECT_EQ(json["points"][0]["answers_near"], false);
+    EXPECT_EQ(json["points"][0]["near_cases"], 5);
+    EXPECT_EQ(json["points"][0]["near_failed"], 5);
+    EXPECT_EQ(json["points"][1]["answers_near"], true);
+    EXPECT_EQ(json["points"][1]["near_failed"], 0);
+    const auto table = predictions_table(known, model, predicted);
+    EXPECT_THAT(table.columns, testing::ElementsAre("x1", "x2", "mean", "mean_error", "scatter", "inside",
+                                                    "answers_near", "near_cases", "near_failed"));
+    EXPECT_EQ(table.rows[0][2], store::Table::Cell{});
+    const auto extrapolated = report::predict(known, model, settings, true);
+    EXPECT_NEAR(extrapolated.predictions[0].mean, 0.95, 0.1) << "what the model says, where it is asked to say it";
+    EXPECT_THAT(failures_near(known, extrapolated), HasSubstr("no case near"));
+}
+
+TEST_F(FailedCases, PagesDrawThemAndNothingOverThem) {
+    const auto known = cases(jams);
+    const auto model = learn_or_refuse(known, known.observable("y"));
+    const auto page = model_page_data(known, model, {});
+    ASSERT_EQ(page["failed"].size(), known.failed.size());
+    EXPECT_EQ(page["failed"][0]["outcome"], "unstable");
+    EXPECT_LE(page["failed"][0]["setting"][0], 0.3);
+    for (std::size_t i = 0; i < 31; ++i) {
+        const double x = page["curves"][0]["at"][i];
+        if (x > 0.2 && x < 0.4) continue;
+        EXPECT_EQ(page["curves"][0]["mean"][i].is_null(), x < 0.3) << x;
+        EXPECT_EQ(page["curves"][0]["averaged"][i].is_null(), x < 0.3) << x;
+    }
+    EXPECT_TRUE(page["map"]["slice"][0].is_null());
+    EXPECT_TRUE(page["map"]["averaged"][0].is_null());
+
+    const WindowRequest request{.where = "y >= 0.5", .objective = "y"};
+    const auto window = window_of(store, known, request);
+    const auto drawn = window_page_data(known, request, window, {});
+    EXPECT_EQ(drawn["failed"].size(), known.failed.size());
+    EXPECT_THAT(drawn["failed_near"].get<std::string>(), HasSubstr("of the 5 nearest cases failed"));
+    const auto& map = drawn["map"];
+    const std::size_t across = map["across"];
+    for (std::size_t k = 0; k < 41 * 41; ++k) {
+        const double x1 = (static_cast<double>(across == 0 ? k % 41 : k / 41) + 0.5) / 41;
+        if (x1 > 0.22) continue;
+        EXPECT_EQ(map["probability"][k], 0.0) << x1;
+        EXPECT_TRUE(map["objective"][k].is_null()) << x1;
+    }
+    EXPECT_TRUE(drawn["curves"][0]["responses"][0][0]["mean"].is_null());
+}
+
+}  // namespace
+}  // namespace grainsweep::tests
