@@ -2,6 +2,7 @@
 
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/store/database.hpp"
+#include "sweep/store/expression_text.hpp"
 
 #include <fmt/format.h>
 
@@ -65,31 +66,18 @@ std::string columns_of(std::span<const std::string> names) {
     return text;
 }
 
-/// Whether a bracket closes that was not opened, or stays open. Text in quotes and comments have none.
-bool unbalanced(std::string_view expression) {
-    int depth = 0;
-    for (std::size_t i = 0; i < expression.size(); ++i) {
-        const char c = expression[i];
-        const std::string_view rest = expression.substr(i);
-        std::string_view end;
-        if (c == '\'' || c == '"' || c == '`') end = expression.substr(i, 1);
-        if (c == '[') end = "]";
-        if (rest.starts_with("--")) end = "\n";
-        if (rest.starts_with("/*")) end = "*/";
-        if (!end.empty()) {
-            const auto close = expression.find(end, i + (end == "*/" ? 2 : 1));
-            if (close == std::string_view::npos) break;
-            i = close + end.size() - 1;
-        }
-        if (c == '(') ++depth;
-        if (c == ')' && --depth < 0) return true;
-    }
-    return depth != 0;
+/// SQL would compare the outcome of the first comparison, 0 or 1, with what stands in the next.
+void refuse_chains(const Written& written) {
+    const auto chain = chained_comparison(written.text);
+    if (!chain) return;
+    const std::string instead = chain->meant.empty() ? "brackets" : fmt::format("'{}', or brackets", chain->meant);
+    throw refusal(written, fmt::format("'{}' compares the outcome of a comparison; write {}", chain->text, instead));
 }
 
 /// Prepares the expression as the only output of one SELECT over one row of inputs, and reports which columns it
 /// reads. The authorizer sees everything the expression would do.
 std::set<std::string> check(Connection& db, const Written& written, std::span<const std::string> names) {
+    refuse_chains(written);
     const std::string_view expression = written.text;
     db.execute("DROP TABLE IF EXISTS inputs");
     db.execute(fmt::format("CREATE TABLE inputs ({})", columns_of(names)));
@@ -158,8 +146,8 @@ public:
         db_.limit_lengths(longest_value);
         const auto read = check(db_, condition_of(expression), names);
         columns_.assign(read.begin(), read.end());
-        const std::string sql =
-            fmt::format("SELECT (({}\n)) IS TRUE FROM (SELECT {}) AS inputs", expression, row_of(columns_));
+        const std::string sql = fmt::format("SELECT (({}\n)) IS TRUE FROM (SELECT {}) AS inputs",
+                                            with_real_division(expression), row_of(columns_));
         try {
             statement_ = db_.prepare(sql);
         } catch (const RefusedSql& refused) {  // a collation is looked up where something compares by it
@@ -204,7 +192,7 @@ public:
             if (check(db_, written, names).empty())
                 throw refusal(written, "depends on no factor: it would be the same everywhere");
             columns += fmt::format("{0}iif(typeof(({1}\n)) IN ('integer', 'real'), ({1}\n), NULL)", k == 0 ? "" : ", ",
-                                   expressions[k]);
+                                   with_real_division(expressions[k]));
         }
         db_.execute("DROP TABLE inputs");
         try {

@@ -54,6 +54,75 @@ TEST(StoreExpression, Decides) {
     EXPECT_FALSE(holds("cohesion_law")) << "a word is no yes";
 }
 
+/// Quantities are meant: 7/2 is 3.5. What is whole by its nature stays so.
+TEST(StoreExpression, QuotientsAreReal) {
+    EXPECT_TRUE(holds("particles / 2 = 3.5"));
+    EXPECT_TRUE(holds("gap > 1/2 * diameter and gap < 5/2*diameter"));
+    EXPECT_FALSE(holds("0.0003 > 1/2 * diameter")) << "1/2 is no 0";
+    EXPECT_TRUE(holds("particles*3/2 = 10.5"));
+    EXPECT_TRUE(holds("7 / 2 / 2 = 1.75 and 7 / (3 / 2) * 3 = 14"));
+    EXPECT_TRUE(holds("-particles/2 = -3.5 and 1 - 1/2 = 0.5"));
+    EXPECT_TRUE(holds("length(cohesion_law)/3 > 1.3"));
+    EXPECT_TRUE(holds("round(particles / 2) = 4 and round(1/3, 2) = 0.33"));
+    EXPECT_TRUE(holds("abs(particles/2) = 3.5 and max(1/2, 1/3) = 0.5"));
+    EXPECT_TRUE(holds("iif(particles > 5, 1, 2) / 4 = 0.25"));
+    EXPECT_TRUE(holds("CAST(particles AS INTEGER)/2 = 3.5"));
+    EXPECT_TRUE(holds("particles /* half */ / /* of it */ 2 -- a/b\n = 3.5"));
+    EXPECT_TRUE(holds("cohesion_law || '/' || 'b' = 'sjkr/b'"));
+    EXPECT_TRUE(holds("particles % 4 = 3 and particles % 4 / 2 = 1.5"));
+    EXPECT_TRUE(holds("(particles & 3) = 3 and particles << 1 = 14 and particles >> 1 = 3 and (particles | 8) = 15"));
+    EXPECT_TRUE(holds("9007199254740993 = 9007199254740992 + 1")) << "whole numbers stay whole numbers";
+    EXPECT_TRUE(holds("\"gap\"/\"diameter\" = 2"));
+    EXPECT_TRUE(holds("1e-3/2 = 5e-4 and 0x10/32 = 0.5"));
+    Inputs others = inputs;
+    const auto filter = store::make_filter("particles/1000 > 1", names);
+    for (const std::int64_t n : {1000, 1001, 1500, 2000}) {
+        others["particles"] = n;
+        EXPECT_EQ(filter(others), n > 1000) << n;
+    }
+}
+
+TEST(StoreExpression, FeaturesHaveRealQuotientsToo) {
+    const std::vector<std::string> expressions = {"particles/2", "1/2 * gap", "particles % 4"};
+    const std::vector<std::string> two = {"particles", "gap"};
+    const auto numbers = store::make_numbers(expressions, two, "$.model.features");
+    const std::vector<Value> values = {std::int64_t{7}, 0.004};
+    EXPECT_THAT(numbers(values), testing::ElementsAre(3.5, 0.002, 3));
+    const std::vector<std::string> chain = {"0 < gap < 1"};
+    EXPECT_THROW((void)store::make_numbers(chain, two, "$.model.features"), campaign::WrongQuestion);
+}
+
+TEST(StoreExpression, AChainOfComparisonsIsRefused) {
+    const auto advised = [](std::string_view expression, std::string_view instead) {
+        EXPECT_THAT(refusal(expression),
+                    AllOf(HasSubstr("compares the outcome of a comparison; write"), HasSubstr(std::string(instead))))
+            << expression;
+    };
+    advised("0.2 < gap < 0.5", "'0.2 < gap AND gap < 0.5', or brackets");
+    advised("0.2<gap<=2*diameter", "'0.2<gap AND gap<=2*diameter'");
+    advised("gap = diameter = 1", "'gap = diameter AND diameter = 1'");
+    advised("gap == diameter == particles", "'gap == diameter AND diameter == particles'");
+    advised("1 > gap > diameter > 0", "'1 > gap AND gap > diameter AND diameter > 0'");
+    advised("0 < gap = diameter", "'0 < gap AND gap = diameter'");
+    advised("gap != diameter <> 1", "'gap != diameter AND diameter <> 1'");
+    advised("particles > 1 and 0 < gap < 1 or gap > 3", "'0 < gap AND gap < 1'");
+    advised("particles > 1 and (0 < gap < 1)", "'0 < gap AND gap < 1'");
+    advised("max(1, 0 < gap < 1)", "'0 < gap AND gap < 1'");
+    advised("not 0 < gap < 1", "'0 < gap AND gap < 1'");
+    advised("case when 0 < gap < 1 then 1 else 0 end", "'0 < gap AND gap < 1'");
+    advised("0 < abs(gap - 1) < 1", "'0 < abs(gap - 1) AND abs(gap - 1) < 1'");
+    advised("0 < case when gap > 1 then 1 else 2 end < 3", "< 3'");
+    advised("0 < gap between 1 and 2", "write brackets");
+    advised("0 < /* < */ gap < 1", "gap < 1'");
+    for (const std::string_view sound :
+         {"0.2 < gap and gap < 0.5", "gap between 1e-3 and 3e-3 and particles > 1", "(gap < 1) = (diameter < 1)",
+          "gap < 1 is true", "not gap between 1 and 2 and particles < 9 or gap = 2", "max(gap < 1, diameter < 1)",
+          "case when gap < 1 then particles > 1 else gap > 2 end", "case particles when 7 then gap < 1 end",
+          "cohesion_law = '< a < b' and particles << 1 < 20", "gap < 1 -- < 2", "particles in (6, 7) and gap < 1",
+          "(particles > 1) + (gap < 1) = 2", "gap not between 1 and 2", "particles >= 7 and particles <= 7"})
+        EXPECT_EQ(refusal(sound), "accepted") << sound;
+}
+
 TEST(StoreExpression, NothingAsksNothing) {
     EXPECT_TRUE(holds(""));
     EXPECT_TRUE(holds(" \n\t"));
