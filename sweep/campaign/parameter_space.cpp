@@ -13,9 +13,13 @@ double unsigned_zero(double x) {
     return x == 0 ? 0 : x;
 }
 
+/// Exactly low at 0 and high at 1, and by rounding never outside of them.
 double value_at(const Between& range, double u) {
-    if (range.scale == Scale::log) return range.low * std::pow(range.high / range.low, u);
-    return range.low + u * (range.high - range.low);
+    if (u <= 0) return range.low;
+    if (u >= 1) return range.high;
+    const double x = range.scale == Scale::log ? range.low * std::pow(range.high / range.low, u)
+                                               : range.low + u * (range.high - range.low);
+    return std::clamp(x, range.low, range.high);
 }
 
 const Value& value_at(const Levels& range, double u) {

@@ -40,8 +40,9 @@ double rounded(double x, int exponent) {
 }
 
 double exact_number_at(const ModelFactor& factor, double u) {
-    return factor.log ? factor.low * std::pow(factor.high / factor.low, u)
-                      : factor.low + u * (factor.high - factor.low);
+    using enum campaign::Scale;
+    const campaign::Between range{factor.low, factor.high, factor.log ? log : linear};
+    return std::get<double>(campaign::value_at({factor.name, range}, u));
 }
 
 double rounded_number_at(const ModelFactor& factor, double u) {
