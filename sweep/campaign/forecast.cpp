@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -84,6 +85,22 @@ std::vector<std::string> calibration_warnings(const Campaign& campaign) {
     return warnings;
 }
 
+/// A program takes what it is given: whether 1 to 10 counts things only its author knows.
+void warn_of_counts(const Campaign& campaign, std::vector<std::string>& warnings) {
+    if (!is_program(campaign.scene().name)) return;
+    for (const auto& factor : campaign.space.factors) {
+        const auto* range = std::get_if<Between>(&factor.range);
+        const auto& unit = campaign.scene().find_parameter(factor.name)->unit;
+        if (range == nullptr || !(unit.empty() || unit == "1") || range->scale == Scale::log) continue;
+        const bool whole = range->low == std::floor(range->low) && range->high == std::floor(range->high);
+        if (whole && range->high - range->low >= 2)
+            warnings.push_back(fmt::format(
+                "{0} takes every real number from {1} to {2}; a whole number is varied by \"levels\" and declared by "
+                "\"whole\": true in program.parameters.{0}, another quantity by its \"unit\"",
+                factor.name, range->low, range->high));
+    }
+}
+
 /// Names how many runs the design makes, where several of its places ask the same; empty where none do.
 std::string repeated_cases(const Campaign& campaign, const Forecast& forecast) {
     if (forecast.questions == forecast.places) return {};
@@ -110,6 +127,7 @@ std::vector<std::string> warnings_of(const Campaign& campaign, const Forecast& f
     if (campaign.execution.threads > 0 && is_program(campaign.scene().name))
         warnings.emplace_back(
             "execution.threads has no effect on a program: program.cores says how many cores a case of it takes");
+    warn_of_counts(campaign, warnings);
     if (auto never = never_converges(campaign); !never.empty()) warnings.push_back(std::move(never));
     return warnings;
 }

@@ -40,7 +40,13 @@ std::span<const Key> program_keys() {
          {},
          {},
          "[]"},
-        {"parameters", "of factors and fixed values: unit, bounds, meaning", KeyKind::object, false, {}, {}, "{}"},
+        {"parameters",
+         "of factors and fixed values: unit, bounds, meaning, whole",
+         KeyKind::object,
+         false,
+         {},
+         {},
+         "{}"},
         {"observables",
          "what a case measures, by name, and where its value is found",
          KeyKind::object,
@@ -108,6 +114,13 @@ std::span<const Key> program_parameter_keys() {
          {},
          {}},
         text_key("meaning", "in words"),
+        {"whole",
+         "true: a number of whole things; it is varied by \"levels\", and another number is refused",
+         KeyKind::flag,
+         false,
+         {},
+         {},
+         "false"},
     };
     return keys;
 }

@@ -1,5 +1,6 @@
 #include "sweep/campaign/program_section.hpp"
 
+#include "solver/plain_text.hpp"
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/output_pattern.hpp"
 #include "sweep/campaign/placeholders.hpp"
@@ -10,8 +11,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <map>
+#include <ranges>
 #include <regex>
 #include <stdexcept>
 #include <utility>
@@ -30,6 +33,15 @@ void check_name(const Cursor& place, const std::string& name) {
                                          longest_plain_name));
     if (std::ranges::find(names_of_the_case, name) != names_of_the_case.end())
         throw wrong_question(place.path(), name, "is the program's name for something else; take another");
+}
+
+/// The view of a campaign has a column per name, and SQL folds the case of names.
+void check_case(const Cursor& place, const std::string& name, const auto& others) {
+    const auto folded = [](unsigned char c) { return std::tolower(c); };
+    for (const std::string& other : others)
+        if (other != name && std::ranges::equal(other, name, {}, folded, folded))
+            throw wrong_question(place.path(), name,
+                                 fmt::format("{} and {} are one name in SQL; rename one", other, name));
 }
 
 /// What a word of a factor may hold: it becomes text in commands, templates, ids and tables.
@@ -57,6 +69,16 @@ public:
         if (const auto calibration = top.find("calibration")) add_conditions(*calibration);
     }
 
+    /// Every number given to it is one.
+    void require_whole(const std::string& name) const {
+        const auto [first, last] = numbers_.equal_range(name);
+        for (const auto& place : std::ranges::subrange(first, last) | std::views::values) {
+            const auto& value = place.json();
+            if (value.is_array()) place.refuse(fmt::format("'{}' is a whole number; vary it by \"levels\"", name));
+            if (value.is_number() && value.get<double>() != std::floor(value.get<double>()))
+                place.refuse(fmt::format("'{}' is a whole number", name));
+        }
+    }
     [[nodiscard]] std::vector<ProgramParameter> parameters() const {
         std::vector<ProgramParameter> all;
         for (const auto& [name, words] : words_) {
@@ -68,11 +90,16 @@ public:
     }
 
 private:
+    void check(const Cursor& place, const std::string& name) const {
+        check_name(place, name);
+        check_case(place, name, std::views::keys(words_));
+    }
     void add(const std::string& name, const Cursor& value) {
-        check_name(value, name);
+        check(value, name);
         const auto [known, fresh] = words_.try_emplace(name);
         auto& words = known->second;
         if (!value.json().is_string()) {
+            numbers_.emplace(name, value);
             if (!words.empty()) value.refuse("the values of a parameter are all numbers or all words");
             return;
         }
@@ -85,11 +112,12 @@ private:
     void add_factor(const Cursor& factor) {
         if (!factor.json().is_object() || !factor.json().contains("name") || !factor["name"].json().is_string()) return;
         const auto name = factor["name"].json().get<std::string>();
-        check_name(factor["name"], name);
+        check(factor["name"], name);
         if (factor.json().contains("levels") && factor["levels"].json().is_array()) {
             for (const auto& level : factor["levels"].elements()) add(name, level);
         } else {
             words_.try_emplace(name);
+            if (factor.json().contains("between")) numbers_.emplace(name, factor["between"]);
         }
     }
     void add_conditions(const Cursor& calibration) {
@@ -106,9 +134,10 @@ private:
     }
 
     std::map<std::string, std::vector<std::string>> words_;  ///< none: numbers
+    std::multimap<std::string, Cursor> numbers_;             ///< where numbers stand, and ranges
 };
 
-void read_parameter_notes(const Section& section, Program& program) {
+void read_parameter_notes(const Section& section, const Given& given, Program& program) {
     const auto all = section.find("parameters");
     if (!all) return;
     if (!all->json().is_object()) all->refuse("must be an object of names and what is known of each");
@@ -126,6 +155,10 @@ void read_parameter_notes(const Section& section, Program& program) {
         const Section told(here, program_parameter_keys());
         if (const auto unit = told.find("unit")) found->unit = unit->text();
         if (const auto meaning = told.find("meaning")) found->meaning = meaning->text();
+        if (told.flag("whole", false)) {
+            if (found->is_word()) told.at("whole").refuse("the values of this parameter are words");
+            given.require_whole(name);
+        }
         const auto bounds = told.find("bounds");
         if (!bounds) continue;
         if (found->is_word()) {
@@ -149,7 +182,7 @@ std::int64_t read_bytes(const Cursor& place) {
     const double step = parts[3].length() > 0 ? 1024 : 1000;
     const auto power =
         parts[2].length() == 0 ? 0 : std::string("kMGT").find(parts[2] == "K" ? "k" : parts[2].str()) + 1;
-    const double bytes = std::stod(parts[1]) * std::pow(step, static_cast<double>(power));
+    const double bytes = number_in(parts[1].str()).value_or(0) * std::pow(step, static_cast<double>(power));
     if (!(bytes >= least && bytes <= most)) place.refuse("must be from 1 MB to 1000 TB");
     return static_cast<std::int64_t>(bytes);
 }
@@ -262,11 +295,17 @@ std::shared_ptr<const Program> read_program(const Section& top, const std::files
     check_arguments(section.at("command"), program->command);
     program->protocol =
         section.word("protocol", "files") == "lines" ? Program::Protocol::lines : Program::Protocol::files;
-    program->parameters = Given(top).parameters();
-    read_parameter_notes(section, *program);
+    const Given given(top);
+    program->parameters = given.parameters();
+    read_parameter_notes(section, given, *program);
     read_program_observables(section, *program);
-    for (const auto& observable : program->observables)
-        check_name(section.at("observables")[observable.name], observable.name);
+    std::vector<std::string> measured;
+    for (const auto& observable : program->observables) {
+        const Cursor named = section.at("observables")[observable.name];
+        check_name(named, observable.name);
+        check_case(named, observable.name, measured);
+        measured.push_back(observable.name);
+    }
     read_version(section, *program);
     read_environment(section, *program);
     read_program_files(section, folder, *program);

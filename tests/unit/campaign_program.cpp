@@ -193,6 +193,51 @@ TEST(ProgramSection, RefusesWithOneSentence) {
     EXPECT_NE(said_of(file, beside).find("'mu' must be a number from 0 to 2"), std::string::npos);
 }
 
+/// SQL has one name for `a` and `A`; a factor and an observable of one name are told apart by a suffix.
+TEST(ProgramSection, NamesThatDifferByCaseAreOne) {
+    const Beside beside;
+    const auto said = [&](const json& patch) {
+        json file = sound_file();
+        file.merge_patch(patch);
+        return said_of(file, beside);
+    };
+    EXPECT_NE(said({{"fixed", {{"MU", 1}}}}).find("$.fixed.MU: got MU; mu and MU are one name in SQL; rename one"),
+              std::string::npos)
+        << said({{"fixed", {{"MU", 1}}}});
+    EXPECT_NE(said({{"fixed", {{"Mu", "a"}}}}).find("mu and Mu are one name in SQL"), std::string::npos);
+    EXPECT_NE(said({{"program", {{"observables", {{"Energy", {{"from", {{"output", "(x)"}}}}}}}}}})
+                  .find("Energy and energy are one name in SQL"),
+              std::string::npos);
+    json file = sound_file();
+    file["factors"].push_back({{"name", "mU"}, {"between", {0, 1}}});
+    EXPECT_NE(said_of(file, beside).find("mu and mU are one name in SQL"), std::string::npos);
+    file = sound_file();
+    file["factors"].push_back({{"name", "ENERGY"}, {"between", {0, 1}}});
+    EXPECT_EQ(said_of(file, beside), "");
+}
+
+TEST(ProgramSection, AWholeNumberIsVariedByLevels) {
+    const Beside beside;
+    const auto said = [&](const json& range, const json& fixed, const json& whole) {
+        json file = sound_file();
+        json factor = {{"name", "layers"}};
+        factor.update(range);
+        file["factors"].push_back(factor);
+        file["fixed"]["rounds"] = fixed;
+        file["program"]["parameters"] = {{"layers", {{"whole", whole}}}, {"rounds", {{"whole", true}}}};
+        return said_of(file, beside);
+    };
+    EXPECT_EQ(said({{"levels", {1, 2.0, 1e3}}}, 4, true), "");
+    EXPECT_EQ(said({{"between", {1, 10}}}, 4, false), "");
+    EXPECT_NE(said({{"between", {1, 10}}}, 4, true).find("'layers' is a whole number; vary it by \"levels\""),
+              std::string::npos);
+    EXPECT_NE(said({{"levels", {1, 2.5}}}, 4, true).find("got 2.5; 'layers' is a whole number"), std::string::npos);
+    EXPECT_NE(said({{"levels", {1, 2}}}, 4.5, true).find("$.fixed.rounds: got 4.5; 'rounds' is a whole number"),
+              std::string::npos);
+    EXPECT_NE(said({{"levels", {"a", "b"}}}, 4, true).find("the values of this parameter are words"),
+              std::string::npos);
+}
+
 TEST(ProgramSection, TemplatesNameWhatThereIs) {
     const Beside beside;
     beside.write("in.deck", "mu\n{{ mo }}\n");

@@ -105,6 +105,21 @@ TEST(CampaignFile, SaysWhenNoCheckCanEverPass) {
     EXPECT_EQ(never(100, 50), "");
 }
 
+TEST(Forecast, SaysThatARowOfAListIsThereAgain) {
+    const auto warnings = [](const std::string& rows) {
+        const Campaign campaign =
+            parse_campaign(R"({"campaign": "c", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
+                               "design": {"kind": "list", "rows": )" +
+                               rows + "}}",
+                           ".");
+        return warnings_of(campaign, forecast(campaign.scene(), unfold(campaign, {})));
+    };
+    EXPECT_TRUE(warnings("[[0.1], [0.2]]").empty());
+    const auto said = warnings("[[0.1], [0.1], [0.1], [0.2]]");
+    ASSERT_EQ(said.size(), 1U);
+    EXPECT_EQ(said[0].rfind("the 4 cases of the design are 2 different ones, and each counts once", 0), 0U) << said[0];
+}
+
 // Warnings of a scene, counted once a kind over the cases that are really asked.
 TEST(Forecast, CountsWarningsByKind) {
     const Campaign campaign = parse_campaign(R"({"campaign": "c", "scene": "powder_spreading",
