@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <concepts>
+#include <limits>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -67,8 +68,12 @@ Json packed(std::span<const double> values) {
         for (const double x : found->first) of.push_back(std::isfinite(x) ? Json(x) : Json(nullptr));
         return {{"of", std::move(of)}, {"u8", base64(found->second)}};
     }
-    const bool wide =
-        std::ranges::any_of(values, [](double x) { return std::abs(x) > exact_in_float && x == std::floor(x); });
+    const bool wide = std::ranges::any_of(values, [](double x) {
+        const double size = std::abs(x);
+        return (size > exact_in_float && x == std::floor(x)) ||
+               (size > 0 && size < std::numeric_limits<float>::min()) ||
+               (std::isfinite(x) && size > std::numeric_limits<float>::max());
+    });
     Bytes bytes;
     for (const double x : values) {
         if (wide)

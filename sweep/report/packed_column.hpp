@@ -18,7 +18,7 @@ namespace grainsweep::report {
 /// One of, in base64 where bytes are meant, little-endian:
 ///   {"of": [values], "u8": indices}   at most 256 different values, exact; NaN among them is null
 ///   {"f32": numbers}                  others, to seven digits
-///   {"f64": numbers}                  whole numbers that seven digits do not hold
+///   {"f64": numbers}                  whole numbers that seven digits do not hold, numbers beyond the range of float
 [[nodiscard]] nlohmann::ordered_json packed(std::span<const double> values);
 [[nodiscard]] nlohmann::ordered_json packed(std::span<const std::int64_t> values);
 /// Words: {"of": [words], "u8": indices}; throws std::length_error for more than 256 different ones.

@@ -1,5 +1,6 @@
 #include "sweep/report/page.hpp"
 
+#include "solver/plain_text.hpp"
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/identity.hpp"
 #include "sweep/campaign/program.hpp"
@@ -38,7 +39,7 @@ constexpr std::size_t most_drawn_checks = 150;
 
 /// Six digits are more than a picture shows, and half the bytes.
 Json drawn(double x) {
-    return std::isfinite(x) ? Json(std::stod(fmt::format("{:.6g}", x))) : Json(nullptr);
+    return std::isfinite(x) ? Json(number_in(fmt::format("{:.6g}", x)).value_or(x)) : Json(nullptr);
 }
 
 Json drawn(const std::vector<double>& values) {

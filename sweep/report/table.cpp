@@ -115,7 +115,7 @@ void write(std::ostream& out, const store::Table& table, Format format) {
 }
 
 void RowWriter::begin(const std::vector<std::string>& columns) {
-    names_ = format_ == Format::json ? distinct(columns) : columns;
+    names_ = distinct(columns);
     if (format_ == Format::json)
         *out_ << '[';
     else

@@ -5,8 +5,9 @@
 //   "";
 //         a text that begins with = + - @ gets an apostrophe before it, or a spreadsheet would take it for a formula;
 //         control characters but line ends and tabs are written \x1b
-//   json  a list of objects, keys in column order, a name that is there again with _2; an absent value, NaN and
-//         infinity are null
+//   json  a list of objects, keys in column order; an absent value, NaN and infinity are null
+//
+// A column whose name is there already is named with _2 in csv and json.
 //
 // Numbers in csv and json are the shortest that read back as the same double. Whole numbers beyond 2^53 (seeds) are
 // text there, because jq, R and spreadsheets read every number as a double: "5577006791947779410" in json,

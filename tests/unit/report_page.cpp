@@ -183,6 +183,20 @@ TEST_F(Page, HoldsSeveralDatabases) {
     EXPECT_EQ(data["campaigns"][1]["rows"], 16);
 }
 
+/// exp(-720 x) falls to 1e-313: numbers with few digits left, which no reader of text may refuse.
+TEST_F(Page, HoldsTheSmallestNumbersThereAre) {
+    answer_by(store,
+              R"({"campaign": "small", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
+                  "design": {"kind": "halton", "points": 300}})",
+              [](const Inputs& inputs) { return std::exp(-745 * input(inputs, "x1")); });
+    const auto data = Json::parse(between(page(), R"(<script type="application/json" id="data">)", "</script>"));
+    const auto& y = data["campaigns"][0]["observables"][0];
+    const auto values = unpacked(y["values"]);
+    EXPECT_GT(std::ranges::count_if(values, [](double x) { return x > 0 && x < 2.2e-308; }), 3);
+    EXPECT_LT(y["smallest"][0]["value"].get<double>(), 1e-310);
+    EXPECT_GT(y["smallest"][0]["value"].get<double>(), 0);
+}
+
 TEST(PackedColumn, FewValuesAreExactAndManyHaveSevenDigits) {
     const double missing = std::nan("");
     const auto few = report::packed(std::vector<double>{0.1, missing, 1.0 / 3, 0.1, 1e300});
@@ -207,6 +221,13 @@ TEST(PackedColumn, FewValuesAreExactAndManyHaveSevenDigits) {
             EXPECT_NEAR(x / many[i], 1, 1e-7);
     }
     EXPECT_EQ(unpacked(report::packed(whole)), whole);
+    for (const double beyond : {1e-310, 4.9e-324, -1e-40, 1e300}) {
+        auto wide = many;
+        wide[0] = beyond;
+        const auto column = report::packed(wide);
+        ASSERT_TRUE(column.contains("f64")) << beyond;
+        EXPECT_EQ(unpacked(column)[0], beyond);
+    }
     EXPECT_EQ(unpacked(report::packed(std::vector<double>{})).size(), 0u);
 }
 

@@ -61,6 +61,7 @@ TEST(Table, JsonIsOneValueWithKeysInOrder) {
     // A name that is there more than once loses no value.
     EXPECT_EQ(written({{"y", "y", "y_2", "y"}, {{1, 2, 3, 4}}}, Format::json),
               "[{\"y\":1,\"y_2\":2,\"y_2_2\":3,\"y_3\":4}]\n");
+    EXPECT_EQ(written({{"y", "y", "y_2", "y"}, {{1, 2, 3, 4}}}, Format::csv), "y,y_2,y_2_2,y_3\n1,2,3,4\n");
 }
 
 // jq, R and spreadsheets read every number as a double.
