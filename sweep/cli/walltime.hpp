@@ -5,6 +5,7 @@
 #include "sweep/schedule/scheduler.hpp"
 
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace grainsweep::cli {
@@ -16,9 +17,12 @@ struct TimeGiven {
 };
 
 /// The earlier of the two; nothing where there is no limit. `configured`: execution.walltime, 0: none. The texts are
-/// SLURM_JOB_END_TIME and SLURM_JOB_START_TIME, seconds since 1970; empty: not set. What is no such number is none.
+/// SLURM_JOB_END_TIME and SLURM_JOB_START_TIME, seconds since 1970 or a local date (2026-11-26T12:00:00); empty: not
+/// set. Another text, and a moment more than a year ago, is none.
 [[nodiscard]] std::optional<TimeGiven> time_given(double configured, std::string_view job_end,
                                                   std::string_view job_start, double now);
+/// The warning where the end of the job is set and is none; empty: it is one, or Slurm names none.
+[[nodiscard]] std::string unreadable_end(std::string_view job_end, double now);
 /// Of this it keeps back for workers to save what they have and for everything to be written: a tenth, 5 to 30 s, at
 /// most half.
 [[nodiscard]] double kept_back(double whole);
