@@ -86,7 +86,7 @@ HeapShape heap_shape(const dem::State& state, double diameter, double reach) {
     for (std::size_t k = 0; k < h.size() && h[k] >= foot * shape.height; ++k)
         if (h[k] <= shoulder * shape.height) slope.push_back({middle(k), h[k]});
     const Line line = fitted_line(slope);
-    shape.angle = std::atan(-line.slope) / degree;
+    shape.angle = std::atan(0 - line.slope) / degree;
     shape.residual = line.residual;
 
     std::size_t edge = 0;

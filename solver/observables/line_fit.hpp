@@ -3,6 +3,7 @@
 //     slope = sum (x - xm)(z - zm)/sum (x - xm)^2,   height = zm - slope xm
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -16,13 +17,15 @@ struct Line {
     double residual = std::numeric_limits<double>::quiet_NaN();  ///< root mean square of z from the line
 };
 
-/// NaN where fewer than two points differ in x. Points (x, z).
+/// NaN where fewer than two points differ in x; a slope of exactly 0 where all z are equal. Points (x, z).
 [[nodiscard]] inline Line fitted_line(std::span<const std::array<double, 2>> points) {
     const auto n = static_cast<double>(points.size());
     double xm = 0, zm = 0, xx = 0, xz = 0;
     for (const auto& [x, z] : points) xm += x / n, zm += z / n;
     for (const auto& [x, z] : points) xx += (x - xm) * (x - xm), xz += (x - xm) * (z - zm);
     if (!(xx > 0)) return {};
+    const auto level = [first = points.front()[1]](const auto& point) { return point[1] == first; };
+    if (std::ranges::all_of(points, level)) return {0, points.front()[1], 0};
     Line line{xz / xx, zm - xz / xx * xm, 0};
     for (const auto& [x, z] : points) {
         const double off = z - line.height - line.slope * x;

@@ -46,6 +46,11 @@ TEST(LineFit, IsExactOnALineAndLeastInBetween) {
     EXPECT_NEAR(fitted_line(bent).residual, std::sqrt(2.0) / 3, 1e-15);
     EXPECT_TRUE(std::isnan(fitted_line(std::vector<std::array<double, 2>>{{1, 2}, {1, 3}}).slope));
     EXPECT_TRUE(std::isnan(fitted_line({}).height));
+    std::vector<std::array<double, 2>> level;
+    for (int k = 0; k < 7; ++k) level.push_back({0.1 * k * k, 0.0123});
+    EXPECT_EQ(fitted_line(level).slope, 0) << "a rate of nothing is 0, not -6.6e-35";
+    EXPECT_EQ(fitted_line(level).height, 0.0123);
+    EXPECT_EQ(fitted_line(level).residual, 0);
 }
 
 TEST(TurnedBed, LeanIsTheAngleOfASegment) {

@@ -24,7 +24,7 @@ constexpr double degree = std::numbers::pi / 180;
 constexpr std::array names = {"drum", "front_plate", "rear_plate"};
 
 double angle_of(const observables::Line& line) {
-    return std::atan(-line.slope) / degree;
+    return std::atan(0 - line.slope) / degree;
 }
 
 }  // namespace
