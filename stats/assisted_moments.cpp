@@ -329,12 +329,11 @@ void choose(AssistedMoments& result, const AssistedSettings& settings, const Ass
     for (std::size_t k = 0; k < assisted_statistics.size(); ++k) {
         auto& s = result.statistics[k];
         const double joint = std::hypot(s.plain.half_width, s.assisted.half_width);
-        s.takes_assisted = good && (previous == nullptr || previous->statistics[k].shorter);
-        if (!std::isfinite(s.assisted.half_width) || !std::isfinite(s.assisted.value)) s.takes_assisted = false;
+        const bool finite = std::isfinite(s.assisted.half_width) && std::isfinite(s.assisted.value);
         const bool contradicts = good && std::abs(s.assisted.value - s.plain.value) > contradiction * joint;
         s.withdrawn = !good || contradicts;
+        s.takes_assisted = finite && !s.withdrawn && (previous == nullptr || previous->statistics[k].shorter);
         if (!contradicts) continue;
-        s.takes_assisted = false;
         result.remark += (result.remark.empty() ? "the model-assisted " : "; the model-assisted ") +
                          std::string(to_string(assisted_statistics[k])) + " " + shown(s.assisted.value) + " +- " +
                          shown(s.assisted.half_width) + " is withdrawn: it contradicts the plain " +

@@ -46,6 +46,16 @@ std::vector<Point> collapse(std::span<const std::int64_t> points, std::span<cons
     return all;
 }
 
+/// Legendre polynomial of degree 1 or more by its recurrence (Abramowitz & Stegun 1964, eq. 8.5.3).
+double legendre(std::size_t degree, double x) {
+    double before = 1, p = x;
+    for (std::size_t l = 1; l < degree; ++l) {
+        const auto n = static_cast<double>(l);
+        before = std::exchange(p, ((2 * n + 1) * x * p - n * before) / (n + 1));
+    }
+    return p;
+}
+
 /// How finely the models resolve the response; the coarse ones show what finer ones may still lack.
 enum class Resolution { fine, coarse };
 
@@ -93,7 +103,7 @@ public:
     [[nodiscard]] double in_product(std::size_t row, std::size_t k) const {
         const double x = coordinates_[row];
         if (!ordered_) return x == knots_[k + 1] ? 1 : 0;
-        return std::legendre(static_cast<unsigned>(k + 1), 2 * x - 1);
+        return legendre(k + 1, 2 * x - 1);
     }
 
 private:

@@ -12,8 +12,13 @@
 //   all points there   E[RSS/P]       = V_int + sigma^2 mean(1/r) (P - p)/P     (a lattice: V is over its own points)
 //
 // so that with replicates interactions and scatter are told apart. Without, a second model that adds products of the
-// factors two by two (Legendre polynomials up to the total degree 3) shows how much of the rest is interactions of
-// two factors; what then remains is scatter and higher interactions, an upper bound of either.
+// factors two by two (Legendre polynomials up to a total degree of 3 to 10, as far as three points per coefficient
+// allow) shows how much of the rest is interactions of two factors; what then remains is scatter, higher interactions
+// and what the products do not follow.
+//
+// Half-widths of a sample: jackknife; in quadrature the change of a share when the models have half of the pieces and
+// two degrees less, for what finer models would find; and for parts with interactions their share times p/P on top: on
+// points more even than random ones the coefficients take less from RSS than p/P of it.
 #pragma once
 
 #include "stats/sensitivity.hpp"
@@ -54,7 +59,7 @@ struct VarianceSplit {
     SensitivityIndex scatter;       ///< with replicates: sigma^2
     SensitivityIndex interactions;  ///< with replicates: of any order; interactions + scatter = unexplained
     SensitivityIndex pairs;         ///< sampled points without replicates: interactions of two factors
-    SensitivityIndex remainder;     ///< the same: scatter and higher interactions; pairs + remainder = unexplained
+    SensitivityIndex remainder;     ///< the same: scatter, higher interactions; pairs + remainder = unexplained
     PureError pure;
     std::int64_t points = 0;       ///< with a value
     std::size_t coefficients = 0;  ///< of the additive model

@@ -38,7 +38,8 @@ public:
           levels_(request.levels[j]),
           places_(static_cast<std::uint64_t>(request.count("grid"))) {
         if (levels_ == 1)
-            throw std::invalid_argument(name_of(request, j) + " has one level, which no trajectory can leave: fix it");
+            throw std::invalid_argument(name_of(request, j) +
+                                        " has one level, so no trajectory moves it: give it under \"fixed\"");
         own_ = levels_ > 0 && places_ % levels_ != 0;
         if (own_) places_ = levels_;
     }
@@ -94,16 +95,16 @@ void check_levels(const DesignRequest& request, const std::vector<Axis>& axes) {
     const auto first_missed = [&]() -> std::string {
         for (std::size_t j = 0; j < axes.size(); ++j)
             if (met[j].size() < axes[j].levels())
-                return name_of(request, j) + ", " + std::to_string(met[j].size()) + " of its " +
-                       std::to_string(axes[j].levels()) + " levels";
+                return std::to_string(met[j].size()) + " of the " + std::to_string(axes[j].levels()) + " levels of " +
+                       name_of(request, j);
         return {};
     };
     for (std::uint64_t t = 0;; ++t) {
         if (t == trajectories) missed = first_missed();
         if (t >= trajectories && first_missed().empty()) {
             if (missed.empty()) return;
-            throw std::invalid_argument(std::to_string(trajectories) + " trajectories meet, of " + missed + ": give " +
-                                        std::to_string(t) + " trajectories or more, which meet every level");
+            throw std::invalid_argument("trajectories: " + std::to_string(trajectories) + " of them run only " +
+                                        missed + "; " + std::to_string(t) + " or more run every level");
         }
         for (const auto& point : trajectory(axes, request.seed, t))
             for (std::size_t j = 0; j < axes.size(); ++j)

@@ -147,8 +147,7 @@ class IndexCoverage : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(IndexCoverage, OfTheModel) {
     const auto known = known_indices()[GetParam()];
-    count_models(known, 128);
-    count_models(known, 384);
+    count_models(known, known.cases);
 }
 
 TEST_P(IndexCoverage, OfBins) {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <numbers>
 #include <span>
@@ -19,6 +20,7 @@ struct KnownIndices {
     double noise;                             ///< standard deviation of single runs
     std::vector<double> first, total, pairs;  ///< shares of the variance of the mean response
     double share = 1;                         ///< of the variance of single runs, the mean response's
+    std::int64_t cases = 128;                 ///< that a model of it needs
 };
 
 /// f_1(x_1) + ... + f_d(x_d) of these variances.
@@ -48,7 +50,7 @@ inline KnownIndices g_function(std::string name, std::vector<double> a) {
         v.push_back(1 / (3 * (1 + x) * (1 + x)));
         product *= 1 + v.back();
     }
-    KnownIndices known{std::move(name), d, {}, 0, {}, {}, {}};
+    KnownIndices known{std::move(name), d, {}, 0, {}, {}, {}, 1, 256};
     for (std::size_t j = 0; j < d; ++j) {
         known.first.push_back(v[j] / (product - 1));
         known.total.push_back(v[j] * product / (1 + v[j]) / (product - 1));
@@ -82,7 +84,9 @@ inline std::vector<KnownIndices> known_indices() {
          0,
          {0.3139051911, 0.4424111448, 0},
          {0.5575888552, 0.4424111448, 0.2436836642},
-         {0, 0.2436836642, 0}},
+         {0, 0.2436836642, 0},
+         1,
+         256},
         {"product",
          3,
          [](Point u) { return u[0] * u[1] + u[2]; },
