@@ -21,7 +21,6 @@ constexpr std::size_t most_compared = 4096;  // among which the next settings ar
 constexpr std::size_t chains_begin_at = 64;  // settings of least implausibility
 constexpr double failing_share = 0.05;       // of the settings, above which it is learned where they fail
 constexpr std::ptrdiff_t neighbours = 5;     // that say whether a case would answer
-constexpr const char* nowhere_likely = "the measurements lie too far from every case for a posterior";
 
 /// Sobol points of the calibrated factors, rows of d.
 std::vector<double> even_points(const DesignRequest& request, std::size_t d, std::int64_t count, std::uint64_t stream) {
@@ -278,8 +277,7 @@ private:
         for (std::size_t k = 0; k < all.kept.size(); k += step) append(pool, all.points, all.kept[k]);
         if (pool.size() / d_ < 2 * wanted) {
             const auto drawn = posterior(static_cast<std::uint64_t>(wave));
-            if (!drawn) return fail(nowhere_likely);
-            pool.insert(pool.end(), drawn->points.begin(), drawn->points.end());
+            pool.insert(pool.end(), drawn.points.begin(), drawn.points.end());
         }
         const std::size_t n = pool.size() / d_;
         std::vector<double> distance(n, std::numeric_limits<double>::infinity());
@@ -299,29 +297,24 @@ private:
         }
         return chosen;
     }
-    /// None where the measurements have no likelihood in double precision at any start.
-    [[nodiscard]] std::optional<stats::PosteriorSample> posterior(std::uint64_t stream) const {
+    [[nodiscard]] stats::PosteriorSample posterior(std::uint64_t stream) const {
         const auto targets = modelled();
         const auto covariance = modelled_covariance();
         stats::PosteriorSettings settings;
         settings.seed = draw_key(request_.seed, DrawPurpose::calibration, stream, 1);
-        const auto density_at = [&](stats::Rows points) {
-            auto density = stats::log_likelihood(targets, predict(points), covariance);
-            for (std::size_t i = 0; i < density.size(); ++i)
-                if (!feasible(points.row(i))) density[i] = -std::numeric_limits<double>::infinity();
-            return density;
-        };
-        const stats::Rows begin{best_, d_};
-        if (std::ranges::none_of(density_at(begin), [](double x) { return std::isfinite(x); })) return std::nullopt;
-        return stats::sample_posterior(density_at, begin, settings);
+        return stats::sample_posterior(
+            [&](stats::Rows points) {
+                auto density = stats::log_likelihood(targets, predict(points), covariance);
+                for (std::size_t i = 0; i < density.size(); ++i)
+                    if (!feasible(points.row(i))) density[i] = -std::numeric_limits<double>::infinity();
+                return density;
+            },
+            {best_, d_}, settings);
     }
     void sample() {
         if (!result_.points.without_result.empty()) return;
         result_.posterior = posterior(0);
-        if (result_.posterior)
-            result_.shape = stats::posterior_shape(result_.posterior->rows());
-        else
-            (void)fail(nowhere_likely);
+        result_.shape = stats::posterior_shape(result_.posterior->rows());
     }
     /// Settings drawn from the posterior are run.
     void check() {

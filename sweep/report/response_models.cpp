@@ -203,7 +203,7 @@ std::optional<stats::Refusal> undefined_feature(const Features& features, const 
 
 const ResponseColumn& ModelCases::observable(std::string_view name) const {
     const std::string_view wanted = name.empty() ? std::string_view(main) : name;
-    if (wanted.empty()) throw campaign::wrong_question("campaign " + campaign.name, "", "no case has a scalar yet");
+    if (wanted.empty()) throw campaign::wrong_question("campaign " + campaign.name, "", "its scene measures no scalar");
     const auto found = std::ranges::find(observables, wanted, &ResponseColumn::name);
     if (found != observables.end()) return *found;
     const auto names = observable_names();

@@ -38,12 +38,11 @@ struct Curve {
 /// at one place their mean; of a profile no sample without a bin.
 Curve curve_of(std::vector<Sample> samples) {
     const bool binned = std::ranges::any_of(samples, [](const Sample& s) { return !std::isnan(s.bin); });
+    const auto place = [binned](const Sample& s) { return binned ? s.bin : s.time; };
+    std::erase_if(samples, [&](const Sample& s) { return std::isnan(place(s)); });
     double last = none;
     for (const auto& s : samples) last = s.time <= last ? last : s.time;
-    const auto place = [binned](const Sample& s) { return binned ? s.bin : s.time; };
-    std::erase_if(samples, [&](const Sample& s) {
-        return std::isnan(place(s)) || (binned && !std::isnan(last) && s.time != last);
-    });
+    if (binned && !std::isnan(last)) std::erase_if(samples, [last](const Sample& s) { return s.time != last; });
     std::ranges::stable_sort(samples, {}, place);
     Curve curve;
     double count = 0;  // samples at the last place

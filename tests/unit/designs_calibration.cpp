@@ -140,16 +140,6 @@ TEST(CalibrationWaves, ChainsBeginWhereCasesAnswer) {
     EXPECT_LT(found.shape->mean[0], 0.65);
 }
 
-TEST(CalibrationWaves, MeasurementsThatNoSettingComesNearHaveNoPosterior) {
-    const auto slope = [](Point u) { return u[0]; };
-    auto asked = calibration_request(1, {{"a", 1e100, 1e-60, 0, {}}},
-                                     {{"points_per_wave", std::int64_t{12}}, {"waves", std::int64_t{2}}});
-    const auto found = answered(asked, {{"a", slope}});
-    EXPECT_TRUE(found.waves_end);
-    EXPECT_FALSE(found.posterior);
-    EXPECT_FALSE(found.points.without_result.empty());
-}
-
 TEST(CalibrationWaves, AResponseThatNoModelFollowsDecidesNothing) {
     const auto flat = [](Point u) { return 0 * u[0] + 2; };
     const auto slope = [](Point u) { return u[0]; };
