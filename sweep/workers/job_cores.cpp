@@ -16,21 +16,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The words of a file; empty where it cannot be read.
-std::vector<std::string> words_of(const fs::path& file) {
+/// The parts of a file between line ends, or between blanks as well; empty where it cannot be read.
+std::vector<std::string> parts_of(const fs::path& file, std::string_view between) {
     std::error_code error;
     constexpr std::size_t longest = std::size_t{1} << 20U;
-    std::string text = campaign::whole_file(file, error, longest);
+    const std::string text = campaign::whole_file(file, error, longest);
     if (error) return {};
-    std::vector<std::string> words(1);
+    std::vector<std::string> parts(1);
     for (const char c : text) {
-        if (c != ' ' && c != '\n')
-            words.back() += c;
-        else if (!words.back().empty())
-            words.emplace_back();
+        if (between.find(c) == std::string_view::npos)
+            parts.back() += c;
+        else if (!parts.back().empty())
+            parts.emplace_back();
     }
-    if (words.back().empty()) words.pop_back();
-    return words;
+    if (parts.back().empty()) parts.pop_back();
+    return parts;
+}
+
+std::vector<std::string> words_of(const fs::path& file) {
+    return parts_of(file, " \n");
 }
 
 /// Cores of a quota and its period, whole ones.
@@ -70,7 +74,7 @@ std::optional<std::size_t> count_in(const std::optional<std::string>& text) {
 std::optional<std::size_t> quota_cores(const fs::path& root) {
     const fs::path mounts = root / "sys/fs/cgroup";
     std::optional<std::size_t> least;
-    for (const std::string& line : words_of(root / "proc/self/cgroup")) {  // "4:cpu,cpuacct:/job_1", "0::/job_1"
+    for (const std::string& line : parts_of(root / "proc/self/cgroup", "\n")) {  // "4:cpu,cpuacct:/job_1", "0::/job_1"
         const auto first = line.find(':'), second = line.find(':', first + 1);
         if (second == std::string::npos) continue;
         const std::string controllers = "," + line.substr(first + 1, second - first - 1) + ",";
