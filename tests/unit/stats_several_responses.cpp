@@ -23,6 +23,7 @@ TEST(SeveralResponses, TheFitsOfEachAloneInTheirOrder) {
         values[6].push_back(0.5);
     }
     values[2][5] = std::numeric_limits<double>::quiet_NaN();
+    allow_fits_at_once(3);
     const auto fits = fit_responses({set.coordinates, 2}, values);
     ASSERT_EQ(fits.size(), values.size());
     const auto asked = testing::ask_design("random", 2, {{"points", 20}}, 4);
