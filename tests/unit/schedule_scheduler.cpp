@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -111,8 +112,13 @@ TEST_F(SchedulerLoop, ConvergenceFoundWhileStoppingIsStored) {
     const auto judge = [&] {
         return Judge(*campaign.convergence, placed, 1, std::vector<double>(placed.size(), std::nan("")), 10);
     };
+    const auto nearly_equal = [&](const campaign::Attempt& attempt) {
+        const auto place =
+            std::ranges::find(placed, attempt.case_id, [](const campaign::PlacedCase& one) { return one.question.id; });
+        return completed(attempt, 1 + 1e-4 * static_cast<double>(place->point));
+    };
     Judge undisturbed = judge();
-    ScriptedCrew calm([](const auto& attempt) { return completed(attempt); }, 2);
+    ScriptedCrew calm(nearly_equal, 2);
     EXPECT_EQ(run(calm, {}, {}, &undisturbed), Ending::converged);
     const auto stopped = store.campaigns().at(0).stopped_at;
     ASSERT_TRUE(stopped && *stopped < 10);
@@ -123,7 +129,7 @@ TEST_F(SchedulerLoop, ConvergenceFoundWhileStoppingIsStored) {
     ScriptedCrew crew(
         [&](const auto& attempt) -> workers::PoolEvent {
             if (attempt.case_id == last_but_one && !std::exchange(interrupted, true)) return workers::Interrupted{};
-            return completed(attempt);
+            return nearly_equal(attempt);
         },
         2);
     Judge disturbed = judge();
