@@ -191,13 +191,11 @@ TEST(Hosts, AHostThatFallsSilentIsReplaced) {
 }
 
 /// A script in the place of a host with one worker: `say` writes as its worker, which is number 1.
-const char* as_host = R"(ready=$("$1" worker "${@:3}" </dev/null | head -n1)
+const char* as_host = R"sh(ready=$("$1" worker "${@:3}" </dev/null | head -n1)
 printf 'grainsweep host 2\n'
 sum() { printf '%s\n%s' "$1" "$2" | cksum | cut -d' ' -f1; }
-say() { local head="1 $(( ${#1} + 1 ))";
-printf '%s %s\n%s\n\n' "$head" "$(sum "$head" "$1"$'\n')" "$1";
-}
-)";
+say() { local head="1 $(( ${#1} + 1 ))"; printf '%s %s\n%s\n\n' "$head" "$(sum "$head" "$1"$'\n')" "$1"; }
+)sh";
 
 ScriptedCampaign scripted_host(const std::string& script) {
     return ScriptedCampaign(as_host + script, 3,
