@@ -46,6 +46,7 @@ struct Store::Impl {
     bool in_group = false;
     bool sound = false;              ///< checked since this store last wrote: what is read is what was written
     bool as_remembered = false;      ///< so was the whole file when it was opened to write, by its checksum
+    std::int64_t version = 0;        ///< then: data_version(), which tells whether another program has written since
     bool whole = false;              ///< everything in the file is sound, as of the last enrol
     std::vector<std::string> notes;  ///< damage met by the last enrol, and what became of it
     std::int64_t settled_in_group = 0;
@@ -54,6 +55,7 @@ struct Store::Impl {
     /// Attempts begun by this store, as far as it remembers: what is not here is looked up.
     std::unordered_map<campaign::CaseId, OpenAttempt> open;
 
+    [[nodiscard]] std::int64_t data_version() const;
     void require_writer() const;
     void require_group() const;
     /// Whether the file has the columns of migration 003.

@@ -226,6 +226,7 @@ std::vector<CaseState> Store::enrol(const Campaign& campaign, const campaign::Ca
     auto& db = impl_->db;
     Transaction transaction(db);
     impl_->notes.clear();
+    if (impl_->data_version() != impl_->version) impl_->as_remembered = false;
     impl_->refuse_damage(damaged_descriptions(db), {});
     if (!impl_->as_remembered) impl_->refuse_damage(tables_out_of_order(db), {});
     close_dead_attempts(*impl_);

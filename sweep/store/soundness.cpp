@@ -203,7 +203,9 @@ std::vector<DamagedTable> damaged_numbers(const Connection& db, std::int64_t cam
     const std::array bounded = {
         Bounded{"campaign", "campaign_id", "it has a count, a block or a revision out of range",
                 "revision NOT BETWEEN 0 AND ?1 OR sequences NOT BETWEEN 1 AND ?1 OR replicates NOT BETWEEN 1 AND ?1 OR "
-                "stopped_at NOT BETWEEN 0 AND ?1 OR convergence_block NOT BETWEEN 1 AND ?1"},
+                "stopped_at NOT BETWEEN 0 AND ?1 OR convergence_block NOT BETWEEN 1 AND ?1 OR design_extent GLOB "
+                "'*points = "
+                "[0-9][0-9][0-9][0-9][0-9][0-9][0-9][0-9][0-9][0-9]*'"},
         Bounded{"campaign_case", "campaign_id", "it has a point, replicate or sequence out of range",
                 "point NOT BETWEEN 0 AND ?1 OR replicate NOT BETWEEN 0 AND ?1 OR sequence NOT BETWEEN 0 AND ?1"},
         Bounded{"convergence", "campaign_id", "it has a count of points or cases out of range",

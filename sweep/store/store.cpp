@@ -226,6 +226,7 @@ std::unique_ptr<Store::Impl> open_to_write(const std::filesystem::path& file, St
     Connection db(file, Connection::Access::write);
     const bool empty = schema_version(db, file) == 0;  // before anything is changed in a foreign file
     db.use(disk == Store::Disk::network ? Connection::Journal::rollback : Connection::Journal::write_ahead);
+    const auto version = pragma(db, "data_version");
     const bool as_remembered = !empty && is_as_remembered_now(db, file);
     if (!empty) check_tables(db, file);
     if (!empty && !as_remembered) check_structure(db, file);
@@ -233,6 +234,7 @@ std::unique_ptr<Store::Impl> open_to_write(const std::filesystem::path& file, St
     enter_programs(db);
     auto archive = std::make_unique<Store::Impl>(file, std::move(lock), std::move(db));
     archive->as_remembered = as_remembered || empty;
+    archive->version = version;
     return archive;
 }
 
@@ -260,6 +262,9 @@ Store::~Store() = default;
 Store::Store(Store&&) noexcept = default;
 Store& Store::operator=(Store&&) noexcept = default;
 
+std::int64_t Store::Impl::data_version() const {
+    return pragma(db, "data_version");
+}
 void Store::Impl::require_writer() const {
     if (!lock) throw std::logic_error("the store was opened to read");
 }

@@ -136,8 +136,9 @@ zpty -d asked
     for (const auto& name : hostile_names()) {
         {
             grainsweep::store::Connection db(folder / "first_one.db", grainsweep::store::Connection::Access::write);
-            for (const char* change : {"UPDATE campaign SET name = ?", "UPDATE observable SET name = ?",
-                                       "UPDATE sim_case SET case_id = ? WHERE case_key = 1"}) {
+            for (const char* change :
+                 {"UPDATE campaign SET name = ?", "UPDATE observable SET name = ? WHERE shape = 'scalar'",
+                  "UPDATE sim_case SET case_id = ? WHERE case_key = 1"}) {
                 auto statement = db.prepare(change);
                 statement.bind(1, name);
                 (void)statement.step();

@@ -155,6 +155,15 @@ TEST_F(StoreTampering, AFlippedBitOfTheFileIsFound) {
     EXPECT_TRUE(known_as_it_is(file));
 }
 
+TEST_F(StoreTampering, WhatChangesBetweenOpeningAndEnrollingIsFound) {
+    run_to_the_end();
+    ASSERT_TRUE(known_as_it_is(file));
+    store.emplace(file, Store::Mode::create);
+    by_another(file, "UPDATE observation SET value = value + 0.125 WHERE case_key = 3");
+    EXPECT_EQ(store->enrol(asked, cases, here()).at(2).outcome, Outcome::abandoned);
+    EXPECT_THAT(store->notes(), testing::ElementsAre(HasSubstr("asked again")));
+}
+
 TEST_F(StoreTampering, AnAlteredRowIsNotMadeTrueByAChangeBesideIt) {
     run();
     by_another(file, "UPDATE campaign SET seed = seed + 1; UPDATE attempt_computer SET host = 'another'");
@@ -296,6 +305,7 @@ TEST_F(StoreTampering, NumbersThatNoRunWritesAreRefusedWithoutChecksums) {
              "UPDATE campaign SET stopped_at = -4",
              "UPDATE campaign SET convergence_block = 0",
              "UPDATE campaign SET candidates = -1",
+             "UPDATE campaign SET design_extent = 'points = 640000000000'",
              "UPDATE campaign SET asked_replicates = 0",
              "UPDATE convergence SET points = -8",
          }) {
