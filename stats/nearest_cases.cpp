@@ -10,6 +10,12 @@ namespace {
 constexpr std::size_t neighbours = 5;
 constexpr double rounding = 1 + 1e-9;  // of a squared distance
 
+double squared_distance(std::span<const double> a, std::span<const double> b) {
+    double sum = 0;
+    for (std::size_t j = 0; j < a.size(); ++j) sum += (a[j] - b[j]) * (a[j] - b[j]);
+    return sum;
+}
+
 /// D_j of the header; 1 where all cases or none failed.
 double separation(std::vector<double> of_failed, std::vector<double> of_answered) {
     if (of_failed.empty() || of_answered.empty()) return 1;
@@ -41,15 +47,13 @@ NearestCases::NearestCases(std::vector<double> rows, std::size_t width, std::vec
 }
 
 NearestCases::Near NearestCases::at(std::span<const double> point) const {
-    Near near{.cases = std::min(neighbours, failed_.size()), .failed = {}, .answers = true};
+    Near near{.cases = std::min(neighbours, failed_.size()), .failed = {}};
     if (!any_failed_) return near;
     const auto width = weights_.size();
-    std::vector<double> distance(failed_.size(), 0);
-    for (std::size_t i = 0; i < failed_.size(); ++i)
-        for (std::size_t j = 0; j < width; ++j) {
-            const double step = rows_[i * width + j] - weights_[j] * point[j];
-            distance[i] += step * step;
-        }
+    std::vector<double> there(point.begin(), point.end()), distance;
+    for (std::size_t j = 0; j < width; ++j) there[j] *= weights_[j];
+    const auto row = [&](std::size_t i) { return std::span(rows_).subspan(i * width, width); };
+    for (std::size_t i = 0; i < failed_.size(); ++i) distance.push_back(squared_distance(row(i), there));
     auto ordered = distance;
     const auto last = ordered.begin() + static_cast<std::ptrdiff_t>(near.cases - 1);
     std::ranges::nth_element(ordered, last);
@@ -65,6 +69,10 @@ NearestCases::Near NearestCases::at(std::span<const double> point) const {
         if (failed_[i]) ++first_failed;
     }
     near.answers = 2 * first_failed <= first && 2 * near.failed.size() <= near.cases;
+    const auto closest = static_cast<std::size_t>(std::ranges::min_element(distance) - distance.begin());
+    near.beside = !near.answers || std::ranges::any_of(near.failed, [&](std::size_t i) {
+        return distance[i] * rounding < squared_distance(row(i), row(closest));
+    });
     return near;
 }
 

@@ -9,6 +9,9 @@
 //
 // A point fails where its nearest case failed or most of its 5 nearest cases did. Cases as near as the fifth count,
 // too; of several nearest cases at one distance (replicates) most decide. Nothing is fitted: failures have no model.
+//
+// The border lies halfway between failed and answered cases. A point is beside it that is nearer to a failed case of
+// the 5 than its nearest case is: no case has shown that so near to a failed one there is an answer.
 #pragma once
 
 #include <cstddef>
@@ -26,6 +29,7 @@ public:
         std::size_t cases = 0;            ///< nearest cases that were counted
         std::vector<std::size_t> failed;  ///< those that failed, by row, growing
         bool answers = true;              ///< the point does not fail
+        bool beside = false;              ///< it is beside the border, or fails
     };
     [[nodiscard]] Near at(std::span<const double> point) const;
     [[nodiscard]] bool any_failed() const { return any_failed_; }

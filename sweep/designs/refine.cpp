@@ -64,7 +64,7 @@ Question question_of(const DesignRequest& request) {
 class Search {
 public:
     Search(const Aim& aim, const FactorRange& factor) : aim_(aim), middle_(factor.value_at) {
-        for (const double end : {0.0, 1.0}) levels_.push_back({end, factor.value_at(end), {}, 0});
+        for (const double end : {0.0, 1.0}) levels_.push_back({end, factor.value_at(end), {}, 0, 0});
     }
 
     /// What is asked next: numbers of levels, one for each repeat; none when done.
@@ -72,7 +72,7 @@ public:
         if (state_ != Bracket::State::open) return {};
         if (settled() && levels_[low_].asked > 0) {
             const double u = (levels_[low_].coordinate + levels_[high_].coordinate) / 2;
-            levels_.push_back({u, middle_(u), {}, 0});
+            levels_.push_back({u, middle_(u), {}, 0, 0});
         }
         std::vector<std::size_t> numbers;
         for (std::size_t k = 0; k < levels_.size(); ++k)
@@ -84,7 +84,11 @@ public:
     void ask(std::size_t number, const std::optional<double>& answer) {
         auto& level = levels_[number];
         ++level.asked;
-        if (answer && std::isfinite(*answer)) level.answers.push_back(*answer);
+        if (!answer) return;
+        if (std::isfinite(*answer))
+            level.answers.push_back(*answer);
+        else
+            ++level.unanswered;
     }
     /// Draws the conclusions when all answers to what was asked are known.
     void conclude() {

@@ -27,6 +27,7 @@ struct RefinedLevel {
     double value = 0;             ///< of the factor
     std::vector<double> answers;  ///< of the repeats that brought one
     std::size_t asked = 0;        ///< repeats, with or without an answer
+    std::size_t unanswered = 0;   ///< repeats that ended without one
 
     [[nodiscard]] double mean() const;        ///< NaN without answers
     [[nodiscard]] double half_width() const;  ///< Student's, 95 %; NaN below two answers

@@ -24,11 +24,12 @@ std::string with_unit(std::string_view what, std::string_view unit) {
     return unit.empty() || unit == "1" ? std::string(what) : fmt::format("{} {}", what, unit);
 }
 
-/// "0.61 ± 0.02 (4 runs)".
+/// "0.61 ± 0.02 (4 runs)", "0.61 ± 0.02 (2 runs, 2 without an answer)".
 std::string level_text(const RefinedLevel& level) {
     if (level.answers.empty()) return "-";
-    return fmt::format("{} ({} run{})", with_error(level.mean(), level.half_width()), level.answers.size(),
-                       level.answers.size() == 1 ? "" : "s");
+    return fmt::format("{} ({} run{}{})", with_error(level.mean(), level.half_width()), level.answers.size(),
+                       level.answers.size() == 1 ? "" : "s",
+                       level.unanswered == 0 ? "" : fmt::format(", {} without an answer", level.unanswered));
 }
 
 }  // namespace
@@ -121,7 +122,8 @@ nlohmann::ordered_json to_json(const Brackets& brackets) {
         return Json{{"value", at.value},
                     {"mean", json_number(at.mean())},
                     {"error", json_number(at.half_width())},
-                    {"runs", at.answers.size()}};
+                    {"runs", at.answers.size()},
+                    {"unanswered", at.unanswered}};
     };
     for (std::size_t c = 0; c < brackets.found.size(); ++c) {
         const auto& one = brackets.found[c];

@@ -68,10 +68,12 @@ public:
     }
 
     /// Whether `a` is the better answer: the objective where the condition is met surely enough, else the probability.
+    /// A setting beside the border to failed cases (stats/nearest_cases.hpp) comes after all others.
     [[nodiscard]] bool better(const Judgement& a, const Judgement& b) const {
         const bool a_meets = meets(a), b_meets = meets(b);
         if (a_meets != b_meets) return a_meets;
         if (a.believed != b.believed) return a.believed;
+        if (a.near.beside != b.near.beside) return b.near.beside;
         if (!a_meets || request_->objective.empty()) return a.probability > b.probability;
         return cautious(a) > cautious(b);
     }

@@ -1,6 +1,10 @@
 // Tables of the documents that repeat what the program knows are generated from it and compared here. To write them
 // anew after a change: GRAINSWEEP_WRITE_DOCUMENTS=1 build/tests/test_documents --gtest_filter='Tables.*'
+#include "sweep/campaign/reader.hpp"
+#include "sweep/store/store.hpp"
 #include "tests/documents/page.hpp"
+#include "tests/support/archive.hpp"
+#include "tests/support/process.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -73,9 +77,9 @@ std::string section_table(const ordered_json& scene, bool of_observables) {
         const std::string object = key["object"];
         if (object.starts_with("observables") != of_observables) continue;
         const std::string standard = key["default"].is_null() ? "" : shown(key["default"]);
-        table += row({"`" + object + "`", "`" + shown(key["key"]) + "`",
-                      standard.empty() || standard == "required" ? standard : "`" + standard + "`",
-                      shown(key["meaning"])});
+        table +=
+            row({"`" + object + "`", "`" + shown(key["key"]) + "`",
+                 standard.empty() || standard == "required" ? standard : "`" + standard + "`", shown(key["meaning"])});
     }
     return table;
 }
@@ -230,6 +234,26 @@ TEST(Tables, EverySceneHasItsPageAndEveryDesignItsOptions) {
     }
     for (const auto& design : catalogue({"designs"}))
         EXPECT_NE(all.find("design " + shown(design["design"]) + "\n"), std::string::npos) << design;
+}
+
+/// docs/database.md names the columns of a view whose names meet as the view does.
+TEST(Tables, SuffixesOfColumnsAreThoseOfAView) {
+    namespace campaign = grainsweep::campaign;
+    const Folder folder;
+    const std::string text = R"({"campaign": "c", "scene": "program",
+        "program": {"command": ["cat"], "protocol": "lines", "observables": {"y": {}, "Mass": {}}},
+        "factors": [{"name": "Seed", "between": [0, 1]}, {"name": "y", "between": [0, 1]}, {"name": "mass", "levels": [1]}],
+        "design": {"kind": "halton", "points": 4}})";
+    folder.write("c.json", text);
+    const auto asked = campaign::read_campaign(folder.path() / "c.json");
+    grainsweep::store::Store store(folder.path() / "a.db", grainsweep::store::Store::Mode::create);
+    store.enrol(asked, {}, grainsweep::tests::here());
+    const auto columns = store.query("SELECT * FROM c").columns;
+    const std::vector<std::string> named(columns.begin() + 8, columns.end());
+    EXPECT_EQ(named, (std::vector<std::string>{"Seed_input", "y", "mass", "Mass_observed", "y_observed"}));
+    const auto text_of_page = read_page("docs/database.md").text;
+    for (const char* suffix : {"gets `_input`: `seed_input`", "gets `_observed`: `y_observed`"})
+        EXPECT_NE(text_of_page.find(suffix), std::string::npos) << suffix;
 }
 
 }  // namespace

@@ -279,7 +279,7 @@ TEST_F(Learned, WindowKeepsAwayFromWhereTheObservableIsUndefined) {
 }
 
 TEST_F(Learned, ConditionsOverFactorsAloneNeedNoModel) {
-    answer_by(store, campaign_of("c"), response);
+    answer_by(store, campaign_of("c"), [](const Inputs& inputs) { return response(inputs).value_or(none); });
     const auto window = window_of(store, read_model_cases(store, "c"), {.where = "x1 < 0.25 or x2 >= 0.5"});
     EXPECT_TRUE(window.models.empty());
     EXPECT_NEAR(window.share_of_box, 1 - 0.75 * 0.5, 0.002);

@@ -48,6 +48,17 @@ TEST(NearestCases, TheNearestOneDecidesAndSoDoMostOfFive) {
     EXPECT_FALSE(answers(alone, 0.2)) << "one answer among failed cases";
 }
 
+TEST(NearestCases, BetweenAFailedAndAnAnsweredCaseAPointIsBesideTheBorder) {
+    const auto cases = along_a_line({0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1},
+                                    {true, true, true, false, false, false, false, false, false, false, false});
+    const auto beside = [&](double x) { return cases.at(std::array{x}).beside; };
+    EXPECT_TRUE(beside(0.1)) << "it fails";
+    EXPECT_TRUE(beside(0.29)) << "no case has an answer at 0.29 or less";
+    EXPECT_FALSE(beside(0.3));
+    EXPECT_FALSE(beside(0.34)) << "farther from 0.2 than 0.3 is";
+    EXPECT_FALSE(beside(0.9));
+}
+
 TEST(NearestCases, OfReplicatesMostDecideAndTheirOrderDoesNot) {
     std::vector<double> places(8, 0.5);
     for (const double far : {0.0, 0.1, 0.9, 1.0}) places.push_back(far);

@@ -15,7 +15,7 @@ function drawCrosses(ctx, places) {
   }
 }
 
-function failedSays(failed) { return failed.length > 0 ? " Crosses: failed cases; nothing is drawn where the nearest cases failed." : ""; }
+function failedSays(failed) { return failed.length > 0 ? " Crosses: failed cases; no response is drawn where the nearest cases failed." : ""; }
 
 // Cells of a map { across, up, across_edges, up_edges, columns, rows } coloured by `values`; a line surrounds the cells
 // that are `inside`, a ring marks the `setting`, a cross each of the `failed` cases.
