@@ -22,7 +22,8 @@ inline constexpr double largest_sound_displacement = 1.0;
 /// would need a chain of particles each much lighter than the one before.
 inline constexpr double largest_sound_speed_factor = 10;
 
-/// Energy created, over the energy in motion and in contacts: time integration of sound contacts stays well below.
+/// Energy created within some thousand steps, over the largest energy in motion and in contacts so far: time
+/// integration of sound contacts stays well below.
 inline constexpr double largest_sound_energy_gain = 0.2;
 
 }  // namespace grainsweep::dem

@@ -34,7 +34,7 @@ struct Two {
         field.count = 2;
     }
     [[nodiscard]] double mass() const { return space.scale.mass; }
-    [[nodiscard]] Moment now() const { return {field, space, id, motions, {}}; }
+    [[nodiscard]] Moment now() const { return {field, space, id, motions, {}, 0}; }
     void fall(double distance) {
         for (auto& r : records)
             r.position[2] = static_cast<std::int32_t>(

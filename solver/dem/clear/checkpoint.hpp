@@ -8,7 +8,7 @@
 
 namespace grainsweep::dem::clear {
 
-inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'0004ULL;  // "grnscl", version 4
+inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'0005ULL;  // "grnscl", version 5
 
 template <class Laws, Needs case_needs>
 void ClearEngine<Laws, case_needs>::state(State& into) const {
@@ -55,7 +55,7 @@ void ClearEngine<Laws, case_needs>::visit_state(Self& self, Visit&& visit) {
     visit(self.work_of_walls_);
     visit(self.work_of_wrapping_);
     visit(self.work_of_shaking_);
-    visit(self.lowest_energy_);
+    visit(self.balance_);
     visit(self.fault_);
     visit(self.work_.steps);
     visit(self.work_.particle_steps);

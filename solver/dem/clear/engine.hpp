@@ -10,6 +10,7 @@
 #pragma once
 
 #include "solver/bytes.hpp"
+#include "solver/dem/energy_balance.hpp"
 #include "solver/dem/engine.hpp"
 #include "solver/dem/laws/contact.hpp"
 #include "solver/dem/walls/moving_wall.hpp"
@@ -214,7 +215,7 @@ private:
     double work_of_walls_ = 0;     // J, since the walls were set
     double work_of_shaking_ = 0;   // J, since the start
     double work_of_wrapping_ = 0;  // J, potential energy lost by stepping back through periodic faces
-    double lowest_energy_ = 0;     // J, least of energy minus work so far
+    EnergyBalance balance_;
     std::string fault_;
     Work work_;
 };

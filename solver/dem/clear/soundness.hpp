@@ -67,7 +67,7 @@ void ClearEngine<Laws, case_needs>::set_speed_limit() {
     const double released =
         p_.size() > 0 && lightest < std::numeric_limits<double>::infinity() ? std::sqrt(2 * active / lightest) : 0.0;
     speed_limit_ = largest_sound_speed_factor * (still + wall + fall + released);
-    lowest_energy_ = std::numeric_limits<double>::infinity();
+    balance_.restart();
     judge_wall_speeds();
 }
 
@@ -109,19 +109,16 @@ void ClearEngine<Laws, case_needs>::judge_passages(const Contacts& contacts) {
 template <class Laws, Needs case_needs>
 void ClearEngine<Laws, case_needs>::check_energy() {
     double active = 0;
-    const double balance = mechanical_energy(active) - work_of_walls_ - work_of_shaking_ + work_of_wrapping_;
-    const double allowed = largest_sound_energy_gain * (active + std::abs(work_of_walls_));
-    if (!(balance - lowest_energy_ <= allowed) && lowest_energy_ < std::numeric_limits<double>::infinity()) {
-        std::size_t fastest_particle = 0;
-        for (std::size_t i = 1; i < p_.size(); ++i)
-            if (norm(p_.velocity[i]) > norm(p_.velocity[fastest_particle])) fastest_particle = i;
-        char text[200];
-        std::snprintf(text, sizeof text,
-                      "contacts created %.3g J of energy, %.3g times what moves; the fastest particle",
-                      balance - lowest_energy_, (balance - lowest_energy_) / active);
-        report(text, fastest_particle);
-    }
-    lowest_energy_ = std::min(lowest_energy_, balance);
+    const double energy = mechanical_energy(active);
+    const auto flaw = balance_.flaw({.steps = work_.steps,
+                                     .balance = energy - work_of_walls_ - work_of_shaking_ + work_of_wrapping_,
+                                     .active = active,
+                                     .walls = work_of_walls_});
+    if (!flaw) return;
+    std::size_t fastest_particle = 0;
+    for (std::size_t i = 1; i < p_.size(); ++i)
+        if (norm(p_.velocity[i]) > norm(p_.velocity[fastest_particle])) fastest_particle = i;
+    report(*flaw, fastest_particle);
 }
 
 /// The first fault stays: later ones follow from it.

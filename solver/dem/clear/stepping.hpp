@@ -207,7 +207,7 @@ void ClearEngine<Laws, case_needs>::rebuild(std::span<const std::int32_t> remove
     const geometry::Domain inner{domain_.low + margin, domain_.high - margin, domain_.periodic};
     for (std::uint32_t i = 0; i < p_.size(); ++i)
         if (mobile(i) && inner.outside(p_.position[i])) near_open_face_.push_back(i);
-    if (some_left) lowest_energy_ = std::numeric_limits<double>::infinity();
+    if (some_left) balance_.restart();
     ++work_.rebuilds;
 }
 
@@ -292,7 +292,7 @@ void ClearEngine<Laws, case_needs>::set_walls(std::vector<Wall> walls) {
     walls_ = make_walls(walls);
     wall_steps_ = 0;
     work_of_walls_ = 0;
-    lowest_energy_ = std::numeric_limits<double>::infinity();
+    balance_.restart();
     if (!fault_.empty()) return;
     rebuild();
     set_speed_limit();

@@ -87,7 +87,7 @@ WallLoad MixedEngine::wall_load(std::size_t wall, const Vec3& about) const {
 Moment MixedEngine::moment(std::span<const Motion> motions) const {
     join_lists();
     const ContactReader reader(laws_, space_, field_, columns_.id.data(), {}, kernels_->width, resting_.parked());
-    return {field_, space_, columns_.id.data(), motions, reader.stored(walls_)};
+    return {field_, space_, columns_.id.data(), motions, reader.stored(walls_), work_.steps};
 }
 
 void MixedEngine::set_limits() {

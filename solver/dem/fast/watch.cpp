@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 #include "solver/dem/limits.hpp"
@@ -101,20 +100,16 @@ bool Watch::due(std::int64_t steps) const {
 std::string Watch::check(const Moment& now, std::int32_t& particle) {
     add_gravity_work(now);
     const double motion = kinetic(now);
-    const double active = motion + now.stored.squeezed;
-    const double balance = motion + now.stored.sum - work_of_gravity_ - work_of_walls_;
-    const double allowed = largest_sound_energy_gain * (active + std::abs(work_of_walls_));
-    const double gain = balance - lowest_energy_;
-    lowest_energy_ = std::min(lowest_energy_, balance);
-    if (gain <= allowed) return {};
+    const auto flaw = balance_.flaw({.steps = now.steps,
+                                     .balance = motion + now.stored.sum - work_of_gravity_ - work_of_walls_,
+                                     .active = motion + now.stored.squeezed,
+                                     .walls = work_of_walls_});
+    if (!flaw) return {};
     double most = -1;
     for (std::int32_t i = 0; i < now.field.count; ++i)
         if (const double speed = norm(now.motions[static_cast<std::size_t>(i)].velocity); !(speed <= most))
             most = speed, particle = i;
-    char text[200];
-    std::snprintf(text, sizeof text, "contacts created %.3g J of energy, %.3g times what moves; the fastest particle",
-                  gain, gain / active);
-    return text;
+    return *flaw;
 }
 
 }  // namespace grainsweep::dem::fast

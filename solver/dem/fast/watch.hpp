@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "solver/dem/energy_balance.hpp"
 #include "solver/dem/engine.hpp"
 #include "solver/dem/fast/contact_reader.hpp"
 #include "solver/dem/fast/layout.hpp"
@@ -31,6 +32,7 @@ struct Moment {
     const std::int32_t* id;
     std::span<const Motion> motions;  ///< in the order of the records
     StoredEnergy stored;
+    std::int64_t steps = 0;  ///< so far
 };
 
 class Watch {
@@ -44,7 +46,7 @@ public:
     /// Adds work of the walls on the particles, engine's units.
     void add_wall_work(double work) { work_of_walls_ += work * energy_unit_; }
     /// Particles left: their energy is gone.
-    void restart_balance() { lowest_energy_ = std::numeric_limits<double>::infinity(); }
+    void restart_balance() { balance_.restart(); }
 
     /// Whether the speed limit may be exceeded, judged by the largest component.
     [[nodiscard]] bool too_fast(double fastest) const;
@@ -58,7 +60,7 @@ public:
     /// Everything that changes.
     template <class Archive>
     static void pass(auto& self, Archive& archive) {
-        archive.value(self.lowest_energy_);
+        archive.value(self.balance_);
         archive.value(self.work_of_walls_);
         archive.value(self.work_of_gravity_);
         archive.value(self.speed_limit_);
@@ -79,8 +81,8 @@ private:
     double quarter_period_ = std::numeric_limits<double>::infinity();  ///< shortest along gravity, in lengths
     bool balanced_;                                                    ///< false: a shaken vessel
 
-    double lowest_energy_ = std::numeric_limits<double>::infinity();  ///< J
-    double work_of_walls_ = 0, work_of_gravity_ = 0;                  ///< J
+    EnergyBalance balance_;
+    double work_of_walls_ = 0, work_of_gravity_ = 0;  ///< J
     double speed_limit_ = std::numeric_limits<double>::infinity();
     double covered_ = 0;        ///< at most, since the last check, in lengths
     std::vector<Place3> seen_;  ///< positions of the last check, by id

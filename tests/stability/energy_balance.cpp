@@ -1,0 +1,53 @@
+// The check of the energy in cases of a few spheres, which bounce, roll and come to rest: sound steps are not called
+// unstable, steps beyond the limit are. All 500 cases of each scene: tests/bench/few_spheres_slow.cpp.
+#include "tests/support/few_spheres.hpp"
+
+#include <gtest/gtest.h>
+
+using namespace grainsweep;
+
+namespace {
+
+constexpr std::uint64_t cases = 24;  // of each scene
+constexpr double sound_step = 0.2;   // the default
+
+}  // namespace
+
+TEST(EnergyBalance, FewSpheresAtASoundStepCreateNone) {
+    for (const auto scene : test::granular_scenes())
+        for (std::uint64_t k = 0; k < cases; ++k) {
+            const auto fate = test::fate_of(scene, test::few_spheres(scene, k, sound_step));
+            EXPECT_EQ(fate.fault.find("contacts created"), std::string::npos)
+                << scene << " " << k << ": " << fate.fault;
+        }
+}
+
+// One sphere on a floor, without loss, through many bounces: at their top nothing moves.
+TEST(EnergyBalance, OneBouncingSphereIsSound) {
+    for (const char* precision : {"mixed", "double"})
+        for (const double restitution : {0.7, 0.9, 1.0}) {
+            test::FewSpheres one{find_scene("heap")->defaults(), 1, 0};
+            one.inputs["particles"] = std::int64_t{1};
+            one.inputs["restitution"] = restitution;
+            one.inputs["settle_time"] = 3.0;
+            one.inputs["precision"] = std::string(precision);
+            EXPECT_EQ(test::fate_of("heap", one).fault, "") << precision << " " << restitution;
+        }
+}
+
+// Two to ten times the limit: reported, or nothing has come of it that the sound step has not.
+TEST(EnergyBalance, StepsBeyondTheLimitAreFound) {
+    int found = 0, tried = 0;
+    for (const auto scene : test::granular_scenes())
+        for (std::uint64_t k = 0; k < cases; ++k) {
+            const double step = 2 + 8 * static_cast<double>(k) / static_cast<double>(cases - 1);
+            const auto coarse = test::fate_of(scene, test::few_spheres(scene, k, step));
+            if (!coarse.refused.empty()) continue;
+            ++tried;
+            found += coarse.fault.empty() ? 0 : 1;
+            if (!coarse.fault.empty()) continue;
+            const auto sound = test::fate_of(scene, test::few_spheres(scene, k, sound_step));
+            EXPECT_LE(coarse.most_kinetic, 1.5 * sound.most_kinetic) << scene << " " << k;
+        }
+    EXPECT_GT(found, 0.8 * tried);
+}
