@@ -49,11 +49,16 @@ std::vector<double> outline_of(const std::vector<Grain>& grains, double d, std::
     const auto ring = [](std::int64_t i, std::int64_t j) {
         return static_cast<std::size_t>(std::hypot(static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5));
     };
-    for (std::int64_t i = -rings; i < rings; ++i)
-        for (std::int64_t j = -rings; j < rings; ++j)
+    std::int64_t seen = 0;  // rings with a grain: beyond, the sum is 0 over however many columns
+    for (const auto& [at, height] : top) {
+        const std::size_t k = ring(at.first, at.second);
+        if (k >= sum.size()) continue;
+        sum[k] += height;
+        seen = std::max(seen, static_cast<std::int64_t>(k) + 1);
+    }
+    for (std::int64_t i = -seen; i < seen; ++i)
+        for (std::int64_t j = -seen; j < seen; ++j)
             if (ring(i, j) < sum.size()) columns[ring(i, j)] += 1;
-    for (const auto& [at, height] : top)
-        if (ring(at.first, at.second) < sum.size()) sum[ring(at.first, at.second)] += height;
     for (std::size_t k = 0; k < sum.size(); ++k) sum[k] /= std::max(columns[k], 1.0);
     return sum;
 }

@@ -101,6 +101,8 @@ double Patches::deviation() const {
     return std::sqrt(squares / static_cast<double>(volume_.size()));
 }
 
+constexpr std::int64_t most_kept = 1 << 22;  // points of a grid of which few are covered
+
 Relief::Relief(const dem::State& state, double from, double to, double width, double pitch) {
     const auto count = [pitch](double length) {
         return std::max<std::int64_t>(1, std::llround(std::ceil(length / pitch)));
@@ -109,7 +111,11 @@ Relief::Relief(const dem::State& state, double from, double to, double width, do
     const std::int64_t ny = count(width);
     const double dx = (to - from) / static_cast<double>(nx);
     const double dy = width / static_cast<double>(ny);
-    heights_.assign(static_cast<std::size_t>(nx * ny), 0);
+    points_ = nx * ny;
+    double most = 0;  // points that the spheres can cover
+    for (const double r : state.radius) most += (2 * r / dx + 1) * (2 * r / dy + 1);
+    if (points_ <= most_kept || 2 * most >= static_cast<double>(points_))
+        heights_.assign(static_cast<std::size_t>(points_), 0);
     for (std::size_t i = 0; i < state.position.size(); ++i) {
         const auto& x = state.position[i];
         const double r = state.radius[i];
@@ -123,7 +129,12 @@ Relief::Relief(const dem::State& state, double from, double to, double width, do
                 const double py = (static_cast<double>(iy) + 0.5) * dy - x[1];
                 const double rest = r * r - px * px - py * py;
                 if (rest <= 0) continue;
-                double& height = heights_[static_cast<std::size_t>(ix * ny + ((iy % ny) + ny) % ny)];
+                const std::int64_t point = ix * ny + ((iy % ny) + ny) % ny;
+                if (heights_.empty()) {
+                    covered_.insert(point);
+                    continue;
+                }
+                double& height = heights_[static_cast<std::size_t>(point)];
                 height = std::max(height, x[2] + std::sqrt(rest));
             }
         }
@@ -131,6 +142,7 @@ Relief::Relief(const dem::State& state, double from, double to, double width, do
 }
 
 double Relief::roughness() const {
+    if (heights_.empty()) return std::numeric_limits<double>::quiet_NaN();
     double mean = 0;
     for (const double h : heights_) mean += h;
     mean /= static_cast<double>(heights_.size());
@@ -140,7 +152,9 @@ double Relief::roughness() const {
 }
 
 double Relief::empty_share() const {
-    return static_cast<double>(std::ranges::count(heights_, 0.0)) / static_cast<double>(heights_.size());
+    const auto empty = heights_.empty() ? points_ - static_cast<std::int64_t>(covered_.size())
+                                        : static_cast<std::int64_t>(std::ranges::count(heights_, 0.0));
+    return static_cast<double>(empty) / static_cast<double>(points_);
 }
 
 void VelocityProfile::add(const dem::State& state, double from, double to, double bottom, double thickness) {

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <unordered_set>
 #include <vector>
 
 namespace grainsweep::observables {
@@ -59,13 +60,16 @@ public:
     Relief(const dem::State& state, double from, double to, double width, double pitch);
 
     [[nodiscard]] std::span<const double> heights() const { return heights_; }
-    /// Root mean square deviation of the heights from their mean (Sq of ISO 25178-2), m.
+    /// Root mean square deviation of the heights from their mean (Sq of ISO 25178-2), m; NaN for a large grid of
+    /// which the spheres can cover less than half: of that only the covered points are kept.
     [[nodiscard]] double roughness() const;
     /// Share of points no sphere covers.
     [[nodiscard]] double empty_share() const;
 
 private:
+    std::int64_t points_ = 0;
     std::vector<double> heights_;
+    std::unordered_set<std::int64_t> covered_;  ///< where there are no heights_
 };
 
 /// Sum and number of v_x in horizontal layers of equal thickness above `bottom`, over x in (from, to).

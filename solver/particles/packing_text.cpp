@@ -13,6 +13,7 @@ namespace grainsweep::particles {
 namespace {
 
 constexpr std::uint64_t packing_mark = 0x31676E696B636170;  // "packing1", first byte first
+constexpr double most_overlap = 0.05;                       // more is no packing of touching spheres, or another unit
 constexpr int algorithm_revision = 1;                       // grows whenever the same request packs differently
 
 struct PackingHeader {
@@ -39,6 +40,25 @@ std::optional<std::array<double, 3>> three_numbers(std::string_view line) {
         line.remove_prefix(std::min(comma + 1, line.size()));
     }
     return x;
+}
+
+/// Equal spheres fill at most 0.7405 of space (Hales 2005); refuses more of them than the cube about their centres has
+/// room for, before their pairs are listed.
+void require_room(std::span<const std::array<double, 3>> positions) {
+    constexpr std::size_t few = 1000;  // the first pair that overlaps is named
+    if (positions.size() <= few) return;
+    constexpr double densest = 0.7405, sphere = 0.5236 * (1 - most_overlap) * (1 - most_overlap) * (1 - most_overlap);
+    double volume = 1;
+    for (std::size_t k = 0; k < 3; ++k) {
+        double low = positions.front()[k], high = low;
+        for (const auto& x : positions) low = std::min(low, x[k]), high = std::max(high, x[k]);
+        volume *= high - low + 1;
+    }
+    const double most = std::floor(densest * volume / sphere);
+    if (static_cast<double>(positions.size()) > most)
+        throw std::invalid_argument("packing: " + std::to_string(positions.size()) + " spheres lie where at most " +
+                                    shortest_text(most) +
+                                    " have room, so that they overlap (coordinates are in diameters)");
 }
 
 }  // namespace
@@ -100,7 +120,7 @@ Packing read_packing(std::string_view csv, double edge) {
     }
     if (packing.positions.empty()) refuse(std::max<std::size_t>(number, 1), "there is no sphere");
 
-    constexpr double most_overlap = 0.05;  // more is no packing of touching spheres, or another unit
+    require_room(packing.positions);
     for_each_near_pair(packing.positions, 1, [&](std::size_t i, std::size_t j, double r) {
         if (1 - r > most_overlap)
             refuse(line_of[j], "the sphere overlaps that of line " + std::to_string(line_of[i]) + " by " +

@@ -14,14 +14,21 @@ using Vec3 = std::array<double, 3>;
 
 constexpr int most_tries = 100'000;
 
-/// Boxes with the spheres that reach into them, so that a try is compared only with what it could touch.
+/// Boxes with the spheres that reach into them, so that a try is compared only with what it could touch. In a large
+/// room of few spheres boxes are longer than `edge`: there are a few per sphere. They change no result.
 class Boxes {
 public:
-    Boxes(const Room& room, double edge) : room_(room) {
+    Boxes(const Room& room, double edge, std::size_t spheres) : room_(room) {
+        const double most = 8 * static_cast<double>(spheres) + 64;
+        std::array<double, 3> count{};
+        for (;; edge *= 1.3) {
+            for (std::size_t a = 0; a < 3; ++a)
+                count[a] = std::max(1.0, std::floor((room.high[a] - room.low[a]) / edge));
+            if (count[0] * count[1] * count[2] <= most) break;
+        }
         for (std::size_t a = 0; a < 3; ++a) {
-            const double length = room.high[a] - room.low[a];
-            count_[a] = std::max<std::int64_t>(1, static_cast<std::int64_t>(length / edge));
-            edge_[a] = length / static_cast<double>(count_[a]);
+            count_[a] = static_cast<std::int64_t>(count[a]);
+            edge_[a] = (room.high[a] - room.low[a]) / count[a];
         }
         spheres_.resize(static_cast<std::size_t>(count_[0] * count_[1] * count_[2]));
     }
@@ -72,7 +79,7 @@ std::optional<std::vector<Vec3>> random_addition(const Room& room, std::span<con
             throw std::invalid_argument("the largest sphere is wider than half the period it is to be placed in");
 
     const double mean = std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(radii.size());
-    Boxes boxes(room, 2 * mean);
+    Boxes boxes(room, 2 * mean, radii.size());
     for (const std::size_t i : order) {
         const double r = radii[i];
         stats::Generator random(stats::bits_at(seed, 0, i));

@@ -4,42 +4,43 @@
 #include "sweep/designs/kinds.hpp"
 #include "sweep/designs/radical_inverse.hpp"
 
+#include <cstdint>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace grainsweep::designs {
 namespace {
 
-std::vector<RadicalInverse> random_inverses(const std::vector<std::uint32_t>& bases, std::uint64_t seed,
-                                            std::uint64_t sequence) {
-    std::vector<RadicalInverse> inverses;
-    for (std::size_t j = 0; j < bases.size(); ++j)
-        inverses.push_back(RadicalInverse::random(bases[j], seed, sequence, j));
-    return inverses;
-}
-
-std::vector<RadicalInverse> braaten_weller_inverses(BraatenWellerTable table, std::size_t dimensions) {
+void require_table(BraatenWellerTable table, std::size_t dimensions) {
     if (dimensions > braaten_weller_factors(table))
         throw std::invalid_argument("this Braaten-Weller table serves " +
                                     std::to_string(braaten_weller_factors(table)) + " factors, not " +
                                     std::to_string(dimensions) + "; use \"random\"");
-    std::vector<RadicalInverse> inverses;
-    for (std::size_t j = 0; j < dimensions; ++j)
-        inverses.push_back(RadicalInverse::permuted(braaten_weller_permutation(table, j)));
-    return inverses;
 }
 
-/// One radical inverse per factor of one sequence.
-std::vector<RadicalInverse> inverses_of(const DesignRequest& request, std::uint64_t sequence) {
-    const auto& scramble = request.word("scramble");
-    const std::size_t d = request.dimensions();
-    if (scramble == "braaten_weller") return braaten_weller_inverses(BraatenWellerTable::original, d);
-    if (scramble == "braaten_weller_vc2006") return braaten_weller_inverses(BraatenWellerTable::vc2006, d);
-    const auto bases = primes(d);
-    if (scramble == "random") return random_inverses(bases, request.seed, sequence);
-    std::vector<RadicalInverse> inverses;
-    for (const std::uint32_t base : bases) inverses.push_back(RadicalInverse::plain(base));
-    return inverses;
-}
+/// Of factor j in one sequence. One at a time: the permutations of the j-th prime take some 40 j ln j bytes.
+class Inverses {
+public:
+    explicit Inverses(const DesignRequest& request)
+        : scramble_(request.word("scramble")), seed_(request.seed), bases_(primes(request.dimensions())) {
+        if (scramble_ == "braaten_weller") require_table(BraatenWellerTable::original, request.dimensions());
+        if (scramble_ == "braaten_weller_vc2006") require_table(BraatenWellerTable::vc2006, request.dimensions());
+    }
+    [[nodiscard]] RadicalInverse of(std::size_t j, std::uint64_t sequence) const {
+        if (scramble_ == "braaten_weller")
+            return RadicalInverse::permuted(braaten_weller_permutation(BraatenWellerTable::original, j));
+        if (scramble_ == "braaten_weller_vc2006")
+            return RadicalInverse::permuted(braaten_weller_permutation(BraatenWellerTable::vc2006, j));
+        if (scramble_ == "random") return RadicalInverse::random(bases_[j], seed_, sequence, j);
+        return RadicalInverse::plain(bases_[j]);
+    }
+
+private:
+    std::string scramble_;
+    std::uint64_t seed_;
+    std::vector<std::uint32_t> bases_;
+};
 
 PointSet halton_points(const DesignRequest& request) {
     const auto sequences = static_cast<std::size_t>(request.count("sequences"));
@@ -50,12 +51,13 @@ PointSet halton_points(const DesignRequest& request) {
     const auto first = static_cast<std::uint64_t>(request.count("first"));
     PointSet set{
         .dimensions = d, .sequences = sequences, .coordinates = room_for(request.count("points"), d), .rows = {}};
-    for (std::size_t sequence = 0; sequence < sequences; ++sequence) {
-        const auto inverses = inverses_of(request, sequence);
-        for (std::size_t j = 0; j < d; ++j)
+    const Inverses inverses(request);
+    for (std::size_t sequence = 0; sequence < sequences; ++sequence)
+        for (std::size_t j = 0; j < d; ++j) {
+            const RadicalInverse inverse = inverses.of(j, sequence);
             for (std::size_t p = sequence; p < set.size(); p += sequences)
-                set.coordinates[p * d + j] = inverses[j](first + p / sequences);
-    }
+                set.coordinates[p * d + j] = inverse(first + p / sequences);
+        }
     return set;
 }
 
