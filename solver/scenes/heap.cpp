@@ -26,13 +26,13 @@ SceneInfo heap_scene() {
     info.observables = heap::record::observables();
     info.maker = [](const Inputs& inputs, std::uint64_t seed, Artefacts&,
                     const Files& files) -> std::unique_ptr<Scene> {
-        return std::make_unique<heap::Experiment>(heap::study_of(inputs, &files), seed,
+        return std::make_unique<heap::Experiment>(heap::study_of(inputs, files), seed,
                                                   heap::question::powder.method(inputs));
     };
-    info.estimate_cost = [](const Inputs& inputs) {
-        const auto s = heap::study_of(inputs);
-        return static_cast<double>(s.particles) * static_cast<double>(s.last_step) *
-               kit::seconds_per_particle_step(heap::question::powder.method(inputs));
+    info.estimate_cost = [](const Inputs& inputs, const Files& files) {
+        const auto s = heap::study_of(inputs, files);
+        return kit::estimate(heap::question::powder.method(inputs), static_cast<double>(s.particles),
+                             static_cast<double>(s.last_step), s.glued_spheres());
     };
     info.warnings = heap::warnings_of;
     info.proven_answer = [](const Inputs&) -> std::optional<ProvenAnswer> { return std::nullopt; };

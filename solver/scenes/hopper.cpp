@@ -19,14 +19,14 @@ namespace grainsweep {
 namespace {
 
 /// Half of the particles on average, until Beverloo's law has let out what is asked for, or to the end.
-double cost_of_discharge(const Inputs& inputs) {
-    const auto s = hopper::study_of(inputs);
+CostEstimate cost_of_discharge(const Inputs& inputs, const Files& files) {
+    const auto s = hopper::study_of(inputs, files);
     const double n = static_cast<double>(s.particles);
     const double rate = observables::beverloo_rate(s.opening, s.diameter, 0.57, s.gravity);
     const double end = s.time_of_frame(s.frames - 1);
     const double flow = rate > 0 ? std::min(end, 1.2 * s.stop_share * n / rate) : std::min(end, 2 * s.quiet_time());
     const double steps = static_cast<double>(s.settle_steps) + flow / s.time_step * (1 - 0.5 * s.stop_share);
-    return std::max(steps, 1.0) * n * kit::seconds_per_particle_step(hopper::question::powder.method(inputs));
+    return kit::estimate(hopper::question::powder.method(inputs), n, std::max(steps, 1.0));
 }
 
 }  // namespace
@@ -46,7 +46,7 @@ SceneInfo hopper_scene() {
     info.observables = hopper::record::observables();
     info.maker = [](const Inputs& inputs, std::uint64_t seed, Artefacts&,
                     const Files& files) -> std::unique_ptr<Scene> {
-        return std::make_unique<hopper::Experiment>(hopper::study_of(inputs, &files), seed,
+        return std::make_unique<hopper::Experiment>(hopper::study_of(inputs, files), seed,
                                                     hopper::question::powder.method(inputs));
     };
     info.estimate_cost = cost_of_discharge;

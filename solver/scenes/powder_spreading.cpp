@@ -6,7 +6,9 @@
 // pile, which runs out before the blade arrives. spreading/study.hpp has the geometry, solver/dem the mechanics.
 #include "solver/dem/fast/mixed_engine.hpp"
 #include "solver/scenes/catalogue.hpp"
+#include "solver/scenes/kit/pace.hpp"
 #include "solver/scenes/spreading/experiment.hpp"
+#include "solver/scenes/spreading/filling.hpp"
 #include "solver/scenes/spreading/question.hpp"
 #include "solver/scenes/spreading/record.hpp"
 #include "solver/scenes/spreading/warnings.hpp"
@@ -32,16 +34,21 @@ Pace pace_of(const dem::Method& method) {
     }
 }
 
-double cost_of_spreading(const Inputs& inputs) {
-    const auto s = spreading::study_of(inputs);
-    const auto [settling, sweeping] = pace_of(spreading::question::powder.method(inputs));
-    const double each = settling * static_cast<double>(s.settle_steps) + sweeping * static_cast<double>(s.sweep_steps);
-    if (s.layers == 1) return static_cast<double>(s.particles) * each;
+CostEstimate cost_of_spreading(const Inputs& inputs, const Files& files) {
+    const auto s = spreading::study_of(inputs, files);
+    const dem::Method method = spreading::question::powder.method(inputs);
+    const auto [settling, sweeping] = pace_of(method);
+    const auto settle = static_cast<double>(s.settle_steps), sweep = static_cast<double>(s.sweep_steps);
     // Under each layer lie those before it, as dense as powder lies.
     const double layer = spreading::settled_fraction * s.gap * s.width * (s.end_of_platform() - s.start_of_platform()) /
-                         spreading::sphere_volume(s.diameter);
-    const auto n = static_cast<double>(s.layers);
-    return n * each * (static_cast<double>(s.particles) + layer * (n - 1) / 2);
+                         (spreading::sphere_volume(s.diameter) * s.sizes.moment(3));
+    const auto n = static_cast<double>(s.layers), supplied = static_cast<double>(s.particles);
+    const double moved = n * (supplied + layer * (n - 1) / 2);
+    auto estimate = kit::estimate(method, moved, settle + sweep);
+    estimate.seconds = moved * (settling * settle + sweeping * sweep);
+    const double glued = static_cast<double>(spreading::glued_particles(s));
+    estimate.bytes = kit::estimate(method, supplied + layer * (n - 1), 0, glued).bytes;
+    return estimate;
 }
 
 }  // namespace
@@ -68,7 +75,7 @@ SceneInfo powder_spreading_scene() {
     info.observables = spreading::record::observables();
     info.maker = [](const Inputs& inputs, std::uint64_t seed, Artefacts& artefacts,
                     const Files& files) -> std::unique_ptr<Scene> {
-        return std::make_unique<spreading::Experiment>(spreading::study_of(inputs, &files), seed,
+        return std::make_unique<spreading::Experiment>(spreading::study_of(inputs, files), seed,
                                                        spreading::question::powder.method(inputs), artefacts);
     };
     info.estimate_cost = cost_of_spreading;

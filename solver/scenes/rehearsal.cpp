@@ -177,7 +177,9 @@ SceneInfo rehearsal_scene() {
     info.maker = [](const Inputs& inputs, std::uint64_t seed, Artefacts&, const Files&) -> std::unique_ptr<Scene> {
         return std::make_unique<Rehearsal>(inputs, seed);
     };
-    info.estimate_cost = [](const Inputs& inputs) { return 1e-5 + std::get<double>(inputs.at("wait_seconds")); };
+    info.estimate_cost = [](const Inputs& inputs, const Files&) {
+        return CostEstimate{1e-5 + std::get<double>(inputs.at("wait_seconds")), 0, 0};
+    };
     info.proven_answer = [](const Inputs&) -> std::optional<ProvenAnswer> { return std::nullopt; };
     info.on_attempt = [](Inputs inputs, std::int64_t attempt) {
         const auto misbehaving = std::get<std::int64_t>(inputs.at("behave_attempts"));

@@ -28,13 +28,13 @@ SceneInfo rotating_drum_scene() {
     info.observables = drum::record::observables();
     info.maker = [](const Inputs& inputs, std::uint64_t seed, Artefacts&,
                     const Files& files) -> std::unique_ptr<Scene> {
-        return std::make_unique<drum::Experiment>(drum::study_of(inputs, &files), seed,
+        return std::make_unique<drum::Experiment>(drum::study_of(inputs, files), seed,
                                                   drum::question::powder.method(inputs));
     };
-    info.estimate_cost = [](const Inputs& inputs) {
-        const auto s = drum::study_of(inputs);
-        return static_cast<double>(s.particles) * static_cast<double>(s.last_step()) *
-               kit::seconds_per_particle_step(drum::question::powder.method(inputs));
+    info.estimate_cost = [](const Inputs& inputs, const Files& files) {
+        const auto s = drum::study_of(inputs, files);
+        return kit::estimate(drum::question::powder.method(inputs), static_cast<double>(s.particles),
+                             static_cast<double>(s.last_step()));
     };
     info.warnings = drum::warnings_of;
     info.proven_answer = [](const Inputs&) -> std::optional<ProvenAnswer> { return std::nullopt; };

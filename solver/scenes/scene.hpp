@@ -77,6 +77,13 @@ public:
     [[nodiscard]] virtual double picture_focus() const { return 0; }
 };
 
+/// What a case will probably take, for planning and order only.
+struct CostEstimate {
+    double seconds = 0;         ///< of a plain core
+    double particle_steps = 0;  ///< as of Scene; 0: not known
+    double bytes = 0;           ///< of memory at most; 0: little
+};
+
 /// Everything known about a kind of scene without making one.
 struct SceneInfo {
     std::string name;
@@ -89,13 +96,13 @@ struct SceneInfo {
 
     /// What make() calls.
     std::function<std::unique_ptr<Scene>(const Inputs&, std::uint64_t seed, Artefacts&, const Files&)> maker;
-    /// Predicted processor seconds of a case on a plain core, for planning and order only.
-    std::function<double(const Inputs&)> estimate_cost;
+    /// Throws as maker does where the inputs are impossible together or a file is not given.
+    std::function<CostEstimate(const Inputs&, const Files&)> estimate_cost;
     /// The answer, where it is proven without simulation; otherwise empty.
     std::function<std::optional<ProvenAnswer>(const Inputs&)> proven_answer;
     /// What a user must know before asking this: at most one warning of a kind. Only for inputs that make() accepts;
     /// may be empty.
-    std::function<std::vector<Warning>(const Inputs&)> warnings;
+    std::function<std::vector<Warning>(const Inputs&, const Files&)> warnings;
     /// What the n-th attempt really does, where that differs from what was asked: only the rehearsal, whose
     /// misbehaviour may be limited to the first attempts.
     std::function<Inputs(Inputs, std::int64_t attempt)> on_attempt;

@@ -118,34 +118,78 @@ std::vector<ParameterSpec> parameters() {
 std::vector<ObservableSpec> observables() {
     const std::string time = "time (L^2/alpha)";
     return {
-        {"accumulation", "1", "K on sampling_cells^3 at the end; undefined for fewer than two particles",
-         Shape::scalar},
-        {"accumulation_excess", "1", "(K - K_random)/(1 - K_random): 0 random, 1 all in one cell", Shape::scalar},
-        {"structures", "1",
+        {"accumulation",
+         "1",
+         "K on sampling_cells^3 at the end; undefined for fewer than two particles",
+         Shape::scalar,
+         {},
+         "there are fewer than two particles"},
+        {"accumulation_excess",
+         "1",
+         "(K - K_random)/(1 - K_random): 0 random, 1 all in one cell",
+         Shape::scalar,
+         {},
+         "there are fewer than two particles"},
+        {"structures",
+         "1",
          "connected groups of cells above twice the mean that hold at least 5 % of the particles; undefined for fewer "
          "particles than half of the cells, where a cell with one is such a group",
-         Shape::scalar},
-        {"formation_time", "L^2/alpha",
+         Shape::scalar,
+         {},
+         "there are fewer particles than half of the cells"},
+        {"formation_time",
+         "L^2/alpha",
          "from when K stays within a tenth of its rise, or three standard deviations of a random cloud's K, from its "
          "last "
          "value; undefined where that is only in the last tenth of the time: still rising",
-         Shape::scalar},
-        {"gershuni", "1", "Gershuni number (Pr/2)(Ra/Omega)^2; undefined under a steady force", Shape::scalar},
-        {"kinetic_energy", "(alpha/L)^2", "mean of |V|^2/2 over the volume and the last period", Shape::scalar},
-        {"nusselt", "1", "heat flux through the hot wall over that of conduction, mean of the last period",
-         Shape::scalar},
-        {"packing_limited", "1", "share of the steps in which the packing limit moved particles (ddpm levels)",
-         Shape::scalar},
-        {"peak_velocity", "alpha/L", "largest velocity component in the last period", Shape::scalar},
-        {"force_on_fluid", "rho alpha^2",
+         Shape::scalar,
+         {},
+         "the accumulation still rises in the last tenth of the time, or there are fewer than two particles"},
+        {"gershuni",
+         "1",
+         "Gershuni number (Pr/2)(Ra/Omega)^2; undefined under a steady force",
+         Shape::scalar,
+         {},
+         "the force is steady"},
+        {"kinetic_energy",
+         "(alpha/L)^2",
+         "mean of |V|^2/2 over the volume and the last period",
+         Shape::scalar,
+         {},
+         "the particles cannot act on the flow, which was computed once for all such cases"},
+        {"nusselt",
+         "1",
+         "heat flux through the hot wall over that of conduction, mean of the last period",
+         Shape::scalar,
+         {},
+         "the particles cannot act on the flow, which was computed once for all such cases"},
+        {"packing_limited",
+         "1",
+         "share of the steps in which the packing limit moved particles (ddpm levels)",
+         Shape::scalar,
+         {},
+         "the coupling has no packing limit"},
+        {"peak_velocity",
+         "alpha/L",
+         "largest velocity component in the last period",
+         Shape::scalar,
+         {},
+         "the particles cannot act on the flow, which was computed once for all such cases"},
+        {"force_on_fluid",
+         "rho alpha^2",
          "what all particles together give the fluid along the vibration, root mean square of the last period (levels "
          "that act on the fluid)",
-         Shape::scalar},
-        {"vibrational_force", "rho alpha^2",
+         Shape::scalar,
+         {},
+         "the particles do not act on the fluid at this coupling"},
+        {"vibrational_force",
+         "rho alpha^2",
          "vibrational buoyancy of all particles, root mean square of the last period; force_on_fluid differs from it "
          "by "
          "the inertia of the particles (likewise)",
-         Shape::scalar},
+         Shape::scalar,
+         {},
+         "the particles do not act on the fluid at this coupling"},
         {"accumulation_series", "1", "K on sampling_cells^3, always at the same phase", Shape::series, time},
         {"accumulation_5", "1", "K on 5^3 cells", Shape::series, time},
         {"accumulation_20", "1", "K on 20^3 cells", Shape::series, time},
@@ -209,12 +253,14 @@ std::unique_ptr<Scene> make(const Inputs& inputs, std::uint64_t seed, Artefacts&
     return make_with<coupling::Trilinear>(question, seed, artefacts);
 }
 
+// Of fields with their scratch, and of particles with their lists.
+constexpr double bytes_per_cell = 600, bytes_per_particle = 800;
+
 // Measured with bench_flow at 20^3, 28^3 and 40^3 with 3150 particles on an undisturbed core with AVX-512. At 40^3: 1.8
 // ms per fluid step, half of that on half the grid; 0.4 ms per sweep of the particles; 1 ms to spread their force on
 // the fluid; for their volume and contacts 0.9 ms more per 3150 particles, and 7 ms (ddpm) or 2.5 ms (cfd_dem) on the
 // grid.
-double cost_of_vibration(const Inputs& inputs) {
-    const Question question(inputs);
+double seconds_of_vibration(const Question& question) {
     const double size = static_cast<double>(question.cells) / 40;
     const double cube = size * size * size * (0.7 + 0.3 * size);
     const double cloud = static_cast<double>(question.particles) / 3150;
@@ -231,6 +277,14 @@ double cost_of_vibration(const Inputs& inputs) {
     const bool carried = question.particle_start == "periodic_flow" && !question.steady_force();
     if (!carried) return steps * (fluid_step + sweep);
     return steps * sweep + 0.2 / question.step() * fluid_step;
+}
+
+CostEstimate cost_of_vibration(const Inputs& inputs, const Files&) {
+    const Question question(inputs);
+    const auto particles = static_cast<double>(question.particles), cells = static_cast<double>(question.cells);
+    return {.seconds = seconds_of_vibration(question),
+            .particle_steps = particles * static_cast<double>(question.total_steps()),
+            .bytes = bytes_per_cell * cells * cells * cells + bytes_per_particle * particles};
 }
 
 std::optional<ProvenAnswer> proven_answer(const Inputs& inputs) {

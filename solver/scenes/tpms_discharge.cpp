@@ -22,6 +22,7 @@
 #include "solver/scenes/dem_picture.hpp"
 #include "solver/scenes/drawn_box.hpp"
 #include "solver/scenes/kit/checkpoint.hpp"
+#include "solver/scenes/kit/pace.hpp"
 #include "solver/scenes/tpms/observables.hpp"
 #include "solver/scenes/tpms/question.hpp"
 #include "solver/scenes/tpms/record.hpp"
@@ -291,16 +292,38 @@ Snapshot TpmsDischarge::snapshot() const {
     return picture;
 }
 
-/// Processor seconds: particle steps of the mobile spheres on average in the box, and the packing.
-double cost_of_cell(const Inputs& inputs) {
+/// Share of the cell's volume where mobile spheres can be, from a grid of points.
+double kept_share(const TpmsQuestion& question) {
+    constexpr int grid = 20;
+    const geometry::TpmsShell shell(question.cell, question.side, question.edge, question.shell);
+    const auto place = [&](int k) { return question.edge * (k + 0.5) / grid; };
+    int kept = 0;
+    for (int k = 0; k < grid * grid * grid; ++k)
+        kept += shell.classify({place(k % grid), place(k / grid % grid), place(k / grid / grid)}) ==
+                        geometry::TpmsRegion::kept
+                    ? 1
+                    : 0;
+    return kept / std::pow(grid, 3);
+}
+
+/// Particle steps of the mobile spheres on average in the box, and the packing.
+CostEstimate cost_of_cell(const Inputs& inputs, const Files& files) {
     const TpmsQuestion question(inputs, 1);
-    const double spheres = 1.18 * std::pow(question.edge, 3);
+    const double cell = std::pow(question.edge, 3);
+    const double spheres = question.packing_given
+                               ? static_cast<double>(std::ranges::count(tpms_packing_text(inputs, files), '\n')) - 1
+                               : question.packing_fraction * 6 / std::numbers::pi * cell;
     const double steps = question.end_time * question.free_fall_time() / question.time_step;
     const double cohesive =
         std::min(1.0, question.material.cohesion / 35e3 + (question.material.surface_energy > 0 ? 1 : 0));
-    const double mobile = 0.42 * spheres * (0.25 + 0.5 * cohesive);
+    const double mobile = kept_share(question) * spheres;
+    dem::Method method;
+    method.precision = question.precision;
+    auto estimate = kit::estimate(method, mobile * (0.25 + 0.5 * cohesive), steps);
     const bool mixed = question.precision == dem::Method::Precision::mixed;
-    return steps * mobile * (mixed ? 25e-9 : 150e-9) + 4e-5 * spheres;
+    estimate.seconds = estimate.particle_steps * (mixed ? 25e-9 : 150e-9) + 4e-5 * spheres;
+    estimate.bytes = kit::estimate(method, spheres, 0).bytes;
+    return estimate;
 }
 
 }  // namespace

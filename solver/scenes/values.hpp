@@ -93,7 +93,8 @@ struct ObservableSpec {
     std::string unit;
     std::string meaning;
     Shape shape = Shape::scalar;
-    std::string over = {};  ///< what it runs along, with its unit: of a series the time, of a profile the bin
+    std::string over = {};    ///< what it runs along, with its unit: of a series the time, of a profile the bin
+    std::string absent = {};  ///< of a scalar: why a completed case can be without a value; empty: none is
 };
 
 /// One entry of a series or profile; what does not apply is NaN.

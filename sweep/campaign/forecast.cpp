@@ -1,6 +1,7 @@
 #include "sweep/campaign/forecast.hpp"
 
 #include "sweep/campaign/program.hpp"
+#include "sweep/campaign/whole_file.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/designs/calibration.hpp"
 
@@ -8,15 +9,47 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
+#include <string>
+#include <system_error>
 #include <utility>
 
 namespace grainsweep::campaign {
 
 namespace {
 
-void add_cautions(Forecast& total, const SceneInfo& scene, const Inputs& inputs, std::int64_t point) {
-    for (auto& warning : scene.warnings(inputs)) {
+/// The files that inputs name, read again where other ones are named than before.
+class NamedFiles {
+public:
+    /// Throws std::invalid_argument where one cannot be read.
+    const Files& of(const Inputs& inputs) {
+        std::map<std::string, std::string> words;
+        for (const auto& [name, value] : inputs) {
+            const auto* word = std::get_if<std::string>(&value);
+            if (word != nullptr && file_word(*word)) words.emplace(name, *word);
+        }
+        if (words == words_) return files_;
+        Files files;
+        for (const auto& [name, word] : words) {
+            const std::string path(file_word(word)->path);
+            std::error_code error;
+            files.emplace(name, whole_file(path, error));
+            if (error) throw std::invalid_argument(fmt::format("{}: cannot read {}: {}", name, path, error.message()));
+        }
+        files_ = std::move(files);
+        words_ = std::move(words);
+        return files_;
+    }
+
+private:
+    std::map<std::string, std::string> words_;
+    Files files_;
+};
+
+void add_cautions(Forecast& total, const SceneInfo& scene, const Inputs& inputs, const Files& files,
+                  std::int64_t point) {
+    for (auto& warning : scene.warnings(inputs, files)) {
         auto found = std::ranges::find(total.cautions, warning.kind, &Caution::kind);
         if (found == total.cautions.end()) {
             total.cautions.push_back({std::move(warning.kind), std::move(warning.sentence), point, 0});
@@ -28,22 +61,44 @@ void add_cautions(Forecast& total, const SceneInfo& scene, const Inputs& inputs,
 
 }  // namespace
 
-Prediction predict(const SceneInfo& scene, const Inputs& inputs) {
+namespace {
+
+Prediction predict(const SceneInfo& scene, const Inputs& inputs, const Files& files) {
     Prediction prediction;
     try {
         prediction.proven = scene.proven_answer && scene.proven_answer(inputs);
-        if (!prediction.proven && scene.estimate_cost) prediction.seconds = scene.estimate_cost(inputs);
+        if (!prediction.proven && scene.estimate_cost) prediction.cost = scene.estimate_cost(inputs, files);
     } catch (const std::invalid_argument& error) {  // one case among many: its outcome will be `rejected`
         prediction.impossible = error.what();
     }
     return prediction;
 }
 
-Forecast forecast(const SceneInfo& scene, const Cases& cases) {
+}  // namespace
+
+Prediction predict(const SceneInfo& scene, const Inputs& inputs) {
+    NamedFiles named;
+    return predict(scene, inputs, named.of(inputs));
+}
+
+namespace {
+
+void require_memory(const Forecast& forecast, double room) {
+    if (!(forecast.largest_bytes > room)) return;
+    throw wrong_question("$", "",
+                         fmt::format("the case of point {} needs about {:.3g} GB of memory, and this machine gives a "
+                                     "process {:.3g} GB: make the case smaller or take a larger machine",
+                                     forecast.largest_point, 1e-9 * forecast.largest_bytes, 1e-9 * room));
+}
+
+}  // namespace
+
+Forecast forecast(const SceneInfo& scene, const Cases& cases, double room) {
     Forecast total;
     total.places = static_cast<std::int64_t>(cases.size());
     total.seconds.resize(cases.size());
     Inputs inputs;
+    NamedFiles named;
     for (std::size_t i = 0; i < cases.size(); ++i) {
         if (!cases.is_first(i)) {
             total.seconds[i] = total.seconds[cases.first(i)];
@@ -52,19 +107,25 @@ Forecast forecast(const SceneInfo& scene, const Cases& cases) {
         ++total.questions;
         cases.inputs(i, inputs);
         const std::int64_t point = cases.place(i).point;
-        Prediction one = predict(scene, inputs);
-        if (one.impossible.empty() && scene.warnings) add_cautions(total, scene, inputs, point);
+        const Files& files = named.of(inputs);
+        Prediction one = predict(scene, inputs, files);
+        if (one.impossible.empty() && scene.warnings) add_cautions(total, scene, inputs, files, point);
         if (!one.impossible.empty() && total.impossible++ == 0) {
             total.first_reason = std::move(one.impossible);
             total.first_point = point;
         }
         if (one.proven) ++total.proven;
-        total.total_seconds += one.seconds;
-        total.longest_seconds = std::max(total.longest_seconds, one.seconds);
-        total.seconds[i] = one.seconds;
+        total.total_seconds += one.cost.seconds;
+        total.longest_seconds = std::max(total.longest_seconds, one.cost.seconds);
+        total.seconds[i] = one.cost.seconds;
+        if (one.cost.bytes > total.largest_bytes) {
+            total.largest_bytes = one.cost.bytes;
+            total.largest_point = point;
+        }
     }
     if (total.questions > 0 && total.impossible == total.questions)
         throw wrong_question("$", "", "no case of this campaign can be computed: " + total.first_reason);
+    require_memory(total, room);
     return total;
 }
 

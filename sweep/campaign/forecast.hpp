@@ -4,6 +4,7 @@
 #include "sweep/campaign/campaign.hpp"
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct Forecast {
     std::int64_t first_point = 0;
     double total_seconds = 0;    ///< of one plain core
     double longest_seconds = 0;  ///< the most expensive question
+    double largest_bytes = 0;    ///< memory of the question that needs most
+    std::int64_t largest_point = 0;
     std::vector<Caution> cautions;
     std::vector<double> seconds;  ///< of each place's question; 0 where it is proven or impossible
 };
@@ -37,13 +40,15 @@ struct Forecast {
 /// What is known of a case before it is computed.
 struct Prediction {
     bool proven = false;     ///< its answer is known without simulation
-    double seconds = 0;      ///< of a plain core; 0 where it is proven or impossible
+    CostEstimate cost;       ///< 0 where it is proven or impossible
     std::string impossible;  ///< why its inputs do not go together; empty: they do
 };
+/// Throws std::invalid_argument where a file that the inputs name cannot be read.
 [[nodiscard]] Prediction predict(const SceneInfo& scene, const Inputs& inputs);
 
 /// Adds the scene's own estimates over different questions without a proven answer. Throws WrongQuestion where all
-/// questions are impossible.
-[[nodiscard]] Forecast forecast(const SceneInfo& scene, const Cases& cases);
+/// questions are impossible, and where one needs more memory than `room`, bytes.
+[[nodiscard]] Forecast forecast(const SceneInfo& scene, const Cases& cases,
+                                double room = std::numeric_limits<double>::infinity());
 
 }  // namespace grainsweep::campaign

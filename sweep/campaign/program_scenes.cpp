@@ -34,11 +34,14 @@ SceneInfo scene_of(const Program& program, std::string name) {
         scene.parameters.push_back({parameter.name, parameter.unit, parameter.meaning, standard, parameter.bounds, {}});
     }
     for (const auto& observable : program.observables)
-        scene.observables.push_back({observable.name, observable.unit, observable.meaning, observable.shape});
+        scene.observables.push_back(
+            {observable.name, observable.unit, observable.meaning, observable.shape, {}, "the program gave none"});
     scene.maker = [](const Inputs&, std::uint64_t, Artefacts&, const Files&) -> std::unique_ptr<Scene> {
         throw std::logic_error("a program is no scene of the solver");
     };
-    scene.estimate_cost = [seconds = program.cost_seconds](const Inputs&) { return seconds; };
+    scene.estimate_cost = [seconds = program.cost_seconds](const Inputs&, const Files&) {
+        return CostEstimate{.seconds = seconds, .particle_steps = 0, .bytes = 0};
+    };
     scene.proven_answer = [](const Inputs&) -> std::optional<ProvenAnswer> { return std::nullopt; };
     return scene;
 }
@@ -70,6 +73,12 @@ const SceneInfo* known_scene(std::string_view name) {
     const std::lock_guard lock(all.mutex);
     const auto found = all.programs.find(name);
     return found == all.programs.end() ? nullptr : &found->second->scene;
+}
+
+std::string why_absent(std::string_view scene, std::string_view observable) {
+    const SceneInfo* known = known_scene(scene);
+    const ObservableSpec* spec = known == nullptr ? nullptr : known->find_observable(observable);
+    return spec == nullptr ? std::string() : spec->absent;
 }
 
 std::vector<std::string> scene_words() {

@@ -224,6 +224,47 @@ struct Arguments {
     std::string database, text;
 };
 
+/// Columns of a query that are named as a scalar of a scene, and their rows without a value.
+class Gaps {
+public:
+    explicit Gaps(const Store& archive) : campaigns_(archive.campaigns()) {}
+
+    void begin(const std::vector<std::string>& columns) {
+        for (std::size_t k = 0; k < columns.size(); ++k) {
+            if (columns[k] == "outcome") outcome_ = k;
+            for (const auto& campaign : campaigns_)
+                if (std::string why = campaign::why_absent(campaign.scene, columns[k]); !why.empty()) {
+                    gaps_.push_back({k, columns[k], std::move(why), 0});
+                    break;
+                }
+        }
+    }
+    void add(const std::vector<Table::Cell>& row) {
+        const auto* outcome = outcome_ ? std::get_if<std::string>(&row[*outcome_]) : nullptr;
+        if (outcome_ && (outcome == nullptr || *outcome != campaign::to_string(Outcome::completed))) return;
+        ++rows_;
+        for (Gap& gap : gaps_)
+            if (std::holds_alternative<std::monostate>(row[gap.column])) ++gap.rows;
+    }
+    void print() const {
+        for (const Gap& gap : gaps_)
+            if (gap.rows > 0)
+                std::cerr << fmt::format("note: {} of {} rows{} have no {}: a completed case has none where {}\n",
+                                         gap.rows, rows_, outcome_ ? " of completed cases" : "", gap.name, gap.why);
+    }
+
+private:
+    struct Gap {
+        std::size_t column;
+        std::string name, why;
+        std::int64_t rows;
+    };
+    std::vector<store::CampaignRecord> campaigns_;
+    std::vector<Gap> gaps_;
+    std::optional<std::size_t> outcome_;
+    std::int64_t rows_ = 0;
+};
+
 int query(const Arguments& asked, double seconds, Format format) {
     constexpr std::int64_t most_memory = std::int64_t{1} << 30U;
     if (!(seconds >= 0)) throw campaign::wrong_question("--limit-seconds", std::to_string(seconds), "0 or more");
@@ -231,18 +272,31 @@ int query(const Arguments& asked, double seconds, Format format) {
     const Store::QueryLimits limits{seconds, most_memory};
     const HardStop stop(seconds, fmt::format("SQL: it takes too long (limits: {} s of processor time, {} MiB).",
                                              campaign::shortest(seconds), most_memory >> 20U));
+    Gaps gaps(archive);
     if (format == Format::text) {  // columns are aligned over all rows
         Table table;
         archive.query(
             asked.text, limits, [&](const auto& columns) { table.columns = columns; },
             [&](const auto& row) { table.rows.push_back(row); });
         report::write(std::cout, table, format);
+        gaps.begin(table.columns);
+        for (const auto& row : table.rows) gaps.add(row);
+        gaps.print();
         return 0;
     }
     report::RowWriter rows(std::cout, format);
     archive.query(
-        asked.text, limits, [&](const auto& columns) { rows.begin(columns); }, [&](const auto& row) { rows.add(row); });
+        asked.text, limits,
+        [&](const auto& columns) {
+            rows.begin(columns);
+            gaps.begin(columns);
+        },
+        [&](const auto& row) {
+            rows.add(row);
+            gaps.add(row);
+        });
     rows.end();
+    gaps.print();
     return 0;
 }
 

@@ -10,6 +10,7 @@
 #include "sweep/store/campaign_name.hpp"
 #include "sweep/store/expression.hpp"
 #include "sweep/store/store.hpp"
+#include "sweep/workers/memory_room.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -103,6 +104,8 @@ std::int64_t points_kept(const Cases& cases) {
     return points;
 }
 
+constexpr double memory_worth_a_line = 1e9;  // bytes
+
 /// What a plan shows beside the campaign itself.
 struct Outlook {
     Cases cases;
@@ -122,7 +125,7 @@ Outlook outlook_of(Campaign& campaign, const store::Store* archive) {
     if (archive != nullptr) campaign::reorder_factors(campaign, archive->factor_order(campaign.name));
     Outlook outlook;
     outlook.cases = campaign::unfold(campaign, store::make_filter(campaign.where, campaign::filter_names(campaign)));
-    outlook.cost = campaign::forecast(campaign.scene(), outlook.cases);
+    outlook.cost = campaign::forecast(campaign.scene(), outlook.cases, workers::memory_room(campaign));
     outlook.candidates = campaign::candidates_of(campaign);
     outlook.warnings = campaign::warnings_of(campaign, outlook.cost);
     if (archive == nullptr) return outlook;
@@ -157,6 +160,7 @@ Json json_of(const Campaign& campaign, const Outlook& outlook) {
     object["impossible"] = cost.impossible;
     object["predicted_seconds"] = cost.total_seconds;
     object["longest_seconds"] = cost.longest_seconds;
+    object["largest_bytes"] = cost.largest_bytes;
     object["threads"] = campaign.execution.threads == 0 ? Json("auto") : Json(campaign.execution.threads);
     if (campaign::is_program(campaign.scene().name)) object["threads"] = nullptr;
     object["factors"] = report::to_json(factors_of(campaign));
@@ -221,6 +225,9 @@ void show_text(const Campaign& campaign, const Outlook& outlook) {
                                  cost.first_point, cost.first_reason);
     std::cout << fmt::format("\npredicted  {} on one core; the longest case {}\n", seconds_text(cost.total_seconds),
                              seconds_text(cost.longest_seconds));
+    if (cost.largest_bytes >= memory_worth_a_line)
+        std::cout << fmt::format("memory     {:.2g} GB for the largest case, of {:.2g} GB\n", 1e-9 * cost.largest_bytes,
+                                 1e-9 * workers::memory_room());
     if (const auto threads = threads_text(campaign); !threads.empty())
         std::cout << fmt::format("threads    {}\n", threads);
     if (!outlook.database.empty())

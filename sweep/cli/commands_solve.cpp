@@ -126,6 +126,16 @@ Json json_of(const Sample& sample) {
     return object;
 }
 
+/// Scalars that the scene declares and a finished case has no value of.
+std::vector<ObservableSpec> absent(const campaign::Case& question, const CaseResult& result) {
+    std::vector<ObservableSpec> missing;
+    if (result.outcome != Outcome::completed) return missing;
+    for (const auto& observable : campaign::known_scene(question.scene)->observables)
+        if (observable.shape == Shape::scalar && !result.observations.scalars.contains(observable.name))
+            missing.push_back(observable);
+    return missing;
+}
+
 Json json_of(const campaign::Case& question, const CaseResult& result) {
     Json object = {{"scene", question.scene},
                    {"revision", question.revision},
@@ -148,6 +158,8 @@ Json json_of(const campaign::Case& question, const CaseResult& result) {
             if (declared.shape == Shape::scalar) object["scalars"][declared.name] = nullptr;
     for (const auto& [name, value] : result.observations.scalars)
         object["scalars"][name] = report::to_json(Cell{value});
+    object["absent"] = Json::object();
+    for (const auto& observable : absent(question, result)) object["absent"][observable.name] = observable.absent;
     object["series"] = Json::object();
     for (const auto& [name, samples] : result.observations.series) {
         auto& list = object["series"][name] = Json::array();
@@ -172,6 +184,7 @@ store::Table table_of(const campaign::Case& question, const CaseResult& result) 
     add("outcome", "outcome", std::string(campaign::to_string(result.outcome)));
     if (!result.message.empty()) add("outcome", "message", result.message);
     for (const auto& [name, value] : result.observations.scalars) add("scalar", name, report::to_cell(value));
+    for (const auto& observable : absent(question, result)) add("absent", observable.name, observable.absent);
     for (const auto& [name, samples] : result.observations.series) {
         for (const auto& sample : samples) {
             table.rows.push_back({std::string("series"), name, report::to_cell(sample.time),
@@ -213,6 +226,9 @@ void show_text(const campaign::Case& question, const CaseResult& result) {
         answers.rows.push_back({observable.name, value, observable.unit, observable.meaning});
     }
     if (!answers.rows.empty()) report::write(std::cout, answers, Format::text);
+    const auto missing = absent(question, result);
+    if (!missing.empty()) std::cout << "\nwithout a value\n";
+    for (const auto& observable : missing) std::cout << fmt::format("  {}: {}\n", observable.name, observable.absent);
     std::cout << fmt::format("\n{:.3g} s, {:.3g} s of processor", result.cost.wall_seconds, result.cost.cpu_seconds);
     if (result.program)
         std::cout << fmt::format(", {:.3g} MB\n", 1e-6 * result.program->peak_memory);

@@ -21,6 +21,7 @@
 #include "sweep/store/expression.hpp"
 #include "sweep/store/recorder.hpp"
 #include "sweep/store/store.hpp"
+#include "sweep/workers/memory_room.hpp"
 #include "sweep/workers/pool.hpp"
 #include "sweep/workers/worker.hpp"
 
@@ -307,7 +308,7 @@ private:
             const auto filter = store::make_filter(campaign_.where, campaign::filter_names(campaign_));
             auto cases = campaign::unfold(campaign_, filter);
             // Refuses impossible cases before anything is made.
-            forecast_ = campaign::forecast(campaign_.scene(), cases);
+            forecast_ = campaign::forecast(campaign_.scene(), cases, workers::memory_room(campaign_));
             return cases;
         });
     }

@@ -12,6 +12,7 @@
 #include "sweep/spool/task.hpp"
 #include "sweep/store/artefacts.hpp"
 #include "sweep/store/expression.hpp"
+#include "sweep/workers/memory_room.hpp"
 #include "sweep/workers/pool.hpp"
 #include "sweep/workers/worker.hpp"
 
@@ -116,7 +117,7 @@ WorkReport work_on(const WorkRequest& request) {
         report::check_features(campaign);
         auto unfolded =
             campaign::unfold(campaign, store::make_filter(campaign.where, campaign::filter_names(campaign)));
-        forecast = campaign::forecast(campaign.scene(), unfolded);
+        forecast = campaign::forecast(campaign.scene(), unfolded, workers::memory_room());
         return unfolded;
     });
     const auto beside = std::filesystem::absolute(request.config).parent_path();

@@ -1,6 +1,7 @@
 #include "sweep/report/history.hpp"
 
 #include "sweep/campaign/identity.hpp"
+#include "sweep/campaign/program.hpp"
 #include "sweep/schedule/judge.hpp"
 
 #include <fmt/format.h>
@@ -153,8 +154,10 @@ void warn(History& history, const Responses& responses, const ResponseColumn& re
                         responses.repeated.size(), responses.repeated.size() + responses.rows(), responses.rows()));
     }
     if (history.all.excluded > 0) {
-        history.warnings.push_back(fmt::format("{} of {} cases have no value and are left out", history.all.excluded,
-                                               history.all.excluded + history.all.count));
+        const std::string why = campaign::why_absent(record.scene, response.name);
+        history.warnings.push_back(fmt::format("{} of {} cases have no value and are left out{}{}",
+                                               history.all.excluded, history.all.excluded + history.all.count,
+                                               why.empty() ? "" : ": a completed case has none where ", why));
     }
     const auto finished = responses.finished();
     if (!record.stopped_at && finished < responses.rows()) {

@@ -62,11 +62,11 @@ TEST(PowderSpreadingCorners, DefaultsLieWithinTheBoundsAndAreRelevantOnce) {
         EXPECT_FALSE(p.meaning.empty());
     }
     Inputs inputs = spreading().defaults();
-    const double mixed = spreading().estimate_cost(inputs);
+    const double mixed = spreading().estimate_cost(inputs, {}).seconds;
     inputs["precision"] = std::string("double");
-    EXPECT_GT(spreading().estimate_cost(inputs), 1);
-    EXPECT_LT(spreading().estimate_cost(inputs), 30);
-    EXPECT_LT(mixed, spreading().estimate_cost(inputs));
+    EXPECT_GT(spreading().estimate_cost(inputs, {}).seconds, 1);
+    EXPECT_LT(spreading().estimate_cost(inputs, {}).seconds, 30);
+    EXPECT_LT(mixed, spreading().estimate_cost(inputs, {}).seconds);
 }
 
 // Every corner of (least, greatest) of each parameter, others at their defaults: made or refused, with a cost.
@@ -81,7 +81,7 @@ TEST(PowderSpreadingCorners, EveryBoundIsMadeOrRefused) {
             else
                 inputs[p.name] = static_cast<std::int64_t>(end);
             try {
-                EXPECT_GT(spreading().estimate_cost(inputs), 0) << p.name << " " << end;
+                EXPECT_GT(spreading().estimate_cost(inputs, {}).seconds, 0) << p.name << " " << end;
             } catch (const std::invalid_argument& sentence) {
                 EXPECT_GT(std::string(sentence.what()).size(), 20U);
             }

@@ -23,8 +23,8 @@ void expect_bounds_are_made_or_refused(const SceneInfo& scene) {
             else
                 inputs[p.name] = static_cast<std::int64_t>(end);
             try {
-                EXPECT_GT(scene.estimate_cost(inputs), 0) << p.name << " " << end;
-                for (const auto& warning : scene.warnings(inputs)) EXPECT_GT(warning.sentence.size(), 20U);
+                EXPECT_GT(scene.estimate_cost(inputs, {}).seconds, 0) << p.name << " " << end;
+                for (const auto& warning : scene.warnings(inputs, {})) EXPECT_GT(warning.sentence.size(), 20U);
             } catch (const std::invalid_argument& sentence) {
                 EXPECT_GT(std::string(sentence.what()).size(), 20U) << p.name;
             }

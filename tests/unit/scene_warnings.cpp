@@ -16,7 +16,7 @@ std::set<std::string> kinds(const std::string& scene, const Inputs& changed) {
     Inputs inputs = info->defaults();
     for (const auto& [name, value] : changed) inputs.at(name) = value;
     std::set<std::string> found;
-    for (const auto& warning : info->warnings(inputs)) {
+    for (const auto& warning : info->warnings(inputs, {})) {
         EXPECT_TRUE(found.insert(warning.kind).second) << warning.kind << " twice";
         EXPECT_GT(warning.sentence.size(), 20U);
         EXPECT_EQ(warning.sentence.find("nan"), std::string::npos) << warning.sentence;
@@ -29,7 +29,7 @@ using Kinds = std::set<std::string>;
 TEST(SceneWarnings, DefaultsDrawNone) {
     for (const auto& scene : scene_catalogue()) {
         if (!scene.warnings) continue;
-        for (const auto& warning : scene.warnings(scene.defaults()))
+        for (const auto& warning : scene.warnings(scene.defaults(), {}))
             ADD_FAILURE() << scene.name << ": " << warning.kind;
     }
 }

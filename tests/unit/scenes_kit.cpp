@@ -148,17 +148,15 @@ TEST(Kit, ALatticeInATubeTouchesNothing) {
 TEST(Kit, SizesInAFileAreTakenAsTheyAre) {
     auto inputs = defaults(block());
     inputs["size_distribution"] = std::string("file");
-    EXPECT_THROW((void)powder.sizes(inputs, nullptr), std::invalid_argument) << "no file named";
+    EXPECT_THROW((void)powder.sizes(inputs, {}), std::invalid_argument) << "no file named";
     inputs["size_file"] = "file:" + std::string(32, '0') + ":/sizes.csv";
-    EXPECT_TRUE(powder.sizes(inputs, nullptr).equal()) << "an estimate";
-    const Files none;
-    EXPECT_THROW((void)powder.sizes(inputs, &none), std::invalid_argument);
+    EXPECT_THROW((void)powder.sizes(inputs, {}), std::invalid_argument) << "no file given";
     const Files files = {{"size_file", "diameter,number_fraction\n1e-3,0.5\n3e-3,0.5\n"}};
-    const auto sizes = powder.sizes(inputs, &files);
+    const auto sizes = powder.sizes(inputs, files);
     EXPECT_DOUBLE_EQ(sizes.smallest() * powder.diameter(inputs), 1e-3);
     EXPECT_DOUBLE_EQ(sizes.moment(1), 1);
     inputs["diameter"] = 4e-3;
-    EXPECT_THROW((void)powder.sizes(inputs, &files), std::invalid_argument) << "D outside of the file";
+    EXPECT_THROW((void)powder.sizes(inputs, files), std::invalid_argument) << "D outside of the file";
 }
 
 // The largest value of k A(d) - 4/3 E* sqrt(R*) d^(3/2), searched for.

@@ -18,8 +18,8 @@ using kit::sentence;
 
 constexpr double most_steps = 1e10, most_frames = 1e5, most_cells = 1e6;
 constexpr double most_particles = 5e6;
-constexpr double narrowest_period = 3;  // largest diameters: two and the skin of the lists
-constexpr double narrowest_drum = 4;    // largest diameters
+constexpr double narrowest_period = 2.5;  // largest diameters: two and the skin of the lists
+constexpr double narrowest_drum = 4;      // largest diameters
 
 double drum_volume(const Study& s) {
     return std::numbers::pi * s.radius * s.radius * s.length;
@@ -37,8 +37,10 @@ void check_size(const Study& s) {
                          s.length, largest));
     else
         require(at_least(s.length, narrowest_period * largest),
-                sentence("a period of %.4g m (length) is less than %.0f of the largest particles, %.4g m wide",
-                         s.length, narrowest_period, largest));
+                sentence(
+                    "a period of %.4g m (length) is less than %.1f of the largest particles, %.4g m wide: in a shorter "
+                    "one a particle would meet another one through two of its images",
+                    s.length, narrowest_period, largest));
     const double columns = 2 * std::ceil(s.radius / s.occupancy_cell);
     require(columns * columns <= most_cells,
             sentence("occupancy_cell of %.4g m makes %.4g cells across the drum; at most 1000 by 1000 are kept",
@@ -73,7 +75,7 @@ std::int64_t Study::step_of_frame(std::int64_t frame) const {
     return std::llround(std::ceil(steps - 1e-6));
 }
 
-Study study_of(const Inputs& inputs, const Files* files) {
+Study study_of(const Inputs& inputs, const Files& files) {
     namespace q = question;
     Study s;
     s.material = q::powder.material(inputs);

@@ -40,9 +40,8 @@ struct Study {
     [[nodiscard]] std::int64_t last_step() const { return step_of_frame(frames - 1); }
 };
 
-/// Throws std::invalid_argument with one sentence where the inputs are impossible together. Without files, as for an
-/// estimate, sizes in a file are taken as all equal.
-[[nodiscard]] Study study_of(const Inputs& inputs, const Files* files = nullptr);
+/// Throws std::invalid_argument with one sentence where the inputs are impossible together or a file is not given.
+[[nodiscard]] Study study_of(const Inputs& inputs, const Files& files);
 
 /// The loose filling in the turning drum. Walls: the drum and, where it has them, its plates.
 [[nodiscard]] dem::Setup filled(const Study& study, std::uint64_t seed);

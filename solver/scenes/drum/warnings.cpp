@@ -2,6 +2,7 @@
 
 #include "solver/scenes/drum/study.hpp"
 #include "solver/scenes/kit/pace.hpp"
+#include "solver/scenes/kit/rare_sizes.hpp"
 #include "solver/scenes/kit/sentence.hpp"
 
 #include <cmath>
@@ -72,11 +73,12 @@ void warn_of_turning(std::vector<Warning>& warnings, const Study& s) {
 
 }  // namespace
 
-std::vector<Warning> warnings_of(const Inputs& inputs) {
-    const Study s = study_of(inputs);
+std::vector<Warning> warnings_of(const Inputs& inputs, const Files& files) {
+    const Study s = study_of(inputs, files);
     std::vector<Warning> warnings;
     warn_of_drum(warnings, s);
     warn_of_turning(warnings, s);
+    kit::warn_of_rare_sizes(warnings, s.sizes, s.diameter, static_cast<double>(s.particles));
     return warnings;
 }
 

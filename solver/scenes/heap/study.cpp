@@ -55,16 +55,16 @@ double rough_radius(const Study& s) {
     return rough_share * s.reach();
 }
 
-double glued_spheres(const Study& s) {
-    const double share = rough_radius(s) / (s.diameter / 2);
-    return s.rough ? std::floor(glued_share * share * share) : 0;
-}
-
 }  // namespace
 
 double Study::reach() const {
     const double cone = std::cbrt(3 * solid_volume(*this) / (heap_fraction * std::numbers::pi * flat_tangent));
     return std::max(beyond_the_cone * cone, beyond_the_tube * tube_radius) + 2 * largest(*this);
+}
+
+double Study::glued_spheres() const {
+    const double share = rough_radius(*this) / (diameter / 2);
+    return rough ? std::floor(glued_share * share * share) : 0;
 }
 
 double Study::rest_speed() const {
@@ -76,7 +76,7 @@ double Study::lower_end(double time) const {
     return tube_gap * diameter + lift_speed * std::max(0.0, time - start);
 }
 
-Study study_of(const Inputs& inputs, const Files* files) {
+Study study_of(const Inputs& inputs, const Files& files) {
     namespace q = question;
     Study s;
     s.material = q::powder.material(inputs);
@@ -95,9 +95,9 @@ Study study_of(const Inputs& inputs, const Files* files) {
     require(s.fill_height < 1e3 * s.tube_radius,
             sentence("the particles would fill the tube %.3g of its diameters high: make it wider",
                      s.fill_height / (2 * s.tube_radius)));
-    require(glued_spheres(s) <= most_glued,
-            sentence("the rough plate would need %.4g glued particles; at most %.4g can be simulated", glued_spheres(s),
-                     most_glued));
+    require(s.glued_spheres() <= most_glued,
+            sentence("the rough plate would need %.4g glued particles; at most %.4g can be simulated",
+                     s.glued_spheres(), most_glued));
 
     const double fastest = std::max(std::sqrt(2 * s.gravity * s.fill_height), s.lift_speed);
     s.time_step = q::powder.step(inputs, s.sizes.smallest() * s.diameter / 2, fastest);
@@ -119,7 +119,7 @@ void glue(dem::Setup& setup, const Study& s, std::uint64_t seed) {
                                     return std::hypot(x[0], x[1]) + r <= out;
                                 }};
     const auto spheres =
-        kit::loose_filling({}, d, static_cast<std::int64_t>(glued_spheres(s)), layer,
+        kit::loose_filling({}, d, static_cast<std::int64_t>(s.glued_spheres()), layer,
                            stats::bits_at(seed, glue_stream, 0), "the rough plate cannot hold its glued particles");
     for (dem::Sphere sphere : spheres) {
         sphere.mobile = false;

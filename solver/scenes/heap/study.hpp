@@ -30,12 +30,12 @@ struct Study {
 
     [[nodiscard]] double reach() const;                 ///< half the side of the calculation, m
     [[nodiscard]] double rest_speed() const;            ///< below which powder is at rest, m/s
+    [[nodiscard]] double glued_spheres() const;         ///< of the rough plate
     [[nodiscard]] double lower_end(double time) const;  ///< of the tube, since the start
 };
 
-/// Throws std::invalid_argument with one sentence where the inputs are impossible together. Without files, as for an
-/// estimate, sizes in a file are taken as all equal.
-[[nodiscard]] Study study_of(const Inputs& inputs, const Files* files = nullptr);
+/// Throws std::invalid_argument with one sentence where the inputs are impossible together or a file is not given.
+[[nodiscard]] Study study_of(const Inputs& inputs, const Files& files);
 
 /// Powder, then glued spheres; walls: plate, tube.
 [[nodiscard]] dem::Setup filled(const Study& study, std::uint64_t seed);

@@ -2,6 +2,7 @@
 
 #include "solver/scenes/heap/study.hpp"
 #include "solver/scenes/kit/falling.hpp"
+#include "solver/scenes/kit/rare_sizes.hpp"
 #include "solver/scenes/kit/sentence.hpp"
 
 #include <cmath>
@@ -17,8 +18,8 @@ constexpr double fast = 1;  // sqrt(g tube_diameter): beyond, the column falls f
 
 }  // namespace
 
-std::vector<Warning> warnings_of(const Inputs& inputs) {
-    const Study s = study_of(inputs);
+std::vector<Warning> warnings_of(const Inputs& inputs, const Files& files) {
+    const Study s = study_of(inputs, files);
     std::vector<Warning> warnings;
     if (static_cast<double>(s.particles) < fewest_particles)
         warnings.push_back(
@@ -40,6 +41,7 @@ std::vector<Warning> warnings_of(const Inputs& inputs) {
                       "may still be in it",
                       lifted, 2 * s.tube_radius)});
     kit::warn_of_softness(warnings, s.material, s.diameter, s.fill_height, s.gravity);
+    kit::warn_of_rare_sizes(warnings, s.sizes, s.diameter, static_cast<double>(s.particles));
     return warnings;
 }
 

@@ -19,7 +19,8 @@ using kit::sentence;
 constexpr double loose_fraction = 0.22;  // of the filling, where centres can be
 constexpr double floor_thickness = 0.1;  // D
 constexpr double fall = 4;               // largest diameters below the opening
-constexpr double narrowest = 3;          // largest diameters, of the container and of periods
+constexpr double narrowest = 3;          // largest diameters, of the container
+constexpr double shortest_period = 2.5;  // largest diameters: two and the skin of the lists
 constexpr double quiet = 10;             // sqrt(opening/g)
 constexpr double most_steps = 1e10, most_frames = 1e6;
 
@@ -34,9 +35,10 @@ void check_size(const Study& s) {
     require(s.opening < 2 * s.half_width, sentence("opening_size of %.4g m is not less than container_diameter, %.4g m",
                                                    s.opening, 2 * s.half_width));
     require(!(s.conical && s.slot), "a conical hopper has a round opening: a slot needs the shape 'flat'");
-    require(!s.slot || at_least(s.slot_length, narrowest * largest(s)),
-            sentence("a period of %.4g m (slot_length) is less than %.0f of the largest particles, %.4g m wide",
-                     s.slot_length, narrowest, largest(s)));
+    require(!s.slot || at_least(s.slot_length, shortest_period * largest(s)),
+            sentence("a period of %.4g m (slot_length) is less than %.1f of the largest particles, %.4g m wide: in a "
+                     "shorter one a particle would meet another one through two of its images",
+                     s.slot_length, shortest_period, largest(s)));
 }
 
 void lay_out_times(Study& s, const Inputs& inputs) {
@@ -93,7 +95,7 @@ double Study::quiet_time() const {
     return quiet * std::sqrt(opening / gravity);
 }
 
-Study study_of(const Inputs& inputs, const Files* files) {
+Study study_of(const Inputs& inputs, const Files& files) {
     namespace q = question;
     Study s;
     s.material = q::powder.material(inputs);

@@ -41,9 +41,8 @@ struct Study {
     [[nodiscard]] double quiet_time() const;  ///< without outflow after which the flow has ceased, s
 };
 
-/// Throws std::invalid_argument with one sentence where the inputs are impossible together. Without files, as for an
-/// estimate, sizes in a file are taken as all equal.
-[[nodiscard]] Study study_of(const Inputs& inputs, const Files* files = nullptr);
+/// Throws std::invalid_argument with one sentence where the inputs are impossible together or a file is not given.
+[[nodiscard]] Study study_of(const Inputs& inputs, const Files& files);
 
 /// The loose filling above the closed opening; its walls: container, cone, plug.
 [[nodiscard]] dem::Setup closed(const Study& study, std::uint64_t seed);

@@ -3,6 +3,7 @@
 #include "solver/scenes/hopper/study.hpp"
 #include "solver/scenes/kit/falling.hpp"
 #include "solver/scenes/kit/filling.hpp"
+#include "solver/scenes/kit/rare_sizes.hpp"
 #include "solver/scenes/kit/sentence.hpp"
 
 #include <cmath>
@@ -21,8 +22,8 @@ constexpr double lowest = 1;  // openings of powder above the opening
 
 }  // namespace
 
-std::vector<Warning> warnings_of(const Inputs& inputs) {
-    const Study s = study_of(inputs);
+std::vector<Warning> warnings_of(const Inputs& inputs, const Files& files) {
+    const Study s = study_of(inputs, files);
     std::vector<Warning> warnings;
     const double smallest = s.sizes.smallest() * s.diameter;
     if (s.opening < smallest_opening * smallest)
@@ -48,6 +49,7 @@ std::vector<Warning> warnings_of(const Inputs& inputs) {
     const double settling = static_cast<double>(s.settle_steps) * s.time_step;
     kit::warn_of_short_settling(warnings, settling, s.fill_height(), s.gravity);
     kit::warn_of_softness(warnings, s.material, s.diameter, s.fill_height(), s.gravity);
+    kit::warn_of_rare_sizes(warnings, s.sizes, s.diameter, static_cast<double>(s.particles));
     return warnings;
 }
 

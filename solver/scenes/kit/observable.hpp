@@ -15,6 +15,7 @@ namespace grainsweep::kit {
 
 struct Scalar {
     std::string_view name, unit, meaning;
+    std::string_view absent = {};  ///< why a completed case can be without a value
 
     void record(Observations& into, double value) const { into.scalars.insert_or_assign(std::string(name), value); }
     /// Where the value is finite; else it stays undefined.
@@ -22,7 +23,7 @@ struct Scalar {
         if (std::isfinite(value)) record(into, value);
     }
     [[nodiscard]] ObservableSpec spec() const {
-        return {std::string(name), std::string(unit), std::string(meaning), Shape::scalar, {}};
+        return {std::string(name), std::string(unit), std::string(meaning), Shape::scalar, {}, std::string(absent)};
     }
 };
 

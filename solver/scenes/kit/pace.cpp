@@ -6,6 +6,9 @@
 
 namespace grainsweep::kit {
 
+/// Of the filling, the engine, its lists and the contacts, in a bed with contacts everywhere.
+constexpr double bytes_per_sphere = 1500;
+
 double seconds_per_particle_step(const dem::Method& method) {
     if (method.precision == dem::Method::Precision::double_precision) return 110e-9;
     switch (dem::fast::best_path()) {
@@ -16,6 +19,12 @@ double seconds_per_particle_step(const dem::Method& method) {
         default:
             return 62e-9;
     }
+}
+
+CostEstimate estimate(const dem::Method& method, double mobile, double steps, double frozen) {
+    return {.seconds = mobile * steps * seconds_per_particle_step(method),
+            .particle_steps = mobile * steps,
+            .bytes = (mobile + frozen) * bytes_per_sphere};
 }
 
 double impact_overlap(const dem::Material& material, double diameter, double speed) {

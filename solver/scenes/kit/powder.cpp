@@ -64,7 +64,7 @@ dem::Surface Powder::wall_surface(const Inputs& inputs) const {
     return surface;
 }
 
-particles::SizeDistribution Powder::sizes(const Inputs& inputs, const Files* files) const {
+particles::SizeDistribution Powder::sizes(const Inputs& inputs, const Files& files) const {
     using particles::SizeDistribution;
     switch (size_distribution(inputs)) {
         case SizeLaw::weibull_wide:
@@ -82,8 +82,7 @@ particles::SizeDistribution Powder::sizes(const Inputs& inputs, const Files* fil
     }
     if (!size_file(inputs))
         throw std::invalid_argument("size_distribution is 'file': name the file of the sizes in size_file");
-    if (files == nullptr) return {};
-    const auto table = particles::SizeTable::read(size_file.contents(inputs, *files)).over(diameter(inputs));
+    const auto table = particles::SizeTable::read(size_file.contents(inputs, files)).over(diameter(inputs));
     if (!(table.smallest() <= 1 && table.largest() >= 1)) {
         char sentence[200];
         std::snprintf(sentence, sizeof sentence,

@@ -121,9 +121,9 @@ struct Powder {
     /// What the walls do differently from the powder. Throws std::invalid_argument with one sentence on what is neither
     /// a property nor as_powder, and where 'jkr' has surface energy at the walls only, or everywhere else.
     [[nodiscard]] dem::Surface wall_surface(const Inputs& inputs) const;
-    /// Of d/D. Without files, as for an estimate, sizes in a file are taken as all equal. Throws std::invalid_argument
+    /// Of d/D. Throws std::invalid_argument
     /// with one sentence where the file is missing or D is outside of it.
-    [[nodiscard]] particles::SizeDistribution sizes(const Inputs& inputs, const Files* files) const;
+    [[nodiscard]] particles::SizeDistribution sizes(const Inputs& inputs, const Files& files) const;
     /// time_step, or time_step_fraction of the limits for particles of at least `radius` meeting at most at `speed`.
     [[nodiscard]] double step(const Inputs& inputs, double radius, double speed) const;
     [[nodiscard]] dem::Method method(const Inputs& inputs) const;
@@ -138,7 +138,8 @@ inline constexpr Scalar bond_number{
     "bond_number", "1",
     "largest attraction of two particles of diameter D at rest over their weight: with cohesion energy density k, "
     "contact area c R d (c = pi, 2 pi, pi/4 for sjkr, sjkr2, paper) and Hertz's repulsion, (c k R)^3/(6 E*^2 R m g); "
-    "with surface energy w 3/4 pi w R/(m g) for jkr, pi w R/(m g) for dmt, whatever the stiffness"};
+    "with surface energy w 3/4 pi w R/(m g) for jkr, pi w R/(m g) for dmt, whatever the stiffness",
+    "the powder has no cohesion"};
 
 /// The largest attraction of two equal spheres at rest, N; of cohesion by an area to first order in the overlap.
 [[nodiscard]] double pull_off_force(const dem::Material& material, double diameter);

@@ -15,7 +15,9 @@ constexpr double layer_thickness = 0.5;  // of the velocity profile, in diameter
 constexpr double relief_pitch = 0.25;    // in diameters
 constexpr double patch_side = 5;         // in diameters
 constexpr double most_bare = 0.5;        // share of the base beyond which what lies on it is no layer
-constexpr double behind_to = 15;         // of solid_behind, in diameters
+constexpr double densest = 0.64;         // random close packing of equal spheres (Scott & Kilgour 1969)
+constexpr double densest_of_unequal = 1 - (1 - densest) * (1 - densest);  // small ones in the pores (Furnas 1931)
+constexpr double behind_to = 15;                                          // of solid_behind, in diameters
 
 void record_known(const kit::Scalar& observable, Observations& into, double value) {
     if (!std::isnan(value)) observable.record(into, value);
@@ -136,6 +138,8 @@ LayerAnswer Experiment::layer_answer() const {
     const dem::State state = powder();
     const double gained = observables::solid_volume(state, from, to) - observables::solid_volume(bed_, from, to);
     answer.packing_fraction = gained / ((to - from) * study_.width * study_.gap);
+    // Of spheres that stick out over the gap, or fill what the layers below have left open.
+    if (answer.packing_fraction > (study_.sizes.equal() ? densest : densest_of_unequal)) answer.packing_fraction = nan;
     observables::Patches patches(from, to, study_.width, patch_side * study_.diameter);
     patches.add(state);
     patches.add(bed_, -1);

@@ -16,14 +16,17 @@ inline constexpr kit::Scalar mfr{
 inline constexpr kit::Scalar mfr_window{
     "mfr_window", "1",
     "mass between the planes of rear and front face and below the gap over that of the slot filled "
-    "solid, W gap thickness rho; mean of the samples from t1 to t2; of a blade only"};
+    "solid, W gap thickness rho; mean of the samples from t1 to t2; of a blade only",
+    "the tool is no blade"};
 inline constexpr kit::Scalar mfr_thesis{
     "mfr_thesis", "s",
     "the same mass over W gap v rho, as eq. 15-17 of Wu (2020) are printed: mfr_window times "
-    "thickness/speed; of a blade only"};
+    "thickness/speed; of a blade only",
+    "the tool is no blade"};
 inline constexpr kit::Scalar mfr_standard_error{
     "mfr_standard_error", "1",
-    "standard error of mfr from the spread of 10 consecutive blocks of the flux; undefined where nothing passed"};
+    "standard error of mfr from the spread of 10 consecutive blocks of the flux; undefined where nothing passed",
+    "no particle passed the tool, or all blocks of the flux are too short"};
 inline constexpr kit::Scalar end_of_travel{"end_of_travel", "m", "travel of the tool when the sweep ended"};
 inline constexpr kit::Scalar max_overlap{
     "max_overlap", "1",
@@ -33,22 +36,34 @@ inline constexpr kit::Scalar packing_fraction{
     "volume of the spread particles over that of a layer as high as the gap, from where the "
     "edge was at t1 to one thickness behind a blade at the end, 5 D behind a roller's axis or the rear of a surface; "
     "of a further layer what the bed has gained; undefined, as are layer_roughness, empty_share and patch_sd, "
-    "where the tool did not get that far"};
+    "where the tool did not get that far, and above 0.64 (unequal spheres: 0.87), which is no packing: spheres that "
+    "stick out over the gap or fill hollows below",
+    "the rear of the tool did not get behind the part of the layer that is measured: lengthen travel or take a thinner "
+    "tool; or what it laid, over a layer as high as the gap, is more than a packing of such spheres holds"};
 inline constexpr kit::Scalar layer_roughness{
     "layer_roughness", "1",
     "root mean square deviation of the height of the spread layer's surface, seen from above "
-    "on a grid of D/4, over the diameter; undefined where empty_share is above one half: there is no layer"};
+    "on a grid of D/4, over the diameter; undefined where empty_share is above one half: there is no layer",
+    "the rear of the tool did not get behind the part of the layer that is measured: lengthen travel or take a thinner "
+    "tool; or empty_share is above one half"};
 inline constexpr kit::Scalar empty_share{"empty_share", "1",
-                                         "share of the same grid that no particle of the layer covers"};
-inline constexpr kit::Scalar patch_sd{"patch_sd", "1",
-                                      "standard deviation of the packing fraction over patches of the same layer, "
-                                      "squares of about 5 D: how uneven it is; "
-                                      "undefined of fewer than four"};
+                                         "share of the same grid that no particle of the layer covers",
+                                         "the rear of the tool did not get behind the part of the layer that is "
+                                         "measured: lengthen travel or take a thinner tool"};
+inline constexpr kit::Scalar patch_sd{
+    "patch_sd", "1",
+    "standard deviation of the packing fraction over patches of the same layer, "
+    "squares of about 5 D: how uneven it is; "
+    "undefined of fewer than four",
+    "the rear of the tool did not get behind the part of the layer that is measured: lengthen travel or take a thinner "
+    "tool; or the measured part has fewer than four patches"};
 inline constexpr kit::Scalar solid_behind{
     "solid_behind", "1",
     "volume of the particles with centres 5 to 15 D behind the tool (the rear face of a blade, the axis of a roller, "
     "the rearmost point of a surface) and below the gap, over that volume; mean of the samples from where these lie "
-    "behind the place of the edge at t1"};
+    "behind the place of the edge at t1",
+    "the rear of the tool did not get behind the part of the layer that is measured: lengthen travel or take a thinner "
+    "tool"};
 inline constexpr kit::Scalar tool_force{
     "tool_force", "N/m",
     "force of the powder on the tool against its travel, over the width W; mean of the samples from t1 to t2"};
@@ -67,7 +82,8 @@ inline constexpr kit::Scalar vx_unevenness{
     "vx_unevenness", "1",
     "root mean square second difference of vx_profile from layer to layer, over the speed of the tool: 0 for a "
     "profile that rises evenly; undefined where no three neighbouring layers hold a "
-    "particle per sample on average"};
+    "particle per sample on average",
+    "no three neighbouring layers ahead of the tool hold a particle per sample"};
 inline constexpr kit::Series flux_series{"flux_series", "1",
                                          "mfr of each 1/140 of the travel; time since the tool started",
                                          "time since the tool started (s)"};

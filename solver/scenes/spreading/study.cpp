@@ -56,7 +56,7 @@ void lay_out(Study& s) {
 }
 
 /// Where its planes are.
-void set_up_tool(Study& s, const Inputs& in, const Files* files) {
+void set_up_tool(Study& s, const Inputs& in, const Files& files) {
     namespace ask = question;
     s.tool = ask::tool(in);
     switch (s.tool) {
@@ -76,10 +76,8 @@ void set_up_tool(Study& s, const Inputs& in, const Files* files) {
             break;
         case Tool::file:
             s.clearance = at_rest * s.diameter;
-            if (files == nullptr) break;  // as for an estimate: a plane
-            s.surface = fitted(kit::mesh_of(ask::tool.name, ask::tool.contents(in, *files), ask::tool_scale(in),
-                                            ask::tool_facet_angle(in)),
-                               s.width);
+            s.surface =
+                tool_surface(ask::tool.contents(in, files), ask::tool_scale(in), ask::tool_facet_angle(in), s.width);
             s.ahead = s.surface.high()[0];
             s.behind = -s.surface.low()[0];
             break;
@@ -159,7 +157,7 @@ double Study::start_of_platform() const {
     return first_gate;
 }
 
-Study study_of(const Inputs& in, const Files* files) {
+Study study_of(const Inputs& in, const Files& files) {
     namespace ask = question;
     Study s;
     s.material = ask::powder.material(in);

@@ -70,9 +70,8 @@ struct Study {
 /// Of the layer before the tool moves, m.
 [[nodiscard]] double layer_length(const Study& study);
 
-/// Throws std::invalid_argument with one sentence where the inputs are impossible together. Without files, as for an
-/// estimate, sizes in a file are taken as all equal.
-[[nodiscard]] Study study_of(const Inputs& inputs, const Files* files = nullptr);
+/// Throws std::invalid_argument with one sentence where the inputs are impossible together or a file is not given.
+[[nodiscard]] Study study_of(const Inputs& inputs, const Files& files);
 
 [[nodiscard]] double sphere_volume(double diameter);
 /// The seed of the shared bed of that number.

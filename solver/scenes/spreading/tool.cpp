@@ -2,11 +2,8 @@
 
 #include "solver/scenes/spreading/study.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <stdexcept>
-#include <string>
+#include <utility>
+#include <vector>
 
 namespace grainsweep::spreading {
 namespace {
@@ -14,7 +11,6 @@ namespace {
 using geometry::operator+;
 
 constexpr double blade_top = 0.150;  // m: nothing jumps over it
-constexpr double alike = 1e-6;       // lengths that differ by less than this share of the surface's extent
 
 std::vector<geometry::Motion> vibrating(const Study& s) {
     if (!(s.vibration_frequency > 0)) return {};
@@ -41,37 +37,7 @@ dem::Wall surface(const Study& s, double level) {
     return {geometry::Mesh(std::move(placed), s.surface.one_contact_angle()), motions};
 }
 
-void require_length(double length, double width) {
-    char sentence[240];
-    std::snprintf(sentence, sizeof sentence,
-                  "tool: the surface is %.4g m long along y, the layer %.4g m wide: a tool must span the width of the "
-                  "layer, so lengthen it, correct tool_scale or make width smaller",
-                  length, width);
-    if (length < width) throw std::invalid_argument(sentence);
-    std::snprintf(sentence, sizeof sentence,
-                  "tool: the surface is %.4g m long along y and not the same all along, and the layer repeats itself "
-                  "after %.4g m: make it just as long, or a profile with all corners at its two ends",
-                  length, width);
-    throw std::invalid_argument(sentence);
-}
-
 }  // namespace
-
-geometry::Mesh fitted(const geometry::Mesh& given, double width) {
-    geometry::TriangleSurface surface = given.surface();
-    const double low = given.low()[1], high = given.high()[1];
-    const double near = alike * std::max(high - low, width);
-    if (high - low < width - near) require_length(high - low, width);
-    if (high - low > width + near)
-        for (const auto& corner : surface.corners)
-            if (corner[1] > low + near && corner[1] < high - near) require_length(high - low, width);
-    double edge = given.low()[0];
-    for (const auto& corner : surface.corners)
-        if (corner[2] <= given.low()[2] + near) edge = std::max(edge, corner[0]);
-    for (auto& corner : surface.corners)
-        corner = {corner[0] - edge, width * (corner[1] - low) / (high - low), corner[2] - given.low()[2]};
-    return geometry::Mesh(std::move(surface), given.one_contact_angle());
-}
 
 dem::Wall tool_wall(const Study& s, double level) {
     switch (s.tool) {

@@ -11,6 +11,8 @@
 #include "solver/dem/walls/wall.hpp"
 #include "solver/geometry/mesh.hpp"
 
+#include <string_view>
+
 namespace grainsweep::spreading {
 
 enum class Tool { blade, roller, file };
@@ -20,6 +22,10 @@ struct Study;
 
 /// The tool as its wall, over a level, m.
 [[nodiscard]] dem::Wall tool_wall(const Study& study, double level);
+
+/// The surface in an STL file, fitted(). Kept for the next call that asks for the same. Throws std::invalid_argument
+/// with one sentence where it is no tool: larger than half a metre, with stray triangles, or not fitting.
+[[nodiscard]] geometry::Mesh tool_surface(std::string_view stl, double scale, double facet_angle, double width);
 
 /// A surface from y = 0 to `width`, its lowest point at z = 0 and x = 0. Throws std::invalid_argument with one sentence
 /// where it is shorter than the width, or longer and no profile.

@@ -1,6 +1,7 @@
 #include "solver/scenes/spreading/warnings.hpp"
 
 #include "solver/dem/material.hpp"
+#include "solver/scenes/kit/rare_sizes.hpp"
 #include "solver/scenes/kit/sentence.hpp"
 #include "solver/scenes/spreading/study.hpp"
 
@@ -18,6 +19,7 @@ constexpr double narrowest = 5;           // largest diameters between a particl
 constexpr double fewest_particles = 200;  // of which a layer's statistics can be formed
 constexpr double largest_overlap = 0.1;   // of a diameter: beyond it contact laws of small overlaps say nothing
 constexpr double steps_per_vibration = 20;
+constexpr double thickest = 0.1;  // m, of a usual tool along the travel
 
 /// Largest overlap of two equal spheres that meet at the speed, over their diameter (Hertz 1882):
 /// d = (15 m* v^2/(16 E* sqrt(R*)))^(2/5).
@@ -82,12 +84,20 @@ void warn_of_layer(std::vector<Warning>& warnings, const Study& s, double layer)
 
 void warn_of_tool(std::vector<Warning>& warnings, const Study& s) {
     const double measured = (1 - measured_from) * s.travel;
-    if (s.tool == Tool::blade && s.blade_thickness >= measured)
+    if (s.behind + s.clearance >= measured)
         warnings.push_back(
-            {"blade thicker than the measured travel",
-             sentence("blade_thickness of %.3g m leaves no spread layer behind the blade within the measured "
-                      "travel of %.3g m: packing_fraction, layer_roughness and empty_share describe nothing",
-                      s.blade_thickness, measured)});
+            {s.tool == Tool::blade ? "blade thicker than the measured travel" : "tool thicker than the measured travel",
+             sentence(
+                 "the tool reaches %.3g m behind its edge, and the layer is at rest from %.3g m behind that on: no "
+                 "spread layer is left within the measured travel of %.3g m, and packing_fraction, "
+                 "layer_roughness, empty_share and patch_sd have no value",
+                 s.behind, s.clearance, measured)});
+    const double thickness = s.ahead + s.behind;
+    if (s.tool == Tool::file && (thickness > thickest || thickness < s.diameter))
+        warnings.push_back(
+            {"size of the tool", sentence("the surface is %.3g m thick along the travel (%.3g diameters) and %.3g m "
+                                          "high: is tool_scale the file's unit of length?",
+                                          thickness, thickness / s.diameter, s.surface.high()[2])});
     if (s.travel < 10 * s.diameter)
         warnings.push_back(
             {"short travel", sentence("a travel of %.3g m is %.2g diameters: the flux does not become steady", s.travel,
@@ -111,13 +121,14 @@ void warn_of_tool(std::vector<Warning>& warnings, const Study& s) {
 
 }  // namespace
 
-std::vector<Warning> warnings_of(const Inputs& inputs) {
-    const Study s = study_of(inputs);
+std::vector<Warning> warnings_of(const Inputs& inputs, const Files& files) {
+    const Study s = study_of(inputs, files);
     const double layer = s.layer_area / (settled_fraction * layer_length(s));
     std::vector<Warning> warnings;
     warn_of_gap(warnings, s, layer);
     warn_of_layer(warnings, s, layer);
     warn_of_tool(warnings, s);
+    kit::warn_of_rare_sizes(warnings, s.sizes, s.diameter, static_cast<double>(s.particles));
     return warnings;
 }
 

@@ -69,7 +69,7 @@ void warn_of_particles(std::vector<Warning>& warnings, const Question& q) {
 
 }  // namespace
 
-std::vector<Warning> warnings_of(const Inputs& inputs) {
+std::vector<Warning> warnings_of(const Inputs& inputs, const Files&) {
     const Question question(inputs);
     std::vector<Warning> warnings;
     warn_of_flow(warnings, question);

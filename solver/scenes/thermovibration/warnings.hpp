@@ -8,6 +8,6 @@
 namespace grainsweep::thermovibration {
 
 /// At most one warning of a kind. Throws std::invalid_argument where the inputs are impossible together.
-[[nodiscard]] std::vector<Warning> warnings_of(const Inputs& inputs);
+[[nodiscard]] std::vector<Warning> warnings_of(const Inputs& inputs, const Files&);
 
 }  // namespace grainsweep::thermovibration

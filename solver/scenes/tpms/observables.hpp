@@ -10,16 +10,20 @@ inline constexpr std::string_view time = "time (sqrt(2 L/g))";
 inline constexpr kit::Scalar retention{"retention", "1",
                                        "mobile centres in the cell at the end over those at the start"};
 inline constexpr kit::Scalar time_to_half{"time_to_half", "sqrt(2 L/g)",
-                                          "when half has left; undefined if it never does"};
+                                          "when half has left; undefined if it never does",
+                                          "less than half has left until the end"};
 inline constexpr kit::Scalar time_to_tenth{"time_to_tenth", "sqrt(2 L/g)",
-                                           "when a tenth is left; undefined if it never is"};
+                                           "when a tenth is left; undefined if it never is",
+                                           "more than a tenth is left at the end"};
 inline constexpr kit::Scalar discharge_rate{
     "discharge_rate", "1/sqrt(2 L/g)",
     "share of the powder that leaves per sqrt(2 L/g) while the second quarter leaves; undefined if half never "
-    "does"};
+    "does",
+    "less than half has left until the end"};
 inline constexpr kit::Scalar beverloo_rate{
     "beverloo_rate", "1/sqrt(2 L/g)",
-    "the same by Beverloo's law for the outlet and the packing's density; undefined in a tilted cell"};
+    "the same by Beverloo's law for the outlet and the packing's density; undefined in a tilted cell",
+    "the cell is tilted, or its outlet is closed"};
 inline constexpr kit::Scalar outlet_diameter{
     "outlet_diameter", "particle diameters",
     "largest round opening in the lower face between the surfaces of wall particles"};

@@ -106,7 +106,7 @@ void warn_of_motion(std::vector<Warning>& warnings, const TpmsQuestion& q) {
 
 }  // namespace
 
-std::vector<Warning> tpms_discharge_warnings(const Inputs& inputs) {
+std::vector<Warning> tpms_discharge_warnings(const Inputs& inputs, const Files&) {
     const TpmsQuestion question(inputs, 1);
     std::vector<Warning> warnings;
     warn_of_cell(warnings, question);

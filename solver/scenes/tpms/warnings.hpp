@@ -8,6 +8,6 @@
 namespace grainsweep {
 
 /// At most one warning of a kind. Throws std::invalid_argument where the inputs are impossible together.
-[[nodiscard]] std::vector<Warning> tpms_discharge_warnings(const Inputs& inputs);
+[[nodiscard]] std::vector<Warning> tpms_discharge_warnings(const Inputs& inputs, const Files&);
 
 }  // namespace grainsweep
