@@ -227,13 +227,20 @@ struct Arguments {
 /// Columns of a query that are named as a scalar of a scene, and their rows without a value.
 class Gaps {
 public:
-    explicit Gaps(const Store& archive) : campaigns_(archive.campaigns()) {}
+    /// Reads the scenes as `query` reads everything, without checking.
+    Gaps(const Store& archive, const Store::QueryLimits& limits) {
+        archive.query(
+            "SELECT DISTINCT scene FROM campaign", limits, [](const auto&) {},
+            [&](const auto& row) {
+                if (const auto* scene = std::get_if<std::string>(&row.front())) scenes_.push_back(*scene);
+            });
+    }
 
     void begin(const std::vector<std::string>& columns) {
         for (std::size_t k = 0; k < columns.size(); ++k) {
             if (columns[k] == "outcome") outcome_ = k;
-            for (const auto& campaign : campaigns_)
-                if (std::string why = campaign::why_absent(campaign.scene, columns[k]); !why.empty()) {
+            for (const auto& scene : scenes_)
+                if (std::string why = campaign::why_absent(scene, columns[k]); !why.empty()) {
                     gaps_.push_back({k, columns[k], std::move(why), 0});
                     break;
                 }
@@ -259,7 +266,7 @@ private:
         std::string name, why;
         std::int64_t rows;
     };
-    std::vector<store::CampaignRecord> campaigns_;
+    std::vector<std::string> scenes_;
     std::vector<Gap> gaps_;
     std::optional<std::size_t> outcome_;
     std::int64_t rows_ = 0;
@@ -272,7 +279,7 @@ int query(const Arguments& asked, double seconds, Format format) {
     const Store::QueryLimits limits{seconds, most_memory};
     const HardStop stop(seconds, fmt::format("SQL: it takes too long (limits: {} s of processor time, {} MiB).",
                                              campaign::shortest(seconds), most_memory >> 20U));
-    Gaps gaps(archive);
+    Gaps gaps(archive, limits);
     if (format == Format::text) {  // columns are aligned over all rows
         Table table;
         archive.query(
@@ -323,7 +330,8 @@ std::vector<Command> archive_commands() {
              return [arguments, &format] { return explain(arguments->database, arguments->text, format); };
          },
          false},
-        {"replay", "computes a stored case again in this process and compares; of a program, it runs the stored command",
+        {"replay",
+         "computes a stored case again in this process and compares; of a program, it runs the stored command",
          [](Parser& parser, const Format& format) -> Action {
              const auto request = std::make_shared<ReplayRequest>();
              parser.add_option("DB", request->database, "database")->required();
