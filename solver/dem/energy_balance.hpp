@@ -1,7 +1,7 @@
 // Energy that contacts create, found by checks between steps.
 //
 //     balance    B = kinetic + stored + potential energy - work of walls and shaking: contacts store or dissipate
-//     unsound    B - B_low > 0.2 (A + |W|)
+//     unsound    B - B_low > 0.5 (A + |W|)
 //
 // B_low is the lowest balance of the last energy_window steps, or up to twice as many. A is the largest energy in
 // motion and in contacts at any check since the start: the motion of one moment vanishes at the top of a bounce. W is

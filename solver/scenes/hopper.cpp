@@ -14,19 +14,38 @@
 #include "solver/observables/beverloo.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace grainsweep {
 namespace {
 
-/// Half of the particles on average, until Beverloo's law has let out what is asked for, or to the end.
+constexpr double slope = 0.47;   // of what stays on a flat floor, 25 degrees
+constexpr double packed = 0.57;  // solid fraction
+constexpr double trickling = 4;  // quiet times from the end of the flow to its last particle
+
+/// Particles that stay on the floor about the opening.
+double staying(const hopper::Study& s) {
+    if (s.conical) return 0;
+    const double a = s.opening / 2, r = s.half_width;
+    const double volume = s.slot ? slope * (r - a) * (r - a) * s.slot_length
+                                 : 2 * std::numbers::pi * slope * (r * r * r / 3 - a * r * r / 2 + a * a * a / 6);
+    const double one = kit::sphere_volume(s.diameter) * s.sizes.moment(3);
+    return std::min(static_cast<double>(s.particles), packed * volume / one);
+}
+
+/// Beverloo's law lets out what is asked for or can leave; then single particles follow until the flow has ceased.
 CostEstimate cost_of_discharge(const Inputs& inputs, const Files& files) {
     const auto s = hopper::study_of(inputs, files);
     const double n = static_cast<double>(s.particles);
-    const double rate = observables::beverloo_rate(s.opening, s.diameter, 0.57, s.gravity);
-    const double end = s.time_of_frame(s.frames - 1);
-    const double flow = rate > 0 ? std::min(end, 1.2 * s.stop_share * n / rate) : std::min(end, 2 * s.quiet_time());
-    const double steps = static_cast<double>(s.settle_steps) + flow / s.time_step * (1 - 0.5 * s.stop_share);
-    return kit::estimate(hopper::question::powder.method(inputs), n, std::max(steps, 1.0));
+    const double mean = std::cbrt(s.sizes.moment(3)) * s.diameter;
+    const double rate = observables::beverloo_rate(s.opening, mean, packed, s.gravity);
+    const double end = s.time_of_frame(s.frames - 1), stay = rate > 0 ? staying(s) : n;
+    const double leave = std::min(s.stop_share * n, n - stay);
+    const double flow = rate > 0 ? std::min(end, 1.2 * leave / rate) : 0;
+    const double tail = s.stop_share * n > n - stay ? std::min(end - flow, trickling * s.quiet_time()) : 0;
+    const double work = static_cast<double>(s.settle_steps) * n + (flow * (n - leave / 2) + tail * stay) / s.time_step;
+    return kit::estimate(hopper::question::powder.method(inputs), n, std::max(work / n, 1.0));
 }
 
 }  // namespace

@@ -316,10 +316,12 @@ CostEstimate cost_of_cell(const Inputs& inputs, const Files& files) {
     const double steps = question.end_time * question.free_fall_time() / question.time_step;
     const double cohesive =
         std::min(1.0, question.material.cohesion / 35e3 + (question.material.surface_energy > 0 ? 1 : 0));
-    const double mobile = kept_share(question) * spheres;
+    constexpr double emptying = 2.4;  // sqrt(2 L/g), in which a cell without cohesion empties by a factor of e
+    const double left = emptying / question.end_time * (1 - std::exp(-question.end_time / emptying));
+    const double mobile = kept_share(question) * spheres * std::min(0.95, left + 0.5 * cohesive);
     dem::Method method;
     method.precision = question.precision;
-    auto estimate = kit::estimate(method, mobile * (0.25 + 0.5 * cohesive), steps);
+    auto estimate = kit::estimate(method, mobile, steps);
     const bool mixed = question.precision == dem::Method::Precision::mixed;
     estimate.seconds = estimate.particle_steps * (mixed ? 25e-9 : 150e-9) + 4e-5 * spheres;
     estimate.bytes = kit::estimate(method, spheres, 0).bytes;
