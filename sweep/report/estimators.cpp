@@ -87,11 +87,11 @@ std::string key(stats::Statistic statistic) {
 }
 
 /// Of which population both estimates are, where some cases have no value.
-std::string population_line(const stats::AssistedMoments& assisted) {
+std::string population_line(const Estimators& estimators) {
     return fmt::format(
         "{} of {} cases have no value: the estimates with a model are of the whole box, extrapolated into the settings "
         "that failed; the plain ones are of the cases that answer",
-        assisted.excluded, assisted.excluded + assisted.cases);
+        estimators.without_value, estimators.without_value + estimators.assisted->cases);
 }
 
 }  // namespace
@@ -144,6 +144,7 @@ Estimators estimators_of(const store::Store& store, const Responses& responses, 
     }
     found.assisted = std::get<stats::AssistedMoments>(std::move(answer));
     found.scatter_from = noise.from;
+    found.without_value = responses.without_value(response);
     return found;
 }
 
@@ -172,7 +173,7 @@ std::vector<std::string> estimator_lines(const Estimators& estimators) {
     if (!estimators.scatter_from.empty())
         lines.push_back(fmt::format("scatter of single runs, by {}: {:.2g} % of the variance", estimators.scatter_from,
                                     100 * assisted.budget[0].scatter));
-    if (assisted.excluded > 0) lines.push_back(population_line(assisted));
+    if (estimators.without_value > 0) lines.push_back(population_line(estimators));
     if (!assisted.remark.empty()) lines.push_back(assisted.remark);
     return lines;
 }
@@ -202,7 +203,7 @@ Json estimators_json(const History& history, const Estimators& estimators) {
     }
     value["model_error"] = json_number(assisted.model_error);
     value["note"] = assisted.remark;
-    if (assisted.excluded > 0) value["population"] = population_line(assisted);
+    if (estimators.without_value > 0) value["population"] = population_line(estimators);
     if (!scatter_known) return value;
     value["scatter_from"] = estimators.scatter_from;
     const auto share = [&](std::size_t p) {

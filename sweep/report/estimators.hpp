@@ -18,6 +18,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,7 +29,8 @@ struct Estimators {
     std::optional<stats::AssistedMoments> assisted;  ///< none: refused
     std::string refused;                             ///< why: one sentence without a full stop
     std::vector<std::string> features;
-    std::string scatter_from;  ///< "replicates" or the observable that states it; empty: unknown
+    std::size_t without_value = 0;  ///< settled cases
+    std::string scatter_from;       ///< "replicates" or the observable that states it; empty: unknown
 };
 
 /// Throws WrongQuestion where a feature of the campaign file cannot be evaluated.

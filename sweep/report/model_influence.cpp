@@ -79,6 +79,7 @@ ModelInfluence model_influence_of(const Responses& responses, const ResponseColu
         return found;
     }
     found.model = std::get<ObservableModel>(std::move(learned));
+    found.without_value = responses.without_value(response);
     found.indices = stats::model_indices(found.model->model, varied.size(), groups_of(responses, rows),
                                          map_of(*found.model, cases.factors, varied));
     return found;
@@ -115,11 +116,11 @@ std::vector<std::string> model_influence_lines(const ModelInfluence& influence) 
         "shares of the variance of the mean response, by a model of {} cases with a leave-one-out error of {:.3f} "
         "standard deviations; {:.1f} % of the variance of single runs is scatter",
         quality.rests_on, quality.leave_one_out_error, 100 * quality.noise_share));
-    if (quality.excluded > 0)
+    if (influence.without_value > 0)
         lines.push_back(
             fmt::format("{} of {} cases have no value: the shares by the model are of the whole box, extrapolated into "
                         "the settings that failed",
-                        quality.excluded, quality.excluded + quality.cases));
+                        influence.without_value, influence.without_value + quality.cases));
     for (const auto& note : influence.model->notes) lines.push_back(note);
     return lines;
 }

@@ -13,6 +13,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,7 +24,8 @@ struct ModelInfluence {
     std::vector<std::string> factors;            ///< that vary, in the campaign's order
     std::optional<stats::ModelIndices> indices;  ///< none: refused
     std::optional<ObservableModel> model;
-    std::string refused;  ///< why: one sentence without a full stop
+    std::size_t without_value = 0;  ///< settled cases
+    std::string refused;            ///< why: one sentence without a full stop
 };
 
 /// Throws WrongQuestion where a feature of the campaign file cannot be evaluated.

@@ -206,6 +206,11 @@ double FactorColumn::coordinate(std::size_t row) const {
     return log ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
 }
 
+std::size_t Responses::without_value(const ResponseColumn& response) const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(judged(response), [](double x) { return !std::isfinite(x); }));
+}
+
 std::int64_t Responses::counted_points() const {
     if (ordered_sample()) return settled_points;
     const auto judged = std::span(points).first(settled);

@@ -68,6 +68,8 @@ struct Responses {
     [[nodiscard]] std::span<const double> judged(const ResponseColumn& response) const {
         return std::span(response.values).first(settled);
     }
+    /// Settled rows without a value.
+    [[nodiscard]] std::size_t without_value(const ResponseColumn& response) const;
     /// Rows with a final outcome, wherever they stand.
     [[nodiscard]] std::size_t finished() const;
     /// Every value there is: the judged ones and, unless the campaign stopped, those of finished cases behind one that
