@@ -89,7 +89,11 @@ std::string verdict_of(const stats::Checkpoint& check, const stats::ConvergenceS
             if (!(measure < settings.tolerance)) continue;  // under any_change one is enough
             text += fmt::format("{}{} {}", text.empty() ? "" : ", ", measure_name(gate, settings), percent(measure));
         }
-        return fmt::format("{} < {}", text, percent(settings.tolerance));
+        text = fmt::format("{} < {}", text, percent(settings.tolerance));
+        if (settings.rule == ConvergenceRule::assisted && check.excluded > 0)
+            text += fmt::format(", of the whole box, extrapolated into the settings of {} cases without a value",
+                                check.excluded);
+        return text;
     }
     if (settings.rule == ConvergenceRule::assisted && std::isnan(check.of(settings.gates.front()).measure))
         return fmt::format("nothing is decided at {} points: {}", check.points,
