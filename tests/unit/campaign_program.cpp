@@ -87,9 +87,9 @@ TEST(ProgramSection, IsReadAndMadeAScene) {
 TEST(ProgramDefinition, FromElsewhereIsRefusedByTheRulesOfACampaignFile) {
     const Beside beside;
     const auto campaign = parse_campaign(sound_file().dump(), beside.path());
-    const auto sound = json::parse(program_text(*known_program(campaign.scene().name)));
+    const auto as_written = json::parse(program_text(*known_program(campaign.scene().name)));
     const auto refused = [&](const json& patch) -> std::string {
-        json altered = sound;
+        json altered = as_written;
         altered.merge_patch(patch);
         try {
             (void)program_in(altered.dump());

@@ -1,6 +1,5 @@
 #include "tests/support/ask_design.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -84,8 +83,8 @@ TEST(MorrisDesign, LevelsThatNoTrajectoryMeetsAreRefused) {
         }
         return {};
     };
-    EXPECT_THAT(said(9, 3), ::testing::HasSubstr("trajectories: 3 of them run only "));
-    EXPECT_THAT(said(9, 3), ::testing::HasSubstr(" of the 9 levels of factor 2; "));
+    EXPECT_NE(said(9, 3).find("trajectories: 3 of them run only "), std::string::npos);
+    EXPECT_NE(said(9, 3).find(" of the 9 levels of factor 2; "), std::string::npos);
     EXPECT_EQ(said(9, 9), "");
-    EXPECT_THAT(said(1, 9), ::testing::HasSubstr("factor 2 has one level"));
+    EXPECT_NE(said(1, 9).find("factor 2 has one level"), std::string::npos);
 }

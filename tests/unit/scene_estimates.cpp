@@ -17,13 +17,13 @@ using testing::ThrowsMessage;
 
 namespace {
 
-const std::string named = "file:" + std::string(32, '0') + ":/there";
+const std::string file_input = "file:" + std::string(32, '0') + ":/there";
 
 Inputs sized(const char* scene, double diameter) {
     Inputs inputs = find_scene(scene)->defaults();
     inputs["diameter"] = diameter;
     inputs["size_distribution"] = std::string("file");
-    inputs["size_file"] = named;
+    inputs["size_file"] = file_input;
     return inputs;
 }
 
@@ -61,7 +61,7 @@ std::vector<std::string> kinds(const Inputs& inputs, const Files& files) {
 
 Inputs with_tool(double scale) {
     Inputs inputs = find_scene("powder_spreading")->defaults();
-    inputs["tool"] = named;
+    inputs["tool"] = file_input;
     inputs["tool_scale"] = scale;
     return inputs;
 }
