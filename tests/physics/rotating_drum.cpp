@@ -184,12 +184,12 @@ TEST(RotatingDrum, CountsFollowFromTheFill) {
     EXPECT_THROW((void)make(inputs), std::invalid_argument);
 }
 
-TEST(RotatingDrum, APeriodOfThreeDiametersIsLongEnough) {
+TEST(RotatingDrum, APeriodOfTwoAndAHalfDiametersIsLongEnough) {
     auto inputs = small_drum();
     inputs["diameter"] = 0.0015;
     inputs["drum_diameter"] = 0.006;  // four, as narrow as drums may be
-    inputs["length"] = 0.0045;        // 3 * 0.0015 is greater by rounding
+    inputs["length"] = 0.00375;
     EXPECT_NO_THROW(make(inputs));
-    inputs["length"] = 0.00449;
+    inputs["length"] = 0.00374;
     EXPECT_THROW(make(inputs), std::invalid_argument);
 }

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace grainsweep;
@@ -78,12 +79,13 @@ TEST(SceneEstimates, CountWhatIsDrawnFromAFile) {
     const double more = 2 / (1 + 0.125);
     EXPECT_GT(half.particle_steps, 1.5 * more * one.particle_steps);
     EXPECT_LT(half.particle_steps, 2.1 * more * one.particle_steps);
-    for (const char* scene : {"hopper", "heap", "rotating_drum"}) {
+    // Steps are 2.5 times as many. A hopper holds 0.53 of the volume and is empty so much sooner: 1.33 times at least.
+    for (const auto& [scene, least] : {std::pair("hopper", 1.33), {"heap", 1.8}, {"rotating_drum", 1.8}}) {
         const auto& info = *find_scene(scene);
         Inputs inputs = sized(scene, 5e-3);
         const double coarse = info.estimate_cost(inputs, sizes("5e-3,1\n")).seconds;
         const double fine = info.estimate_cost(inputs, sizes("2e-3,0.5\n5e-3,0.5\n")).seconds;
-        EXPECT_GT(fine, 1.8 * coarse) << scene;
+        EXPECT_GT(fine, least * coarse) << scene;
     }
     EXPECT_THROW((void)spreading.estimate_cost(sized("powder_spreading", d), {}), std::invalid_argument);
 }
