@@ -1,6 +1,6 @@
 #!/bin/bash
 # Runs the suites that docs/reliability.md names and prints how often each misfortune was tried and how often the archive
-# held, as rows of Markdown; then how many tests passed. --long: also the programs that take hours (built on demand).
+# held, as rows of Markdown; then how many tests passed. long: also the programs that take hours (built on demand).
 # BUILD: the folder of the build, by default build.
 set -u
 cd "$(dirname "$0")/.."
@@ -19,7 +19,7 @@ run() {
 echo "| misfortune | tried | held |"
 echo "|---|---|---|"
 for kind in unit campaign stability; do run "$build/tests/test_$kind" "--gtest_filter=$filter"; done
-if [ "${1:-}" = --long ]; then
+if [ "${1:-}" = long ]; then
     cmake --build "$build" --target slow_faults slow_soak >/dev/null || exit 1
     run "$build/tests/slow_faults"
     GRAINSWEEP_SOAK_MINUTES=${GRAINSWEEP_SOAK_MINUTES:-60} run "$build/tests/slow_soak"

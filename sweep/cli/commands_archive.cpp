@@ -331,7 +331,7 @@ std::vector<Command> archive_commands() {
          },
          false},
         {"replay",
-         "computes a stored case again in this process and compares; of a program, it runs the stored command",
+         "computes a stored case again and compares; runs the stored command of a program",
          [](Parser& parser, const Format& format) -> Action {
              const auto request = std::make_shared<ReplayRequest>();
              parser.add_option("DB", request->database, "database")->required();
