@@ -28,11 +28,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iostream>
 #include <limits>
 #include <memory>
-#include <thread>
 #include <utility>
 
 namespace grainsweep::cli {
@@ -236,10 +234,6 @@ void say_first(ProgressLine& line, const campaign::Campaign& campaign, const cam
     if (const auto note = report::extent_note(record); !note.empty()) line.note("note: " + note);
 }
 
-}  // namespace
-
-namespace {
-
 void refuse_what_cannot_start(const campaign::Campaign& campaign, const RunRequest& request, const fs::path& database) {
     if (request.calibrates && campaign.design != "calibration")
         throw campaign::wrong_question(
@@ -357,8 +351,7 @@ private:
                                       walltime_);
         ending_ = scheduler.run();
         tally_ = plan.tally();
-        const bool judged_anew = judge_ && stopped_before_ && judge_->judged_points() >= *stopped_before_;
-        if (judged_anew && !judge_->converged_at())  // by an older version's rule
+        if (judge_ && stopped_before_ && judge_->overturns(*stopped_before_))
             store_->group([&] { store_->stop(campaign_.name, std::nullopt); });
     }
     void compute() {

@@ -386,15 +386,13 @@ void write_page(std::ostream& out, std::span<const PageSource> sources, std::spa
                 const PageModels& models) {
     const auto files = page_files();
     const auto data = safe_in_script(page_data(sources, models));
-    const auto film_text = film_elements(films);
     const auto program = enclosed(files.program);
-    const auto scripts = films.empty() ? script_sources({files.library, program})
-                                       : script_sources({files.library, program, film_script()});
+    const auto scripts = script_sources({files.library, program, film_script()});
     fill(out, files.skeleton,
          {{"scripts", scripts},
           {"style", files.style},
           {"library", files.library},
-          {"films", film_text},
+          {"films", film_elements(films)},
           {"data", data},
           {"program", program}});
 }

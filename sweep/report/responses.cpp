@@ -158,8 +158,7 @@ void bring_settled_forward(Responses& responses) {
     for (auto& place : responses.repeated) place.row = places[place.row];
 }
 
-/// Rows of cases that were read, by what makes two of them the same. Returns whether the case is a new one; else its
-/// place is kept among the repeated ones.
+/// Rows of cases, by key. A place whose case was read before becomes one of the repeated places.
 template <class Key>
 class FirstPlaces {
 public:

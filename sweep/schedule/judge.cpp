@@ -158,8 +158,8 @@ std::optional<std::int64_t> Judge::converged_at() const {
     return check == nullptr ? std::nullopt : std::optional(check->points);
 }
 
-std::int64_t Judge::judged_points() const {
-    return checkpoints().empty() ? 0 : checkpoints().back().points;
+bool Judge::overturns(std::int64_t stop) const {
+    return !converged_at() && !checkpoints().empty() && checkpoints().back().points >= stop;
 }
 
 std::span<const stats::Checkpoint> Judge::checkpoints() const {

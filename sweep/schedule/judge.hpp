@@ -48,8 +48,8 @@ public:
     /// Points of the prefix at which the statistics converged.
     [[nodiscard]] std::optional<std::int64_t> converged_at() const;
     [[nodiscard]] bool stops() const { return wanted_.stop; }
-    /// Points of the last check that was made; 0: none was.
-    [[nodiscard]] std::int64_t judged_points() const;
+    /// Whether checks have come past so many points without convergence: an earlier stop there was of another rule.
+    [[nodiscard]] bool overturns(std::int64_t stop) const;
     /// The last verdict in one line: what holds it back and how many more points it probably takes.
     [[nodiscard]] const std::string& verdict() const { return verdict_; }
 

@@ -64,8 +64,7 @@ struct Store::Impl {
     void require_in_place() const;
     /// Throws BrokenWorld naming the first damage among all that is data; checked once.
     void require_sound();
-    /// The same, of every row, whatever is remembered of the file. False where rows belong to no case, which nobody
-    /// reads.
+    /// The same, of every row, whatever is remembered of the file. False where rows belong to no case.
     [[nodiscard]] bool check_rows() const;
     /// The same for one case.
     void require_sound(std::int64_t key);

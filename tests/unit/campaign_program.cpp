@@ -193,7 +193,7 @@ TEST(ProgramSection, RefusesWithOneSentence) {
     EXPECT_NE(said_of(file, beside).find("'mu' must be a number from 0 to 2"), std::string::npos);
 }
 
-/// SQL has one name for `a` and `A`; a factor and an observable of one name are told apart by a suffix.
+/// SQL has one name for `a` and `A`. Suffixes distinguish a factor from an observable of the same name.
 TEST(ProgramSection, NamesThatDifferByCaseAreOne) {
     const Beside beside;
     const auto said = [&](const json& patch) {
