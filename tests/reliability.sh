@@ -6,7 +6,7 @@ set -u
 cd "$(dirname "$0")/.."
 build=${BUILD:-build}
 suites=$(sed -n 's/^|.*| \([A-Z][A-Za-z, ]*\) |$/\1/p' docs/reliability.md | tr -d ' ' | tr ',' '\n' | sort -u)
-filter=$(printf '%s.*:' $suites)
+filter=$(for suite in $suites; do printf '%s.*:*/%s.*:' "$suite" "$suite"; done)
 failed=0
 run() {
     local log
