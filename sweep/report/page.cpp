@@ -354,8 +354,7 @@ std::string safe_in_script(const Json& value) {
 namespace {
 
 std::string film_script() {
-    const Player with = player();
-    return std::string(with.program) + std::string(with.in_report);
+    return std::string(player().program) + std::string(player().in_report);
 }
 
 /// Films, each in a script element of its own, with the player; nothing where there is none.
@@ -387,7 +386,8 @@ void write_page(std::ostream& out, std::span<const PageSource> sources, std::spa
     const auto files = page_files();
     const auto data = safe_in_script(page_data(sources, models));
     const auto program = enclosed(files.program);
-    const auto scripts = script_sources({files.library, program, film_script()});
+    const auto scripts = films.empty() ? script_sources({files.library, program})
+                                       : script_sources({files.library, program, film_script()});
     fill(out, files.skeleton,
          {{"scripts", scripts},
           {"style", files.style},
