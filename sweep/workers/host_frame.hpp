@@ -1,6 +1,6 @@
-// What main program and host (host.hpp) write to each other, on one page. A frame is a line of words; where it has a
-// length, so many bytes and a line's end follow. SUM, the last word, is the CRC of cksum(1) over the line without it,
-// its end, and the bytes: an answer that changed on its way is no answer. Numbers of workers are the main program's and
+// What main program and host (host.hpp) write to each other, on one page. A frame is a line of words. A frame with a
+// length is followed by its bytes and a newline. SUM, the last word, is the CRC of cksum(1) over the line without SUM,
+// a newline, and the bytes. A frame with another CRC is refused. Numbers of workers are the main program's and
 // never used twice. What workers and main program say to each other (message.hpp) travels in pieces, as it comes out of
 // a pipe: the host knows no line of it.
 //
