@@ -3,6 +3,7 @@
 #include "solver/dem/limits.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -10,21 +11,22 @@ namespace grainsweep::dem {
 
 std::optional<std::string> EnergyBalance::flaw(const EnergyCheck& now) {
     if (const std::int64_t number = now.steps / energy_window; number != number_) {
-        lowest_[1] = number == number_ + 1 ? lowest_[0] : none;
-        lowest_[0] = none;
+        before_ = window_;
+        window_ = {};
         number_ = number;
     }
     active_ = std::max(active_, now.active);
-    const double gain = now.balance - std::min(lowest_[0], lowest_[1]);
+    const Lowest& low = window_.balance < before_.balance ? window_ : before_;
+    const double gain = now.balance - low.balance;
     std::optional<std::string> found;
-    if (!(gain <= largest_sound_energy_gain * (active_ + std::abs(now.walls))) && gain > -none) {
+    if (gain > largest_sound_energy_gain * (low.active + std::abs(now.walls))) {
         std::array<char, 160> text{};
         std::snprintf(text.data(), text.size(),
-                      "contacts created %.3g J of energy, %.3g times the largest motion so far; the fastest particle",
-                      gain, gain / active_);
+                      "contacts created %.3g J of energy, %.3g times the largest motion before; the fastest particle",
+                      gain, gain / low.active);
         found = text.data();
     }
-    lowest_[0] = std::min(lowest_[0], now.balance);
+    if (now.balance < window_.balance) window_ = {now.balance, active_};
     return found;
 }
 

@@ -66,10 +66,9 @@ Units draw_powder(Inputs& in, bool of_unequal, Draws& draw) {
     in["restitution"] = draw.once_in(4) ? 1.0 : draw.even(0.02, 1);
     in["friction"] = draw.once_in(4) ? 0.0 : draw.even(0, 2);
     in["rolling_friction"] = 0.0;
-    // The springs of epsd, not turned with their contact, spin clusters up without bound, whatever the step.
     if (std::get<double>(in["friction"]) > 0 && draw.once_in(2)) {
         in["rolling_friction"] = draw.even(0.01, 1);
-        in["rolling_law"] = std::string("cdt");
+        in["rolling_law"] = draw.word({"cdt", "epsd", "epsd_liggghts"});
     }
     in["precision"] = draw.word({"mixed", "mixed", "double"});
     if (of_unequal && draw.once_in(2)) {

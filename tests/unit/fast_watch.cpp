@@ -72,9 +72,9 @@ TEST(FastWatch, EnergyFromNowhereIsReportedAndEnergyOfWallsIsNot) {
     watch.set_limit(two.now(), {});
     std::int32_t particle = -1;
     EXPECT_EQ(watch.check(two.now(), particle), "");
-    two.motions[1].velocity = {0.2, 0, 0};
+    two.motions[1].velocity = {0.8, 0, 0};
     Watch pushed = watch;
-    pushed.add_wall_work(0.5 * (0.2 * 0.2 - 0.1 * 0.1) / std::pow(two.space.scale.speed(), 2));
+    pushed.add_wall_work(0.5 * (0.8 * 0.8 - 0.1 * 0.1) / std::pow(two.space.scale.speed(), 2));
     EXPECT_EQ(pushed.check(two.now(), particle), "");
     const std::string what = watch.check(two.now(), particle);
     EXPECT_NE(what.find("contacts created"), std::string::npos) << what;
@@ -93,8 +93,8 @@ TEST(FastWatch, LimitsTheSpeedByWhatTheCaseCanProduce) {
     EXPECT_NEAR(watch.speed_limit(), expected, 1e-9);
     EXPECT_FALSE(watch.too_fast(0.5 * expected / two.space.scale.speed()));
     EXPECT_TRUE(watch.too_fast(1.01 * expected / two.space.scale.speed()));
-    EXPECT_TRUE(watch.due(energy_interval));
-    EXPECT_FALSE(watch.due(energy_interval + 1));
+    EXPECT_TRUE(watch.due(energy_interval_of_few));
+    EXPECT_FALSE(watch.due(energy_interval_of_few + 1));
     Two around(true);
     Watch periodic(around.setup, around.space.scale);
     periodic.set_limit(around.now(), {});

@@ -8,7 +8,7 @@
 
 namespace grainsweep::dem::clear {
 
-inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'0005ULL;  // "grnscl", version 5
+inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'0006ULL;  // "grnscl", version 6
 
 template <class Laws, Needs case_needs>
 void ClearEngine<Laws, case_needs>::state(State& into) const {

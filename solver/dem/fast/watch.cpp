@@ -94,7 +94,8 @@ bool Watch::too_fast(double fastest_component) const {
 }
 
 bool Watch::due(std::int64_t steps) const {
-    return balanced_ && (steps % energy_interval == 0 || covered_ > quarter_period_);
+    const std::int64_t interval = spheres() > few_particles ? energy_interval : energy_interval_of_few;
+    return balanced_ && (steps % interval == 0 || covered_ > quarter_period_);
 }
 
 std::string Watch::check(const Moment& now, std::int32_t& particle) {

@@ -1,7 +1,8 @@
 // Checks of the mixed engine's speeds and energy, as of the clear one's (dem/limits.hpp).
 //
 // Energy minus the work of gravity and of moving walls must not grow: contacts store or dissipate. The sum is made in
-// double precision every energy_interval steps; a check costs about as much as seven steps. Work of gravity is that
+// double precision every energy_interval steps; a check costs about as much as seven steps, so many particles are
+// checked less often: their laws cannot spin all of them up at once. Work of gravity is that
 // over the displacements since the last check, which are known up to whole periods: checks come early enough that no
 // particle covers a quarter of a period between two of them where gravity acts along one. A vessel that is
 // shaken is not balanced, for the work of shaking would take the momentum of every step.
@@ -22,8 +23,9 @@
 
 namespace grainsweep::dem::fast {
 
-/// Steps between two checks of the energy.
-inline constexpr std::int64_t energy_interval = 1024;
+/// Steps between two checks of the energy, of few particles and of more.
+inline constexpr std::int64_t energy_interval_of_few = 128, energy_interval = 1024;
+inline constexpr std::size_t few_particles = 100;
 
 /// Input of a check: the state at a full step.
 struct Moment {
