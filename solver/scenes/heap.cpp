@@ -31,8 +31,8 @@ SceneInfo heap_scene() {
     };
     info.estimate_cost = [](const Inputs& inputs, const Files& files) {
         const auto s = heap::study_of(inputs, files);
-        return kit::estimate(heap::question::powder.method(inputs), static_cast<double>(s.particles),
-                             static_cast<double>(s.last_step), s.glued_spheres());
+        return kit::estimate(heap::question::powder.method(inputs), s.material, static_cast<double>(s.particles),
+                             s.steps_to_rest(), s.glued_spheres());
     };
     info.warnings = heap::warnings_of;
     info.proven_answer = [](const Inputs&) -> std::optional<ProvenAnswer> { return std::nullopt; };

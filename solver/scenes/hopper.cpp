@@ -45,7 +45,7 @@ CostEstimate cost_of_discharge(const Inputs& inputs, const Files& files) {
     const double flow = rate > 0 ? std::min(end, 1.2 * leave / rate) : 0;
     const double tail = s.stop_share * n > n - stay ? std::min(end - flow, trickling * s.quiet_time()) : 0;
     const double work = static_cast<double>(s.settle_steps) * n + (flow * (n - leave / 2) + tail * stay) / s.time_step;
-    return kit::estimate(hopper::question::powder.method(inputs), n, std::max(work / n, 1.0));
+    return kit::estimate(hopper::question::powder.method(inputs), s.material, n, std::max(work / n, 1.0));
 }
 
 }  // namespace

@@ -44,10 +44,10 @@ CostEstimate cost_of_spreading(const Inputs& inputs, const Files& files) {
                          (spreading::sphere_volume(s.diameter) * s.sizes.moment(3));
     const auto n = static_cast<double>(s.layers), supplied = static_cast<double>(s.particles);
     const double moved = n * (supplied + layer * (n - 1) / 2);
-    auto estimate = kit::estimate(method, moved, settle + sweep);
-    estimate.seconds = moved * (settling * settle + sweeping * sweep);
+    auto estimate = kit::estimate(method, s.material, moved, settle + sweep);
+    estimate.seconds = moved * (settling * settle + sweeping * sweep) * kit::slower_by_rolling(s.material);
     const double glued = static_cast<double>(spreading::glued_particles(s));
-    estimate.bytes = kit::estimate(method, supplied + layer * (n - 1), 0, glued).bytes;
+    estimate.bytes = kit::estimate(method, s.material, supplied + layer * (n - 1), 0, glued).bytes;
     return estimate;
 }
 

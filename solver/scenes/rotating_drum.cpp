@@ -33,7 +33,7 @@ SceneInfo rotating_drum_scene() {
     };
     info.estimate_cost = [](const Inputs& inputs, const Files& files) {
         const auto s = drum::study_of(inputs, files);
-        return kit::estimate(drum::question::powder.method(inputs), static_cast<double>(s.particles),
+        return kit::estimate(drum::question::powder.method(inputs), s.material, static_cast<double>(s.particles),
                              static_cast<double>(s.last_step()));
     };
     info.warnings = drum::warnings_of;

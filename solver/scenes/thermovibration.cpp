@@ -256,22 +256,22 @@ std::unique_ptr<Scene> make(const Inputs& inputs, std::uint64_t seed, Artefacts&
 // Of fields with their scratch, and of particles with their lists.
 constexpr double bytes_per_cell = 600, bytes_per_particle = 800;
 
-// Measured with bench_flow at 20^3, 28^3 and 40^3 with 3150 particles on an undisturbed core with AVX-512. At 40^3: 1.8
-// ms per fluid step, half of that on half the grid; 0.4 ms per sweep of the particles; 1 ms to spread their force on
-// the fluid; for their volume and contacts 0.9 ms more per 3150 particles, and 7 ms (ddpm) or 2.5 ms (cfd_dem) on the
+// Measured in campaigns at 16^3 and 28^3 with 500 and 3150 particles, one case on each core, with AVX-512. At 40^3: 2.9
+// ms per fluid step, half of that on half the grid; 0.64 ms per sweep of the particles; 1.3 ms to spread their force on
+// the fluid; for their volume and contacts 1.2 ms more per 3150 particles, and 7 ms (ddpm) or 4 ms (cfd_dem) on the
 // grid.
 double seconds_of_vibration(const Question& question) {
     const double size = static_cast<double>(question.cells) / 40;
     const double cube = size * size * size * (0.7 + 0.3 * size);
     const double cloud = static_cast<double>(question.particles) / 3150;
-    const double fluid_step = (question.mirrored() ? 0.9e-3 : 1.8e-3) * cube;
-    const double sweep = 0.4e-3 * cloud;
-    const double spreading = 1e-3 * cube + 0.1e-3 * cloud;
+    const double fluid_step = (question.mirrored() ? 1.45e-3 : 2.9e-3) * cube;
+    const double sweep = 0.64e-3 * cloud;
+    const double spreading = 1.3e-3 * cube + 0.13e-3 * cloud;
     const auto steps = static_cast<double>(question.total_steps());
     if (question.particles == 0) return steps * fluid_step;
     if (question.dense()) {
-        const double on_grid = (question.coupling == "cfd_dem" ? 2.5e-3 : 7e-3) * cube;
-        return steps * (fluid_step + sweep + spreading + 0.9e-3 * cloud + on_grid);
+        const double on_grid = (question.coupling == "cfd_dem" ? 4e-3 : 7e-3) * cube;
+        return steps * (fluid_step + sweep + spreading + 1.2e-3 * cloud + on_grid);
     }
     if (question.coupling == "two_way") return steps * (fluid_step + sweep + spreading);
     const bool carried = question.particle_start == "periodic_flow" && !question.steady_force();

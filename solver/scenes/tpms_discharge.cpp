@@ -321,10 +321,10 @@ CostEstimate cost_of_cell(const Inputs& inputs, const Files& files) {
     const double mobile = kept_share(question) * spheres * std::min(0.95, left + 0.5 * cohesive);
     dem::Method method;
     method.precision = question.precision;
-    auto estimate = kit::estimate(method, mobile, steps);
+    auto estimate = kit::estimate(method, question.material, mobile, steps);
     const bool mixed = question.precision == dem::Method::Precision::mixed;
-    estimate.seconds = estimate.particle_steps * (mixed ? 25e-9 : 150e-9) + 4e-5 * spheres;
-    estimate.bytes = kit::estimate(method, spheres, 0).bytes;
+    estimate.seconds = estimate.particle_steps * (mixed ? 28e-9 : 150e-9) + 4e-5 * spheres;
+    estimate.bytes = kit::estimate(method, question.material, spheres, 0).bytes;
     return estimate;
 }
 

@@ -21,6 +21,8 @@ constexpr double loose_fraction = 0.22;             // of a random filling, wher
 constexpr double start_speed = 0.2;                 // sqrt(g D), of the lattice
 constexpr double heap_fraction = 0.58;              // of the cone that sets the reach
 constexpr double flat_tangent = 0.268;              // of 15 degrees
+constexpr double usual_tangent = 0.3;               // of 17 degrees
+constexpr double rolling_out = 38;                  // sqrt(D/g), from the flow's end to rest: 27 to 44 in nine heaps
 constexpr double beyond_the_cone = 2.5;             // its radii
 constexpr double beyond_the_tube = 3;               // its radii
 constexpr double glued_share = 0.45;                // of the rough plate's area
@@ -65,6 +67,13 @@ double Study::reach() const {
 double Study::glued_spheres() const {
     const double share = rough_radius(*this) / (diameter / 2);
     return rough ? std::floor(glued_share * share * share) : 0;
+}
+
+double Study::steps_to_rest() const {
+    const double height =
+        std::cbrt(3 * solid_volume(*this) * usual_tangent * usual_tangent / (heap_fraction * std::numbers::pi));
+    const double time = height / lift_speed + rolling_out * std::sqrt(diameter / gravity);
+    return std::min(static_cast<double>(last_step), static_cast<double>(settle_steps) + time / time_step);
 }
 
 double Study::rest_speed() const {

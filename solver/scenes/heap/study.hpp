@@ -30,6 +30,7 @@ struct Study {
 
     [[nodiscard]] double reach() const;                 ///< half the side of the calculation, m
     [[nodiscard]] double rest_speed() const;            ///< below which powder is at rest, m/s
+    [[nodiscard]] double steps_to_rest() const;         ///< of a usual powder, an estimate
     [[nodiscard]] double glued_spheres() const;         ///< of the rough plate
     [[nodiscard]] double lower_end(double time) const;  ///< of the tube, since the start
 };

@@ -9,6 +9,8 @@ namespace grainsweep::kit {
 /// Of the filling, the engine, its lists and the contacts, in a bed with contacts everywhere.
 constexpr double bytes_per_sphere = 1500;
 
+namespace {
+
 double seconds_per_particle_step(const dem::Method& method) {
     if (method.precision == dem::Method::Precision::double_precision) return 110e-9;
     switch (dem::fast::best_path()) {
@@ -21,8 +23,15 @@ double seconds_per_particle_step(const dem::Method& method) {
     }
 }
 
-CostEstimate estimate(const dem::Method& method, double mobile, double steps, double frozen) {
-    return {.seconds = mobile * steps * seconds_per_particle_step(method),
+}  // namespace
+
+double slower_by_rolling(const dem::Material& material) {
+    return material.rolling_friction > 0 && material.rolling_law != dem::RollingLaw::cdt ? 1.4 : 1;
+}
+
+CostEstimate estimate(const dem::Method& method, const dem::Material& material, double mobile, double steps,
+                      double frozen) {
+    return {.seconds = mobile * steps * seconds_per_particle_step(method) * slower_by_rolling(material),
             .particle_steps = mobile * steps,
             .bytes = (mobile + frozen) * bytes_per_sphere};
 }

@@ -6,9 +6,11 @@
 
 namespace grainsweep::kit {
 
-[[nodiscard]] double seconds_per_particle_step(const dem::Method& method);
-/// Of a case with that many mobile and frozen spheres.
-[[nodiscard]] CostEstimate estimate(const dem::Method& method, double mobile, double steps, double frozen = 0);
+/// Returns how much longer a step takes where rolling springs are remembered.
+[[nodiscard]] double slower_by_rolling(const dem::Material& material);
+/// Returns the cost of a case of these mobile and frozen spheres.
+[[nodiscard]] CostEstimate estimate(const dem::Method& method, const dem::Material& material, double mobile,
+                                    double steps, double frozen = 0);
 
 /// Largest overlap of two equal spheres that meet at a speed, over their diameter (Hertz 1882):
 /// d = (15 m* v^2/(16 E* sqrt(R*)))^(2/5).
