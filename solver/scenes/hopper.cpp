@@ -20,9 +20,10 @@
 namespace grainsweep {
 namespace {
 
-constexpr double slope = 0.47;   // of what stays on a flat floor, 25 degrees
-constexpr double packed = 0.57;  // solid fraction
-constexpr double trickling = 4;  // quiet times from the end of the flow to its last particle
+constexpr double slope = 0.47;    // of what stays on a flat floor, 25 degrees
+constexpr double packed = 0.57;   // solid fraction
+constexpr double falling = 1.25;  // cost of a step: lists of falling particles are renewed more often
+constexpr double trickling = 4;   // quiet times from the end of the flow to its last particle
 
 /// Particles that stay on the floor about the opening.
 double staying(const hopper::Study& s) {
@@ -45,7 +46,9 @@ CostEstimate cost_of_discharge(const Inputs& inputs, const Files& files) {
     const double flow = rate > 0 ? std::min(end, 1.2 * leave / rate) : 0;
     const double tail = s.stop_share * n > n - stay ? std::min(end - flow, trickling * s.quiet_time()) : 0;
     const double work = static_cast<double>(s.settle_steps) * n + (flow * (n - leave / 2) + tail * stay) / s.time_step;
-    return kit::estimate(hopper::question::powder.method(inputs), s.material, n, std::max(work / n, 1.0));
+    auto estimate = kit::estimate(hopper::question::powder.method(inputs), s.material, n, std::max(work / n, 1.0));
+    estimate.seconds *= falling;
+    return estimate;
 }
 
 }  // namespace

@@ -323,7 +323,7 @@ CostEstimate cost_of_cell(const Inputs& inputs, const Files& files) {
     method.precision = question.precision;
     auto estimate = kit::estimate(method, question.material, mobile, steps);
     const bool mixed = question.precision == dem::Method::Precision::mixed;
-    estimate.seconds = estimate.particle_steps * (mixed ? 28e-9 : 150e-9) + 4e-5 * spheres;
+    estimate.seconds = estimate.particle_steps * (mixed ? 27e-9 : 150e-9) + 4e-5 * spheres;
     estimate.bytes = kit::estimate(method, question.material, spheres, 0).bytes;
     return estimate;
 }
