@@ -1,7 +1,7 @@
 // Energy that contacts create, found by checks between steps.
 //
 //     balance    B = kinetic + stored + potential energy - work of walls and shaking: contacts store or dissipate
-//     unsound    B - B_low > 20 (A + |W|)
+//     unsound    B - B_low > 15 (A + |W|)
 //
 // B_low is the lowest balance of this window of energy_window steps and the one before; checks that are further apart
 // have a window each. A is the largest energy in motion and in contacts until B_low was reached: the motion of one
