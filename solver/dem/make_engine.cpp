@@ -1,4 +1,4 @@
-#include "solver/dem/clear/make.hpp"
+#include "solver/dem/clear/engine.hpp"
 #include "solver/dem/engine.hpp"
 #include "solver/dem/fast/mixed_engine.hpp"
 

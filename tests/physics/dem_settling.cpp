@@ -6,8 +6,7 @@
 // radii, by default 1.) Walls forget at separation. What a pair remembers there thus depends on the skin; ours forgets
 // at separation, as LIGGGHTS does when it rebuilds at every step: then the engine as it is agrees to 4e-11
 // diameters at step 2000. To follow the default deck the comparison runs the engine with LIGGGHTS's memory and skin.
-#include "solver/dem/clear/checkpoint.hpp"
-#include "solver/dem/clear/stepping.hpp"
+#include "solver/dem/clear/engine.hpp"
 #include "solver/dem/engine.hpp"
 #include "solver/dem/laws/compiled.hpp"
 #include "tests/support/reference.hpp"
@@ -33,7 +32,7 @@ struct LastingMindlin : dem::Mindlin<Real> {
     using dem::Mindlin<Real>::Mindlin;
     static constexpr bool remembers_separation = true;
 };
-using LastingEngine = dem::clear::ClearEngine<dem::Contact<double, dem::Hertz, LastingMindlin>, particles::Needs{}>;
+using Lasting = dem::ContactOf<dem::Contact<double, dem::Hertz, LastingMindlin>>;
 
 dem::Setup mini_scene() {
     dem::Setup s;
@@ -85,7 +84,7 @@ TEST(DemSettling, FollowsLiggghtsParticleByParticle) {
     const auto table = tests::read_table(tests::reference("spreading/mini_settle.csv"));
     dem::Method method;
     method.skin = reference_skin;
-    LastingEngine engine(setup, method);
+    dem::clear::ClearEngine engine(setup, method, std::make_unique<Lasting>(setup.material), true);
     dem::State state;
     // A disturbance of 1e-16 m grows to 8e-13, 4e-12 and 2e-10 diameters in the reference itself; the bounds leave room
     // for another rounding order.

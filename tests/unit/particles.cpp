@@ -18,28 +18,6 @@ using namespace grainsweep::particles;
 
 namespace {
 
-template <class P>
-concept HasTorque = requires(P p) {
-    p.torque[0];
-};
-template <class P>
-concept HasRadius = requires(P p) {
-    p.radius[0];
-};
-template <class P>
-concept HasMobile = requires(P p) {
-    p.mobile[0];
-};
-
-constexpr Needs spinning{.spin = true, .sizes = false, .frozen = false};
-constexpr Needs sized{.spin = false, .sizes = true, .frozen = true};
-
-// Using a column that is not needed does not compile.
-static_assert(!HasTorque<Particles<Needs{}>> && !HasRadius<Particles<Needs{}>> && !HasMobile<Particles<Needs{}>>);
-static_assert(HasTorque<Particles<spinning>> && !HasRadius<Particles<spinning>>);
-static_assert(!HasTorque<Particles<sized>> && HasRadius<Particles<sized>> && HasMobile<Particles<sized>>);
-static_assert(sizeof(Particles<Needs{}>) < sizeof(Particles<spinning>));
-
 struct Cloud {
     Domain domain;
     double skin = 0;
@@ -144,18 +122,17 @@ TEST(PairMemory, FollowsItsPairAndTurnsWithIt) {
     NeighbourList old;
     old.build_by_brute_force(before, {0.5, {}}, 0.2, domain);
     ASSERT_EQ(old.size(), 3U);
-    PairMemory<3> memory;
-    memory.value = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
+    PairMemory memory({-1, -1, -1});
+    memory.value = {1, 2, 3, 4, 5, 6, 7, 8, 9};
     memory.live = {1, 1, 0};
     // 0 -> 2, 1 -> 1, 2 -> 0, 3 leaves.
     const std::vector<Vec3> after = {{2, 0, 0}, {1, 0, 0}, {0, 0, 0}};
     const std::vector<std::uint32_t> fresh_index = {2, 1, 0, gone};
     NeighbourList fresh;
     fresh.build_by_brute_force(after, {0.5, {}}, 0.2, domain);
-    memory.carry(old, fresh, fresh_index, {-1, -1, -1});
-    ASSERT_EQ(memory.value.size(), 2U);
-    EXPECT_EQ(memory.value[0], (Vec3{-4, -5, -6}));  // pair (0, 1) was (2, 1)
-    EXPECT_EQ(memory.value[1], (Vec3{-1, -2, -3}));  // pair (1, 2) was (1, 0)
+    memory.carry(old, fresh, fresh_index);
+    // Pair (0, 1) was (2, 1), pair (1, 2) was (1, 0).
+    EXPECT_EQ(memory.value, (std::vector<double>{-4, -5, -6, -1, -2, -3}));
     EXPECT_EQ(memory.live, (std::vector<std::uint8_t>{1, 1}));
 }
 
@@ -163,14 +140,13 @@ TEST(PairMemory, ExchangedParticlesFlipWhatIsMeasuredFromOneToTheOther) {
     const Domain domain{{-9, -9, -9}, {9, 9, 9}, {}};
     NeighbourList old;
     old.build_by_brute_force(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}}, {0.5, {}}, 0.2, domain);
-    PairMemory<4> memory;
-    memory.value = {{1, 2, 3, 4}};
+    PairMemory memory({-1, -1, -1, 1});
+    memory.value = {1, 2, 3, 4};
     memory.live = {1};
     NeighbourList fresh;
     fresh.build_by_brute_force(std::vector<Vec3>{{1, 0, 0}, {0, 0, 0}}, {0.5, {}}, 0.2, domain);
-    memory.carry(old, fresh, std::vector<std::uint32_t>{1, 0}, {-1, -1, -1, 1});
-    ASSERT_EQ(memory.value.size(), 1U);
-    EXPECT_EQ(memory.value[0], (std::array<double, 4>{-1, -2, -3, 4}));
+    memory.carry(old, fresh, std::vector<std::uint32_t>{1, 0});
+    EXPECT_EQ(memory.value, (std::vector<double>{-1, -2, -3, 4}));
 }
 
 TEST(Bytes, ReturnWhatWasWrittenAndRefuseLess) {

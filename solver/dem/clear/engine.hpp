@@ -1,4 +1,4 @@
-// The clear engine: double precision, one loop per idea, instantiated for the laws and columns a case needs.
+// The clear engine: double precision, one loop per idea.
 //
 //     v += dt/2 (f/m + g);  x += dt v;  w += dt/2 T/I;   f, T from (x, v, w);   v, w: second half     I = 2/5 m R^2
 //
@@ -12,40 +12,33 @@
 #include "solver/bytes.hpp"
 #include "solver/dem/energy_balance.hpp"
 #include "solver/dem/engine.hpp"
-#include "solver/dem/laws/contact.hpp"
+#include "solver/dem/laws/any_contact.hpp"
 #include "solver/dem/walls/moving_wall.hpp"
 #include "solver/geometry/domain.hpp"
 #include "solver/particles/neighbour_list.hpp"
 #include "solver/particles/pair_memory.hpp"
 #include "solver/particles/particles.hpp"
 
-#include <algorithm>
-
 namespace grainsweep::dem::clear {
 
-using particles::Needs;
-
 /// One wall, the particles that may touch it before the next rebuild, ascending, and its contacts.
-template <class Laws>
 struct WallContacts {
     MovingWall wall;
-    Laws laws;  // of its surface
+    std::unique_ptr<const AnyContact> laws;  // of its surface
     std::vector<std::uint32_t> near;
     double built = 0;  // wall time when they were listed, s
     geometry::Pose pose_when_built;
     // Of the last evaluation, in the order of `near`; several of one particle are told apart by their normals.
     std::vector<WallTouch> touches;
-    [[no_unique_address]] particles::Column<Laws::remembers, typename Laws::Memory> memory;
-    WallLoad load;  // about load_about
+    std::vector<double> memory;  // all components of a touch, then those of the next
+    WallLoad load;               // about load_about
     Vec3 load_about{};
 };
 
-template <class Laws, Needs case_needs>
 class ClearEngine final : public Engine {
 public:
-    static constexpr Needs needs{.spin = Laws::spin, .sizes = case_needs.sizes, .frozen = case_needs.frozen};
-
-    ClearEngine(const Setup& setup, const Method& method);
+    /// `equal`: all radii are the same, which shortens reduced masses and radii (to other last digits).
+    ClearEngine(const Setup& setup, const Method& method, std::unique_ptr<const AnyContact> laws, bool equal);
 
     void run(std::int64_t steps) override;
     void set_walls(std::vector<Wall> walls) override;
@@ -65,83 +58,49 @@ public:
     void restore(std::span<const std::byte> from) override;
 
 private:
-    using Memory = typename Laws::Memory;
-    using Contacts = WallContacts<Laws>;
+    using Contacts = WallContacts;
 
-    // One radius for all, or a column: the same words for both.
-    [[nodiscard]] double radius(std::size_t i) const {
-        if constexpr (needs.sizes) return p_.radius[i];
-        return radius_;
-    }
-    [[nodiscard]] bool mobile([[maybe_unused]] std::size_t i) const {
-        if constexpr (needs.frozen) return p_.mobile[i] != 0;
-        return true;
-    }
-    [[nodiscard]] std::size_t mobile_count() const {
-        if constexpr (needs.frozen) {
-            return static_cast<std::size_t>(
-                std::count_if(p_.mobile.begin(), p_.mobile.end(), [](char m) { return m != 0; }));
-        }
-        return p_.size();
-    }
+    [[nodiscard]] double radius(std::size_t i) const { return p_.radius[i]; }
+    [[nodiscard]] bool mobile(std::size_t i) const { return p_.inverse_mass[i] > 0; }
     /// 1/m of a mobile particle.
-    [[nodiscard]] double inverse_mass(std::size_t i) const {
-        if constexpr (needs.sizes) return p_.inverse_mass[i];
-        return inverse_mass_;
-    }
+    [[nodiscard]] double inverse_mass(std::size_t i) const { return p_.inverse_mass[i]; }
     /// m*; a frozen partner has infinite mass.
     [[nodiscard]] double reduced_mass(std::size_t i, std::size_t j) const {
-        if constexpr (needs.sizes) return 1 / (p_.inverse_mass[i] + p_.inverse_mass[j]);
-        if constexpr (needs.frozen) return p_.mobile[i] && p_.mobile[j] ? mass_ / 2 : mass_;
-        return mass_ / 2;
+        if (!equal_) return 1 / (p_.inverse_mass[i] + p_.inverse_mass[j]);
+        return mobile(i) && mobile(j) ? mass_ / 2 : mass_;
     }
-    [[nodiscard]] const Laws& laws_of([[maybe_unused]] std::size_t i, [[maybe_unused]] std::size_t j) const {
-        if constexpr (needs.frozen) return mobile(i) && mobile(j) ? laws_ : frozen_laws_;
-        return laws_;
+    [[nodiscard]] double effective_radius(std::size_t i, std::size_t j) const {
+        return equal_ ? radius(i) / 2 : radius(i) * radius(j) / (radius(i) + radius(j));
     }
     /// 1/(1/I_i + 1/I_j) about the contact; a frozen partner does not turn.
-    [[nodiscard]] double rolling_inertia(std::size_t i, std::size_t j) const requires(needs.sizes) {
+    [[nodiscard]] double rolling_inertia(std::size_t i, std::size_t j) const {
         const double ri = radius(i), rj = radius(j);
         return inertia_about_contact / (inverse_mass(i) / (ri * ri) + inverse_mass(j) / (rj * rj));
     }
-    [[nodiscard]] double effective_radius(std::size_t i, std::size_t j) const {
-        if constexpr (needs.sizes) return p_.radius[i] * p_.radius[j] / (p_.radius[i] + p_.radius[j]);
-        return radius_ / 2;
+    [[nodiscard]] const AnyContact& laws_of(std::size_t i, std::size_t j) const {
+        return mobile(i) && mobile(j) ? *laws_ : *frozen_laws_;
     }
-    [[nodiscard]] particles::Radii radii() const {
-        if constexpr (needs.sizes) return {0, p_.radius};
-        return {radius_, {}};
-    }
+    [[nodiscard]] particles::Radii radii() const { return {0, p_.radius}; }
+    /// Components of a contact's memory.
+    [[nodiscard]] std::size_t memories() const { return pairs_.components(); }
 
-    // forces.hpp
-    template <bool advance>
-    void evaluate();
+    // forces.cpp; `advance`: memories of contacts move on by a time step
+    void evaluate(bool advance);
     [[nodiscard]] std::size_t find_touching(std::size_t first, std::size_t last);
-    template <bool advance>
-    void pair_contacts();
-    template <bool advance>
-    void wall_contacts(Contacts& contacts);
+    void pair_contacts(bool advance);
+    void wall_contacts(Contacts& contacts, bool advance);
     void find_touches(Contacts& contacts);
-    void judge_passages(const Contacts& contacts);
     template <class T>
-    static bool begins(const Laws& laws, T& t, Memory& memory);
+    [[nodiscard]] bool begins(const AnyContact& laws, T& t, double* memory) const;
     [[nodiscard]] Touch<Partner::particle> touch(std::size_t i, std::size_t j, const Vec3& branch, double r2) const;
     [[nodiscard]] Touch<Partner::wall> touch(std::size_t i, const geometry::Closest& closest, const Vec3& v) const;
-    /// Entry k of a column of memories, or `none` where laws remember nothing.
-    template <class Memories>
-    static auto& memory_at([[maybe_unused]] Memories& column, [[maybe_unused]] std::size_t k, Memory& none) {
-        if constexpr (Laws::remembers)
-            return column[k];
-        else
-            return none;
-    }
     template <class Visit>
     void for_each_touching_pair(Visit&& visit) const;
     template <class Visit>
     void for_each_touched_wall(Visit&& visit) const;
     [[nodiscard]] double mechanical_energy(double& active) const;
 
-    // stepping.hpp
+    // stepping.cpp
     void step();
     void kick_and_drift();
     void kick();
@@ -149,30 +108,30 @@ private:
     [[nodiscard]] Vec3 momentum() const;
     void rebuild(std::span<const std::int32_t> removed = {});
     void forget_separated();
-    [[nodiscard]] static Memory exchanged();
     [[nodiscard]] std::vector<Contacts> make_walls(const std::vector<Wall>& walls) const;
-    void place_walls();
     void list_walls(std::span<const std::uint32_t> fresh_index);
-    static void carry_touches(Contacts& contacts, std::span<const std::uint32_t> before,
-                              std::span<const std::uint32_t> fresh_index);
+    void carry_touches(Contacts& contacts, std::span<const std::uint32_t> before,
+                       std::span<const std::uint32_t> fresh_index) const;
     [[nodiscard]] bool list_is_stale() const;
 
-    // soundness.hpp
+    // soundness.cpp
     [[nodiscard]] bool sound();
     void check_energy();
     void set_speed_limit();
     void judge_wall_speeds();
+    void judge_passages(const Contacts& contacts);
     void report(const std::string& what, std::size_t i);
     void report_contacts();
 
-    // checkpoint.hpp
+    // checkpoint.cpp
     template <class Self, class Visit>
     static void visit_state(Self& self, Visit&& visit);
     void require_possible() const;
     void restore_walls(ByteReader& in);
 
     Material material_;
-    Laws laws_, frozen_laws_;  // of pairs, and of those with a frozen partner
+    std::unique_ptr<const AnyContact> laws_, frozen_laws_;  // of pairs, and of those with a frozen partner
+    bool spins_, rolls_, reaches_, remembers_separation_;   // traits of the laws
     geometry::Domain domain_;
     std::array<Vec3, 27> image_shifts_;
     Vec3 gravity_;
@@ -180,20 +139,20 @@ private:
     bool shaken_;
     Vec3 body_;  // acceleration of a free particle at the present step: gravity and shaking
     double time_step_;
-    double radius_ = 0, mass_ = 0, inverse_mass_ = 0;  // of all particles, unless needs.sizes
+    bool equal_;
+    double mass_ = 0;  // of all particles, if equal_
     double largest_radius_ = 0;
     double density_;
     double swing_factor_;  // dt^2 2 E*: times sqrt(R* d)/m* it is the square of a contact's phase per step
     double skin_;
     double beyond_pair_ = 0, beyond_wall_ = 0;  // how far contacts may last beyond touch, m
     std::size_t spheres_at_start_;
-    std::vector<Vec3> spin_at_start_;  // by id, where no law turns particles and some spin
 
-    particles::Particles<needs> p_;
+    particles::Particles p_;
     std::vector<Vec3> position_at_build_;
     std::vector<std::uint32_t> near_open_face_;
     particles::NeighbourList list_;
-    particles::PairMemory<static_cast<std::size_t>(Laws::memories)> pairs_;  // empty where laws remember nothing
+    particles::PairMemory pairs_;
     std::vector<Contacts> walls_;
     particles::Cells cells_;
     struct Touching {
@@ -203,7 +162,7 @@ private:
     };
     std::vector<Touching> touching_;         // scratch of pair_contacts
     std::vector<WallTouch> touched_before_;  // scratch of find_touches
-    std::vector<Memory> memory_before_;      // likewise
+    std::vector<double> memory_before_;      // likewise
 
     std::int64_t wall_steps_ = 0;
     bool displaced_ = false;  // a particle has moved half the skin, or is not a number
@@ -219,5 +178,8 @@ private:
     std::string fault_;
     Work work_;
 };
+
+/// A valid setup (make_engine has checked it) -> an engine at step 0.
+[[nodiscard]] std::unique_ptr<Engine> make_clear_engine(const Setup& setup, const Method& method);
 
 }  // namespace grainsweep::dem::clear

@@ -23,7 +23,7 @@ ContactReader::ContactReader(const PairContacts& laws, const ListSpace& space, c
       parked_(parked),
       beyond_pair_(space.scale.length * static_cast<double>(field.constants.beyond)),
       beyond_wall_(space.scale.length * static_cast<double>(field.constants.beyond_wall)) {
-    std::ranges::transform(laws.powder->memory(), memory_unit_.begin(),
+    std::ranges::transform(laws.powder->traits().memory, memory_unit_.begin(),
                            [&](const MemoryKind& kind) { return unit_of(kind.dimension, space.scale); });
 }
 

@@ -13,6 +13,7 @@
 #include "solver/dem/fast/layout.hpp"
 #include "solver/dem/fast/rebuild.hpp"
 #include "solver/dem/fast/walls.hpp"
+#include "solver/dem/laws/any_contact.hpp"
 #include "solver/dem/laws/compiled.hpp"
 
 namespace grainsweep::dem::fast {

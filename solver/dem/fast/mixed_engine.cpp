@@ -46,8 +46,8 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
     if (skin > 0) space_.skin = static_cast<float>(skin / space_.scale.length);
     space_.skin = std::min(space_.skin, largest_skin_);
     field_.constants = make_constants(setup, space_.scale, needs_);
-    columns_.histories = static_cast<std::int32_t>(laws_.powder->memory().size());
-    std::ranges::transform(laws_.powder->memory(), columns_.exchanged,
+    columns_.histories = static_cast<std::int32_t>(laws_.powder->traits().memory.size());
+    std::ranges::transform(laws_.powder->traits().memory, columns_.exchanged,
                            [](const MemoryKind& kind) { return static_cast<float>(kind.exchanged); });
     load(setup);
     touches_.begin(field_, columns_, walls_, space_.scale);

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "solver/dem/laws/any_contact.hpp"
+
 namespace grainsweep::dem::fast {
 
 namespace {

@@ -10,6 +10,7 @@
 #include "solver/dem/fast/checkpoint.hpp"
 #include "solver/dem/fast/layout.hpp"
 #include "solver/dem/fast/scale.hpp"
+#include "solver/dem/laws/any_contact.hpp"
 #include "solver/dem/laws/compiled.hpp"
 #include "solver/dem/walls/moving_wall.hpp"
 

@@ -1,7 +1,8 @@
 #include "solver/dem/laws/compiled.hpp"
 
+#include "solver/dem/laws/any_contact.hpp"
+
 #include <algorithm>
-#include <stdexcept>
 
 namespace grainsweep::dem {
 namespace {
@@ -12,38 +13,6 @@ void for_each_combination(CombinationList<Combinations...>, F&& f) {
     int k = 0;
     (f.template operator()<Combinations>(k++), ...);
 }
-
-template <class C>
-class ContactOf final : public AnyContact {
-public:
-    explicit ContactOf(const Material& m) : AnyContact(C::memory_kinds()), material_(m), laws_(C::of(m)) {}
-    double beyond(double effective_radius) const override { return C::beyond(material_, effective_radius); }
-    bool begin(Touch<Partner::particle>& t, const double* memory) const override { return begun(t, memory); }
-    bool begin(Touch<Partner::wall>& t, const double* memory) const override { return begun(t, memory); }
-    Response<double> respond(const Touch<Partner::particle>& t, double* memory) const override {
-        return laws_.template respond<false>(t, memory);
-    }
-    Response<double> respond(const Touch<Partner::wall>& t, double* memory) const override {
-        return laws_.template respond<false>(t, memory);
-    }
-    double energy(const Touch<Partner::particle>& t, const double* memory) const override {
-        return laws_.energy(t, memory);
-    }
-    double energy(const Touch<Partner::wall>& t, const double* memory) const override {
-        return laws_.energy(t, memory);
-    }
-
-private:
-    template <class T>
-    bool begun(T& t, const double* memory) const {
-        if constexpr (!C::reaches) return t.overlap > 0;
-        laws_.begin(t, memory);
-        return t.touching;
-    }
-
-    Material material_;
-    C laws_;
-};
 
 }  // namespace
 

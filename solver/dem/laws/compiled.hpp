@@ -18,6 +18,8 @@
 
 namespace grainsweep::dem {
 
+class AnyContact;
+
 /// What engines compile a combination for.
 enum class Columns {
     equal,  ///< equal spheres only, and only materials that want every one of its laws
@@ -76,30 +78,6 @@ template <class Compiles>
 [[nodiscard]] CombinationFacts facts_of(int combination);
 /// In SI, those of its laws in order.
 [[nodiscard]] std::vector<Quantity> constants_of(int combination, const Material& material);
-/// A contact whose laws are chosen at run time, in double precision and SI: for what is not part of a step.
-class AnyContact {
-public:
-    explicit AnyContact(std::vector<MemoryKind> memory) : memory_(std::move(memory)) {}
-    AnyContact(const AnyContact&) = delete;
-    AnyContact& operator=(const AnyContact&) = delete;
-    virtual ~AnyContact() = default;
-
-    /// Of every component of the memory.
-    [[nodiscard]] const std::vector<MemoryKind>& memory() const { return memory_; }
-    /// Forces at the present memory, which stays as it is.
-    /// How far contacts may last beyond touch, m.
-    [[nodiscard]] virtual double beyond(double effective_radius) const = 0;
-    /// Whether a near pair, or a particle near a wall, is a contact; completes it.
-    [[nodiscard]] virtual bool begin(Touch<Partner::particle>& t, const double* memory) const = 0;
-    [[nodiscard]] virtual bool begin(Touch<Partner::wall>& t, const double* memory) const = 0;
-    [[nodiscard]] virtual Response<double> respond(const Touch<Partner::particle>& t, double* memory) const = 0;
-    [[nodiscard]] virtual Response<double> respond(const Touch<Partner::wall>& t, double* memory) const = 0;
-    [[nodiscard]] virtual double energy(const Touch<Partner::particle>& t, const double* memory) const = 0;
-    [[nodiscard]] virtual double energy(const Touch<Partner::wall>& t, const double* memory) const = 0;
-
-private:
-    std::vector<MemoryKind> memory_;
-};
 [[nodiscard]] std::unique_ptr<const AnyContact> make_contact(int combination, const Material& material);
 
 /// Components of the longest memory.

@@ -1,8 +1,6 @@
 // State of the clear engine: reported in order of id, and written so that it continues bit for bit.
 //
 // The order of particles and of the neighbour list decides the order of sums, so both are part of a checkpoint.
-#pragma once
-
 #include "solver/dem/clear/engine.hpp"
 #include "solver/dem/walls/wall_bytes.hpp"
 
@@ -10,8 +8,7 @@ namespace grainsweep::dem::clear {
 
 inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'0006ULL;  // "grnscl", version 6
 
-template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::state(State& into) const {
+void ClearEngine::state(State& into) const {
     std::vector<std::uint32_t> place(spheres_at_start_, particles::gone);
     for (std::uint32_t i = 0; i < p_.size(); ++i) place[static_cast<std::size_t>(p_.id[i])] = i;
     const std::size_t n = p_.size();
@@ -28,20 +25,16 @@ void ClearEngine<Laws, case_needs>::state(State& into) const {
         into.id[k] = static_cast<std::int32_t>(id);
         into.position[k] = p_.position[i];
         into.velocity[k] = p_.velocity[i];
-        if constexpr (needs.spin)
-            into.angular_velocity[k] = p_.angular_velocity[i];
-        else
-            into.angular_velocity[k] = spin_at_start_.empty() ? Vec3{} : spin_at_start_[id];
+        into.angular_velocity[k] = p_.angular_velocity[i];
         into.radius[k] = radius(i);
         into.mobile[k] = mobile(i) ? 1 : 0;
         ++k;
     }
 }
 
-template <class Laws, Needs case_needs>
 template <class Self, class Visit>
-void ClearEngine<Laws, case_needs>::visit_state(Self& self, Visit&& visit) {
-    self.p_.for_each_column(visit);
+void ClearEngine::visit_state(Self& self, Visit&& visit) {
+    particles::Particles::for_each_column(self.p_, visit);
     visit(self.position_at_build_);
     visit(self.near_open_face_);
     visit(self.pairs_.value);
@@ -63,13 +56,11 @@ void ClearEngine<Laws, case_needs>::visit_state(Self& self, Visit&& visit) {
     visit(self.work_.rebuilds);
 }
 
-template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::save(std::vector<std::byte>& into) const {
+void ClearEngine::save(std::vector<std::byte>& into) const {
     into.clear();
     ByteWriter out(into);
     out.put(checkpoint_format);
-    out.put(needs);
-    out.put(Laws::values_of(material_));
+    out.put(laws_->constants());
     out.put(static_cast<std::uint64_t>(spheres_at_start_));
     out.put(time_step_);
     out.put(shaking_);
@@ -91,7 +82,7 @@ void ClearEngine<Laws, case_needs>::save(std::vector<std::byte>& into) const {
         out.put(entries);
         out.put(distances);
         out.put(normals);
-        if constexpr (Laws::remembers) out.put(contacts.memory);
+        out.put(contacts.memory);
         out.put(contacts.load);
         out.put(contacts.load_about);
     }
@@ -99,13 +90,12 @@ void ClearEngine<Laws, case_needs>::save(std::vector<std::byte>& into) const {
 
 /// Whatever the bytes were: every index leads to something, every column has its length, and positions are where the
 /// cells reach. What moves too fast or overlaps too much, the steps find out.
-template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::require_possible() const {
+void ClearEngine::require_possible() const {
     constexpr auto require = ByteReader::require;
     constexpr std::int64_t most_steps = std::int64_t{1} << 53U;
     const std::size_t n = p_.size();
     require(n <= spheres_at_start_);
-    p_.for_each_column([&](const auto& column) { require(column.size() == n); });
+    particles::Particles::for_each_column(p_, [&](const auto& column) { require(column.size() == n); });
     require(position_at_build_.size() == n);
     std::vector<bool> known(spheres_at_start_, false);
     for (std::size_t i = 0; i < n; ++i) {
@@ -118,8 +108,7 @@ void ClearEngine<Laws, case_needs>::require_possible() const {
             require(std::abs(p_.position[i][k] - domain_.low[k]) <= 4 * domain_.length(k));
     }
     for (const auto i : near_open_face_) require(i < n);
-    const std::size_t memories = Laws::remembers ? list_.size() : 0;
-    require(pairs_.value.size() == memories && pairs_.live.size() == memories);
+    require(pairs_.value.size() == list_.size() * memories() && pairs_.live.size() == list_.size());
     for (const auto& contacts : walls_) {
         std::uint32_t least = 0;  // listed in ascending order
         for (const auto i : contacts.near) {
@@ -131,13 +120,12 @@ void ClearEngine<Laws, case_needs>::require_possible() const {
             require(touch.entry < contacts.near.size() && touch.entry >= least);
             least = touch.entry;
         }
-        if constexpr (Laws::remembers) require(contacts.memory.size() == contacts.touches.size());
+        require(contacts.memory.size() == contacts.touches.size() * memories());
     }
     require(wall_steps_ >= 0 && wall_steps_ < most_steps && work_.steps >= 0 && work_.steps < most_steps);
 }
 
-template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::restore_walls(ByteReader& in) {
+void ClearEngine::restore_walls(ByteReader& in) {
     std::uint64_t walls = 0;
     in.get(walls);
     walls_.clear();
@@ -156,7 +144,7 @@ void ClearEngine<Laws, case_needs>::restore_walls(ByteReader& in) {
         in.require(entries.size() == distances.size() && entries.size() == normals.size());
         for (std::size_t k = 0; k < entries.size(); ++k)
             contacts.touches.push_back({entries[k], {distances[k], normals[k]}});
-        if constexpr (Laws::remembers) in.get(contacts.memory);
+        in.get(contacts.memory);
         in.get(contacts.load);
         in.get(contacts.load_about);
         contacts.pose_when_built = contacts.wall.pose_at(contacts.built);
@@ -165,8 +153,7 @@ void ClearEngine<Laws, case_needs>::restore_walls(ByteReader& in) {
     }
 }
 
-template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::restore(std::span<const std::byte> from) {
+void ClearEngine::restore(std::span<const std::byte> from) {
     ByteReader in(from);
     const auto expect = [&in](const auto& mine) {
         auto theirs = mine;
@@ -175,25 +162,20 @@ void ClearEngine<Laws, case_needs>::restore(std::span<const std::byte> from) {
             throw std::invalid_argument("checkpoint of another engine or another setup");
     };
     expect(checkpoint_format);
-    expect(needs);
     std::vector<double> constants;
     in.get(constants);
-    if (constants != Laws::values_of(material_))
-        throw std::invalid_argument("checkpoint of other laws or another material");
+    if (constants != laws_->constants()) throw std::invalid_argument("checkpoint of other laws or another material");
     expect(static_cast<std::uint64_t>(spheres_at_start_));
     expect(time_step_);
     expect(shaking_);
-    [[maybe_unused]] std::pair<double, double> radii, inverse_masses;
     const auto range = [](const auto& column) {
         const auto [least, most] = std::ranges::minmax_element(column);
         return column.empty() ? std::pair(0.0, 0.0) : std::pair(*least, *most);
     };
-    if constexpr (needs.sizes) radii = range(p_.radius), inverse_masses = range(p_.inverse_mass);
+    const auto radii = range(p_.radius), inverse_masses = range(p_.inverse_mass);
     visit_state(*this, [&in](auto& value) { in.get(value); });
-    if constexpr (needs.sizes) {  // those of the setup
-        for (const double r : p_.radius) in.require(r >= radii.first && r <= radii.second);
-        for (const double m : p_.inverse_mass) in.require(m >= inverse_masses.first && m <= inverse_masses.second);
-    }
+    for (const double r : p_.radius) in.require(r >= radii.first && r <= radii.second);
+    for (const double m : p_.inverse_mass) in.require(m >= inverse_masses.first && m <= inverse_masses.second);
     list_.restore(in, p_.size());
     restore_walls(in);
     in.finish();

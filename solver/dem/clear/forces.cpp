@@ -1,8 +1,6 @@
 // Forces of the clear engine: touching pairs and walls, and the laws applied to them.
 //
 // Torque on both partners: -(R - d/2) n x F_t, for the contact point lies in the middle of the overlap.
-#pragma once
-
 #include "solver/dem/clear/engine.hpp"
 #include "solver/dem/limits.hpp"
 
@@ -13,11 +11,8 @@ namespace grainsweep::dem::clear {
 
 using namespace geometry;
 
-template <class Laws, Needs case_needs>
-[[gnu::always_inline]] inline Touch<Partner::particle> ClearEngine<Laws, case_needs>::touch(std::size_t i,
-                                                                                            std::size_t j,
-                                                                                            const Vec3& branch,
-                                                                                            double r2) const {
+[[gnu::always_inline]] inline Touch<Partner::particle> ClearEngine::touch(std::size_t i, std::size_t j,
+                                                                          const Vec3& branch, double r2) const {
     Touch<Partner::particle> t;
     t.radius_i = radius(i);
     t.radius_j = radius(j);
@@ -26,16 +21,16 @@ template <class Laws, Needs case_needs>
     t.normal = (1 / t.distance) * branch;
     t.effective_radius = effective_radius(i, j);
     t.reduced_mass = reduced_mass(i, j);
-    t.root = std::sqrt(t.effective_radius * (Laws::reaches ? std::max(t.overlap, 0.0) : t.overlap));
+    t.root = std::sqrt(t.effective_radius * std::max(t.overlap, 0.0));
     t.damping_root = std::sqrt(t.root * t.reduced_mass);
     const Vec3 v = p_.velocity[i] - p_.velocity[j];
     t.normal_velocity = dot(v, t.normal);
-    if constexpr (needs.spin) {
+    if (spins_) {
         const Vec3 turn = (t.radius_i - t.overlap / 2) * p_.angular_velocity[i] +
                           (t.radius_j - t.overlap / 2) * p_.angular_velocity[j];
         t.slip = v - t.normal_velocity * t.normal - cross(turn, t.normal);
     }
-    if constexpr (Laws::rolls) {
+    if (rolls_) {
         t.turning = p_.angular_velocity[i] - p_.angular_velocity[j];
         t.rolling_inertia = rolling_inertia(i, j);
     }
@@ -43,9 +38,8 @@ template <class Laws, Needs case_needs>
     return t;
 }
 
-template <class Laws, Needs case_needs>
-[[gnu::always_inline]] inline Touch<Partner::wall> ClearEngine<Laws, case_needs>::touch(
-    std::size_t i, const Closest& closest, const Vec3& wall_velocity) const {
+[[gnu::always_inline]] inline Touch<Partner::wall> ClearEngine::touch(std::size_t i, const Closest& closest,
+                                                                      const Vec3& wall_velocity) const {
     Touch<Partner::wall> t;
     t.radius_i = radius(i);
     t.distance = closest.distance;
@@ -53,14 +47,14 @@ template <class Laws, Needs case_needs>
     t.normal = closest.normal;
     t.effective_radius = t.radius_i;
     t.reduced_mass = 1 / inverse_mass(i);
-    t.root = std::sqrt(t.effective_radius * (Laws::reaches ? std::max(t.overlap, 0.0) : t.overlap));
+    t.root = std::sqrt(t.effective_radius * std::max(t.overlap, 0.0));
     t.damping_root = std::sqrt(t.root * t.reduced_mass);
     const Vec3 v = p_.velocity[i] - wall_velocity;
     t.normal_velocity = dot(v, t.normal);
-    if constexpr (needs.spin)
+    if (spins_)
         t.slip =
             v - t.normal_velocity * t.normal - cross((t.radius_i - t.overlap / 2) * p_.angular_velocity[i], t.normal);
-    if constexpr (Laws::rolls) {
+    if (rolls_) {
         t.turning = p_.angular_velocity[i];
         t.rolling_inertia = inertia_about_contact * t.reduced_mass * t.radius_i * t.radius_i;
     }
@@ -69,24 +63,20 @@ template <class Laws, Needs case_needs>
 }
 
 /// Where laws reach beyond touch: completes what is near if it is a contact, else ends its memory.
-template <class Laws, Needs case_needs>
 template <class T>
-bool ClearEngine<Laws, case_needs>::begins(const Laws& laws, T& t, Memory& memory) {
-    laws.begin(t, memory.data());
-    if (!t.touching) memory = {};
+bool ClearEngine::begins(const AnyContact& laws, T& t, double* memory) const {
+    if (!laws.begin(t, memory)) std::fill_n(memory, memories(), 0.0);
     return t.touching;
 }
 
-template <class Laws, Needs case_needs>
-template <bool advance>
-void ClearEngine<Laws, case_needs>::evaluate() {
+void ClearEngine::evaluate(bool advance) {
     std::ranges::fill(p_.force, Vec3{});
-    if constexpr (needs.spin) std::ranges::fill(p_.torque, Vec3{});
+    std::ranges::fill(p_.torque, Vec3{});
     largest_wall_overlap_ = 0;
     stiffest_ = 0;
-    pair_contacts<advance>();
+    pair_contacts(advance);
     peak_overlap_ = std::max(peak_overlap_, largest_overlap_);
-    for (auto& wall : walls_) wall_contacts<advance>(wall);
+    for (auto& wall : walls_) wall_contacts(wall, advance);
     work_.pair_visits += static_cast<double>(list_.size());
     // Negated, so that a value that is not a number is reported too.
     const double swing2 = swing_factor_ * stiffest_;
@@ -99,8 +89,7 @@ void ClearEngine<Laws, case_needs>::evaluate() {
 ///
 /// Whether a pair on the list touches is hard to predict for a processor, so there is no branch: every entry
 /// is written, and kept by advancing the end of the list.
-template <class Laws, Needs case_needs>
-std::size_t ClearEngine<Laws, case_needs>::find_touching(std::size_t first, std::size_t last) {
+std::size_t ClearEngine::find_touching(std::size_t first, std::size_t last) {
     touching_.resize(std::max<std::size_t>(touching_.size(), list_.end(last - 1) - list_.begin(first)));
     std::size_t found = 0;
     for (std::size_t i = first; i < last; ++i) {
@@ -111,29 +100,23 @@ std::size_t ClearEngine<Laws, case_needs>::find_touching(std::size_t first, std:
             const auto entry = list_[k];
             const std::size_t j = entry.j();
             const Vec3 branch = x - (p_.position[j] + image_shifts_[entry.image()]);
-            double reach = radius_i + radius(j);
-            if constexpr (Laws::reaches) reach += beyond_pair_;
+            const double reach = radius_i + radius(j) + beyond_pair_;
             const double r2 = dot(branch, branch);
             const bool inside = r2 < reach * reach;
             touching_[found] = {branch, r2, static_cast<std::uint32_t>(i), k};
             found += inside ? 1 : 0;
-            if constexpr (Laws::remembers_separation) {
+            if (remembers_separation_) {
                 pairs_.live[k] |= inside ? 1 : 0;
-            } else if constexpr (Laws::remembers) {
-                if (pairs_.live[k] != static_cast<std::uint8_t>(inside)) [[unlikely]] {
-                    pairs_.live[k] = inside ? 1 : 0;
-                    pairs_.value[k] = {};
-                }
+            } else if (pairs_.live[k] != static_cast<std::uint8_t>(inside)) [[unlikely]] {
+                pairs_.live[k] = inside ? 1 : 0;
+                std::fill_n(pairs_.value.data() + k * memories(), memories(), 0.0);
             }
         }
     }
     return found;
 }
 
-template <class Laws, Needs case_needs>
-template <bool advance>
-void ClearEngine<Laws, case_needs>::pair_contacts() {
-    constexpr bool equal_contacts = !needs.sizes && !needs.frozen;  // the deepest is then also the stiffest
+void ClearEngine::pair_contacts(bool advance) {
     constexpr std::size_t tile = 64;  // particles whose contacts stay in the first cache between the two passes
     double largest = 0;
     for (std::size_t first = 0; first < p_.size(); first += tile) {
@@ -142,71 +125,58 @@ void ClearEngine<Laws, case_needs>::pair_contacts() {
             const auto& [branch, r2, i, k] = touching_[c];
             const std::size_t j = list_[k].j();
             auto t = touch(i, j, branch, r2);
-            Memory none{};
-            Memory& memory = memory_at(pairs_.value, k, none);
-            const Laws& laws = laws_of(i, j);
-            if constexpr (Laws::reaches)
-                if (!begins(laws, t, memory)) continue;
-            if constexpr (equal_contacts) {
-                largest = std::max(largest, t.overlap);
-            } else {
-                largest = std::max(largest, t.overlap / (2 * std::min(t.radius_i, t.radius_j)));
-                stiffest_ = std::max(stiffest_, t.root / t.reduced_mass);
-            }
-            const auto r = laws.template respond<advance>(t, memory.data());
+            double* const memory = pairs_.value.data() + k * memories();
+            const AnyContact& laws = laws_of(i, j);
+            if (reaches_ && !begins(laws, t, memory)) continue;
+            largest = std::max(largest, t.overlap / (2 * std::min(t.radius_i, t.radius_j)));
+            stiffest_ = std::max(stiffest_, t.root / t.reduced_mass);
+            const auto r = advance ? laws.advance(t, memory) : laws.respond(t, memory);
             const Vec3 f = r.normal * t.normal - r.resistance;
             p_.force[i] += f;
             p_.force[j] -= f;
-            if constexpr (needs.spin) {
+            if (spins_) {
                 const Vec3 moment = cross(t.normal, r.resistance);
                 p_.torque[i] += (t.radius_i - t.overlap / 2) * moment;
                 p_.torque[j] += (t.radius_j - t.overlap / 2) * moment;
             }
-            if constexpr (Laws::rolls) {
+            if (rolls_) {
                 p_.torque[i] -= r.rolling;
                 p_.torque[j] += r.rolling;
             }
         }
     }
-    if constexpr (equal_contacts) {
-        stiffest_ = std::sqrt(radius_ / 2 * largest) * 2 * inverse_mass_;
-        largest = p_.size() > 0 ? largest / (2 * radius_) : 0;
-    }
     largest_overlap_ = largest;
 }
 
 /// The places where a wall is touched now; a contact keeps its memory, and takes it along.
-template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::find_touches(Contacts& contacts) {
+void ClearEngine::find_touches(Contacts& contacts) {
     touched_before_.swap(contacts.touches);
     contacts.wall.find(contacts.near, p_.position, radii(), beyond_wall_, contacts.touches);
-    if constexpr (Laws::remembers) {
-        memory_before_.swap(contacts.memory);
-        const auto& before = touched_before_;
-        const auto& now = contacts.touches;
-        contacts.memory.assign(now.size(), Memory{});
-        std::vector<std::int32_t> from;
-        std::size_t b = 0;
-        for (std::size_t n = 0; n < now.size();) {  // particle by particle
-            const std::uint32_t entry = now[n].entry;
-            while (b < before.size() && before[b].entry < entry) ++b;
-            std::size_t b_end = b, n_end = n;
-            while (b_end < before.size() && before[b_end].entry == entry) ++b_end;
-            while (n_end < now.size() && now[n_end].entry == entry) ++n_end;
-            contacts.wall.inherit({before.data() + b, b_end - b}, {now.data() + n, n_end - n}, from);
-            for (std::size_t k = 0; k < from.size(); ++k)
-                if (from[k] >= 0) contacts.memory[n + k] = memory_before_[b + static_cast<std::size_t>(from[k])];
-            n = n_end;
-        }
+    if (memories() == 0) return;
+    memory_before_.swap(contacts.memory);
+    const auto& before = touched_before_;
+    const auto& now = contacts.touches;
+    contacts.memory.assign(now.size() * memories(), 0);
+    std::vector<std::int32_t> from;
+    std::size_t b = 0;
+    for (std::size_t n = 0; n < now.size();) {  // particle by particle
+        const std::uint32_t entry = now[n].entry;
+        while (b < before.size() && before[b].entry < entry) ++b;
+        std::size_t b_end = b, n_end = n;
+        while (b_end < before.size() && before[b_end].entry == entry) ++b_end;
+        while (n_end < now.size() && now[n_end].entry == entry) ++n_end;
+        contacts.wall.inherit({before.data() + b, b_end - b}, {now.data() + n, n_end - n}, from);
+        for (std::size_t k = 0; k < from.size(); ++k)
+            if (from[k] >= 0)
+                std::copy_n(memory_before_.data() + (b + static_cast<std::size_t>(from[k])) * memories(), memories(),
+                            contacts.memory.data() + (n + k) * memories());
+        n = n_end;
     }
 }
 
-template <class Laws, Needs case_needs>
-template <bool advance>
-void ClearEngine<Laws, case_needs>::wall_contacts(Contacts& contacts) {
+void ClearEngine::wall_contacts(Contacts& contacts, bool advance) {
     find_touches(contacts);
-    if constexpr (advance)
-        if (contacts.wall.thin()) judge_passages(contacts);
+    if (advance && contacts.wall.thin()) judge_passages(contacts);
     const Twist& twist = contacts.wall.twist();
     Vec3 total{}, turn{};
     double largest = 0, power = 0;
@@ -216,21 +186,19 @@ void ClearEngine<Laws, case_needs>::wall_contacts(Contacts& contacts) {
         const Vec3 x = contacts.wall.image().of(p_.position[i]);  // where the wall is
         const Vec3 wall_velocity = twist.at(x - place.distance * place.normal);
         auto t = touch(i, place, wall_velocity);
-        Memory none{};
-        Memory& memory = memory_at(contacts.memory, k, none);
-        if constexpr (Laws::reaches)
-            if (!begins(contacts.laws, t, memory)) continue;
+        double* const memory = contacts.memory.data() + k * memories();
+        if (reaches_ && !begins(*contacts.laws, t, memory)) continue;
         largest = std::max(largest, t.overlap / (2 * t.radius_i));
         stiffest_ = std::max(stiffest_, t.root * inverse_mass(i));
-        const auto r = contacts.laws.template respond<advance>(t, memory.data());
+        const auto r = advance ? contacts.laws->advance(t, memory) : contacts.laws->respond(t, memory);
         const Vec3 f = r.normal * t.normal - r.resistance;
         const double arm = t.radius_i - t.overlap / 2;
         p_.force[i] += f;
         total += f;
         power += dot(f, wall_velocity);
         turn += cross(x - arm * t.normal - twist.pivot, f);
-        if constexpr (needs.spin) p_.torque[i] += arm * cross(t.normal, r.resistance);
-        if constexpr (Laws::rolls) {
+        if (spins_) p_.torque[i] += arm * cross(t.normal, r.resistance);
+        if (rolls_) {
             p_.torque[i] -= r.rolling;
             turn -= r.rolling;
         }
@@ -239,76 +207,66 @@ void ClearEngine<Laws, case_needs>::wall_contacts(Contacts& contacts) {
     contacts.load.force = -total;
     contacts.load.torque = -turn;
     contacts.load_about = twist.pivot;
-    if constexpr (advance) {
+    if (advance) {
         contacts.load.work += power * time_step_;
         work_of_walls_ += power * time_step_;
     }
 }
 
-template <class Laws, Needs case_needs>
-WallLoad ClearEngine<Laws, case_needs>::wall_load(std::size_t wall, const Vec3& about) const {
+WallLoad ClearEngine::wall_load(std::size_t wall, const Vec3& about) const {
     WallLoad load = walls_.at(wall).load;
     load.torque += cross(walls_[wall].load_about - about, load.force);
     return load;
 }
 
 /// Calls visit(i, j, touch, memory) for the pairs that touch, in list order.
-template <class Laws, Needs case_needs>
 template <class Visit>
-void ClearEngine<Laws, case_needs>::for_each_touching_pair(Visit&& visit) const {
+void ClearEngine::for_each_touching_pair(Visit&& visit) const {
     for (std::size_t i = 0; i < p_.size(); ++i)
         for (std::uint32_t k = list_.begin(i); k < list_.end(i); ++k) {
             const std::size_t j = list_[k].j();
             const Vec3 branch = p_.position[i] - (p_.position[j] + image_shifts_[list_[k].image()]);
-            double reach = radius(i) + radius(j);
-            if constexpr (Laws::reaches) reach += beyond_pair_;
-            const double r2 = dot(branch, branch);
+            const double reach = radius(i) + radius(j) + beyond_pair_, r2 = dot(branch, branch);
             if (!(r2 < reach * reach)) continue;
-            Memory none{};
-            const Memory& memory = memory_at(pairs_.value, k, none);
+            const double* const memory = pairs_.value.data() + k * memories();
             auto t = touch(i, j, branch, r2);
-            if constexpr (Laws::reaches) laws_of(i, j).begin(t, memory.data());
-            if (t.touching) visit(i, j, t, memory);
+            if (!reaches_ || laws_of(i, j).begin(t, memory)) visit(i, j, t, memory);
         }
 }
 
 /// Calls visit(i, w, touch, memory) for the walls that are touched.
-template <class Laws, Needs case_needs>
 template <class Visit>
-void ClearEngine<Laws, case_needs>::for_each_touched_wall(Visit&& visit) const {
+void ClearEngine::for_each_touched_wall(Visit&& visit) const {
     for (std::size_t w = 0; w < walls_.size(); ++w) {
         const auto& contacts = walls_[w];
         for (std::size_t k = 0; k < contacts.touches.size(); ++k) {
             const auto& [entry, place] = contacts.touches[k];
             const std::size_t i = contacts.near[entry];
-            Memory memory{};
-            if constexpr (Laws::remembers) memory = contacts.memory[k];
+            const double* const memory = contacts.memory.data() + k * memories();
             const Vec3 x = contacts.wall.image().of(p_.position[i]);
             auto t = touch(i, place, contacts.wall.twist().at(x - place.distance * place.normal));
-            if constexpr (Laws::reaches) contacts.laws.begin(t, memory.data());
-            if (t.touching) visit(i, w, t, memory);
+            if (!reaches_ || contacts.laws->begin(t, memory)) visit(i, w, t, memory);
         }
     }
 }
 
-template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::contacts(std::vector<ContactForce>& into) const {
+void ClearEngine::contacts(std::vector<ContactForce>& into) const {
     into.clear();
-    const auto add = [&](const Laws& laws, std::size_t i, std::int32_t second, const auto& t, Memory memory) {
-        const auto r = laws.template respond<false>(t, memory.data());
+    const auto add = [&](const AnyContact& laws, std::size_t i, std::int32_t second, const auto& t,
+                         const double* memory) {
+        const auto r = laws.respond(t, memory);
         into.push_back({p_.id[i], second, t.overlap, t.normal, r.normal, -r.resistance, -r.rolling});
     };
-    for_each_touching_pair([&](std::size_t i, std::size_t j, const auto& t, const Memory& memory) {
+    for_each_touching_pair([&](std::size_t i, std::size_t j, const auto& t, const double* memory) {
         add(laws_of(i, j), i, p_.id[j], t, memory);
     });
-    for_each_touched_wall([&](std::size_t i, std::size_t w, const auto& t, const Memory& memory) {
-        add(walls_[w].laws, i, -1 - static_cast<std::int32_t>(w), t, memory);
+    for_each_touched_wall([&](std::size_t i, std::size_t w, const auto& t, const double* memory) {
+        add(*walls_[w].laws, i, -1 - static_cast<std::int32_t>(w), t, memory);
     });
 }
 
 /// Kinetic, gravitational and stored energy; `active` is the part in motion and in contacts.
-template <class Laws, Needs case_needs>
-double ClearEngine<Laws, case_needs>::mechanical_energy(double& active) const {
+double ClearEngine::mechanical_energy(double& active) const {
     double motion = 0;
     double height = 0;
     double stored = 0;
@@ -317,19 +275,18 @@ double ClearEngine<Laws, case_needs>::mechanical_energy(double& active) const {
         stored += energy;
         squeezed += std::abs(energy);
     };
-    for_each_touching_pair([&](std::size_t i, std::size_t j, const auto& t, const Memory& memory) {
-        add(laws_of(i, j).energy(t, memory.data()));
+    for_each_touching_pair([&](std::size_t i, std::size_t j, const auto& t, const double* memory) {
+        add(laws_of(i, j).energy(t, memory));
     });
-    for_each_touched_wall([&](std::size_t, std::size_t w, const auto& t, const Memory& memory) {
-        add(walls_[w].laws.energy(t, memory.data()));
+    for_each_touched_wall([&](std::size_t, std::size_t w, const auto& t, const double* memory) {
+        add(walls_[w].laws->energy(t, memory));
     });
     for (std::size_t i = 0; i < p_.size(); ++i) {
         if (!mobile(i)) continue;
         const double mass = 1 / inverse_mass(i);
         motion += 0.5 * mass * dot(p_.velocity[i], p_.velocity[i]);
         height -= mass * dot(gravity_, p_.position[i]);
-        if constexpr (needs.spin)
-            motion += 0.2 * mass * radius(i) * radius(i) * dot(p_.angular_velocity[i], p_.angular_velocity[i]);
+        if (spins_) motion += 0.2 * mass * radius(i) * radius(i) * dot(p_.angular_velocity[i], p_.angular_velocity[i]);
     }
     active = motion + squeezed;
     return motion + height + stored;

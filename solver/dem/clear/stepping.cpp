@@ -1,7 +1,5 @@
 // Time stepping of the clear engine and its lists.
-#pragma once
-
-#include "solver/dem/clear/soundness.hpp"
+#include "solver/dem/clear/engine.hpp"
 #include "solver/dem/material.hpp"
 #include "solver/dem/shaking.hpp"
 
@@ -12,15 +10,34 @@
 
 namespace grainsweep::dem::clear {
 
+using namespace geometry;
+
+namespace {
+
 /// Skin over the smallest diameter where the method leaves it open. A settling bed is fastest at 0.2 (76 ns per
 /// particle and step, 83 at 0.5), a sweep at 0.5 (105 ns, 118 at 0.2); 0.3 is within 6 % of both.
-inline constexpr double default_skin = 0.3;
+constexpr double default_skin = 0.3;
 
-template <class Laws, Needs case_needs>
-ClearEngine<Laws, case_needs>::ClearEngine(const Setup& setup, const Method& method)
+/// Steps between two checks of the energy: often enough to name the time, rare enough to cost nothing.
+constexpr std::int64_t energy_interval = 128;
+
+/// Of a memory's components when its particles change places.
+std::vector<double> factors_of_exchange(const AnyContact& laws) {
+    std::vector<double> factors;
+    for (const MemoryKind& kind : laws.traits().memory) factors.push_back(kind.exchanged);
+    return factors;
+}
+
+}  // namespace
+
+ClearEngine::ClearEngine(const Setup& setup, const Method& method, std::unique_ptr<const AnyContact> laws, bool equal)
     : material_(setup.material),
-      laws_(Laws::of(setup.material)),
-      frozen_laws_(Laws::of(at_surface(setup.material, setup.frozen))),
+      laws_(std::move(laws)),
+      frozen_laws_(laws_->of(at_surface(setup.material, setup.frozen))),
+      spins_(laws_->traits().spin),
+      rolls_(laws_->traits().rolls),
+      reaches_(laws_->traits().reaches),
+      remembers_separation_(laws_->traits().remembers_separation),
       domain_{setup.domain.low, setup.domain.high, setup.domain.periodic},
       image_shifts_(domain_.image_shifts()),
       gravity_(setup.gravity),
@@ -28,10 +45,12 @@ ClearEngine<Laws, case_needs>::ClearEngine(const Setup& setup, const Method& met
       shaken_(!is_still(setup.shaking)),
       body_(setup.gravity),
       time_step_(setup.time_step),
+      equal_(equal),
       density_(setup.material.density),
       swing_factor_(2 * effective_modulus(setup.material) * setup.time_step * setup.time_step),
       skin_(method.skin),
-      spheres_at_start_(setup.spheres.size()) {
+      spheres_at_start_(setup.spheres.size()),
+      pairs_(factors_of_exchange(*laws_)) {
     const std::size_t n = setup.spheres.size();
     p_.resize(n);
     double largest = 0;
@@ -41,32 +60,19 @@ ClearEngine<Laws, case_needs>::ClearEngine(const Setup& setup, const Method& met
         p_.id[i] = static_cast<std::int32_t>(i);
         p_.position[i] = s.position;
         p_.velocity[i] = s.velocity;
-        if constexpr (needs.spin) p_.angular_velocity[i] = s.angular_velocity;
-        if constexpr (needs.sizes) {
-            p_.radius[i] = s.radius;
-            p_.inverse_mass[i] = s.mobile ? 1 / sphere_mass(s.radius, density_) : 0;
-        }
-        if constexpr (needs.frozen) p_.mobile[i] = s.mobile ? 1 : 0;
+        p_.angular_velocity[i] = s.angular_velocity;
+        p_.radius[i] = s.radius;
+        p_.inverse_mass[i] = s.mobile ? 1 / sphere_mass(s.radius, density_) : 0;
         largest = std::max(largest, s.radius);
         smallest = std::min(smallest, s.radius);
     }
     largest_radius_ = largest;
-    if constexpr (Laws::reaches) {
-        for (const Material& m : materials_of(setup)) {
-            beyond_pair_ = std::max(beyond_pair_, Laws::beyond(m, largest / 2));
-            beyond_wall_ = std::max(beyond_wall_, Laws::beyond(m, largest));
-        }
+    for (const Material& m : materials_of(setup)) {
+        const auto contact = laws_->of(m);
+        beyond_pair_ = std::max(beyond_pair_, contact->beyond(largest / 2));
+        beyond_wall_ = std::max(beyond_wall_, contact->beyond(largest));
     }
-    if constexpr (!needs.spin) {
-        spin_at_start_.resize(n);
-        for (std::size_t i = 0; i < n; ++i) spin_at_start_[i] = setup.spheres[i].angular_velocity;
-        if (std::ranges::all_of(spin_at_start_, [](const Vec3& w) { return w == Vec3{}; })) spin_at_start_.clear();
-    }
-    if constexpr (!needs.sizes) {
-        radius_ = largest;
-        mass_ = sphere_mass(radius_, density_);
-        inverse_mass_ = mass_ > 0 ? 1 / mass_ : 0;
-    }
+    mass_ = sphere_mass(largest, density_);
     if (skin_ <= 0 && n > 0) {
         skin_ = default_skin * 2 * smallest;
         // Two images of one particle must never reach the same partner.
@@ -77,44 +83,33 @@ ClearEngine<Laws, case_needs>::ClearEngine(const Setup& setup, const Method& met
     walls_ = make_walls(setup.walls);
     rebuild();
     set_speed_limit();
-    evaluate<false>();
+    evaluate(false);
 }
 
-/// Factors of a memory's components when its particles change places.
-template <class Laws, Needs case_needs>
-auto ClearEngine<Laws, case_needs>::exchanged() -> Memory {
-    Memory factors{};
-    std::ranges::transform(Laws::memory_kinds(), factors.begin(), [](const auto& kind) { return kind.exchanged; });
-    return factors;
-}
-
-template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::run(std::int64_t steps) {
+void ClearEngine::run(std::int64_t steps) {
     for (std::int64_t k = 0; k < steps && fault_.empty(); ++k) step();
 }
 
-template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::step() {
+void ClearEngine::step() {
     if (shaken_) work_of_shaking_ += time_step_ / 2 * dot(body_ - gravity_, momentum());
     kick_and_drift();
     ++wall_steps_;
     ++work_.steps;
-    place_walls();
+    for (auto& contacts : walls_) contacts.wall.place(wall_time());
     if (shaken_) shake();
     if (list_is_stale()) {
         if (!sound()) return;
         rebuild();
     }
-    evaluate<true>();
+    evaluate(true);
     if (!fault_.empty()) return;  // before a force beyond its law moves anything
     kick();
     if (shaken_) work_of_shaking_ += time_step_ / 2 * dot(body_ - gravity_, momentum());
-    work_.particle_steps += static_cast<double>(mobile_count());
+    work_.particle_steps += static_cast<double>(std::ranges::count_if(p_.inverse_mass, [](double m) { return m > 0; }));
     if (work_.steps % energy_interval == 0) check_energy();
 }
 
-template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::kick_and_drift() {
+void ClearEngine::kick_and_drift() {
     const double half = time_step_ / 2;
     const double far2 = skin_ * skin_ / 4;
     bool displaced = displaced_;
@@ -123,42 +118,36 @@ void ClearEngine<Laws, case_needs>::kick_and_drift() {
         const double inverse = inverse_mass(i);
         p_.velocity[i] += half * (inverse * p_.force[i] + body_);
         p_.position[i] += time_step_ * p_.velocity[i];
-        if constexpr (needs.spin)
-            p_.angular_velocity[i] += (half * inverse / (0.4 * radius(i) * radius(i))) * p_.torque[i];
+        p_.angular_velocity[i] += (half * inverse / (0.4 * radius(i) * radius(i))) * p_.torque[i];
         const Vec3 moved = p_.position[i] - position_at_build_[i];
         displaced |= !(dot(moved, moved) <= far2);
     }
     displaced_ = displaced;
 }
 
-template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::kick() {
+void ClearEngine::kick() {
     const double half = time_step_ / 2;
     for (std::size_t i = 0; i < p_.size(); ++i) {
         if (!mobile(i)) continue;
         const double inverse = inverse_mass(i);
         p_.velocity[i] += half * (inverse * p_.force[i] + body_);
-        if constexpr (needs.spin)
-            p_.angular_velocity[i] += (half * inverse / (0.4 * radius(i) * radius(i))) * p_.torque[i];
+        p_.angular_velocity[i] += (half * inverse / (0.4 * radius(i) * radius(i))) * p_.torque[i];
     }
 }
 
-template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::shake() {
+void ClearEngine::shake() {
     body_ = gravity_ + shaking_acceleration(shaking_, time_step_, work_.steps);
 }
 
 /// Of all mobile particles.
-template <class Laws, Needs case_needs>
-Vec3 ClearEngine<Laws, case_needs>::momentum() const {
+Vec3 ClearEngine::momentum() const {
     Vec3 total{};
     for (std::size_t i = 0; i < p_.size(); ++i)
         if (mobile(i)) total += (1 / inverse_mass(i)) * p_.velocity[i];
     return total;
 }
 
-template <class Laws, Needs case_needs>
-bool ClearEngine<Laws, case_needs>::list_is_stale() const {
+bool ClearEngine::list_is_stale() const {
     if (displaced_) return true;
     for (const auto& contacts : walls_) {
         const Vec3 moved = contacts.wall.moved_since(contacts.pose_when_built);
@@ -167,8 +156,7 @@ bool ClearEngine<Laws, case_needs>::list_is_stale() const {
     return std::ranges::any_of(near_open_face_, [&](std::uint32_t i) { return domain_.outside(p_.position[i]); });
 }
 
-template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::rebuild(std::span<const std::int32_t> removed) {
+void ClearEngine::rebuild(std::span<const std::int32_t> removed) {
     const std::unordered_set<std::int32_t> leaving(removed.begin(), removed.end());
     std::vector<std::uint32_t> staying;
     staying.reserve(p_.size());
@@ -190,15 +178,11 @@ void ClearEngine<Laws, case_needs>::rebuild(std::span<const std::int32_t> remove
     p_.reorder(order);
 
     const auto matters = [this](std::size_t i, std::size_t j) { return mobile(i) || mobile(j); };
-    if constexpr (Laws::remembers) {
-        particles::NeighbourList fresh;
-        fresh.build(cells_, p_.position, radii(), skin_ + beyond_pair_, domain_, matters);
-        pairs_.carry(list_, fresh, fresh_index, exchanged());
-        list_ = std::move(fresh);
-        if constexpr (Laws::remembers_separation) forget_separated();
-    } else {
-        list_.build(cells_, p_.position, radii(), skin_ + beyond_pair_, domain_, matters);
-    }
+    particles::NeighbourList fresh;
+    fresh.build(cells_, p_.position, radii(), skin_ + beyond_pair_, domain_, matters);
+    pairs_.carry(list_, fresh, fresh_index);
+    list_ = std::move(fresh);
+    if (remembers_separation_) forget_separated();
     list_walls(fresh_index);
     position_at_build_ = p_.position;
     displaced_ = false;
@@ -212,41 +196,34 @@ void ClearEngine<Laws, case_needs>::rebuild(std::span<const std::int32_t> remove
 }
 
 /// Where memories outlive a separation, those of pairs that do not touch at the rebuild end here.
-template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::forget_separated() {
+void ClearEngine::forget_separated() {
     for (std::size_t i = 0; i < p_.size(); ++i)
         for (std::uint32_t k = list_.begin(i); k < list_.end(i); ++k) {
             const std::size_t j = list_[k].j();
             const Vec3 branch = p_.position[i] - (p_.position[j] + image_shifts_[list_[k].image()]);
             const double reach = radius(i) + radius(j);
             if (dot(branch, branch) < reach * reach) continue;
-            pairs_.value[k] = {};
+            std::fill_n(pairs_.value.data() + k * memories(), memories(), 0.0);
             pairs_.live[k] = 0;
         }
 }
 
-template <class Laws, Needs case_needs>
-auto ClearEngine<Laws, case_needs>::make_walls(const std::vector<Wall>& walls) const -> std::vector<Contacts> {
+std::vector<WallContacts> ClearEngine::make_walls(const std::vector<Wall>& walls) const {
     std::vector<Contacts> made;
     for (const Wall& wall : walls) {
         const Material m = at_surface(material_, wall.surface);
-        if (!Laws::covers(m))
+        if (!laws_->covers(m))
             throw std::invalid_argument("the surface of a wall has friction or cohesion that nothing at the start had");
-        if (Laws::beyond(m, largest_radius_) > beyond_wall_)
+        auto laws = laws_->of(m);
+        if (laws->beyond(largest_radius_) > beyond_wall_)
             throw std::invalid_argument("the surface of a wall attracts from further than anything at the start did");
-        made.push_back({MovingWall(wall, domain_, largest_radius_), Laws::of(m), {}, 0, {}, {}, {}, {}, {}});
+        made.push_back({MovingWall(wall, domain_, largest_radius_), std::move(laws), {}, 0, {}, {}, {}, {}, {}});
     }
     return made;
 }
 
-template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::place_walls() {
-    for (auto& contacts : walls_) contacts.wall.place(wall_time());
-}
-
 /// Lists who is near; contacts go with their particles.
-template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::list_walls(std::span<const std::uint32_t> fresh_index) {
+void ClearEngine::list_walls(std::span<const std::uint32_t> fresh_index) {
     std::vector<std::uint32_t> all;
     for (std::uint32_t i = 0; i < p_.size(); ++i)
         if (mobile(i)) all.push_back(i);
@@ -264,9 +241,8 @@ void ClearEngine<Laws, case_needs>::list_walls(std::span<const std::uint32_t> fr
     }
 }
 
-template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::carry_touches(Contacts& contacts, std::span<const std::uint32_t> before,
-                                                  std::span<const std::uint32_t> fresh_index) {
+void ClearEngine::carry_touches(Contacts& contacts, std::span<const std::uint32_t> before,
+                                std::span<const std::uint32_t> fresh_index) const {
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < contacts.touches.size(); ++k) {
         WallTouch& touch = contacts.touches[k];
@@ -280,15 +256,15 @@ void ClearEngine<Laws, case_needs>::carry_touches(Contacts& contacts, std::span<
     const auto touches = contacts.touches;
     const auto memory = contacts.memory;
     contacts.touches.clear();
-    for (const std::size_t k : order) contacts.touches.push_back(touches[k]);
-    if constexpr (Laws::remembers) {
-        contacts.memory.clear();
-        for (const std::size_t k : order) contacts.memory.push_back(memory[k]);
+    contacts.memory.clear();
+    for (const std::size_t k : order) {
+        contacts.touches.push_back(touches[k]);
+        const double* const first = memory.data() + k * memories();
+        contacts.memory.insert(contacts.memory.end(), first, first + memories());
     }
 }
 
-template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::set_walls(std::vector<Wall> walls) {
+void ClearEngine::set_walls(std::vector<Wall> walls) {
     walls_ = make_walls(walls);
     wall_steps_ = 0;
     work_of_walls_ = 0;
@@ -296,11 +272,10 @@ void ClearEngine<Laws, case_needs>::set_walls(std::vector<Wall> walls) {
     if (!fault_.empty()) return;
     rebuild();
     set_speed_limit();
-    evaluate<false>();
+    evaluate(false);
 }
 
-template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::remove(std::span<const std::int32_t> ids) {
+void ClearEngine::remove(std::span<const std::int32_t> ids) {
     if (!ids.empty()) rebuild(ids);
 }
 

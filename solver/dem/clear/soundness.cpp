@@ -1,7 +1,5 @@
 // Checks of the clear engine: states beyond the limits are reported with what, where and when (limits.hpp).
-#pragma once
-
-#include "solver/dem/clear/forces.hpp"
+#include "solver/dem/clear/engine.hpp"
 #include "solver/dem/limits.hpp"
 #include "solver/dem/shaking.hpp"
 
@@ -12,22 +10,18 @@
 
 namespace grainsweep::dem::clear {
 
-/// Steps between two checks of the energy: often enough to name the time, rare enough to cost nothing.
-inline constexpr std::int64_t energy_interval = 128;
+using namespace geometry;
 
 /// Every position is a number, every speed within what the case can produce. Reports and repairs otherwise.
-template <class Laws, Needs case_needs>
-bool ClearEngine<Laws, case_needs>::sound() {
+bool ClearEngine::sound() {
     for (std::size_t i = 0; i < p_.size(); ++i) {
         if (!mobile(i)) continue;
         const double speed = norm(p_.velocity[i]);
-        bool spin_is_finite = true;
-        if constexpr (needs.spin) spin_is_finite = finite(p_.angular_velocity[i]);
         char text[200];
-        if (!finite(p_.position[i]) || !std::isfinite(speed) || !spin_is_finite) {
+        if (!finite(p_.position[i]) || !std::isfinite(speed) || !finite(p_.angular_velocity[i])) {
             p_.position[i] = position_at_build_[i];
             p_.velocity[i] = Vec3{};
-            if constexpr (needs.spin) p_.angular_velocity[i] = Vec3{};
+            p_.angular_velocity[i] = Vec3{};
             report("the motion of a particle is no longer a number", i);
         } else if (speed * time_step_ > largest_sound_displacement * radius(i)) {
             std::snprintf(text, sizeof text, "a particle moves %.3g of its radius in one time step (limit %.3g)",
@@ -43,14 +37,13 @@ bool ClearEngine<Laws, case_needs>::sound() {
     return fault_.empty();
 }
 
-template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::set_speed_limit() {
+void ClearEngine::set_speed_limit() {
     double start = 0;
     double lightest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < p_.size(); ++i) {
         if (!mobile(i)) continue;
         start = std::max(start, norm(p_.velocity[i]));
-        if constexpr (needs.spin) start = std::max(start, radius(i) * norm(p_.angular_velocity[i]));
+        if (spins_) start = std::max(start, radius(i) * norm(p_.angular_velocity[i]));
         lightest = std::min(lightest, 1 / inverse_mass(i));
     }
     double wall = fastest(shaking_);
@@ -72,8 +65,7 @@ void ClearEngine<Laws, case_needs>::set_speed_limit() {
 }
 
 /// A wall that moves farther than a radius in a step could pass particles unseen.
-template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::judge_wall_speeds() {
+void ClearEngine::judge_wall_speeds() {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < p_.size(); ++i) least = std::min(least, radius(i));
     for (std::size_t w = 0; w < walls_.size() && fault_.empty(); ++w) {
@@ -88,8 +80,7 @@ void ClearEngine<Laws, case_needs>::judge_wall_speeds() {
 
 /// A wall without an inside pushes on what has passed it. A centre that did so in this step is no farther from it than
 /// they moved.
-template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::judge_passages(const Contacts& contacts) {
+void ClearEngine::judge_passages(const Contacts& contacts) {
     const auto& wall = contacts.wall;
     const double way_of_wall = time_step_ * wall.fastest_surface();
     std::size_t t = 0;
@@ -106,8 +97,7 @@ void ClearEngine<Laws, case_needs>::judge_passages(const Contacts& contacts) {
 }
 
 /// Energy minus the work of moving walls and of shaking must not grow: contacts store or dissipate.
-template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::check_energy() {
+void ClearEngine::check_energy() {
     double active = 0;
     const double energy = mechanical_energy(active);
     const auto flaw = balance_.flaw({.steps = work_.steps,
@@ -122,8 +112,7 @@ void ClearEngine<Laws, case_needs>::check_energy() {
 }
 
 /// The first fault stays: later ones follow from it.
-template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::report(const std::string& what, std::size_t i) {
+void ClearEngine::report(const std::string& what, std::size_t i) {
     if (!fault_.empty()) return;
     char where[200];
     const Vec3& x = p_.position[i];
@@ -132,8 +121,7 @@ void ClearEngine<Laws, case_needs>::report(const std::string& what, std::size_t 
     fault_ = what + where;
 }
 
-template <class Laws, Needs case_needs>
-void ClearEngine<Laws, case_needs>::report_contacts() {
+void ClearEngine::report_contacts() {
     const auto judge = [&](std::size_t i, double overlap, double share, double stiffness, const std::string& partner) {
         char text[200];
         const double swing = std::sqrt(swing_factor_ * stiffness);
