@@ -2,14 +2,10 @@
 // carries small particles that gather into structures.
 //
 //   fluid:     solver/flow/flow.hpp           (Boussinesq, non-dimensional: L, L^2/alpha)
-//   particles: solver/coupling/motion.hpp     coupling levels: solver/coupling/levels.hpp
+//   particles: solver/coupling/motion.hpp     coupling levels: thermovibration/levels.hpp
 //   measured:  solver/observables/accumulation.hpp, flow_state.hpp
 // after Manayil Santhosh, Anwar & Lappa 2024 (IAC-24-A1.2.3), with Ra_omega = gamma beta/Pr (their eq. 28 prints
 // gamma beta Pr, with which their own Gershuni numbers do not come out).
-#include "solver/coupling/dense_suspension.hpp"
-#include "solver/coupling/projected_contacts.hpp"
-#include "solver/coupling/solids_pressure.hpp"
-#include "solver/coupling/spring_contacts.hpp"
 #include "solver/scenes/catalogue.hpp"
 #include "solver/scenes/thermovibration/runs.hpp"
 #include "solver/scenes/thermovibration/warnings.hpp"
@@ -20,15 +16,30 @@
 namespace grainsweep {
 namespace {
 
+using thermovibration::LevelInfo;
 using thermovibration::Question;
 using Condition = Relevance::Condition;
 
+/// Names of the levels with a trait.
+std::vector<std::string> level_names(bool (*with)(const LevelInfo&)) {
+    std::vector<std::string> names;
+    for (const LevelInfo& level : thermovibration::levels())
+        if (with(level)) names.emplace_back(level.name);
+    return names;
+}
+Relevance at_levels(bool (*with)(const LevelInfo&)) {
+    return {"coupling", Condition::is_word, level_names(with)};
+}
+
 const Relevance with_particles{"particles", Condition::nonzero, {}};
 const Relevance vibrated{"frequency", Condition::nonzero, {}};
-const Relevance two_way{"coupling", Condition::is_word, {"two_way"}};
-const Relevance felt_by_fluid{"coupling", Condition::is_word, {"two_way", "ddpm", "ddpm_ktgf", "cfd_dem"}};
-const Relevance stressed{"coupling", Condition::is_word, {"ddpm", "ddpm_ktgf"}};
-const Relevance four_way{"coupling", Condition::is_word, {"cfd_dem"}};
+const Relevance one_way = at_levels([](const LevelInfo& l) { return !l.acts_on_fluid; });
+const Relevance felt_by_fluid = at_levels([](const LevelInfo& l) { return l.acts_on_fluid; });
+const Relevance two_way = at_levels([](const LevelInfo& l) { return l.acts_on_fluid && !l.dense; });
+const Relevance colliding = at_levels([](const LevelInfo& l) { return l.dense; });
+const Relevance stressed = at_levels([](const LevelInfo& l) { return l.stressed; });
+const Relevance without_contacts = at_levels([](const LevelInfo& l) { return !l.resolves_contacts; });
+const Relevance with_contacts = at_levels([](const LevelInfo& l) { return l.resolves_contacts; });
 const Relevance springs{"contact", Condition::is_word, {"spring"}};
 
 ParameterSpec real(std::string name, std::string unit, std::string meaning, double value, Interval bounds,
@@ -71,28 +82,27 @@ std::vector<ParameterSpec> parameters() {
              "forces between fluid and particles: the fluid's on the particles; also the particles' on the fluid; also "
              "their volume, with solids pressure from an algebraic (ddpm) or transported (ddpm_ktgf) granular "
              "temperature; or with resolved contacts (cfd_dem)",
-             {"one_way", "two_way", "ddpm", "ddpm_ktgf", "cfd_dem"}, {with_particles}),
+             level_names([](const LevelInfo&) { return true; }), {with_particles}),
         word("source_form",
              "two-way force on the fluid: all that the fluid does to the particles, or the literal -m dV/dt of eq. 9",
              {"force", "eq9"}, {with_particles, two_way}),
         word("wall_contact", "a particle meets a wall with its surface or with its centre", {"radius", "centre"},
              {with_particles}),
-        real("restitution", "1", "of the rebound from walls", 1, between(0, 1),
-             {with_particles, {"coupling", Condition::is_word, {"one_way", "two_way", "ddpm", "ddpm_ktgf"}}}),
+        real("restitution", "1", "of the rebound from walls", 1, between(0, 1), {with_particles, without_contacts}),
         word("contact", "contacts as hysteretic springs with friction in sub-steps, or as displacement out of overlap",
-             {"spring", "projection"}, {with_particles, four_way}),
+             {"spring", "projection"}, {with_particles, with_contacts}),
         real("collision_restitution", "1", "of collisions among particles", 0.9, between(0.05, 1),
-             {with_particles, {"coupling", Condition::is_word, {"ddpm", "ddpm_ktgf", "cfd_dem"}}}),
-        real("friction", "1", "of contacts", 0.3, between(0, 10), {with_particles, four_way, springs}),
+             {with_particles, colliding}),
+        real("friction", "1", "of contacts", 0.3, between(0, 10), {with_particles, with_contacts, springs}),
         real("overlap", "1", "of springs under the vibrational force and impact, over the diameter", 0.01,
-             between(1e-5, 0.1), {with_particles, four_way, springs}),
+             between(1e-5, 0.1), {with_particles, with_contacts, springs}),
         real("packing_limit", "1", "largest volume fraction of particles", 0.63, between(0.3, 0.74),
              {with_particles, stressed}),
         real("granular_temperature", "(alpha/L)^2", "least granular temperature, and that of the start", 1e-3,
              between(0, 1e9), {with_particles, stressed}),
         word("particle_start",
              "particles start with the flow, from rest, or are released into the flow once it is periodic",
-             {"with_flow", "periodic_flow"}, {with_particles, vibrated, {"coupling", Condition::is_word, {"one_way"}}}),
+             {"with_flow", "periodic_flow"}, {with_particles, vibrated, one_way}),
         word("interpolation", "of the fluid velocity at a particle: linear, or quadratic and exactly divergence-free",
              {"trilinear", "solenoidal"}, {with_particles}),
         real("kernel_width", "diameters",
@@ -105,7 +115,7 @@ std::vector<ParameterSpec> parameters() {
         word("symmetry",
              "the flow of one-way particles: the whole cube, or half of it as its own mirror image in x (even cells), "
              "which it starts as and stays unless a convection that breaks the symmetry sets in",
-             {"none", "mirror"}, {{"coupling", Condition::is_word, {"one_way"}}}),
+             {"none", "mirror"}, {one_way}),
         whole("steps_per_period", "time steps per period of vibration", 24, between(8, 4096), {vibrated}),
         real("time_step", "L^2/alpha", "time step under a steady force", 1e-4, between(1e-9, 1),
              {{"frequency", Condition::zero, {}}}),
@@ -200,57 +210,17 @@ std::vector<ObservableSpec> observables() {
     };
 }
 
-// The one dispatch from words to types.
-template <class Kernel>
-std::unique_ptr<Scene> make_with(const Question& question, std::uint64_t seed, Artefacts& artefacts) {
-    using namespace thermovibration;
-    const coupling::Motion<Drag> motion(question.sphere(), question.step());
-    const auto grid = question.grid();
-    const auto sides = Question::sides();
-    const auto particles = static_cast<std::size_t>(question.particles);
-    const auto dilute = [&]<class Level>(Level level) -> std::unique_ptr<Scene> {
-        using Together = coupling::Suspension<flow::Boussinesq, Level, Kernel, Drag>;
-        return std::make_unique<Live<Together>>(
-            question, Together(question.fluid(), question.vibration(), motion, question.walls(), question.cloud(seed),
-                               std::move(level)));
-    };
-    const auto dense = [&]<class Interaction>(Interaction interaction) -> std::unique_ptr<Scene> {
-        using Together = coupling::DenseSuspension<flow::Boussinesq, Interaction, Kernel, Drag>;
-        return std::make_unique<Live<Together>>(
-            question, Together(question.fluid(), question.vibration(), motion, question.walls(), question.cloud(seed),
-                               std::move(interaction), question.kernel()));
-    };
-    const auto granular = [&]<class Temperature>(std::type_identity<Temperature>) {
-        return dense(coupling::SolidsPressure<Temperature>(grid, sides, question.sphere(), question.grains(),
-                                                           question.granular_temperature, question.kernel(),
-                                                           Kernel::hats));
-    };
-    const bool carried =
-        question.particles > 0 && question.particle_start == "periodic_flow" && !question.steady_force();
-    const auto one_way = [&]<class Level>(Level level) -> std::unique_ptr<Scene> {
-        if (carried) return std::make_unique<Carried<Level, Kernel>>(question, seed, artefacts);
-        return dilute(level);
-    };
-    if (question.mirrored()) return one_way(coupling::OneWayMirrored{});
-    if (question.particles == 0 || question.coupling == "one_way") return one_way(coupling::OneWay{});
-    if (question.coupling == "two_way") {
-        const auto form = [&]<class Form>(Form) {
-            return dilute(
-                coupling::TwoWay<Form>(grid, sides, question.sphere(), particles, question.kernel(), Kernel::hats));
-        };
-        return question.source_form == "force" ? form(coupling::ForceForm{}) : form(coupling::EquationNine{});
-    }
-    if (question.coupling == "ddpm") return granular(std::type_identity<coupling::AlgebraicTemperature>{});
-    if (question.coupling == "ddpm_ktgf") return granular(std::type_identity<coupling::TransportedTemperature>{});
-    if (question.coupling == "cfd_dem" && question.contact == "spring")
-        return dense(coupling::SpringContacts(question.sphere(), question.walls(), question.spring(), particles));
-    return dense(coupling::ProjectedContacts(question.sphere(), question.walls()));
-}
-
 std::unique_ptr<Scene> make(const Inputs& inputs, std::uint64_t seed, Artefacts& artefacts, const Files&) {
+    using namespace thermovibration;
     const Question question(inputs);
-    if (question.interpolation == "solenoidal") return make_with<coupling::Solenoidal>(question, seed, artefacts);
-    return make_with<coupling::Trilinear>(question, seed, artefacts);
+    if (!question.carried()) return std::make_unique<Live>(question, seed);
+    const auto carried = [&]<class Kernel>(std::type_identity<Kernel>) {
+        return std::make_unique<Carried>(
+            question, seed, artefacts,
+            question.mirrored() ? carry<coupling::OneWayMirrored, Kernel> : carry<coupling::OneWay, Kernel>);
+    };
+    return question.interpolation == "solenoidal" ? carried(std::type_identity<coupling::Solenoidal>{})
+                                                  : carried(std::type_identity<coupling::Trilinear>{});
 }
 
 // Of fields with their scratch, and of particles with their lists.
@@ -269,13 +239,10 @@ double seconds_of_vibration(const Question& question) {
     const double spreading = 1.3e-3 * cube + 0.13e-3 * cloud;
     const auto steps = static_cast<double>(question.total_steps());
     if (question.particles == 0) return steps * fluid_step;
-    if (question.dense()) {
-        const double on_grid = (question.coupling == "cfd_dem" ? 4e-3 : 7e-3) * cube;
-        return steps * (fluid_step + sweep + spreading + 1.2e-3 * cloud + on_grid);
-    }
-    if (question.coupling == "two_way") return steps * (fluid_step + sweep + spreading);
-    const bool carried = question.particle_start == "periodic_flow" && !question.steady_force();
-    if (!carried) return steps * (fluid_step + sweep);
+    if (question.level->dense)
+        return steps * (fluid_step + sweep + spreading + 1.2e-3 * cloud + question.level->seconds_on_grid * cube);
+    if (question.level->acts_on_fluid) return steps * (fluid_step + sweep + spreading);
+    if (!question.carried()) return steps * (fluid_step + sweep);
     return steps * sweep + 0.2 / question.step() * fluid_step;
 }
 

@@ -132,8 +132,8 @@ std::vector<Observations> histories(const Published& run, const char* contact, d
     const thermovibration::Question question(inputs);
     std::vector<Observations> found;
     for (int seed = 1; seed <= clouds; ++seed) {
-        thermovibration::Carried<coupling::OneWay, ConstantAtWalls> scene(question, static_cast<std::uint64_t>(seed),
-                                                                          shelf);
+        thermovibration::Carried scene(question, static_cast<std::uint64_t>(seed), shelf,
+                                       thermovibration::carry<coupling::OneWay, ConstantAtWalls>);
         found.push_back(finish(scene));
     }
     return found;

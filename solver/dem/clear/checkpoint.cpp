@@ -6,7 +6,7 @@
 
 namespace grainsweep::dem::clear {
 
-inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'0006ULL;  // "grnscl", version 6
+inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'0007ULL;  // "grnscl", version 7
 
 void ClearEngine::state(State& into) const {
     std::vector<std::uint32_t> place(spheres_at_start_, particles::gone);

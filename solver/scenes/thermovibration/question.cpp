@@ -36,7 +36,7 @@ Question::Question(const Inputs& inputs)
       density_ratio(number(inputs, "density_ratio")),
       stokes(number(inputs, "stokes")),
       particles(count(inputs, "particles")),
-      coupling(word(inputs, "coupling")),
+      level(particles > 0 ? &level_named(word(inputs, "coupling")) : &levels().front()),
       source_form(word(inputs, "source_form")),
       wall_contact(word(inputs, "wall_contact")),
       particle_start(word(inputs, "particle_start")),
@@ -64,10 +64,10 @@ Question::Question(const Inputs& inputs)
         throw std::invalid_argument("cells = " + std::to_string(cells) +
                                     " has no plane in the middle; symmetry = mirror needs an even number");
     const double filled = static_cast<double>(particles) * sphere().volume();
-    if (dense() && filled > 0.6)
+    if (level->dense && filled > 0.6)
         throw std::invalid_argument("particles = " + std::to_string(particles) + " fill " + shortest_text(filled) +
                                     " of the cube; at most 0.6 can be filled (fewer, or a smaller stokes)");
-    if (coupling == "cfd_dem" && contact == "spring") {
+    if (level->resolves_contacts && contact == "spring") {
         const coupling::SpringContacts contacts(sphere(), walls(), spring(), 0);
         if (contacts.substeps(step()) > most_substeps)
             throw std::invalid_argument(
@@ -143,7 +143,7 @@ coupling::HystereticSpring Question::spring() const {
 coupling::Cloud Question::cloud(std::uint64_t seed) const {
     constexpr std::uint64_t positions = 1;  // the stream of this purpose
     auto cloud = coupling::random_cloud(static_cast<std::size_t>(particles), walls(), stats::Stream(seed, positions));
-    if (coupling != "cfd_dem") return cloud;
+    if (!level->resolves_contacts) return cloud;
     constexpr double tolerated = 1e-3;  // diameters
     coupling::OverlapRemoval removal(walls(), 2 * sphere().radius());
     double left = 1;

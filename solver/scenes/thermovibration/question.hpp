@@ -8,6 +8,7 @@
 #include "solver/coupling/granular.hpp"
 #include "solver/coupling/hysteretic_spring.hpp"
 #include "solver/flow/flow.hpp"
+#include "solver/scenes/thermovibration/levels.hpp"
 #include "solver/scenes/values.hpp"
 
 #include <cstdint>
@@ -18,7 +19,8 @@ namespace grainsweep::thermovibration {
 struct Question {
     double rayleigh, frequency, start_phase, acceleration, prandtl, density_ratio, stokes;
     std::int64_t particles;
-    std::string coupling, source_form, wall_contact, particle_start, interpolation, contact, symmetry;
+    const LevelInfo* level;  ///< of the coupling; one-way without particles
+    std::string source_form, wall_contact, particle_start, interpolation, contact, symmetry;
     double restitution, collision_restitution, friction, overlap, packing_limit, granular_temperature;
     std::int64_t cells;
     double clustering;
@@ -41,7 +43,7 @@ struct Question {
     [[nodiscard]] flow::Grid grid() const;
     [[nodiscard]] static flow::Sides sides();
     /// Of the fluid: the half x < 0 where the flow is taken as its own mirror image.
-    [[nodiscard]] bool mirrored() const { return symmetry == "mirror" && (coupling == "one_way" || particles == 0); }
+    [[nodiscard]] bool mirrored() const { return symmetry == "mirror" && !level->acts_on_fluid; }
     [[nodiscard]] flow::Grid flow_grid() const;
     [[nodiscard]] flow::Flow<flow::Boussinesq> fluid() const;
     [[nodiscard]] coupling::Sphere sphere() const { return {density_ratio, stokes, prandtl, acceleration, 1}; }
@@ -50,8 +52,10 @@ struct Question {
     [[nodiscard]] coupling::Walls walls() const;
     /// Random; without overlaps where contacts are resolved. Throws std::invalid_argument where they do not fit.
     [[nodiscard]] coupling::Cloud cloud(std::uint64_t seed) const;
-    /// Particles take space from the fluid: every level above two_way.
-    [[nodiscard]] bool dense() const { return coupling != "one_way" && coupling != "two_way"; }
+    /// Particles are released into a flow that has become periodic.
+    [[nodiscard]] bool carried() const {
+        return particles > 0 && !level->acts_on_fluid && particle_start == "periodic_flow" && !steady_force();
+    }
     [[nodiscard]] coupling::Granular grains() const {
         return coupling::Granular::of(sphere(), collision_restitution, packing_limit);
     }

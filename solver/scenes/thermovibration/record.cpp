@@ -36,8 +36,17 @@ void add_profile(Observations& into, const char* name, std::span<const coupling:
 }
 
 template <class T>
-void save_column(std::vector<std::byte>& into, const std::vector<T>& column) {
-    ByteWriter(into).put(column);
+void save_if_any(std::vector<std::byte>& into, const std::optional<T>& value) {
+    append_bytes(into, static_cast<std::int64_t>(value.has_value()));
+    if (value) append_bytes(into, *value);
+}
+
+template <class T>
+void restore_if_any(std::span<const std::byte>& from, std::optional<T>& value) {
+    std::int64_t any = 0;
+    take_bytes(from, any);
+    value.reset();
+    if (any != 0) take_bytes(from, value.emplace());
 }
 
 template <class T>
@@ -79,16 +88,16 @@ void Record::sample(double t, const coupling::Cloud& cloud) {
 void Record::observe(Observations& into) const {
     if (!question_.steady_force())
         into.scalars["gershuni"] = observables::gershuni(question_.prandtl, question_.rayleigh, question_.frequency);
-    if (has_flow_) {
-        into.scalars["kinetic_energy"] = flow_.energy;
-        into.scalars["nusselt"] = flow_.nusselt;
-        into.scalars["peak_velocity"] = flow_.peak;
+    if (flow_) {
+        into.scalars["kinetic_energy"] = flow_->energy;
+        into.scalars["nusselt"] = flow_->nusselt;
+        into.scalars["peak_velocity"] = flow_->peak;
     }
-    if (has_budget_) {
-        into.scalars["force_on_fluid"] = std::sqrt(budget_.given);
-        into.scalars["vibrational_force"] = std::sqrt(budget_.drive);
+    if (budget_) {
+        into.scalars["force_on_fluid"] = std::sqrt(budget_->given);
+        into.scalars["vibrational_force"] = std::sqrt(budget_->drive);
     }
-    if (limited_share_ >= 0) into.scalars["packing_limited"] = limited_share_;
+    if (limited_share_) into.scalars["packing_limited"] = *limited_share_;
     if (times_.empty()) return;
     const auto n = static_cast<int>(question_.sampling_cells);
     const double random = observables::random_accumulation(last_.size(), sampling_total());
@@ -109,25 +118,17 @@ void Record::observe(Observations& into) const {
 }
 
 void Record::save(std::vector<std::byte>& into) const {
-    append_bytes(into, flow_);
-    append_bytes(into, static_cast<std::int64_t>(has_flow_));
-    append_bytes(into, budget_);
-    append_bytes(into, static_cast<std::int64_t>(has_budget_));
-    append_bytes(into, limited_share_);
-    for (const auto* column : {&times_, &k_, &k5_, &k20_, &k40_, &k_cells_}) save_column(into, *column);
-    save_column(into, last_);
+    save_if_any(into, flow_);
+    save_if_any(into, budget_);
+    save_if_any(into, limited_share_);
+    for (const auto* column : {&times_, &k_, &k5_, &k20_, &k40_, &k_cells_}) ByteWriter(into).put(*column);
+    ByteWriter(into).put(last_);
 }
 
 void Record::restore(std::span<const std::byte>& from) {
-    take_bytes(from, flow_);
-    std::int64_t has_flow = 0;
-    take_bytes(from, has_flow);
-    has_flow_ = has_flow != 0;
-    take_bytes(from, budget_);
-    std::int64_t has_budget = 0;
-    take_bytes(from, has_budget);
-    has_budget_ = has_budget != 0;
-    take_bytes(from, limited_share_);
+    restore_if_any(from, flow_);
+    restore_if_any(from, budget_);
+    restore_if_any(from, limited_share_);
     for (auto* column : {&times_, &k_, &k5_, &k20_, &k40_, &k_cells_}) restore_column(from, *column);
     restore_column(from, last_);
     for (const auto* column : {&k_, &k5_, &k20_, &k40_, &k_cells_}) require_possible(column->size() == times_.size());

@@ -7,6 +7,7 @@
 #include "solver/scenes/thermovibration/question.hpp"
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -39,16 +40,8 @@ public:
 
     /// The particles at time t, always at the same phase of the vibration.
     void sample(double t, const coupling::Cloud& cloud);
-    void set_flow(const FlowMeans& means) {
-        flow_ = means;
-        has_flow_ = true;
-    }
-
-    void set_budget(const BudgetMeans& means) {
-        budget_ = means;
-        has_budget_ = true;
-    }
-
+    void set_flow(const FlowMeans& means) { flow_ = means; }
+    void set_budget(const BudgetMeans& means) { budget_ = means; }
     /// Share of the steps so far in which the packing limit moved particles.
     void set_limited_share(double share) { limited_share_ = share; }
 
@@ -60,11 +53,9 @@ private:
     [[nodiscard]] std::size_t sampling_total() const;
 
     Question question_;
-    FlowMeans flow_;
-    bool has_flow_ = false;
-    BudgetMeans budget_;
-    bool has_budget_ = false;
-    double limited_share_ = -1;  ///< negative: the level has no packing limit
+    std::optional<FlowMeans> flow_;
+    std::optional<BudgetMeans> budget_;
+    std::optional<double> limited_share_;
     std::vector<double> times_, k_, k5_, k20_, k40_, k_cells_;
     std::vector<coupling::Vec3> last_;  ///< positions of the last sample
 };

@@ -1,7 +1,7 @@
 #include "solver/scenes/thermovibration/runs.hpp"
 
-#include "solver/observables/flow_state.hpp"
 #include "solver/own_cores.hpp"
+#include "solver/scenes/thermovibration/picture.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,18 +12,10 @@
 namespace grainsweep::thermovibration {
 namespace {
 
-constexpr std::int64_t judged_every = 20;  // periods
-constexpr double give_up = 1.0;            // L^2/alpha: ten thermal times
-
 std::string text(const char* format, double a, double b, double c, double d, double e) {
     std::array<char, 256> line{};
     std::snprintf(line.data(), line.size(), format, a, b, c, d, e);
     return line.data();
-}
-
-// Root of the mean square over the volume.
-double size_of(const flow::Grid& grid, const flow::FaceVectors& field) {
-    return std::sqrt(2 * observables::kinetic_energy(grid, field));
 }
 
 }  // namespace
@@ -88,88 +80,74 @@ std::int64_t watch_interval(std::int64_t steps_per_period) {
     return steps;
 }
 
-SpinUp::SpinUp(const Question& question)
+Live::Live(const Question& question, std::uint64_t seed)
     : question_(question),
-      fluid_(question.fluid()),
-      velocity_(flow::face_vectors(fluid_.grid())),
-      acceleration_(velocity_),
-      mean_(velocity_),
-      previous_mean_(velocity_),
-      stored_(fluid_.grid()) {}
+      record_(question),
+      coupled_(question.level->make(question, seed)),
+      watch_(watch_interval(question.window())) {
+    record_.sample(0, coupled_->cloud());
+}
 
-void SpinUp::step() {
-    const std::int64_t per_period = question_.steps_per_period;
-    const std::int64_t in_period = fluid_.steps() % per_period;
-    const bool judged = (fluid_.steps() / per_period) % judged_every == judged_every - 1;
-    fluid_.step();
-    if (fluid_.steps() % watch_interval(per_period) == 0) {
-        fault_ = thermovibration::fault(fluid_, time());
+void Live::advance(double until) {
+    while (time() < until && !finished() && fault_.empty()) step();
+}
+
+int Live::use_threads(int count) {
+    const int wanted = threads_for(coupled_->fluid().grid(), count);
+    if (wanted != slabs_.count()) coupled_->use(slabs_ = Slabs(wanted));
+    return wanted;
+}
+
+void Live::save(Bytes& into) const {
+    into.clear();
+    coupled_->save(into);
+    append_bytes(into, means_);
+    append_bytes(into, budget_);
+    record_.save(into);
+}
+
+void Live::restore(std::span<const std::byte> from) {
+    coupled_->restore(from);
+    take_bytes(from, means_);
+    take_bytes(from, budget_);
+    record_.restore(from);
+    require_possible(from.empty() && steps() <= question_.total_steps());
+    const auto& fluid = coupled_->fluid();
+    require_possible(fault(fluid, time()).empty());
+    require_possible(
+        fault(coupled_->cloud(), fluid.time_step(), 1.0 / static_cast<double>(question_.cells), time()).empty());
+}
+
+Snapshot Live::snapshot() const {
+    Snapshot now = picture(question_, coupled_->cloud());
+    const auto& fluid = coupled_->fluid();
+    now.fields.push_back(drawn_flow(question_, fluid.velocity(), &fluid.temperature()));
+    return now;
+}
+
+void Live::step() {
+    coupled_->step();
+    const auto& fluid = coupled_->fluid();
+    const bool sampled = steps() % question_.sample_steps() == 0 || finished();
+    std::string thrown =
+        fault(coupled_->cloud(), fluid.time_step(), 1.0 / static_cast<double>(question_.cells), time());
+    if (sampled || steps() % watch_ == 0 || !thrown.empty()) {  // it may be the fluid that threw the particle
+        fault_ = fault(fluid, time());
+        if (const auto* solids = coupled_->solids(); solids && fault_.empty())
+            fault_ = fault(*solids, fluid.grid(), time());
+        if (fault_.empty()) fault_ = std::move(thrown);
         if (!fault_.empty()) return;
     }
-    if (stage_ == Stage::storing) {
-        fluid_.midpoint(velocity_, acceleration_);
-        const double phase = question_.frequency * (static_cast<double>(in_period) + 0.5) * fluid_.time_step();
-        stored_.add(phase, static_cast<int>(per_period), velocity_, acceleration_);
-        means_.add(fluid_, per_period);
-        if (in_period == per_period - 1) stage_ = Stage::stored;
-    } else if (judged) {
-        const double share = 1 / static_cast<double>(per_period);
-        for (std::size_t d = 0; d < 3; ++d)
-            for (std::size_t m = 0; m < mean_[d].size(); ++m)
-                mean_[d].values()[m] += share * fluid_.velocity()[d].values()[m];
-        mean_square_ += share * 2 * observables::kinetic_energy(fluid_.grid(), fluid_.velocity());
-        if (in_period == per_period - 1) compare();
+    const bool counted = steps() > question_.total_steps() - question_.window();
+    if (counted) means_.add(fluid, question_.window());
+    if (finished()) record_.set_flow(means_);
+    if (const auto* budget = coupled_->budget()) {
+        if (counted) budget_.add(*budget, question_.window());
+        if (finished()) record_.set_budget(budget_);
     }
-}
-
-void SpinUp::compare() {
-    for (std::size_t d = 0; d < 3; ++d)
-        for (std::size_t m = 0; m < mean_[d].size(); ++m) previous_mean_[d].values()[m] -= mean_[d].values()[m];
-    const double change = size_of(fluid_.grid(), previous_mean_);
-    const double size = size_of(fluid_.grid(), mean_);
-    const double relaxation_over_interval =
-        1 / (std::numbers::pi * std::numbers::pi * question_.period() * static_cast<double>(judged_every));
-    const double to_come = change * std::max(1.0, relaxation_over_interval);
-    const bool settled = to_come <= 0.02 * size || to_come <= 1e-5 * std::sqrt(mean_square_);
-    passes_ = settled ? passes_ + 1 : 0;
-    std::swap(mean_, previous_mean_);
-    for (auto& component : mean_) std::fill(component.values().begin(), component.values().end(), 0.0);
-    mean_square_ = 0;
-    if (passes_ >= 2)
-        stage_ = Stage::storing;
-    else if (time() > give_up)
-        fault_ = text(
-            "the flow had not become periodic by t = %.4g L^2/alpha (mean velocity still to change by %.2g of "
-            "its size); release the particles with the flow instead (particle_start)",
-            time(), to_come / size, 0, 0, 0);
-}
-
-void SpinUp::save(std::vector<std::byte>& into) const {
-    fluid_.save(into);
-    for (std::size_t d = 0; d < 3; ++d) {
-        append_bytes<double>(into, mean_[d].values());
-        append_bytes<double>(into, previous_mean_[d].values());
-    }
-    append_bytes(into, mean_square_);
-    append_bytes(into, passes_);
-    append_bytes(into, stage_);
-    append_bytes(into, means_);
-    if (stage_ != Stage::settling) stored_.save(into);
-}
-
-void SpinUp::restore(std::span<const std::byte>& from) {
-    fluid_.restore(from);
-    for (std::size_t d = 0; d < 3; ++d) {
-        take_bytes<double>(from, mean_[d].values());
-        take_bytes<double>(from, previous_mean_[d].values());
-    }
-    take_bytes(from, mean_square_);
-    take_bytes(from, passes_);
-    take_bytes(from, stage_);
-    take_bytes(from, means_);
-    require_possible(stage_ == Stage::settling || stage_ == Stage::storing || stage_ == Stage::stored);
-    require_possible(passes_ >= 0 && passes_ <= 2 && thermovibration::fault(fluid_, time()).empty());
-    if (stage_ != Stage::settling) stored_.restore(from);
+    if (const auto limited = coupled_->limited_steps())
+        record_.set_limited_share(static_cast<double>(*limited) / static_cast<double>(steps()));
+    if (sampled) record_.sample(time(), coupled_->cloud());
 }
 
 }  // namespace grainsweep::thermovibration

@@ -47,13 +47,13 @@ void warn_of_particles(std::vector<Warning>& warnings, const Question& q) {
         warnings.push_back(
             {"more particles than fit",
              sentence("%.0f particles of diameter %.2g L fill %.2g of the cube", particles, diameter, filled)});
-    else if (q.coupling == "one_way" && filled * q.density_ratio > dilute_mass)
+    else if (!q.level->acts_on_fluid && filled * q.density_ratio > dilute_mass)
         warnings.push_back(
             {"too heavy for one way",
              sentence("the particles weigh %.2g of the fluid (they fill %.2g of the cube): it cannot be moved "
                       "without feeling them; take two_way or above",
                       filled * q.density_ratio, filled)});
-    if (!q.dense() && diameter * static_cast<double>(q.cells) > 1)
+    if (!q.level->dense && diameter * static_cast<double>(q.cells) > 1)
         warnings.push_back(
             {"particles larger than cells",
              sentence("a diameter of %.2g L is more than a cell of the flow, %.2g L: a point does not stand for "
