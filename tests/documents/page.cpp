@@ -121,8 +121,8 @@ std::vector<Page> user_pages() {
 }
 
 std::vector<Page> all_pages() {
-    return pages_under(
-        {"README.md", "CHANGELOG.md", "docs", "stats", "solver", "sweep", "configs", "results_schema", "tests"});
+    return pages_under({"README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs", "stats", "solver", "sweep", "configs",
+                        "results_schema", "tests"});
 }
 
 std::string answer_of(const std::vector<std::string>& arguments) {

@@ -97,7 +97,7 @@ GRAINSWEEP_PHASE void advance_range(const Field& f, std::int32_t from, std::int3
         }
     };
     // What pairs will come upon, fetched once per particle: once per pair, as sift() does it for many particles, costs
-    // more than it gains for few (docs/cost.md).
+    // more than it gains for few (docs/tried_and_dropped.md).
     const auto fetch = [records, forces, ahead = f.fetch_ahead, last = f.end - 1](std::int32_t i) {
         if (ahead == 0) return;
         const std::int32_t k = i + ahead < last ? i + ahead : last;

@@ -19,7 +19,7 @@
 
 namespace grainsweep::dem::fast {
 
-/// Touching pairs worked on at a time: the fewest with which beds and chutes were fastest (docs/cost.md). No bit
+/// Touching pairs worked on at a time: the fewest with which beds and chutes were fastest (docs/tried_and_dropped.md). No bit
 /// depends on it.
 constexpr std::int32_t tile = 256;
 /// Contacts with a wall worked on at a time. Its sums are formed row by row: another number rounds them otherwise.
