@@ -54,10 +54,9 @@ campaign::Campaign campaign_of_spool(const std::filesystem::path& spool) {
 
 void refuse_other_cases(const std::filesystem::path& spool, const campaign::Cases& cases) {
     if (spool::Spool::asked_in(spool).cases == spool::hash_of_cases(cases)) return;
-    throw campaign::wrong_question(
-        "DIR", spool.string(),
-        "its tasks were asked other cases: a file that the campaign names has changed since, "
-        "or this program is another version");
+    throw campaign::wrong_question("DIR", spool.string(),
+                                   "its tasks computed other cases: a file of the campaign has changed since, "
+                                   "or this program is another version");
 }
 
 spool::Collected import_answers(const std::filesystem::path& spool, const campaign::Campaign& campaign,

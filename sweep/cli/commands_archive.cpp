@@ -105,11 +105,11 @@ std::string why_failed(const std::vector<store::LoggedAttempt>& attempts, const 
     std::int64_t limit = 0;
     for (const auto& place : places) limit = std::max(limit, place.attempts.value_or(campaign::Limits{}.attempts));
     if (failures < limit)
-        return fmt::format("{} of its attempts failed, and limits.attempts is {}: the next run tries it again",
-                           failures, limit);
+        return fmt::format("{} of its attempts failed; limits.attempts is {}: the next run tries it again", failures,
+                           limit);
     return fmt::format(
-        "{} of its attempts failed, and limits.attempts is {}: it will not run again unless that grows or `run --again "
-        "{}` asks for it",
+        "{} of its attempts failed; limits.attempts is {}: it will not run again; to rerun it, raise the limit or use "
+        "`run --again {}`",
         failures, limit, to_string(*attempts.back().outcome));
 }
 
@@ -117,30 +117,30 @@ std::string why(const std::vector<store::LoggedAttempt>& attempts, const std::ve
                 const std::optional<campaign::CaseResult>& stands) {
     if (stands && campaign::settles(stands->outcome) && attempts.back().number != stands->attempt.number)
         return fmt::format(
-            "it is settled: the answer of attempt {} stands, and what came later brought none; `run "
-            "--again {}` asks it anew",
+            "settled: the result of attempt {} is kept, because later attempts gave none; `run "
+            "--again {}` reruns it",
             stands->attempt.number, to_string(stands->outcome));
     const std::string passed_by = out_of_reach(places);
     const auto next_run = [&](const std::string& does) {
         return passed_by.empty() ? does : fmt::format("it will not run: {}", passed_by);
     };
     if (attempts.empty())
-        return passed_by.empty() ? "it was never begun: the next run of its campaign starts it"
-                                 : fmt::format("it was never begun and will not be: {}", passed_by);
+        return passed_by.empty() ? "it has not started: the next run of its campaign starts it"
+                                 : fmt::format("it has not started and will not: {}", passed_by);
     const auto& last = attempts.back();
     if (!last.outcome)
-        return next_run("its last attempt is under way, or the program that ran it died: the next run starts it again");
+        return next_run("its last attempt is running, or its main process died: the next run starts it again");
     switch (*last.outcome) {
         case Outcome::completed:
         case Outcome::skipped:
-            return "it is settled: the same question has the same answer, so it will not run again";
+            return "settled: it will not run again, because the same inputs give the same result";
         case Outcome::unstable:
         case Outcome::rejected:
-            return fmt::format("it is settled: the same question would end the same way; `run --again {}` asks it anew",
-                               to_string(*last.outcome));
+            return fmt::format(
+                "settled: it will not run again, because the same inputs end the same way; `run --again {}` reruns it",
+                to_string(*last.outcome));
         case Outcome::abandoned:
-            return next_run(
-                "it was given back unfinished: the next run starts it again, from its checkpoint where there is one");
+            return next_run("it was interrupted: the next run continues it, from its checkpoint if there is one");
         case Outcome::crashed:
         case Outcome::timed_out:
             break;
@@ -256,8 +256,8 @@ public:
     void print() const {
         for (const Gap& gap : gaps_)
             if (gap.rows > 0)
-                std::cerr << fmt::format("note: {} of {} rows{} have no {}: a completed case has none where {}\n",
-                                         gap.rows, rows_, outcome_ ? " of completed cases" : "", gap.name, gap.why);
+                std::cerr << fmt::format("note: {} of {} rows{} have no {}: it is undefined where {}\n", gap.rows,
+                                         rows_, outcome_ ? " of completed cases" : "", gap.name, gap.why);
     }
 
 private:
@@ -317,21 +317,20 @@ std::shared_ptr<Arguments> with_database(Parser& parser) {
 
 std::vector<Command> archive_commands() {
     return {
-        {"status", "cases by outcome, rate, time left, and whether a campaign has converged",
+        {"status", "shows cases by outcome, rate, time left and convergence",
          [](Parser& parser, const Format& format) -> Action {
              const auto arguments = with_database(parser);
              return [arguments, &format] { return status(arguments->database, format); };
          },
          false},
-        {"explain", "every attempt of a case, and why it will or will not run",
+        {"explain", "lists the attempts of a case; states why it will or will not run again",
          [](Parser& parser, const Format& format) -> Action {
              const auto arguments = with_database(parser);
              parser.add_option("CASE", arguments->text, "case id, or its beginning")->required();
              return [arguments, &format] { return explain(arguments->database, arguments->text, format); };
          },
          false},
-        {"replay",
-         "computes a stored case again and compares; runs the stored command of a program",
+        {"replay", "computes a stored case again and compares the results",
          [](Parser& parser, const Format& format) -> Action {
              const auto request = std::make_shared<ReplayRequest>();
              parser.add_option("DB", request->database, "database")->required();
@@ -339,15 +338,13 @@ std::vector<Command> archive_commands() {
              const auto tolerance = std::make_shared<double>(none_given);
              parser
                  .add_option("--tolerance", *tolerance,
-                             "relative difference up to which both agree; default: none on the same build and "
-                             "instruction path, \"tolerance\" of a program")
+                             "relative difference that counts as agreement; default: 0 on the same build and "
+                             "instruction path; for a program its \"tolerance\"")
                  ->type_name("X");
-             parser
-                 .add_option("--keep", request->keep,
-                             "new folder that a program answers the case in; it stays, to be looked at")
+             parser.add_option("--keep", request->keep, "new folder in which a program computes the case; it is kept")
                  ->type_name("DIR");
              declare_pictures(parser, request->pictures);
-             declare_path(parser, request->path, "that of the archive");
+             declare_path(parser, request->path, "that of the stored case");
              const auto threads = std::make_shared<std::int64_t>(0);
              declare_threads(parser, *threads);
              return [request, tolerance, threads, &format] {
@@ -359,18 +356,18 @@ std::vector<Command> archive_commands() {
              };
          },
          false},
-        {"query", "read-only SQL",
+        {"query", "runs one read-only SQL statement",
          [](Parser& parser, const Format& format) -> Action {
              const auto arguments = with_database(parser);
-             parser.add_option("SQL", arguments->text, "one statement; each campaign is a view of its name")
+             parser.add_option("SQL", arguments->text, "the statement; every campaign is a view of its name")
                  ->required();
              const auto seconds = std::make_shared<double>(600);
-             parser.add_option("--limit-seconds", *seconds, "processor time it may take, s; 0: no limit; default: 600")
+             parser.add_option("--limit-seconds", *seconds, "limit of processor time, s; 0: none; default: 600")
                  ->type_name("SECONDS");
              return [arguments, seconds, &format] { return query(*arguments, *seconds, format); };
          },
          false},
-        {"dump", "canonical text of all results: equal for equal science",
+        {"dump", "prints all results as canonical text; equal results give equal text",
          [](Parser& parser, const Format& format) -> Action {
              const auto arguments = with_database(parser);
              return [arguments, &format] {

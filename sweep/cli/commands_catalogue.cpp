@@ -210,8 +210,9 @@ void show_program(Format format) {
     }
     std::cout << fmt::format("{}: {}\n\n", campaign::program_word, campaign::program_summary());
     report::write(std::cout, table, format);
-    std::cout << "\nparameters are the factors and fixed values of the campaign file, observables those of its "
-                 "\"program\"\n";
+    std::cout
+        << "\nThe parameters are the factors and fixed values of the campaign file; the observables are those of its "
+           "\"program\".\n";
 }
 
 int list_scenes(const std::string& name, Format format) {
@@ -313,7 +314,7 @@ Command listing(std::string command, std::string summary, int (*list)(const std:
     return {std::move(command), std::move(summary),
             [list](Parser& parser, const Format& format) -> Action {
                 const auto name = std::make_shared<std::string>();
-                parser.add_option("NAME", *name, "one of them in full");
+                parser.add_option("NAME", *name, "one of them, in detail");
                 return [name, &format, list] { return list(*name, format); };
             },
             false};
@@ -323,9 +324,9 @@ Command listing(std::string command, std::string summary, int (*list)(const std:
 
 std::vector<Command> catalogue_commands() {
     return {
-        listing("scenes", "what can be asked: parameters, units, bounds, defaults, observables", list_scenes),
-        listing("designs", "how the points can be chosen: kinds and their options", list_designs),
-        {"schema", "JSON Schema of a campaign file",
+        listing("scenes", "lists the scenes, or the parameters and observables of one scene", list_scenes),
+        listing("designs", "lists the designs, or the options of one design", list_designs),
+        {"schema", "prints the JSON Schema of a campaign file",
          [](Parser&, const Format& format) -> Action { return [&format] { return print_schema(format); }; }, false,
          true},
     };

@@ -55,11 +55,11 @@ void refuse_extrapolation(const Store& store, const report::ModelCases& cases, c
         const auto outside = report::outside_text(cases.factors, setting);
         if (!outside.empty())
             throw campaign::wrong_question("", outside,
-                                           "the model would extrapolate; --extrapolate shows what it says");
+                                           "the model would extrapolate; --extrapolate predicts nevertheless");
         if (admits && !admits(setting))
             throw campaign::wrong_question("", report::setting_text(cases.factors, setting),
                                            fmt::format("the campaign has no case where its condition is not met: {}; "
-                                                       "--extrapolate shows what the model says",
+                                                       "--extrapolate predicts nevertheless",
                                                        cases.campaign.condition));
     }
 }
@@ -90,26 +90,30 @@ int predict(const PredictRequest& request, Format format) {
 
 void declare_subject(Parser& parser, std::string& database, std::string& campaign) {
     parser.add_option("DB", database, "the database")->required();
-    parser.add_option("--campaign", campaign,
-                      "one of its campaigns; default: the only one, or the first of those that differ in their points "
-                      "alone");
+    parser
+        .add_option("--campaign", campaign,
+                    "name of a campaign; default: the only one, or the first of those that differ only in their points")
+        ->type_name("NAME");
 }
 
 Command predict_command() {
-    return {"predict", "what a response is at settings that were not run, with its error, from the cases there are",
+    return {"predict", "predicts a response, with its error, at settings that were not run",
             [](Parser& parser, const Format& format) -> Action {
                 const auto request = std::make_shared<PredictRequest>();
                 declare_subject(parser, request->database, request->campaign);
-                parser.add_option("--observable", request->observable,
-                                  "a scalar; default: the one the campaign converges on, else the scene's first");
-                parser.add_option("--at", request->at, "a factor of the setting; once for every factor")
+                parser
+                    .add_option("--observable", request->observable,
+                                "scalar observable; default: that of the convergence rule, else the scene's first")
+                    ->type_name("NAME");
+                parser.add_option("--at", request->at, "value of a factor; once for every factor")
                     ->type_name("NAME=VALUE")
                     ->allow_extra_args(false);
-                parser.add_option("--points", request->points,
-                                  "CSV file of settings: a header that names every factor, one setting a line");
-                parser.add_flag(
-                    "--extrapolate", request->extrapolate,
-                    "answer outside of the ranges of the factors and where no case near has an answer, too");
+                parser
+                    .add_option("--points", request->points,
+                                "CSV file of settings: a header with every factor, one setting per line")
+                    ->type_name("FILE.csv");
+                parser.add_flag("--extrapolate", request->extrapolate,
+                                "predict also outside the ranges of the factors and where no near case has a result");
                 return [request, &format] { return predict(*request, format); };
             },
             false};
@@ -144,7 +148,7 @@ void check_run(const WindowArguments& arguments, const report::WindowRequest& re
         return;
     }
     if (request.objective.empty())
-        throw campaign::wrong_question("--run", "", "needs --maximize or --minimize: the width is that of its mean");
+        throw campaign::wrong_question("--run", "", "needs --maximize or --minimize: --width applies to its mean");
     if (arguments.width == 0)
         throw campaign::wrong_question(
             "--run", "", "needs --width, the 95 % half-width of the objective's mean at the best setting");
@@ -206,10 +210,10 @@ int window(const WindowArguments& arguments, Format format) {
         report::write_window(std::cout, cases, request, found);
         if (!written.empty())
             std::cout << fmt::format(
-                "{}: campaign {}; grainsweep run {} --db {} computes it, and its cases come into the same model\n",
+                "{}: campaign {}; grainsweep run {} --db {} computes its cases for the same model\n",
                 arguments.next_file, written, arguments.next_file, arguments.database);
         if (!arguments.output.empty())
-            std::cout << fmt::format("{}: the window as a page; open it in a browser, or print it\n", arguments.output);
+            std::cout << fmt::format("{}: open it in a browser, or print it\n", arguments.output);
         if (end) std::cout << fmt::format("{} cases run in {} batches: {}\n", end->cases, end->batches, end->says);
     }
     return end ? end->exit_code : 0;
@@ -217,48 +221,45 @@ int window(const WindowArguments& arguments, Format format) {
 
 Command window_command() {
     return {
-        "window", "the process window: where a condition holds, the best setting there, what to run next",
+        "window", "finds the process window: where a condition holds, the best setting, the cases to run next",
         [](Parser& parser, const Format& format) -> Action {
             const auto arguments = std::make_shared<WindowArguments>();
             declare_subject(parser, arguments->database, arguments->campaign);
             parser
                 .add_option("--where", arguments->request.where,
-                            "the condition over observables and factors: \"mfr >= 0.35 and empty_share <= 0.1\"")
+                            "condition over observables and factors: \"mfr >= 0.35 and empty_share <= 0.1\"")
                 ->type_name("CONDITION");
-            parser
-                .add_option("--maximize", arguments->maximise, "the observable, or the factor, that shall be largest")
-                ->type_name("NAME");
-            parser
-                .add_option("--minimize", arguments->minimise, "the observable, or the factor, that shall be smallest")
-                ->type_name("NAME");
+            parser.add_option("--maximize", arguments->maximise, "observable or factor to maximise")->type_name("NAME");
+            parser.add_option("--minimize", arguments->minimise, "observable or factor to minimise")->type_name("NAME");
             parser
                 .add_option("--risk", arguments->request.risk,
-                            "probability, at most, that the condition does not hold in the window")
+                            "largest probability that a setting in the window violates the condition")
                 ->capture_default_str();
             parser.add_flag("--single", arguments->single,
-                            "the condition is for every single run; default: for the mean of many");
-            parser.add_option("--next", arguments->next, "so many cases to run next")
+                            "apply the condition to every single run; default: to the mean over seeds");
+            parser.add_option("--next", arguments->next, "number of cases to propose")
                 ->type_name("N")
                 ->check(whole_number(0, 1000));
             parser
                 .add_option("--next-file", arguments->next_file,
-                            "a campaign file of the next cases, to be written; to be run into the same database")
+                            "campaign file to write with the proposed cases; run it into the same database")
                 ->type_name("FILE.json");
             parser.add_flag("--run", arguments->run,
-                            "run batches of next cases (--next N each, 8 without it) into the database until the "
-                            "best setting is known to --width; the same command again goes on");
+                            "run batches of proposed cases (--next N each; default: 8) until the best setting is "
+                            "known to --width; run it again to resume");
             parser
                 .add_option("--width", arguments->width,
-                            "of --run: the 95 % half-width that the objective's mean at the best setting shall have")
+                            "with --run: wanted 95 % half-width of the objective's mean at the best setting")
                 ->type_name("WIDTH");
-            parser.add_option("--max-cases", arguments->max_cases, "of --run: run at most N cases; default: 100")
+            parser.add_option("--max-cases", arguments->max_cases, "with --run: run at most N cases; default: 100")
                 ->type_name("N")
                 ->check(whole_number(1));
-            parser.add_option("-j", arguments->workers, "of --run: workers; 0: all cores")
+            parser.add_option("-j", arguments->workers, "with --run: worker processes; 0: all cores")
+                ->type_name("N")
                 ->check(whole_number(0, 4096));
             parser
                 .add_option("-o,--output", arguments->output,
-                            "a page with the window drawn: the best setting, maps and curves with their bands")
+                            "HTML page with the window: best setting, maps, curves with their bands")
                 ->type_name("FILE.html");
             return [arguments, &format] { return window(*arguments, format); };
         },

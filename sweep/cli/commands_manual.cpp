@@ -43,7 +43,7 @@ void print(const std::string& column, const std::string& text, report::Format fo
 
 std::vector<Command> manual_commands() {
     return {
-        {"completion", "completion of the command line, as a script for a shell",
+        {"completion", "prints a completion script for a shell",
          [](Parser& parser, const report::Format& format) -> Action {
              const auto shell = std::make_shared<std::string>();
              parser.add_option("SHELL", *shell, "bash or zsh")->required();
@@ -53,7 +53,7 @@ std::vector<Command> manual_commands() {
              };
          },
          false, true},
-        {"manual", "the manual page, for man(1)",
+        {"manual", "prints the manual page for man(1)",
          [](Parser&, const report::Format& format) -> Action {
              return [&format] {
                  print("manual", manual_page(describe(all_commands())), format);

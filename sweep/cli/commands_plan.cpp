@@ -193,8 +193,8 @@ void write_csv(const Campaign& campaign, const Outlook& outlook) {
 /// Of a case; empty for a program, which has cores.
 std::string threads_text(const Campaign& campaign) {
     if (campaign::is_program(campaign.scene().name)) return {};
-    if (campaign.execution.threads == 0) return "one for each case, more where fewer cases are left than cores";
-    return fmt::format("{} for each case", campaign.execution.threads);
+    if (campaign.execution.threads == 0) return "one per case; more when fewer cases are left than cores";
+    return fmt::format("{} per case", campaign.execution.threads);
 }
 
 std::string seconds_text(double seconds) {
@@ -221,13 +221,13 @@ void show_text(const Campaign& campaign, const Outlook& outlook) {
     if (cost.questions != cost.places) std::cout << fmt::format(", {} different", cost.questions);
     if (cost.proven > 0) std::cout << fmt::format(", {} of them answered without simulation", cost.proven);
     if (cost.impossible > 0)
-        std::cout << fmt::format("\nimpossible {} of them, which will be rejected; point {}: {}", cost.impossible,
+        std::cout << fmt::format("\nimpossible {} of them will be rejected; first at point {}: {}", cost.impossible,
                                  cost.first_point, cost.first_reason);
     std::cout << fmt::format("\npredicted  {} on one core; the longest case {}\n", seconds_text(cost.total_seconds),
                              seconds_text(cost.longest_seconds));
     if (cost.largest_bytes >= memory_worth_a_line)
-        std::cout << fmt::format("memory     {:.2g} GB for the largest case, of {:.2g} GB\n", 1e-9 * cost.largest_bytes,
-                                 1e-9 * workers::memory_room());
+        std::cout << fmt::format("memory     {:.2g} GB for the largest case; {:.2g} GB are available\n",
+                                 1e-9 * cost.largest_bytes, 1e-9 * workers::memory_room());
     if (const auto threads = threads_text(campaign); !threads.empty())
         std::cout << fmt::format("threads    {}\n", threads);
     if (!outlook.database.empty())
@@ -238,7 +238,7 @@ void show_text(const Campaign& campaign, const Outlook& outlook) {
     }
     for (const auto& warning : outlook.warnings) std::cout << fmt::format("warning    {}\n", warning);
     if (const auto& convergence = campaign.convergence) {
-        std::cout << fmt::format("judged by  {} on {} within {}, every {} points\n", convergence->rule,
+        std::cout << fmt::format("rule       {} on {}, tolerance {}, checked every {} points\n", convergence->rule,
                                  convergence->observable, convergence->tolerance, convergence->block);
     }
     for (const auto& [name, value] : campaign.space.fixed) {
@@ -273,14 +273,16 @@ int plan(const std::string& config, std::string database, Format format) {
 }  // namespace
 
 std::vector<Command> plan_commands() {
-    return {{"plan", "check and unfold a campaign; show the design and the predicted cost; run nothing",
+    return {{"plan", "checks a campaign file; shows the design and the predicted cost",
              [](Parser& parser, const Format& format) -> Action {
                  const auto config = std::make_shared<std::string>();
                  const auto database = std::make_shared<std::string>();
                  parser.add_option("CONFIG", *config, "campaign file")->required();
-                 parser.add_option("--db", *database,
-                                   "database the campaign would be run into; default: NAME.db in the current folder, "
-                                   "where there is one");
+                 parser
+                     .add_option("--db", *database,
+                                 "database of the campaign, whose finished cases are counted; default: NAME.db in "
+                                 "the current folder, if it exists")
+                     ->type_name("FILE");
                  return [config, database, &format] { return plan(*config, *database, format); };
              },
              false}};

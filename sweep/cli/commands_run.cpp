@@ -31,7 +31,8 @@ campaign::Outcome outcome_asked_again(const std::string& word) {
     if (const auto outcome = campaign::outcome_named(word)) return *outcome;
     std::vector<std::string> words;
     for (const auto outcome : campaign::outcomes) words.emplace_back(to_string(outcome));
-    throw campaign::wrong_question("--again", word, "is no outcome", campaign::nearest_word(word, words));
+    throw campaign::wrong_question("--again", word, "must be one of " + campaign::listed(words),
+                                   campaign::nearest_word(word, words));
 }
 
 /// Whether standard output has no reader: a pipe without a reader, a closed terminal or descriptor.
@@ -62,25 +63,32 @@ Command running(std::string name, std::string summary, bool calibrates) {
                 request->calibrates = calibrates;
                 const auto again = std::make_shared<std::string>();
                 parser.add_option("CONFIG", request->config, "campaign file")->required();
-                parser.add_option("--db", request->database, "database; default: NAME.db in the current folder");
+                parser.add_option("--db", request->database, "database; default: NAME.db in the current folder")
+                    ->type_name("FILE");
                 parser
                     .add_option("--artefacts", request->artefacts,
-                                "folder of checkpoints and shared starting states, for all nodes to see; default: "
+                                "folder for checkpoints and shared starting states, visible to all nodes; default: "
                                 "beside the database")
                     ->type_name("DIR");
                 parser
                     .add_option("-j", request->workers,
-                                "workers, with execution.hosts of each host; 0: all cores; default: execution.workers")
+                                "worker processes, with execution.hosts per host; 0: all cores; default: "
+                                "execution.workers")
+                    ->type_name("N")
                     ->check(whole_number(0, 4096));
                 parser
-                    .add_option("-k", request->stop_after_failures, "start nothing more after N failed cases; 0: never")
+                    .add_option("-k", request->stop_after_failures,
+                                "start no more cases after N failed cases; 0: no limit")
+                    ->type_name("N")
                     ->check(whole_number(0));
-                parser.add_option("--again", *again, "asks again what ended with this outcome");
-                parser.add_option("--max-cases", request->max_cases, "settle at most N cases in this run; 0: all")
+                parser.add_option("--again", *again, "rerun cases with this outcome, for example unstable or crashed")
+                    ->type_name("OUTCOME");
+                parser.add_option("--max-cases", request->max_cases, "finish at most N cases in this run; 0: all")
+                    ->type_name("N")
                     ->check(whole_number(0));
                 parser.add_flag("--network-disk", request->network_disk,
-                                "the database may lie on a network file system: one node at a time writes it");
-                parser.add_flag("--quiet", request->quiet, "no progress, no table");
+                                "allow a database on a network file system; only one node may write it at a time");
+                parser.add_flag("--quiet", request->quiet, "print no progress and no tables");
                 declare_path(parser, request->path);
                 return [request, again, &format] {
                     use_path(request->path);
@@ -98,16 +106,16 @@ Command running(std::string name, std::string summary, bool calibrates) {
 }
 
 void declare_worker(Parser& parser, workers::WorkerOptions& options, std::string& path) {
-    parser.add_option("--artefacts", options.artefacts, "folder of shared starting states and checkpoints");
-    parser.add_option("--checkpoint-seconds", options.checkpoint_seconds, "a case is saved this often");
-    parser.add_option("--lease-seconds", options.lease_seconds, "silence after which it ends itself");
-    parser.add_option("--cases", options.cases, "folder of cases that programs answer");
-    parser.add_option("--limit-seconds", options.limit_seconds, "of a case that a program answers");
+    parser.add_option("--artefacts", options.artefacts, "folder for checkpoints and shared starting states");
+    parser.add_option("--checkpoint-seconds", options.checkpoint_seconds, "seconds between two checkpoints of a case");
+    parser.add_option("--lease-seconds", options.lease_seconds, "seconds without a message after which it ends");
+    parser.add_option("--cases", options.cases, "folder for the cases of a program");
+    parser.add_option("--limit-seconds", options.limit_seconds, "time limit of a case of a program, s");
     declare_path(parser, path);
 }
 
 Command worker_command() {
-    return {"worker", "computes cases for a run; started by it",
+    return {"worker", "computes cases for a run, which starts it",
             [](Parser& parser, const Format&) -> Action {
                 const auto options = std::make_shared<workers::WorkerOptions>();
                 const auto path = std::make_shared<std::string>();
@@ -122,7 +130,7 @@ Command worker_command() {
 }
 
 Command host_command() {
-    return {"host", "runs the workers of a node for a run; started by it, once a node (execution.hosts)",
+    return {"host", "runs the workers of one node for a run, which starts it (execution.hosts)",
             [](Parser& parser, const Format&) -> Action {
                 const auto options = std::make_shared<workers::WorkerOptions>();
                 const auto path = std::make_shared<std::string>();
@@ -176,9 +184,8 @@ void show_run(const RunReport& report, Format format) {
 }
 
 std::vector<Command> run_commands() {
-    return {running("run", "runs what is not settled yet; running again is resuming", false),
-            running("calibrate",
-                    "runs waves of cases until the settings that reproduce measurements are known; resumes", true),
+    return {running("run", "runs the cases of a campaign; run it again to resume", false),
+            running("calibrate", "runs waves of cases to find the inputs that reproduce measurements; resumes", true),
             worker_command(), host_command()};
 }
 

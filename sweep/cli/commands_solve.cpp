@@ -102,7 +102,8 @@ Asked question_of(const SolveRequest& request) {
     const Inputs inputs = middle_of(campaign.space);
     const auto filter = campaign::asked_in(
         request.config, [&] { return store::make_filter(campaign.where, campaign::filter_names(campaign)); });
-    if (!filter(inputs)) std::cerr << "grainsweep: the campaign leaves this point out: " << campaign.where << '\n';
+    if (!filter(inputs))
+        std::cerr << "grainsweep: the campaign excludes this point by its 'where': " << campaign.where << '\n';
     const std::uint64_t seed = request.seed ? *request.seed : campaign::case_seed(campaign, inputs, 0);
     return {campaign::make_case(campaign.scene(), inputs, seed), campaign.limits.wall_seconds};
 }
@@ -111,8 +112,7 @@ CaseResult answer_of(const Asked& asked, const SolveRequest& request, Pictures& 
     if (auto program = campaign::known_program(asked.question.scene))
         return answer_by_program(std::move(program), asked.question, 1, asked.limit_seconds, request.keep,
                                  request.pictures);
-    if (!request.keep.empty())
-        throw campaign::wrong_question("--keep", request.keep, "is for cases that a program answers");
+    if (!request.keep.empty()) throw campaign::wrong_question("--keep", request.keep, "is for cases of a program only");
     NoArtefacts artefacts;
     auto computed = workers::compute(asked.question, 1, artefacts, std::nullopt, show_progress, pictures.camera());
     return std::move(computed.value());  // the watch never gives it up
@@ -229,7 +229,8 @@ void show_text(const campaign::Case& question, const CaseResult& result) {
     const auto missing = absent(question, result);
     if (!missing.empty()) std::cout << "\nwithout a value\n";
     for (const auto& observable : missing) std::cout << fmt::format("  {}: {}\n", observable.name, observable.absent);
-    std::cout << fmt::format("\n{:.3g} s, {:.3g} s of processor", result.cost.wall_seconds, result.cost.cpu_seconds);
+    std::cout << fmt::format("\n{:.3g} s, {:.3g} s of processor time", result.cost.wall_seconds,
+                             result.cost.cpu_seconds);
     if (result.program)
         std::cout << fmt::format(", {:.3g} MB\n", 1e-6 * result.program->peak_memory);
     else
@@ -253,24 +254,25 @@ int solve(const SolveRequest& request, Format format) {
 }  // namespace
 
 std::vector<Command> solve_commands() {
-    return {{"solve", "one case of a campaign in this process, without a database",
+    return {{"solve", "computes one case of a campaign in this process, without a database",
              [](Parser& parser, const Format& format) -> Action {
                  const auto request = std::make_shared<SolveRequest>();
                  parser.add_option("CONFIG", request->config, "campaign file")->required();
                  parser
                      .add_option("--set", request->settings,
-                                 "a parameter's value; factors not set take the middle of their range")
+                                 "value of a parameter; other factors take the middle of their range, or their "
+                                 "first level")
                      ->type_name("NAME=VALUE")
                      ->allow_extra_args(false);
                  parser
                      .add_option("--seed", request->seed,
-                                 "seed of the case, as any command prints it; default: as in the campaign")
+                                 "seed of the case, as other commands print it; default: as in the campaign")
+                     ->type_name("N")
                      ->check(whole_number(0))
                      ->grouped_digits();
                  declare_pictures(parser, request->pictures);
                  parser
-                     .add_option("--keep", request->keep,
-                                 "new folder that a program answers the case in; it stays, to be looked at")
+                     .add_option("--keep", request->keep, "new folder in which a program computes the case; it is kept")
                      ->type_name("DIR");
                  declare_path(parser, request->path);
                  declare_threads(parser, request->threads);

@@ -21,7 +21,7 @@ using report::Format;
 void show_work(const WorkReport& report, Format format) {
     const std::string share = fmt::format("{}/{}", report.part, report.of);
     if (format == Format::text) {
-        std::cout << fmt::format("{}, share {}: {} of {} cases have an answer, {} of them from this task\n{}\n",
+        std::cout << fmt::format("{}, share {}: {} of {} cases have a result, {} of them from this task\n{}\n",
                                  report.campaign, share, report.answered, report.cases, report.computed, report.ending);
     } else if (format == Format::json) {
         report::write(std::cout, nlohmann::ordered_json{{"campaign", report.campaign},
@@ -42,29 +42,32 @@ void show_work(const WorkReport& report, Format format) {
 
 Command work_command() {
     return {
-        "work", "computes a share of a campaign without a main program, into a folder; see collect",
+        "work", "computes a share of a campaign into a shared folder; see collect",
         [](Parser& parser, const Format& format) -> Action {
             const auto request = std::make_shared<WorkRequest>();
             parser.add_option("CONFIG", request->config, "campaign file")->required();
             parser.add_option("--spool", request->spool, "folder that all tasks share")->required()->type_name("DIR");
             parser
                 .add_option("--share", request->share,
-                            "part i of n is this task's to begin with; default: that of the Slurm array, else 1/1")
+                            "part I of N that this task computes first; default: from the Slurm array, else 1/1")
                 ->type_name("I/N");
             parser
                 .add_option("-j", request->workers,
-                            "workers, with execution.hosts of each host; 0: all cores; default: "
+                            "worker processes, with execution.hosts per host; 0: all cores; default: "
                             "execution.workers")
+                ->type_name("N")
                 ->check(whole_number(0, 4096));
-            parser.add_option("--lease", request->lease,
-                              "a task without a sign of life for so long is taken for dead, s; at least 2; the "
-                              "same for all tasks");
-            parser.add_flag("--quiet", request->quiet, "no progress, no summary");
+            parser
+                .add_option("--lease", request->lease,
+                            "seconds without a sign of life after which a task counts as dead; at least 2; the "
+                            "same for all tasks")
+                ->type_name("SECONDS");
+            parser.add_flag("--quiet", request->quiet, "print no progress and no summary");
             declare_path(parser, request->path);
             return [request, &format] {
                 if (!(request->lease >= 2 && request->lease <= 1e6))
                     throw campaign::wrong_question("--lease", fmt::format("{}", request->lease),
-                                                   "a number from 2 to 1e6 is expected");
+                                                   "must be a number from 2 to 1e6");
                 use_path(request->path);
                 std::signal(SIGHUP, SIG_IGN);
                 std::signal(SIGPIPE, SIG_IGN);
@@ -76,14 +79,14 @@ Command work_command() {
 }
 
 Command collect_command() {
-    return {"collect", "puts what tasks of work have answered into a database, each answer once, at any time",
+    return {"collect", "imports the results of work tasks into a database, at any time",
             [](Parser& parser, const Format& format) -> Action {
                 const auto request = std::make_shared<RunRequest>();
-                parser.add_option("DB", request->database, "database; made where there is none")->required();
+                parser.add_option("DB", request->database, "database; created if it does not exist")->required();
                 parser.add_option("DIR", request->spool, "folder that the tasks shared")->required();
                 parser.add_flag("--network-disk", request->network_disk,
-                                "the database may lie on a network file system: one node at a time writes it");
-                parser.add_flag("--quiet", request->quiet, "no summary");
+                                "allow a database on a network file system; only one node may write it at a time");
+                parser.add_flag("--quiet", request->quiet, "print no summary");
                 return [request, &format] {
                     std::signal(SIGPIPE, SIG_IGN);
                     const RunReport report = run_campaign(*request);

@@ -69,9 +69,8 @@ void print_history(const Responses& responses, const report::ResponseColumn& res
         std::cout << '\n';
     }
     if (history.provisional) {
-        std::cout << fmt::format(
-            "provisional, over all {} finished cases wherever they stand in the design; not judged\n",
-            responses.finished());
+        std::cout << fmt::format("provisional: all {} finished cases, also behind gaps in the design; not judged\n",
+                                 responses.finished());
         report::write(std::cout, report::provisional_table(history), Format::text);
         std::cout << '\n';
     }
@@ -270,29 +269,32 @@ int write_report(const std::vector<std::string>& databases, std::string output, 
 
 /// A command about one observable of one campaign, or of all.
 Command study(std::string command, std::string summary, int (*answer)(const Subject&, Format)) {
-    return {std::move(command), std::move(summary),
-            [answer](Parser& parser, const Format& format) -> Action {
-                const auto subject = std::make_shared<Subject>();
-                parser.add_option("DB", subject->database, "the database")->required();
-                parser.add_option("--campaign", subject->campaign, "one of its campaigns; default: all");
-                parser.add_option("--observable", subject->observable,
-                                  "a scalar; default: the one the campaign converges on, else the scene's first");
-                if (answer == converge)
-                    parser.add_flag("--check", subject->check,
-                                    "exit 1 unless all that is shown has converged by its campaign's rule (one without "
-                                    "a rule has not), else 0");
-                return [subject, &format, answer] { return answer(*subject, format); };
-            },
-            false};
+    return {
+        std::move(command), std::move(summary),
+        [answer](Parser& parser, const Format& format) -> Action {
+            const auto subject = std::make_shared<Subject>();
+            parser.add_option("DB", subject->database, "the database")->required();
+            parser.add_option("--campaign", subject->campaign, "name of a campaign; default: all")->type_name("NAME");
+            parser
+                .add_option("--observable", subject->observable,
+                            "scalar observable; default: that of the convergence rule, else the scene's first")
+                ->type_name("NAME");
+            if (answer == converge)
+                parser.add_flag("--check", subject->check,
+                                "exit with 1 unless everything shown has converged by its campaign's rule; "
+                                "without a rule a campaign has not");
+            return [subject, &format, answer] { return answer(*subject, format); };
+        },
+        false};
 }
 
 }  // namespace
 
 std::vector<Command> study_commands() {
     return {
-        study("converge", "moments with their errors, check by check, and the verdict", converge),
-        study("sensitivity", "which factor moves the response: indices with their errors", sensitivity),
-        {"report", "one self-contained page with all figures and pictures",
+        study("converge", "shows moments with their errors, check by check, and the verdict", converge),
+        study("sensitivity", "shows which factor moves the response: indices with their errors", sensitivity),
+        {"report", "writes one self-contained HTML page with tables and figures",
          [](Parser& parser, const Format& format) -> Action {
              struct Request {
                  std::string database, output;
@@ -302,21 +304,25 @@ std::vector<Command> study_commands() {
              };
              const auto request = std::make_shared<Request>();
              parser.add_option("DB", request->database, "the database")->required();
-             parser.add_option(
-                 "-o,--output", request->output,
-                 "the page; default: the database's name with .html, in the current folder; -: standard output");
-             parser.add_option("--with", request->others,
-                               "further databases whose campaigns are laid over those of the first");
+             parser
+                 .add_option(
+                     "-o,--output", request->output,
+                     "the page; default: the database's name with .html, in the current folder; -: standard output")
+                 ->type_name("FILE");
+             parser
+                 .add_option("--with", request->others,
+                             "further databases, whose campaigns can be drawn with those of the first")
+                 ->type_name("DB");
              parser
                  .add_option("--watch", request->watched,
-                             "films of so many cases in the page: smallest, largest and between by the main "
+                             "number of films in the page: cases from the smallest to the largest main "
                              "observable, computed again")
                  ->type_name("N")
                  ->check(whole_number(0, 100));
              parser
                  .add_option("--model", request->models.of,
-                             "scalars whose response models are drawn against the factors; default: the main one, of "
-                             "campaigns of at most 1000 cases")
+                             "scalars whose response models are drawn; default: the main observable, for campaigns "
+                             "of at most 1000 cases")
                  ->type_name("NAME");
              return [request, &format] {
                  std::vector<std::string> databases = {request->database};

@@ -46,7 +46,7 @@ int verify(const std::string& database, Format format) {
 }  // namespace
 
 std::vector<Command> verify_commands() {
-    return {{"verify", "reads everything, compares checksums and ids, names what is damaged",
+    return {{"verify", "checks the whole database and names damaged entries",
              [](Parser& parser, const Format& format) -> Action {
                  const auto database = std::make_shared<std::string>();
                  parser.add_option("DB", *database, "database")->required();

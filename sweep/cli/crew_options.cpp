@@ -69,7 +69,7 @@ void refuse_launcher_that_is_not_there(const campaign::Campaign& campaign, const
     const auto& launcher = campaign.execution.launcher;
     if (launcher.empty() || workers::Pool::can_start(launcher.front())) return;
     throw campaign::wrong_question(config.string() + ": $.execution.launcher[0]", launcher.front(),
-                                   "there is no such program to start workers with");
+                                   "this launcher program does not exist");
 }
 
 }  // namespace grainsweep::cli

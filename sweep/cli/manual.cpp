@@ -100,8 +100,8 @@ std::string keys_section() {
     std::string text = section("CAMPAIGN FILE");
     text +=
         plain(
-            "One JSON object, SI units. Any object may have \"notes\", a text or a list of texts. grainsweep schema "
-            "prints its JSON Schema.") +
+            "One JSON object, in SI units. Any object may have \"notes\", a text or a list of texts. grainsweep schema "
+            "prints the JSON Schema.") +
         "\n";
     const auto add = [&text](std::string_view title, std::span<const campaign::Key> keys) {
         text += fmt::format(".SS {}\n", title);
@@ -142,11 +142,14 @@ std::string entries_section(std::string_view title, const Entries& entries) {
 
 const Entries& exit_codes() {
     static const Entries codes = {
-        {"0", "Success. run: every case is settled as completed or skipped, or the campaign converged and stopped."},
-        {"1", "run: finished, and some cases are neither. solve: the case did not complete. replay: it disagrees."},
-        {"2", "A wrong question: arguments or campaign file. Nothing was written."},
-        {"3", "A broken world: a full disk, a damaged database, another run writing to it."},
-        {"130", "run: interrupted. Running again resumes."},
+        {"0", "Success. run: every case is completed or skipped, or the campaign converged."},
+        {"1",
+         "run: finished, but cases failed or are left. solve, replay: no result, or a different one. converge --check: "
+         "not converged."},
+        {"2", "Invalid arguments or campaign file. Nothing was written."},
+        {"3", "The disk is full, or the database is damaged or in use. Stored results are intact."},
+        {"75", "Out of time, or ended by TERM or USR1. Run again to resume."},
+        {"130", "Interrupted by Ctrl-C. Run again to resume."},
     };
     return codes;
 }
@@ -157,8 +160,8 @@ const Entries& files() {
          "The database of campaign NAME, in SQLite's format: one file after every command. While a run "
          "writes it, NAME.db-wal and NAME.db-shm belong to it."},
         {"NAME.artefacts",
-         "Folder beside the database: starting states that cases share, checkpoints of long cases. "
-         "It may be removed while nothing runs."},
+         "Folder beside the database with shared starting states and checkpoints. It may be removed while no "
+         "run is active."},
         {"NAME.html", "The page that report writes."},
     };
     return entries;
@@ -188,22 +191,22 @@ std::string manual_page(std::span<const CommandInfo> commands) {
         text += (&command == &commands.front() ? "" : ".br\n") + bold("grainsweep") + " " + usage_of(command) + "\n";
     text += section("DESCRIPTION");
     text +=
-        "From one JSON file to an answer: a scene is computed at the points of a design by worker processes, every "
-        "result goes into one SQLite database, and the statistics, sensitivities and pictures come from there. "
-        "Running again is resuming.\n";
+        "Describe a granular process, its factors and a design in one JSON file. grainsweep generates the points, runs "
+        "every case in worker processes and stores the results in one SQLite database. Statistics, sensitivities and "
+        "reports are computed from the database. Run a campaign again to resume it.\n";
     text += commands_section(commands);
     text += keys_section();
     text += catalogue_sections();
     text += entries_section("FUNCTIONS OF QUERY", functions_of_query());
     text += section("OUTPUT");
     text += plain(
-                "Text keeps to the width of the terminal, elsewhere to that of COLUMNS, else to 100: cells are "
-                "wrapped, columns that do not fit are named below; --wide shows everything. In csv and json numbers "
-                "read back as the same double; whole numbers beyond 2^53 (seeds) are text: \"5577006791947779410\" "
-                "in json, 5_577_006_791_947_779_410 in csv, and --seed takes both.") +
+                "Text is wrapped to the terminal, else to COLUMNS, else to 100 columns. Columns that do not fit are "
+                "named below the table; --wide shows all of them. Numbers in csv and json read back as the same "
+                "double. Whole numbers beyond 2^53, such as seeds, are text: \"5577006791947779410\" in json, "
+                "5_577_006_791_947_779_410 in csv; --seed reads both.") +
             "\n";
     text += entries_section("EXIT STATUS", exit_codes());
-    text += entries_section("ENVIRONMENT", {{"COLUMNS", "Width of text that goes to no terminal."}});
+    text += entries_section("ENVIRONMENT", {{"COLUMNS", "Width of text where standard output is not a terminal."}});
     text += entries_section("FILES", files());
     text += section("EXAMPLES");
     text += example(

@@ -44,7 +44,7 @@ void check_page_file(std::string_view option, const std::string& output, const s
     stream.read(start.data(), static_cast<std::streamsize>(start.size()));
     if (stream.gcount() == 0) return;
     std::ranges::transform(start, start.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (start != page) refuse("this file is there and is no page; take another name");
+    if (start != page) refuse("this file exists and is not a page; choose another name");
 }
 
 void write_page_file(const std::string& output, const std::string& page) {

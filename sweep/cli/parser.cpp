@@ -71,8 +71,7 @@ void declare(CLI::App& app, const std::vector<Command>& commands, std::deque<Par
             })
             ->type_name("FORMAT");
         const auto wide = std::make_shared<bool>(false);
-        if (!command.verbatim)
-            subcommand->add_flag("--wide", *wide, "text as wide as its tables, whatever the terminal");
+        if (!command.verbatim) subcommand->add_flag("--wide", *wide, "do not wrap text to the width of the terminal");
         parsers.emplace_back(*subcommand);
         subcommand->callback(
             [&chosen, format, wide, verbatim = command.verbatim, action = command.declare(parsers.back(), *format)] {
@@ -223,12 +222,12 @@ std::vector<CommandInfo> describe(const std::vector<Command>& commands) {
 }
 
 Action parse_command_line(const std::vector<Command>& commands, int argc, const char* const* argv) {
-    CLI::App app("Parameter sweeps of granular processes: from one JSON file to an answer.", "grainsweep");
+    CLI::App app("Parameter sweeps of granular processes, described in one JSON file.", "grainsweep");
     std::deque<Parser> parsers;
     Action chosen;
     try {
         app.formatter(std::make_shared<Help>());
-        app.set_version_flag("--version", version_text, "version, commit, compiler, flags, instruction path");
+        app.set_version_flag("--version", version_text, "print version, commit, compiler, flags and instruction path");
         app.require_subcommand(0, 1);
         declare(app, commands, parsers, chosen);
         check_command(commands, argc, argv);

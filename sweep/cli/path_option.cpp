@@ -29,7 +29,7 @@ void use_path(const std::string& word) {
     if (!choose_instruction_path(word))
         throw campaign::wrong_question(
             "--path", word,
-            fmt::format("this processor lacks these instructions; the widest it has are {}", instruction_path()));
+            fmt::format("this processor lacks these instructions; its widest set is {}", instruction_path()));
 }
 
 void use_path_of_old(std::string_view path) {

@@ -9,7 +9,7 @@
 namespace grainsweep::cli {
 
 /// Adds --path to a command; empty where it is not given, which means `otherwise`.
-void declare_path(Parser& parser, std::string& word, std::string_view otherwise = "the widest there is");
+void declare_path(Parser& parser, std::string& word, std::string_view otherwise = "the widest of the processor");
 /// Makes this process compute with that path; an empty word changes nothing. Throws WrongQuestion on an unknown word
 /// and on a path this processor lacks.
 void use_path(const std::string& word);

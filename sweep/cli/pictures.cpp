@@ -26,21 +26,21 @@ constexpr std::int64_t usual_frames = 60;
 void declare_pictures(Parser& parser, PictureRequest& request) {
     parser
         .add_option("--vtk", request.folder,
-                    "folder for ParaView: particles and walls (VTP), flow (VTI or VTR), a PVD series")
+                    "folder for ParaView files: particles and walls (VTP), flow (VTI or VTR), a PVD series")
         ->type_name("DIR");
-    parser.add_option("--watch", request.page, "page that plays the case in three dimensions in any browser")
+    parser.add_option("--watch", request.page, "HTML page that plays the case in three dimensions")
         ->type_name("FILE.html");
     parser
         .add_option("--frames", request.frames,
-                    fmt::format("pictures from start to end, with --vtk or --watch; default: {}", usual_frames))
+                    fmt::format("number of pictures from start to end for --vtk or --watch; default: {}", usual_frames))
+        ->type_name("N")
         ->check(whole_number(2, 9999));
 }
 
 Pictures::Pictures(PictureRequest request, campaign::Case question)
     : request_(std::move(request)), question_(std::move(question)) {
     if (request_.frames && request_.page.empty() && request_.folder.empty())
-        throw campaign::wrong_question("--frames", std::to_string(*request_.frames),
-                                       "says how many pictures --watch or --vtk take; ask for one of them");
+        throw campaign::wrong_question("--frames", std::to_string(*request_.frames), "needs --watch or --vtk");
     if (!request_.page.empty()) {
         check_page_file("--watch", request_.page, "");
         film_ = std::make_unique<report::Film>();

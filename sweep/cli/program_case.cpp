@@ -18,11 +18,11 @@ campaign::CaseResult answer_by_program(std::shared_ptr<const campaign::Program> 
                                        const PictureRequest& pictures) {
     if (!pictures.folder.empty() || !pictures.page.empty())
         throw campaign::wrong_question(pictures.folder.empty() ? "--watch" : "--vtk", "",
-                                       "a program gives no pictures of its case; --keep DIR keeps what it wrote");
+                                       "a program has no pictures of its case; --keep DIR keeps its files");
     fs::path wanted = keep.empty() ? keep : fs::absolute(keep);
     if (!wanted.empty() && !wanted.has_filename()) wanted = wanted.parent_path();
     if (std::error_code none; !wanted.empty() && fs::exists(fs::symlink_status(wanted, none)))
-        throw campaign::wrong_question("--keep", keep.string(), "is there already; name a new folder");
+        throw campaign::wrong_question("--keep", keep.string(), "exists already; name a new folder");
     if (!wanted.empty() && program->protocol == campaign::Program::Protocol::lines)
         throw campaign::wrong_question("--keep", keep.string(),
                                        "a program of the protocol \"lines\" has no folder of its case");

@@ -101,11 +101,11 @@ Comparison compared(const campaign::CaseResult& stored, const campaign::CaseResu
     const bool same_outcome = stored.outcome == now.outcome;
     comparison.agrees = same_outcome && worst <= expected.tolerance;
     comparison.verdict =
-        !same_outcome ? fmt::format("the archive says {}, the replay {}: {}", to_string(stored.outcome),
+        !same_outcome ? fmt::format("stored outcome {}, replayed outcome {}: {}", to_string(stored.outcome),
                                     to_string(now.outcome), now.message)
         : expected.tolerance == 0
             ? (comparison.agrees ? "equal to the last bit" : "DIFFERENT although " + expected.why_tolerated)
-            : fmt::format("largest relative difference {:.3g} ({}up to {} is taken as agreement)", worst,
+            : fmt::format("largest relative difference {:.3g} ({}up to {} counts as agreement)", worst,
                           expected.why_tolerated.empty() ? "" : expected.why_tolerated + ": ", expected.tolerance);
     return comparison;
 }
@@ -133,10 +133,9 @@ int replay(const ReplayRequest& request, Format format) {
     const auto stored = archive.result(question.id);
     if (!stored) throw campaign::wrong_question("CASE", request.id, "has no result to compare with yet");
     if (stored->outcome == Outcome::abandoned)
-        throw campaign::wrong_question("CASE", request.id,
-                                       "was given back unfinished: there is no answer to compare with yet");
+        throw campaign::wrong_question("CASE", request.id, "was interrupted: there is no result to compare with yet");
     if (stored->outcome == Outcome::crashed || stored->outcome == Outcome::timed_out)
-        std::cerr << fmt::format("grainsweep: this case {}; computed here it may do the same\n",
+        std::cerr << fmt::format("grainsweep: this case {}; it may do the same here\n",
                                  stored->outcome == Outcome::crashed ? "crashed its worker" : "ran out of time");
     const auto attempts = archive.attempts(question.id);
     const auto then = std::ranges::find(attempts, stored->attempt.number, &store::LoggedAttempt::number);
@@ -146,10 +145,10 @@ int replay(const ReplayRequest& request, Format format) {
         use_path_of_old(then->computer.instruction_path);
     const bool same_path = then != attempts.end() && gives_the_same_bits(then->computer, this_computer());
     if (program == nullptr && !request.keep.empty())
-        throw campaign::wrong_question("--keep", request.keep, "is for cases that a program answers");
+        throw campaign::wrong_question("--keep", request.keep, "is for cases of a program only");
 
     if (program != nullptr)
-        std::cerr << fmt::format("grainsweep: runs the command that is stored with this case: {}\n",
+        std::cerr << fmt::format("grainsweep: runs the stored command of this case: {}\n",
                                  fmt::join(program->command, " "));
     Pictures pictures(request.pictures, question);
     const auto now = [&] {

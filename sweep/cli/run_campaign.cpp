@@ -177,27 +177,27 @@ std::string describe(Ending ending, const schedule::Plan::Tally& tally, const sc
         case Ending::finished:
             return tally.failed == 0
                        ? "all cases are settled" + standing(judge)
-                       : fmt::format("all cases are done, {} of them failed{}", tally.failed, standing(judge));
+                       : fmt::format("all cases are finished, {} of them failed{}", tally.failed, standing(judge));
         case Ending::converged:
             return fmt::format("converged after {} points: {}", *judge->converged_at(), judge->verdict());
         case Ending::limited:
-            return fmt::format("stopped with {} cases left; run again to go on{}", tally.questions - tally.decided,
+            return fmt::format("stopped with {} cases left; run again to resume{}", tally.questions - tally.decided,
                                standing(judge));
         case Ending::too_many_failures:
             return fmt::format("stopped after {} failed cases{}", tally.failed_now, standing(judge));
         case Ending::out_of_time:
-            return fmt::format("out of time with {} cases left; run again to go on{}", tally.questions - tally.decided,
+            return fmt::format("out of time with {} cases left; run again to resume{}", tally.questions - tally.decided,
                                standing(judge));
         case Ending::asked_to_end:
-            return fmt::format("asked to end with {} cases left; run again to go on{}", tally.questions - tally.decided,
-                               standing(judge));
+            return fmt::format("ended by a signal with {} cases left; run again to resume{}",
+                               tally.questions - tally.decided, standing(judge));
         case Ending::too_long:
             return fmt::format(
-                "stopped with {} cases left that are predicted to take longer than a run may; give it "
-                "more time (execution.walltime, or the job's time limit){}",
+                "stopped with {} cases left, each predicted to exceed the time limit; extend it "
+                "(execution.walltime, or the job's time limit){}",
                 tally.questions - tally.decided, standing(judge));
         case Ending::interrupted:
-            return fmt::format("interrupted with {} cases left; run again to go on{}", tally.questions - tally.decided,
+            return fmt::format("interrupted with {} cases left; run again to resume{}", tally.questions - tally.decided,
                                standing(judge));
     }
     return {};
@@ -238,15 +238,15 @@ void refuse_what_cannot_start(const campaign::Campaign& campaign, const RunReque
     if (request.calibrates && campaign.design != "calibration")
         throw campaign::wrong_question(
             request.config.string() + ": $", "",
-            "key 'calibration' is missing: what was measured; run takes campaigns with a design");
+            "key 'calibration' with the measurements is missing; for a campaign with a design use run");
     if (request.spool.empty()) refuse_launcher_that_is_not_there(campaign, request.config);
     if (const auto folder = fs::absolute(database).parent_path(); !fs::is_directory(folder))
         throw campaign::wrong_question("--db", database.string(),
                                        fmt::format("there is no folder '{}'", folder.string()));
     if (request.again && designs::design_named(campaign.design).grows)
         throw campaign::wrong_question("--again", to_string(*request.again),
-                                       fmt::format("the later points of a {} design rest on the answers there are; ask "
-                                                   "under another campaign name: what is settled is not computed again",
+                                       fmt::format("the later points of a {} design depend on the stored results; use "
+                                                   "another campaign name: settled cases are not computed again",
                                                    campaign.design));
 }
 
@@ -272,8 +272,8 @@ public:
 
     RunReport operator()() {
         if (campaign::reorder_factors(campaign_, store_->factor_order(campaign_.name))) {
-            line_->note(fmt::format("note: the factors of '{}' keep the order in which they are stored: {}",
-                                    campaign_.name, campaign::factor_list(campaign_.space)));
+            line_->note(fmt::format("note: the factors of '{}' keep their stored order: {}", campaign_.name,
+                                    campaign::factor_list(campaign_.space)));
             unfold();
         }
         if (grow()) unfold();
@@ -335,11 +335,12 @@ private:
         NoCrew crew;
         settle(plan, crew, {});
         store_->remember_file();
-        auto ending = fmt::format("{} cases collected, {} were there before", collected_.imported, collected_.known);
+        auto ending =
+            fmt::format("{} cases collected, {} were collected before", collected_.imported, collected_.known);
         if (const auto left = tally_.questions - tally_.decided; left > 0)
-            ending += fmt::format(", {} have no answer yet", left);
+            ending += fmt::format(", {} have no result yet", left);
         if (tally_.failed > 0) ending += fmt::format(", {} failed", tally_.failed);
-        if (collected_.unusable > 0) ending += fmt::format("; {} files are not imported", collected_.unusable);
+        if (collected_.unusable > 0) ending += fmt::format("; {} files were not imported", collected_.unusable);
         const int code = collected_.unusable > 0 ? 1 : exit_code(ending_, tally_);
         return {code, campaign_.name, database_, ending + standing(judge_.get()),
                 judge_ ? std::optional(judge_->converged_at().has_value()) : std::nullopt};

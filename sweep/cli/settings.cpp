@@ -28,9 +28,10 @@ std::size_t factor_named(std::string_view name, std::span<const ModelFactor> fac
     const auto found = std::ranges::find(factors, name, &ModelFactor::name);
     if (found != factors.end()) return static_cast<std::size_t>(found - factors.begin());
     const auto names = names_of(factors);
-    throw campaign::wrong_question(where, fmt::format("'{}'", name),
-                                   fmt::format("is no factor of the campaign; it varies {}", campaign::listed(names)),
-                                   campaign::nearest_word(name, names));
+    throw campaign::wrong_question(
+        where, fmt::format("'{}'", name),
+        fmt::format("is not a factor of the campaign; its factors are {}", campaign::listed(names)),
+        campaign::nearest_word(name, names));
 }
 
 double value_of(const ModelFactor& factor, const std::string& text, std::string_view where) {
@@ -55,7 +56,7 @@ void require_all(std::span<const ModelFactor> factors, const std::vector<std::op
         if (!values[j]) missing.push_back(factors[j].name);
     if (missing.empty()) return;
     throw campaign::wrong_question(where, "",
-                                   fmt::format("a setting gives every factor; {} {} missing", campaign::listed(missing),
+                                   fmt::format("a setting needs every factor; {} {} missing", campaign::listed(missing),
                                                missing.size() == 1 ? "is" : "are"));
 }
 

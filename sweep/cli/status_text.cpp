@@ -41,9 +41,9 @@ std::string with_unit(const std::string& column, const Cell& cell) {
     if (count != nullptr && column == "finished") return counted(*count, "case");
     if (count != nullptr && column == "stopped_at") return fmt::format("converged after {}", counted(*count, "point"));
     if (number != nullptr && column == "rate")
-        return fmt::format("{} cases/s in its last run",
+        return fmt::format("{} cases/s in the last run",
                            *number < 1000 ? fmt::format("{:.3g}", *number) : fmt::format("{:.0f}", *number));
-    if (number != nullptr && column == "time_left") return *number == 0 ? "0 s" : duration(*number) + " at that rate";
+    if (number != nullptr && column == "time_left") return *number == 0 ? "0 s" : duration(*number) + " at this rate";
     return report::cell_text(cell);
 }
 

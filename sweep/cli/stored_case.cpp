@@ -10,7 +10,8 @@ namespace grainsweep::cli {
 
 campaign::Case require_case(const store::Store& archive, const std::string& id) {
     auto found = archive.find_case(id);
-    if (!found) throw campaign::wrong_question("CASE", id, "is no case of this database, nor the beginning of one");
+    if (!found)
+        throw campaign::wrong_question("CASE", id, "is not the id of a case of this database, nor its beginning");
     return *std::move(found);
 }
 
@@ -22,7 +23,7 @@ std::string heading_of(const store::Store& archive, const campaign::CaseId& id) 
 
 std::string why_not_again(const campaign::Case& question) {
     const SceneInfo* scene = campaign::known_scene(question.scene);
-    if (scene == nullptr) return "is of a scene this build does not have: " + question.scene;
+    if (scene == nullptr) return "needs a scene that this build does not have: " + question.scene;
     if (scene->revision == question.revision) return {};
     return fmt::format(
         "is of revision {} of scene '{}', and this build computes revision {}: "

@@ -80,8 +80,8 @@ std::string unreadable_end(std::string_view job_end, double now) {
     constexpr std::array<std::string_view, 5> none = {"", "0", "NONE", "Unknown", "N/A"};
     if (std::ranges::find(none, job_end) != none.end() || moment_in(job_end, now)) return {};
     return fmt::format(
-        "SLURM_JOB_END_TIME is '{}', which is no end of this job (seconds since 1970, or "
-        "2026-11-26T12:00:00): give \"walltime\" in \"execution\", or the run does not stop in time",
+        "SLURM_JOB_END_TIME is '{}', which is not the end of this job (expected: seconds since 1970, or "
+        "2026-11-26T12:00:00): set \"walltime\" in \"execution\", or the run will not stop in time",
         job_end);
 }
 

@@ -31,8 +31,7 @@ public:
             error != std::errc::no_such_file_or_directory) {
             if (error || found != text)
                 throw campaign::wrong_question(
-                    "--run", path_.string(),
-                    "a file of this name is there; the batch's campaign file would replace it");
+                    "--run", path_.string(), "a file of this name exists; the batch's campaign file would replace it");
             ours_ = false;
             return;
         }
@@ -87,7 +86,7 @@ Standing standing_of(const WindowRun& run, report::WindowRequest request, std::i
     if (window.objective_is_factor)
         throw campaign::wrong_question(
             "--run", request.objective,
-            "is a factor, whose value is set, not measured: --width is for an observable to maximize or minimize");
+            "is a factor, whose value is chosen, not measured: --width needs an observable as objective");
     Standing standing;
     standing.campaign = cases.campaign.name;
     standing.cases = window.models.front().model.quality().cases;
@@ -135,11 +134,11 @@ WindowRunEnd run_towards_window(const WindowRun& run, const report::WindowReques
         end.says = text;
         if (end.reached) return end;
         if (left <= 0) {
-            end.says = fmt::format("{}; --max-cases {} are run", text, run.max_cases);
+            end.says = fmt::format("{}; --max-cases {} reached", text, run.max_cases);
             return end;
         }
         if (!standing.next) {
-            end.says = fmt::format("{}; no further case promises anything", text);
+            end.says = fmt::format("{}; no further case promises an improvement", text);
             return end;
         }
         const BatchFile file(standing.next->name, standing.next->text);
@@ -154,7 +153,7 @@ WindowRunEnd run_towards_window(const WindowRun& run, const report::WindowReques
         ++end.batches;
         if (report.exit_code == interrupted) {
             end.exit_code = interrupted;
-            end.says = "interrupted; the same command goes on";
+            end.says = "interrupted; run it again to resume";
             return end;
         }
     }

@@ -60,7 +60,7 @@ spool::Share share_asked(const std::string& word) {
     const auto part = whole_in(std::string_view(word).substr(0, slash)).value_or(0);
     const auto of = whole_in(std::string_view(word).substr(std::min(slash + 1, word.size()))).value_or(0);
     if (part < 1 || part > of || of > most_parts)
-        throw campaign::wrong_question("--share", word, "i/n is expected, i from 1 to n, 2/16 for one");
+        throw campaign::wrong_question("--share", word, "must be I/N with I from 1 to N, for example 2/16");
     return {part, of};
 }
 
@@ -68,11 +68,11 @@ void refuse_what_follows_from_answers(const campaign::Campaign& campaign, const 
     if (designs::design_named(campaign.design).grows)
         throw campaign::wrong_question(
             config.string() + ": $", campaign.design,
-            "its later points follow from answers, which no task without a main program has; take run");
+            "its later points depend on results, which a task of work does not have; use run");
     if (campaign.convergence && campaign.convergence->stop)
         throw campaign::wrong_question(
             config.string() + ": $.convergence.stop", "true",
-            "tasks without a main program compute every point, and collect judges; set it to false, or take run");
+            "tasks of work compute every point, and collect checks convergence; set it to false, or use run");
 }
 
 std::string described(Ending ending, const spool::Task::Tally& tally) {
@@ -80,22 +80,22 @@ std::string described(Ending ending, const spool::Task::Tally& tally) {
     switch (ending) {
         case Ending::finished:
             return tally.failed == 0 ? "all cases are settled"
-                                     : fmt::format("all cases are done, {} of them failed", tally.failed);
+                                     : fmt::format("all cases are finished, {} of them failed", tally.failed);
         case Ending::out_of_time:
-            return fmt::format("out of time with {} cases left; work again to go on", left);
+            return fmt::format("out of time with {} cases left; run work again to resume", left);
         case Ending::asked_to_end:
-            return fmt::format("asked to end with {} cases left; work again to go on", left);
+            return fmt::format("ended by a signal with {} cases left; run work again to resume", left);
         case Ending::interrupted:
-            return fmt::format("interrupted with {} cases left; work again to go on", left);
+            return fmt::format("interrupted with {} cases left; run work again to resume", left);
         case Ending::too_long:
             return fmt::format(
-                "stopped with {} cases left that are predicted to take longer than a task may; give it "
-                "more time (execution.walltime, or the job's time limit)",
+                "stopped with {} cases left, each predicted to exceed the time limit; extend it "
+                "(execution.walltime, or the job's time limit)",
                 left);
         default:
             return tally.elsewhere == left
-                       ? fmt::format("nothing left for this task; other tasks are at the last {} cases", left)
-                       : fmt::format("stopped with {} cases left; work again to go on", left);
+                       ? fmt::format("nothing left for this task; other tasks compute the last {} cases", left)
+                       : fmt::format("stopped with {} cases left; run work again to resume", left);
     }
 }
 

@@ -111,7 +111,7 @@ TEST_F(Drum, ExplainAndPlanSayHowManyThreadsACaseHas) {
     const auto explained = run_program({"explain", "two.db", id, "--format", "json"}, folder.path());
     EXPECT_GT(json::parse(explained.out).at("attempts").at(0).at("threads"), 1);
     EXPECT_EQ(json::parse(run_program({"plan", "two.json", "--format", "json"}, folder.path()).out).at("threads"), 2);
-    EXPECT_THAT(run_program({"plan", "two.json"}, folder.path()).out, HasSubstr("threads    2 for each case"));
+    EXPECT_THAT(run_program({"plan", "two.json"}, folder.path()).out, HasSubstr("threads    2 per case"));
 }
 
 // A stack of a gigabyte for each thread, as far as that may be asked for, and less memory than that.

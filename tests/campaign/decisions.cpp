@@ -260,7 +260,7 @@ TEST(Window, RefusesInOneSentence) {
     EXPECT_NE(ran.refusal({"window", "c.db", "--maximize", "x1"}).find("is a factor: it needs a condition"),
               std::string::npos);
     EXPECT_NE(ran.refusal({"window", "c.db", "--where", "y > 0.1", "--maximize", "x1", "--run", "--width", "0.1"})
-                  .find("got x1; is a factor, whose value is set"),
+                  .find("got x1; is a factor, whose value is chosen"),
               std::string::npos);
     std::string many = "y > 0.1";
     for (int k = 0; k < 9000; ++k) many += " and y > 0.1";

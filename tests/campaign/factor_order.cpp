@@ -32,7 +32,7 @@ struct FactorOrder : testing::Test {
         const auto before = dump();
         const auto again = run(turned);
         EXPECT_EQ(again.code, 0) << again.err;
-        EXPECT_EQ(again.err, "note: the factors of 'c' keep the order in which they are stored: x1, response\n");
+        EXPECT_EQ(again.err, "note: the factors of 'c' keep their stored order: x1, response\n");
         EXPECT_EQ(dump(), before);
     }
 };

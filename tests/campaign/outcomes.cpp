@@ -54,7 +54,7 @@ TEST(Outcomes, ExplainTellsEveryAttempt) {
     EXPECT_EQ(explained.code, 0) << explained.err;
     EXPECT_NE(explained.out.find("signal 9"), std::string::npos) << explained.out;
     EXPECT_NE(explained.out.find("crashed"), std::string::npos);
-    EXPECT_NE(explained.out.find("3 of its attempts failed, and limits.attempts is 3: it will not run again unless"),
+    EXPECT_NE(explained.out.find("3 of its attempts failed; limits.attempts is 3: it will not run again;"),
               std::string::npos)
         << explained.out;
     const auto replayed = run_program({"replay", "trouble.db", id}, folder.path());
@@ -65,7 +65,7 @@ TEST(Outcomes, ExplainTellsEveryAttempt) {
     const std::string other =
         query(folder, "SELECT case_id FROM trouble WHERE outcome = 'crashed' AND attempts = 3 LIMIT 1")[0]["case_id"];
     const auto again = run_program({"explain", "trouble.db", other}, folder.path());
-    EXPECT_NE(again.out.find("3 of its attempts failed, and limits.attempts is 5: the next run tries it again"),
+    EXPECT_NE(again.out.find("3 of its attempts failed; limits.attempts is 5: the next run tries it again"),
               std::string::npos)
         << again.out;
 }
@@ -79,7 +79,7 @@ TEST(Outcomes, ExplainKnowsWhereACampaignStopped) {
     ASSERT_EQ(run_program({"run", "c.json", "--quiet"}, folder.path()).code, 0);
     const std::string id = query(folder, "SELECT case_id FROM trouble ORDER BY point DESC LIMIT 1")[0]["case_id"];
     const auto explained = run_program({"explain", "trouble.db", id}, folder.path());
-    EXPECT_NE(explained.out.find("it was never begun and will not be: campaign 'trouble' converged and stopped at "),
+    EXPECT_NE(explained.out.find("it has not started and will not: campaign 'trouble' converged and stopped at "),
               std::string::npos)
         << explained.out;
 }
@@ -214,7 +214,7 @@ TEST(Outcomes, ALauncherThatDoesNotExistIsAWrongQuestion) {
         const auto run = run_program({"run", "c.json", "--quiet"}, folder.path());
         EXPECT_EQ(run.code, 2) << run.err;
         EXPECT_EQ(run.err, "grainsweep: c.json: $.execution.launcher[0]: got " + std::string(launcher) +
-                               "; there is no such program to start workers with.\n");
+                               "; this launcher program does not exist.\n");
         EXPECT_FALSE(std::filesystem::exists(folder / "trouble.db"));
     }
     const Folder folder;

@@ -78,7 +78,7 @@ TEST(Spool, OneTaskAnswersAllAndTheRowsAreThoseOfARun) {
     EXPECT_EQ(campaign.answers(), 120U);
     const auto collected = campaign.collect();
     EXPECT_EQ(collected.code, 0) << collected.err;
-    EXPECT_THAT(collected.out, HasSubstr("120 cases collected, 0 were there before"));
+    EXPECT_THAT(collected.out, HasSubstr("120 cases collected, 0 were collected before"));
     campaign.expect_the_rows_of_a_run();
 }
 
@@ -143,7 +143,7 @@ TEST(Spool, CollectingAgainChangesNothing) {
     const auto before = campaign.dump("collected.db");
     const auto again = campaign.collect();
     EXPECT_EQ(again.code, 0) << again.err;
-    EXPECT_THAT(again.out, HasSubstr("0 cases collected, 20 were there before"));
+    EXPECT_THAT(again.out, HasSubstr("0 cases collected, 20 were collected before"));
     EXPECT_TRUE(campaign.dump("collected.db") == before);
     const auto attempts = run_program({"query", "collected.db", "SELECT count(*) FROM attempt", "--format", "json"},
                                       campaign.folder().path());
@@ -183,7 +183,7 @@ TEST(Spool, DamagedAndForeignFilesAreNamedAndComputedAgain) {
     EXPECT_THAT(collected.err, HasSubstr(std::string(32, 'a')));
     EXPECT_THAT(collected.out, HasSubstr("8 cases collected"));
     EXPECT_EQ(campaign.work("1/1").code, 0);
-    EXPECT_THAT(campaign.collect().out, HasSubstr("2 cases collected, 8 were there before"));
+    EXPECT_THAT(campaign.collect().out, HasSubstr("2 cases collected, 8 were collected before"));
     campaign.expect_the_rows_of_a_run();
 }
 
@@ -199,7 +199,7 @@ TEST(Spool, CasesThatFailAreTriedAsOftenAsInARun) {
         {"query", "collected.db", "SELECT attempts FROM spooled WHERE outcome = 'crashed'", "--format", "json"},
         campaign.folder().path());
     EXPECT_EQ(json::parse(crashed.out).at(0).front(), 2);
-    EXPECT_THAT(campaign.collect().out, HasSubstr("0 cases collected, 3 were there before"));
+    EXPECT_THAT(campaign.collect().out, HasSubstr("0 cases collected, 3 were collected before"));
 }
 
 TEST(Spool, ACampaignWithAWalltimeGoesOnFromItsCheckpoints) {

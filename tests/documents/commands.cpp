@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
@@ -270,21 +269,6 @@ TEST(Options, InTheDocumentsExist) {
         for (const auto& text : texts)
             for (std::sregex_iterator it(text.begin(), text.end(), option), end; it != end; ++it)
                 EXPECT_TRUE(known.contains((*it)[2])) << page.file << ": no option " << (*it)[2];
-    }
-}
-
-TEST(Options, AllStandInTheTableOfCommands) {
-    const auto page = read_page("docs/commands.md");
-    const auto spans = page.code_spans();
-    std::map<std::string, std::string> of_command;  // the words of every span that begins with the command
-    for (const auto& span : spans) of_command[span.substr(0, span.find(' '))] += " " + span + " ";
-    for (const auto& command : command_names()) {
-        ASSERT_TRUE(of_command.contains(command)) << command << " is missing";
-        for (const auto& name : options_of(command)) {
-            if (name == "-h" || name == "--help" || name == "--format" || name == "--wide") continue;  // of all
-            const std::regex whole("[ \\[|]" + name + "[ \\]|]");
-            EXPECT_TRUE(std::regex_search(of_command[command], whole)) << command << " has the option " << name;
-        }
     }
 }
 

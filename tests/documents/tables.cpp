@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -162,6 +163,43 @@ std::string keys_table(const std::string& section) {
     return table;
 }
 
+/// Entries of a section of --help, in its order: what they are called and what they mean.
+std::vector<std::pair<std::string, std::string>> entries_of_help(std::vector<std::string> command,
+                                                                 std::string_view section) {
+    static const std::regex entry(R"(^  (\S+(?: \S+)*)(?: {2,}(.*))?$)"), more(R"(^ {20,}(\S.*)$)");
+    command.emplace_back("--help");
+    std::istringstream help(answer_of(command));
+    std::vector<std::pair<std::string, std::string>> entries;
+    bool inside = false;
+    for (std::string line; std::getline(help, line);) {
+        if (!line.starts_with(' ')) inside = line == section;
+        std::smatch match;
+        if (inside && std::regex_match(line, match, more))
+            entries.back().second += (entries.back().second.empty() ? "" : " ") + match[1].str();
+        else if (inside && std::regex_match(line, match, entry))
+            entries.emplace_back(match[1], match[2]);
+    }
+    return entries;
+}
+
+std::string commands_table() {
+    std::string table = head({"command", "does"});
+    for (const auto& [name, summary] : entries_of_help({}, "Subcommands:"))
+        table += row({fmt::format("[`{0}`](#{0})", name), summary});
+    return table;
+}
+
+/// The arguments and options of one command, without those of every command.
+std::string command_table(const std::string& command) {
+    std::string table = head({"argument", "meaning"});
+    for (auto [name, meaning] : entries_of_help({command}, "Positionals:"))
+        table += row({"`" + name.substr(0, name.find(' ')) + "`", meaning});
+    for (const auto& [name, meaning] : entries_of_help({command}, "Options:"))
+        if (name != "-h,--help" && name != "--format FORMAT" && name != "--wide")
+            table += row({"`" + name.substr(0, name.find(" REQUIRED")) + "`", meaning});
+    return table == head({"argument", "meaning"}) ? "No arguments.\n" : table;
+}
+
 std::string generated(const std::string& what) {
     std::istringstream words(what);
     std::string kind, name, part;
@@ -175,6 +213,8 @@ std::string generated(const std::string& what) {
     if (kind == "designs") return designs_table();
     if (kind == "design") return options_table(name);
     if (kind == "keys") return keys_table(name);
+    if (kind == "commands") return commands_table();
+    if (kind == "command") return command_table(name);
     throw std::invalid_argument("no table is called '" + what + "'");
 }
 
@@ -234,6 +274,12 @@ TEST(Tables, EverySceneHasItsPageAndEveryDesignItsOptions) {
     }
     for (const auto& design : catalogue({"designs"}))
         EXPECT_NE(all.find("design " + shown(design["design"]) + "\n"), std::string::npos) << design;
+}
+
+TEST(Tables, EveryCommandHasItsArguments) {
+    const auto names = with_fresh_tables(read_page("docs/commands.md").text).second;
+    for (const auto& command : command_names())
+        EXPECT_NE(std::ranges::find(names, "command " + command), names.end()) << command;
 }
 
 /// docs/database.md names the columns of a view whose names meet as the view does.
