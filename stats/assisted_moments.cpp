@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <stdexcept>
 
@@ -24,12 +23,6 @@ constexpr std::int64_t least_freedom = 2;
 constexpr std::size_t fewest_averaged = 200;
 constexpr double largest_error_averaged = 0.5;
 using Moment4 = std::array<double, 4>;
-
-std::string shown(double x) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", x);
-    return text;
-}
 
 /// z^p or E[z^p | m, v].
 Moment4 closure(double m, double v) {
@@ -67,7 +60,7 @@ Eigen::MatrixXd in_box(Rows rows, const AssistedSettings& settings) {
     return (raw.rowwise() - low.transpose()).array().rowwise() / (high - low).transpose().array();
 }
 
-void check_sizes(const AssistedInput& input) {
+void check_input(const AssistedInput& input) {
     const std::size_t n = input.values.size(), d = input.points.dimensions;
     const bool noise = input.noise_variance.size() <= 1 || input.noise_variance.size() == n;
     if (d == 0 || input.points.values.size() != n * d || input.sequences.size() != n || !noise)
@@ -99,7 +92,7 @@ Cases gather(const AssistedInput& input, const AssistedSettings& settings) {
     return c;
 }
 
-std::optional<Refusal> reason_to_refuse(const AssistedInput& input, const Cases& c) {
+std::optional<Refusal> reason_against_assisting(const AssistedInput& input, const Cases& c) {
     const std::size_t n = c.sequence.size(), least = 2 * std::max<std::size_t>(12, 4 * (input.points.dimensions + 1));
     std::vector<std::size_t> sizes(c.sequences, 0);
     for (const std::size_t s : c.sequence) ++sizes[s];
@@ -342,9 +335,9 @@ void choose(AssistedMoments& result, const AssistedSettings& settings, const Ass
 }
 
 /// Both estimators, nothing chosen.
-std::variant<AssistedMoments, Refusal> estimate(const AssistedInput& input, const AssistedSettings& settings) {
+std::variant<AssistedMoments, Refusal> assisted_estimate(const AssistedInput& input, const AssistedSettings& settings) {
     const Cases c = gather(input, settings);
-    if (const auto reason = reason_to_refuse(input, c)) return *reason;
+    if (const auto reason = reason_against_assisting(input, c)) return *reason;
     Parts parts{std::vector<std::vector<Moment4>>(c.sequences), std::vector<Moment4>(c.sequence.size()),
                 std::vector<double>(c.sequence.size())};
     const Eigen::MatrixXd integration = in_box(input.integration, settings);
@@ -383,13 +376,13 @@ const AssistedStatistic& AssistedMoments::of(Statistic statistic) const {
 
 std::variant<AssistedMoments, Refusal> assisted_moments(const AssistedInput& input, const AssistedSettings& settings,
                                                         const AssistedMoments* previous) {
-    check_sizes(input);
-    auto answer = estimate(input, settings);
+    check_input(input);
+    auto answer = assisted_estimate(input, settings);
     auto* result = std::get_if<AssistedMoments>(&answer);
     if (result == nullptr) return answer;
     std::variant<AssistedMoments, Refusal> half = Refusal{};
     if (previous == nullptr && result->model_error < settings.refused_error) {
-        half = estimate(first_half(input), settings);
+        half = assisted_estimate(first_half(input), settings);
         previous = std::get_if<AssistedMoments>(&half);
     }
     choose(*result, settings, previous);

@@ -12,22 +12,22 @@ namespace {
 
 constexpr std::size_t second_largest_above = 5;
 
-double square(double x) {
+double squared(double x) {
     return x * x;
 }
 
 double own_variance(const Target& target) {
-    return square(target.measured_error) + square(target.discrepancy);
+    return squared(target.measured_error) + squared(target.discrepancy);
 }
 
 /// Of the model and of the runs behind the measurement: both rest on few cases, and are Student's.
 double predicted_variance(const Target& target, const Prediction& p) {
-    const double runs = target.replicates > 0 ? square(p.scatter) / static_cast<double>(target.replicates) : 0;
+    const double runs = target.replicates > 0 ? squared(p.scatter) / static_cast<double>(target.replicates) : 0;
     const double student = std::isfinite(p.freedom) ? p.freedom / std::max(p.freedom - 2, 1.0) : 1;
-    return student * (square(p.mean_error) + runs);
+    return student * (squared(p.mean_error) + runs);
 }
 
-void check_sizes(std::span<const Target> targets, std::span<const std::vector<Prediction>> predictions) {
+void check_predictions(std::span<const Target> targets, std::span<const std::vector<Prediction>> predictions) {
     if (targets.empty() || targets.size() != predictions.size())
         throw std::invalid_argument("calibration: one prediction is needed for each target");
     for (const auto& row : predictions)
@@ -39,7 +39,7 @@ void check_sizes(std::span<const Target> targets, std::span<const std::vector<Pr
 
 std::vector<std::vector<double>> implausibilities(std::span<const Target> targets,
                                                   std::span<const std::vector<Prediction>> predictions) {
-    check_sizes(targets, predictions);
+    check_predictions(targets, predictions);
     std::vector<std::vector<double>> all;
     for (std::size_t k = 0; k < targets.size(); ++k) {
         std::vector<double> row;
@@ -68,7 +68,7 @@ std::vector<double> deciding_implausibility(std::span<const std::vector<double>>
 std::vector<double> log_likelihood(std::span<const Target> targets,
                                    std::span<const std::vector<Prediction>> predictions,
                                    std::span<const double> covariance) {
-    check_sizes(targets, predictions);
+    check_predictions(targets, predictions);
     const auto m = static_cast<Eigen::Index>(targets.size());
     Eigen::MatrixXd own = Eigen::MatrixXd::Zero(m, m);
     if (covariance.empty())

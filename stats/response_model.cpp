@@ -24,13 +24,6 @@ constexpr double worth_a_logarithm = 2.5;  // largest value over the least
 constexpr double kept_below = 0.97;        // of the error without it
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// A double as a sentence shows it.
-std::string shown(double x) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", x);
-    return text;
-}
-
 Eigen::VectorXd edges(const std::vector<double>& given, std::size_t d, double otherwise) {
     if (given.empty()) return Eigen::VectorXd::Constant(static_cast<Eigen::Index>(d), otherwise);
     if (given.size() != d) throw std::invalid_argument("response model: the box has another number of features");
@@ -160,6 +153,12 @@ Found with_or_without_logarithm(const Eigen::MatrixXd& x, const Eigen::VectorXd&
 }
 
 }  // namespace
+
+std::string shown(double x) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", x);
+    return text;
+}
 
 double ResponseModel::State::standardised(double response) const {
     return ((logarithm ? std::log(response) : response) - offset) / scale;

@@ -46,6 +46,9 @@ struct Refusal {
     std::string sentence;
 };
 
+/// A double as such a sentence shows it.
+[[nodiscard]] std::string shown(double x);
+
 /// When the kernel learns a linear map of the features besides their lengths.
 enum class LearnedMap {
     never,

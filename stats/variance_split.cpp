@@ -216,13 +216,13 @@ Fit fit(const Sums& sums, std::size_t columns) {
 }
 
 /// Variances by their parts; NaN where a part cannot be had.
-struct Parts {
+struct SplitParts {
     double total = undefined, main = undefined, rest = undefined, interactions = undefined, scatter = undefined,
            pairs = undefined, coefficients = 0;
 };
 
-Parts parts_of(const Sums& sums, const Columns& columns, bool all_points) {
-    Parts parts;
+SplitParts parts_of(const Sums& sums, const Columns& columns, bool all_points) {
+    SplitParts parts;
     const double n = sums.points;
     const Fit additive = fit(sums, columns.additive());
     parts.coefficients = additive.coefficients;
@@ -253,7 +253,7 @@ Parts parts_of(const Sums& sums, const Columns& columns, bool all_points) {
 /// Half-widths of a lattice's shares for normal scatter: the sums of squares of main effects, of the other means and of
 /// the replicates are independent multiples of (noncentral) chi-squared variables, whose variance is 2 (freedom) +
 /// 4 (noncentrality); to first order, a share is linear in them.
-void normal_errors(VarianceSplit& split, const Parts& parts, const Sums& sums) {
+void normal_errors(VarianceSplit& split, const SplitParts& parts, const Sums& sums) {
     if (!(sums.error_freedom > 0)) return;
     const double n = sums.points, p = parts.coefficients;
     const double repeats = n / sums.reciprocals, in_means = parts.scatter / repeats;
@@ -301,13 +301,13 @@ namespace {
 
 /// Shares of the whole sample, and of the sample without each of its groups.
 struct Estimates {
-    Parts parts;
-    std::vector<Parts> leave_one_out;
+    SplitParts parts;
+    std::vector<SplitParts> leave_one_out;
     Sums sums;
 };
 
-Estimates estimate(const Columns& columns, std::span<const Point> points, std::span<const std::size_t> groups,
-                   bool all_points) {
+Estimates split_estimate(const Columns& columns, std::span<const Point> points, std::span<const std::size_t> groups,
+                         bool all_points) {
     double centre = 0;
     for (const auto& point : points) centre += point.mean / static_cast<double>(points.size());
     const std::size_t group_count = groups.empty() ? 1 : *std::ranges::max_element(groups) + 1;
@@ -340,12 +340,12 @@ VarianceSplit split_variance(std::span<const std::int64_t> points, std::span<con
     const bool with_products = !all_points && split.pure.freedom == 0;
     const Columns columns(factors, collapsed, with_products, Resolution::fine);
     if (columns.additive() > most_columns) return split;
-    const auto [parts, leave_one_out, sums] = estimate(columns, collapsed, groups, all_points);
+    const auto [parts, leave_one_out, sums] = split_estimate(columns, collapsed, groups, all_points);
     split.coefficients = static_cast<std::size_t>(parts.coefficients);
-    Parts coarse =
-        all_points
-            ? parts
-            : estimate(Columns(factors, collapsed, with_products, Resolution::coarse), collapsed, {}, false).parts;
+    SplitParts coarse = all_points ? parts
+                                   : split_estimate(Columns(factors, collapsed, with_products, Resolution::coarse),
+                                                    collapsed, {}, false)
+                                         .parts;
     if (std::isfinite(parts.pairs) && !std::isfinite(coarse.pairs)) coarse.pairs = 0;
     // Of interactions over points more even than random ones: the coefficients take nothing from their residuals.
     const double evenness =
@@ -360,12 +360,12 @@ VarianceSplit split_variance(std::span<const std::int64_t> points, std::span<con
                 std::hypot(jackknife_half_width(others), part(coarse) / coarse.total - index.value) + allowance;
         return index;
     };
-    split.main_effects = share([](const Parts& p) { return p.main; }, evenness);
-    split.unexplained = share([](const Parts& p) { return p.rest; }, evenness);
-    split.scatter = share([](const Parts& p) { return p.scatter; }, 0);
-    split.interactions = share([](const Parts& p) { return p.interactions; }, evenness);
-    split.pairs = share([](const Parts& p) { return p.pairs; }, evenness);
-    split.remainder = share([](const Parts& p) { return p.rest - p.pairs; }, 0);
+    split.main_effects = share([](const SplitParts& p) { return p.main; }, evenness);
+    split.unexplained = share([](const SplitParts& p) { return p.rest; }, evenness);
+    split.scatter = share([](const SplitParts& p) { return p.scatter; }, 0);
+    split.interactions = share([](const SplitParts& p) { return p.interactions; }, evenness);
+    split.pairs = share([](const SplitParts& p) { return p.pairs; }, evenness);
+    split.remainder = share([](const SplitParts& p) { return p.rest - p.pairs; }, 0);
     if (all_points && std::isfinite(parts.total)) normal_errors(split, parts, sums);
     return split;
 }

@@ -20,8 +20,6 @@ MeshContact contact_with(const Triangle& t, std::uint32_t number, const Vec3& x)
             nearest.feature, number};
 }
 
-constexpr double largest_coordinate = 1e9;  // m; squares and products of it stay numbers
-
 bool within(const Vec3& a, const Vec3& b, double distance) {
     const Vec3 apart = a - b;
     return dot(apart, apart) <= distance * distance;

@@ -52,7 +52,7 @@ std::array<Vec3, 3> rotation_rows(const Rotation& m, double t) {
 }
 
 /// The pose after turning what stands in `pose` about a point.
-Pose turned(const Pose& pose, const std::array<Vec3, 3>& rows, const Vec3& point) {
+Pose rotated(const Pose& pose, const std::array<Vec3, 3>& rows, const Vec3& point) {
     const Pose rotation{.turned = true, .rows = rows, .shift = {}};
     Pose result{.turned = true, .rows = {}, .shift = {}};
     for (std::size_t column = 0; column < 3; ++column) {
@@ -70,7 +70,7 @@ Pose pose_at(std::span<const Motion> motions, double time) {
     Vec3 total{};
     for (const Motion& motion : motions) {
         total += std::visit([time](const auto& m) { return displacement(m, time); }, motion);
-        if (const auto* m = std::get_if<Rotation>(&motion)) pose = turned(pose, rotation_rows(*m, time), m->point);
+        if (const auto* m = std::get_if<Rotation>(&motion)) pose = rotated(pose, rotation_rows(*m, time), m->point);
     }
     pose.shift += total;
     return pose;

@@ -13,8 +13,7 @@ namespace {
 
 constexpr std::size_t header_size = 80;
 constexpr std::size_t prologue_size = header_size + 4;
-constexpr std::size_t record_size = 50;     // normal, three corners, two bytes of no meaning
-constexpr double largest_coordinate = 1e9;  // m; squares and products of it stay numbers
+constexpr std::size_t record_size = 50;  // normal, three corners, two bytes of no meaning
 
 using Corners = std::vector<std::array<Vec3, 3>>;
 

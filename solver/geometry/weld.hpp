@@ -14,6 +14,7 @@ namespace grainsweep::geometry {
 
 /// Distance below which two corners are one, over the diagonal of the box around all corners.
 inline constexpr double weld_tolerance = 1e-7;
+inline constexpr double largest_coordinate = 1e9;  ///< m; squares and products of it stay numbers
 
 struct WeldedSurface {
     TriangleSurface surface;  ///< triangles in the order given, corners ascending in x, y, z

@@ -9,7 +9,6 @@ namespace grainsweep::observables {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double degree = std::numbers::pi / 180;
 constexpr double surface_level = 0.3;                    // solid fraction
 constexpr double surface_reach = 0.4;                    // of the radius
 constexpr double flow_cells_per_d = 5;                   // of SectionFlow
@@ -33,7 +32,7 @@ double lean(const dem::State& state) {
         x += volume * state.position[i][0];
         z += volume * state.position[i][2];
     }
-    return state.position.empty() ? nan : std::atan2(-x, -z) / degree;
+    return state.position.empty() ? nan : std::atan2(-x, -z) / (std::numbers::pi / 180);
 }
 
 SectionGrid::SectionGrid(double radius, double its_cell)

@@ -28,11 +28,11 @@ struct Line {
     double diameter = 0, fraction = 0;
 };
 
-[[noreturn]] void refuse(const std::string& what) {
+[[noreturn]] void refuse_table(const std::string& what) {
     throw std::invalid_argument("sizes" + what);
 }
-[[noreturn]] void refuse(std::size_t line, const std::string& what) {
-    refuse(", line " + std::to_string(line) + ": " + what);
+[[noreturn]] void refuse_table(std::size_t line, const std::string& what) {
+    refuse_table(", line " + std::to_string(line) + ": " + what);
 }
 
 const Header& header_of(std::string_view line) {
@@ -40,10 +40,10 @@ const Header& header_of(std::string_view line) {
     std::erase_if(plain, [](char c) { return c == ' ' || c == '\t'; });
     const auto found = std::ranges::find(headers, plain, &Header::text);
     if (found == headers.end())
-        refuse(1,
-               "the header must be diameter and one of number_fraction, volume_fraction, number_below and "
-               "volume_below, with a comma between, not '" +
-                   std::string(line.substr(0, 40)) + "'");
+        refuse_table(1,
+                     "the header must be diameter and one of number_fraction, volume_fraction, number_below and "
+                     "volume_below, with a comma between, not '" +
+                         std::string(line.substr(0, 40)) + "'");
     return *found;
 }
 
@@ -52,14 +52,15 @@ Line line_of(std::string_view text, std::size_t at, const std::vector<Line>& bef
     const auto diameter = number_in(trimmed(text.substr(0, comma)));
     const auto fraction = number_in(trimmed(text.substr(std::min(comma + 1, text.size()))));
     if (!diameter || !fraction)
-        refuse(at, "'" + std::string(text.substr(0, 60)) + "' is not two numbers with a comma between");
+        refuse_table(at, "'" + std::string(text.substr(0, 60)) + "' is not two numbers with a comma between");
     if (!(*diameter >= smallest_diameter && *diameter <= largest_diameter))
-        refuse(at, "a diameter of " + shortest_text(*diameter) + " lies outside 1e-8 to 0.1 m (diameters are in m)");
+        refuse_table(at,
+                     "a diameter of " + shortest_text(*diameter) + " lies outside 1e-8 to 0.1 m (diameters are in m)");
     if (!before.empty() && !(*diameter > before.back().diameter))
-        refuse(at, "diameters must grow from line to line, and " + shortest_text(*diameter) + " follows " +
-                       shortest_text(before.back().diameter));
+        refuse_table(at, "diameters must grow from line to line, and " + shortest_text(*diameter) + " follows " +
+                             shortest_text(before.back().diameter));
     if (!(*fraction >= 0 && *fraction <= 1 + tolerance))
-        refuse(at, "a share of " + shortest_text(*fraction) + " lies outside 0 to 1");
+        refuse_table(at, "a share of " + shortest_text(*fraction) + " lies outside 0 to 1");
     return {*diameter, *fraction};
 }
 
@@ -69,12 +70,12 @@ double total_of(const Header& header, const std::vector<Line>& lines) {
     for (std::size_t k = 0; k < lines.size(); ++k) {
         sum += header.cumulative ? 0 : lines[k].fraction;
         if (header.cumulative && k > 0 && lines[k].fraction < lines[k - 1].fraction)
-            refuse(": shares below a diameter must not fall, and " + shortest_text(lines[k].fraction) + " follows " +
-                   shortest_text(lines[k - 1].fraction));
+            refuse_table(": shares below a diameter must not fall, and " + shortest_text(lines[k].fraction) +
+                         " follows " + shortest_text(lines[k - 1].fraction));
     }
     if (!header.cumulative) return sum;
     if (lines.size() < 2 || lines.front().fraction != 0)
-        refuse(": shares below a diameter must begin with 0, at the smallest diameter");
+        refuse_table(": shares below a diameter must begin with 0, at the smallest diameter");
     return lines.back().fraction;
 }
 
@@ -110,9 +111,9 @@ SizeTable SizeTable::read(std::string_view csv) {
         else if (!line.empty())
             lines.push_back(line_of(line, at, lines));
     }
-    if (header == nullptr || lines.empty()) refuse(": there is no diameter");
+    if (header == nullptr || lines.empty()) refuse_table(": there is no diameter");
     const double total = total_of(*header, lines);
-    if (std::abs(total - 1) > tolerance) refuse(": the shares add up to " + shortest_text(total) + ", not to 1");
+    if (std::abs(total - 1) > tolerance) refuse_table(": the shares add up to " + shortest_text(total) + ", not to 1");
 
     SizeTable table;
     const Even even = header->by_volume ? Even::volume : Even::number;

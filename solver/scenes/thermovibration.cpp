@@ -125,7 +125,7 @@ std::vector<ParameterSpec> parameters() {
     };
 }
 
-std::vector<ObservableSpec> observables() {
+std::vector<ObservableSpec> thermovibration_observables() {
     const std::string time = "time (L^2/alpha)";
     return {
         {"accumulation",
@@ -276,7 +276,7 @@ SceneInfo thermovibration_scene() {
     info.summary = "particles in a heated, vibrated cube of fluid: do they gather, into what, how fast";
     info.revision = 7;
     info.parameters = parameters();
-    info.observables = observables();
+    info.observables = thermovibration_observables();
     info.accuracy = {
         {"fast", accuracy(20, 1.5, 16)}, {"balanced", accuracy(28, 1.5, 24)}, {"reference", accuracy(48, 1.5, 64)}};
     info.maker = make;

@@ -59,7 +59,7 @@ std::map<std::string, std::size_t> read_condition(const Cursor& inputs, Paramete
     return levels;
 }
 
-double number_in(const Cursor& file, std::size_t record, const std::string& cell) {
+double cell_number(const Cursor& file, std::size_t record, const std::string& cell) {
     const auto x = grainsweep::number_in(cell);
     if (!x) file.refuse(fmt::format("record {} has {} where a number is expected", record, shown(cell)));
     if (std::abs(*x) > largest)
@@ -86,13 +86,13 @@ std::vector<designs::MeasuredTarget> read_curve(const Cursor& file, const design
     double before = -std::numeric_limits<double>::infinity();
     while (const auto record = table.next()) {
         const std::size_t number = table.number();
-        const double at = number_in(file, number, (*record)[0]);
+        const double at = cell_number(file, number, (*record)[0]);
         if (!(at > before)) file.refuse(fmt::format("record {}: places along the curve must grow", number));
         before = at;
         auto& target = targets.emplace_back(alike);
         target.observable = designs::word_of({alike.observable, at});
-        target.value = number_in(file, number, (*record)[1]);
-        if (columns == 3) target.error = number_in(file, number, (*record)[2]);
+        target.value = cell_number(file, number, (*record)[1]);
+        if (columns == 3) target.error = cell_number(file, number, (*record)[2]);
         if (target.error < 0) file.refuse(fmt::format("record {}: an error is at least 0", number));
     }
     if (targets.size() < 2 || targets.size() > most_points)

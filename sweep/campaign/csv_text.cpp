@@ -14,14 +14,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t largest_file = 256ULL << 20U;
+constexpr std::uintmax_t largest_table = 256ULL << 20U;
 
 }  // namespace
 
 std::string read_csv_text(const Cursor& file, const fs::path& path) {
     std::error_code error;
     if (!fs::is_regular_file(path, error)) file.refuse("there is no such file beside the campaign file");
-    if (fs::file_size(path, error) > largest_file || error)
+    if (fs::file_size(path, error) > largest_table || error)
         file.refuse("the file must be readable and at most 256 MiB");
     std::string text = whole_file(path, error);
     if (error)  // what was read is a part, and would pass for a shorter list

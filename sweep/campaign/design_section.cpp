@@ -96,7 +96,7 @@ std::vector<std::string> names_for(const OptionSpec& option, const Campaign& cam
     return names;
 }
 
-std::string read_word(const Cursor& place, const OptionSpec& option, const Campaign& campaign) {
+std::string read_option_word(const Cursor& place, const OptionSpec& option, const Campaign& campaign) {
     if (option.kind == OptionSpec::Kind::word) return place.word(option.words);
     const auto names = names_for(option, campaign);
     if (names.empty()) place.refuse("needs a factor that varies between two values, and there is none");
@@ -167,7 +167,7 @@ void read_design(const Cursor& place, Campaign& campaign, const std::filesystem:
         OptionValue value;
         if (option.kind == OptionSpec::Kind::word || option.kind == OptionSpec::Kind::factor ||
             option.kind == OptionSpec::Kind::observable) {
-            value = read_word(*given, option, campaign);
+            value = read_option_word(*given, option, campaign);
         } else if (option.kind == OptionSpec::Kind::number) {
             value = given->number(option.bounds);
         } else if (option.kind == OptionSpec::Kind::counts) {

@@ -99,7 +99,7 @@ std::vector<std::string> split(std::string_view text, std::string_view separator
     return parts;
 }
 
-double number_in(const std::string& text) {
+double identity_number(const std::string& text) {
     double number = std::numeric_limits<double>::quiet_NaN();
     std::from_chars(text.data(), text.data() + text.size(), number);
     return number;
@@ -116,7 +116,7 @@ StatedFactor factor_in(const std::string& line) {
         std::istringstream words(line.substr(factor.name.size() + between.size()));
         std::string low, high, scale;
         words >> low >> high >> scale;
-        factor.between = {number_in(low), number_in(high), scale == "log" ? Scale::log : Scale::linear};
+        factor.between = {identity_number(low), identity_number(high), scale == "log" ? Scale::log : Scale::linear};
     }
     return factor;
 }
@@ -289,7 +289,8 @@ void require_same(const Identity& stored, const Identity& asked, std::string_vie
     }
     same("$.seed", "seed", std::to_string(stored.seed), std::to_string(asked.seed));
     same("$.design.kind", "design", stored.design, asked.design);
-    same("$.factors", "factor", stored.factors, asked.factors, design.beginning == designs::Beginning::corner && !design.grows);
+    same("$.factors", "factor", stored.factors, asked.factors,
+         design.beginning == designs::Beginning::corner && !design.grows);
     same("$.fixed", "fixed", stored.fixed, asked.fixed);
     if (stored.condition != asked.condition) {
         refuse("$.where", asked.condition.empty() ? "none" : asked.condition,

@@ -36,7 +36,7 @@ fs::path source_of(const Cursor& place, const std::string& name, const fs::path&
     return path;
 }
 
-void read_one(const Cursor& place, const fs::path& folder, bool is_template, Program& program) {
+void read_file(const Cursor& place, const fs::path& folder, bool is_template, Program& program) {
     ProgramFile file{read_file_name(place), {}, is_template, false, {}, {}};
     if (std::ranges::find(names_of_ours, file.name) != names_of_ours.end())
         place.refuse("a file of this name is written into every case's folder");
@@ -94,7 +94,7 @@ void read_program_files(const Section& section, const fs::path& folder, Program&
         if (!list) continue;
         for (const auto& place : list->elements()) {
             if (program.files.size() >= most_files) place.refuse(fmt::format("at most {} files", most_files));
-            read_one(place, folder, std::string_view(key) == "templates", program);
+            read_file(place, folder, std::string_view(key) == "templates", program);
             std::uintmax_t total = 0;
             for (const auto& file : program.files) total += file.contents.size();
             if (total > largest_of_all)

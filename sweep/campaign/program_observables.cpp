@@ -98,7 +98,7 @@ bool runs_over(const decltype(ProgramObservable::from)& from) {
     return false;
 }
 
-ProgramObservable read_one(const std::string& name, const Section& section, Program::Protocol protocol) {
+ProgramObservable read_output(const std::string& name, const Section& section, Program::Protocol protocol) {
     ProgramObservable observable;
     observable.name = name;
     if (const auto unit = section.find("unit")) observable.unit = unit->text();
@@ -147,7 +147,7 @@ void read_program_observables(const Section& section, Program& program) {
         }
         if (program.observables.size() >= most_observables)
             here.refuse(fmt::format("at most {} observables", most_observables));
-        program.observables.push_back(read_one(name, Section(here, program_observable_keys()), program.protocol));
+        program.observables.push_back(read_output(name, Section(here, program_observable_keys()), program.protocol));
     }
 }
 

@@ -61,7 +61,7 @@ decltype(ProgramObservable::from) source_in(const Json& from) {
 }
 
 /// What changes an answer.
-Json identity_of(const Program& program) {
+Json answer_json(const Program& program) {
     Json identity = {{"command", program.command},
                      {"protocol", program.protocol == Program::Protocol::files ? "files" : "lines"},
                      {"environment", program.environment},
@@ -165,11 +165,11 @@ void require_harmless(const Program& program) {
 }  // namespace
 
 std::string program_scene_name(const Program& program) {
-    return std::string(program_prefix) + content_hash(identity_of(program).dump());
+    return std::string(program_prefix) + content_hash(answer_json(program).dump());
 }
 
 std::string program_text(const Program& program) {
-    return Json{{"answer", identity_of(program)}, {"settings", settings_of(program)}}.dump();
+    return Json{{"answer", answer_json(program)}, {"settings", settings_of(program)}}.dump();
 }
 
 Program program_in(std::string_view text) {

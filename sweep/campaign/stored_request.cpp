@@ -8,7 +8,7 @@ namespace grainsweep::campaign {
 namespace {
 
 template <class Number>
-Number number_in(const std::string& text) {
+Number stored_number(const std::string& text) {
     Number number{};
     std::from_chars(text.data(), text.data() + text.size(), number);
     return number;
@@ -18,9 +18,9 @@ designs::OptionValue value_of(const designs::OptionSpec& option, const std::stri
     using Kind = designs::OptionSpec::Kind;
     switch (option.kind) {
         case Kind::count:
-            return number_in<std::int64_t>(text);
+            return stored_number<std::int64_t>(text);
         case Kind::number:
-            return number_in<double>(text);
+            return stored_number<double>(text);
         case Kind::counts: {
             std::istringstream stream(text);
             std::vector<std::int64_t> counts;

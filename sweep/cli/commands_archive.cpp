@@ -34,12 +34,12 @@ using store::Table;
 // ---- status -------------------------------------------------------------------------------------------------
 
 /// What the counts of a campaign do not say: whether it has converged by its rule.
-struct Standing {
+struct Convergence {
     std::optional<bool> converged;  ///< none: no rule
     std::string verdict;
 };
 
-Standing standing_of(const Store& archive, const store::CampaignRecord& record) {
+Convergence convergence_of(const Store& archive, const store::CampaignRecord& record) {
     if (!record.convergence) return {};
     const auto& observable = record.convergence->observable;
     const auto responses = report::read_response(archive, record, observable);
@@ -51,8 +51,8 @@ int status(const std::string& database, Format format) {
     const Store archive(database, Store::Mode::read);
     Table table = archive.status();
     const auto records = archive.campaigns();  // one row each, in the same order
-    std::vector<Standing> standings;
-    for (const auto& record : records) standings.push_back(standing_of(archive, record));
+    std::vector<Convergence> standings;
+    for (const auto& record : records) standings.push_back(convergence_of(archive, record));
     if (format == Format::json) {
         auto rows = report::to_json(table);
         for (std::size_t k = 0; k < standings.size(); ++k) {

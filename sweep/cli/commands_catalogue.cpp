@@ -29,7 +29,7 @@ Cell text_or_none(const std::string& text) {
     return text.empty() ? Cell{} : Cell{text};
 }
 
-std::string joined(const std::vector<std::string>& words) {
+std::string alternatives(const std::vector<std::string>& words) {
     std::string list;
     for (const auto& word : words) list += (list.empty() ? "" : " | ") + word;
     return list;
@@ -42,7 +42,7 @@ std::string condition_text(const Relevance& condition) {
         case Relevance::Condition::nonzero:
             return condition.other + " != 0";
         case Relevance::Condition::is_word:
-            return condition.other + " is " + joined(condition.words);
+            return condition.other + " is " + alternatives(condition.words);
         case Relevance::Condition::is_file:
             return condition.other + " is a file";
     }
@@ -63,7 +63,7 @@ std::string_view word_of(Shape shape) {
 /// Columns: low, high and words hold what applies; an open end is marked in the text of the bound's cell.
 std::vector<Cell> bound_cells(const ParameterSpec& parameter) {
     if (const auto* words = std::get_if<Words>(&parameter.bounds)) {
-        return {Cell{}, Cell{}, joined(words->allowed) + (words->file_allowed ? " | a file" : "")};
+        return {Cell{}, Cell{}, alternatives(words->allowed) + (words->file_allowed ? " | a file" : "")};
     }
     const auto& bounds = std::get<Interval>(parameter.bounds);
     const auto end = [](double x, bool open, const char* sign) -> Cell {
@@ -184,7 +184,7 @@ store::Table program_table() {
     store::Table table{{"object", "key", "default", "meaning"}, {}};
     const auto add = [&](const char* object, std::span<const campaign::Key> keys) {
         for (const auto& key : keys) {
-            const auto one_of = key.words.empty() ? "" : "; one of " + joined(key.words);
+            const auto one_of = key.words.empty() ? "" : "; one of " + alternatives(key.words);
             table.rows.push_back({std::string(object), key.name,
                                   key.required ? Cell{std::string("required")} : text_or_none(key.standard),
                                   key.meaning + one_of});
@@ -252,7 +252,7 @@ std::string default_text(const designs::OptionSpec& option) {
 
 std::string allowed_text(const designs::OptionSpec& option) {
     using Kind = designs::OptionSpec::Kind;
-    if (option.kind == Kind::word) return joined(option.words);
+    if (option.kind == Kind::word) return alternatives(option.words);
     if (option.kind == Kind::factor) return "a factor that varies between two values";
     if (option.kind == Kind::observable) return "a scalar observable of the scene";
     if (option.kind == Kind::number) return "a number" + campaign::in_words(option.bounds);

@@ -33,7 +33,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t points_shown = 8;
 
-Json json_of(const designs::OptionValue& value) {
+Json option_json(const designs::OptionValue& value) {
     if (const auto* rows = std::get_if<designs::Rows>(&value)) {
         Json list = Json::array();
         for (const auto& row : *rows) {
@@ -49,10 +49,10 @@ Json json_of(const designs::OptionValue& value) {
     return std::get<std::vector<std::int64_t>>(value);
 }
 
-std::string text_of(const designs::OptionValue& value) {
+std::string option_text(const designs::OptionValue& value) {
     if (const auto* rows = std::get_if<designs::Rows>(&value)) return fmt::format("({} of them)", rows->size());
     if (const auto* word = std::get_if<std::string>(&value)) return *word;
-    return json_of(value).dump();
+    return option_json(value).dump();
 }
 
 store::Table factors_of(const Campaign& campaign) {
@@ -135,12 +135,12 @@ Outlook outlook_of(Campaign& campaign, const store::Store* archive) {
     return outlook;
 }
 
-Json json_of(const Campaign& campaign, const Outlook& outlook) {
+Json plan_json(const Campaign& campaign, const Outlook& outlook) {
     const auto& [cases, cost, candidates, warnings, database, stored, finished] = outlook;
     Json object = {
         {"campaign", campaign.name}, {"scene", campaign.scene().name}, {"revision", campaign.scene().revision}};
     object["design"] = {{"kind", campaign.design}};
-    for (const auto& [name, value] : campaign.request.options) object["design"][name] = json_of(value);
+    for (const auto& [name, value] : campaign.request.options) object["design"][name] = option_json(value);
     object["seed"] = report::to_json(Cell{static_cast<std::int64_t>(campaign.seed)});
     object["replicates"] = campaign.replicates;
     object["candidates"] = candidates;
@@ -172,7 +172,7 @@ Json json_of(const Campaign& campaign, const Outlook& outlook) {
 
 /// The object, with all rows of the design at its end.
 void write_json(const Campaign& campaign, const Outlook& outlook) {
-    std::string text = report::json_text(json_of(campaign, outlook));
+    std::string text = report::json_text(plan_json(campaign, outlook));
     text.pop_back();  // the closing brace
     std::cout << text << ",\"rows\":";
     report::RowWriter rows(std::cout, Format::json);
@@ -201,14 +201,14 @@ std::string seconds_text(double seconds) {
     return seconds < 60 ? fmt::format("{:.2g} s", seconds) : duration(seconds);
 }
 
-void show_text(const Campaign& campaign, const Outlook& outlook) {
+void show_plan(const Campaign& campaign, const Outlook& outlook) {
     const auto& cost = outlook.cost;
     const Cases& cases = outlook.cases;
     const auto& scene = campaign.scene();
     std::cout << fmt::format("campaign   {}: {} (revision {})\n", campaign.name, scene.name, scene.revision);
     std::cout << fmt::format("design     {}", campaign.design);
     for (const auto& [name, value] : campaign.request.options) {
-        if (const auto text = text_of(value); text != "[]") std::cout << fmt::format(", {} {}", name, text);
+        if (const auto text = option_text(value); text != "[]") std::cout << fmt::format(", {} {}", name, text);
     }
     std::cout << fmt::format(", seed {}\n", campaign.seed);
     if (!campaign.where.empty()) std::cout << fmt::format("where      {}\n", campaign.where);
@@ -264,7 +264,7 @@ int plan(const std::string& config, std::string database, Format format) {
     if (!database.empty()) archive.emplace(database, store::Store::Mode::read);
     auto outlook = campaign::asked_in(config, [&] { return outlook_of(campaign, archive ? &*archive : nullptr); });
     outlook.database = database;
-    if (format == Format::text) show_text(campaign, outlook);
+    if (format == Format::text) show_plan(campaign, outlook);
     if (format == Format::json) write_json(campaign, outlook);
     if (format == Format::csv) write_csv(campaign, outlook);
     return 0;

@@ -118,7 +118,7 @@ CaseResult answer_of(const Asked& asked, const SolveRequest& request, Pictures& 
     return std::move(computed.value());  // the watch never gives it up
 }
 
-Json json_of(const Sample& sample) {
+Json sample_json(const Sample& sample) {
     Json object = Json::object();
     if (!std::isnan(sample.time)) object["time"] = sample.time;
     if (!std::isnan(sample.bin)) object["bin"] = sample.bin;
@@ -136,7 +136,7 @@ std::vector<ObservableSpec> absent(const campaign::Case& question, const CaseRes
     return missing;
 }
 
-Json json_of(const campaign::Case& question, const CaseResult& result) {
+Json answer_json(const campaign::Case& question, const CaseResult& result) {
     Json object = {{"scene", question.scene},
                    {"revision", question.revision},
                    {"case_id", question.id},
@@ -163,7 +163,7 @@ Json json_of(const campaign::Case& question, const CaseResult& result) {
     object["series"] = Json::object();
     for (const auto& [name, samples] : result.observations.series) {
         auto& list = object["series"][name] = Json::array();
-        for (const auto& sample : samples) list.push_back(json_of(sample));
+        for (const auto& sample : samples) list.push_back(sample_json(sample));
     }
     object["cost"] = {{"wall_seconds", result.cost.wall_seconds},
                       {"cpu_seconds", result.cost.cpu_seconds},
@@ -199,7 +199,7 @@ store::Table table_of(const campaign::Case& question, const CaseResult& result) 
     return table;
 }
 
-void show_text(const campaign::Case& question, const CaseResult& result) {
+void show_answer(const campaign::Case& question, const CaseResult& result) {
     const auto& scene = *campaign::known_scene(question.scene);
     store::Table table{{"name", "value", "unit", "meaning"}, {}};
     for (const auto& parameter : scene.parameters) {
@@ -244,9 +244,9 @@ int solve(const SolveRequest& request, Format format) {
     const CaseResult result = answer_of(asked, request, pictures);
     if (::isatty(STDERR_FILENO) == 1) std::fputs("\r\033[K", stderr);
     pictures.finish(result);
-    if (format == Format::text) show_text(question, result);
+    if (format == Format::text) show_answer(question, result);
     if (format == Format::csv) report::write(std::cout, table_of(question, result), format);
-    if (format == Format::json) report::write(std::cout, json_of(question, result));
+    if (format == Format::json) report::write(std::cout, answer_json(question, result));
     pictures.say(format == Format::text);
     return result.outcome == Outcome::completed || result.outcome == Outcome::skipped ? 0 : 1;
 }

@@ -15,7 +15,7 @@ using report::Format;
 using store::Store;
 using store::Table;
 
-std::string counted(const Store& archive) {
+std::string contents_of(const Store& archive) {
     const auto count = [&](const char* table) {
         return std::get<std::int64_t>(archive.query(fmt::format("SELECT count(*) FROM {}", table)).rows.at(0).at(0));
     };
@@ -28,8 +28,9 @@ std::string sound(const Store& archive) {
         return fmt::format(
             "no damage was found: pages, indices and references agree. {} were written before "
             "there were checksums; the next run adds them",
-            counted(archive));
-    return fmt::format("nothing is damaged: {}; pages, indices, references, checksums and ids agree", counted(archive));
+            contents_of(archive));
+    return fmt::format("nothing is damaged: {}; pages, indices, references, checksums and ids agree",
+                       contents_of(archive));
 }
 
 int verify(const std::string& database, Format format) {

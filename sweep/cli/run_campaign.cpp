@@ -172,7 +172,7 @@ std::string standing(const schedule::Judge* judge) {
     return "; not converged: " + judge->verdict();
 }
 
-std::string describe(Ending ending, const schedule::Plan::Tally& tally, const schedule::Judge* judge) {
+std::string summary_of(Ending ending, const schedule::Plan::Tally& tally, const schedule::Judge* judge) {
     switch (ending) {
         case Ending::finished:
             return tally.failed == 0
@@ -289,7 +289,7 @@ public:
         const auto grown = campaign_.request.grown;
         const auto in_vain = ending_ == Ending::finished && grown ? grown->without_result : std::string();
         return {in_vain.empty() ? exit_code(ending_, tally_) : 1, campaign_.name, database_,
-                describe(ending_, tally_, judge_.get()) + (in_vain.empty() ? "" : "; " + in_vain),
+                summary_of(ending_, tally_, judge_.get()) + (in_vain.empty() ? "" : "; " + in_vain),
                 judge_ ? std::optional(judge_->converged_at().has_value()) : std::nullopt};
     }
 

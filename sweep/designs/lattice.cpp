@@ -62,7 +62,7 @@ double coordinate(std::int64_t i, std::int64_t k, bool endpoints) {
     return (static_cast<double>(i) + 0.5) / static_cast<double>(k);
 }
 
-std::int64_t size(const DesignRequest& request) {
+std::int64_t lattice_size(const DesignRequest& request) {
     return product_of(levels_of(request));
 }
 
@@ -113,7 +113,7 @@ DesignInfo lattice_design() {
             .extends = false,
             .independent_sequences = false,
             .beginning = Beginning::corner,
-            .size = size,
+            .size = lattice_size,
             .sample = lattice_points};
 }
 

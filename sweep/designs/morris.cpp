@@ -17,12 +17,12 @@
 namespace grainsweep::designs {
 namespace {
 
-std::size_t block_of(std::size_t factors) {
+std::size_t trajectory_length(std::size_t factors) {
     return factors + 1;
 }
 
-std::int64_t size(const DesignRequest& request) {
-    return request.count("trajectories") * static_cast<std::int64_t>(block_of(request.dimensions()));
+std::int64_t morris_size(const DesignRequest& request) {
+    return request.count("trajectories") * static_cast<std::int64_t>(trajectory_length(request.dimensions()));
 }
 
 std::string name_of(const DesignRequest& request, std::size_t j) {
@@ -119,7 +119,7 @@ PointSet morris_points(const DesignRequest& request) {
     if (grid % 2 != 0)
         throw std::invalid_argument("a Morris grid has an even number of levels, not " + std::to_string(grid));
     const std::size_t d = request.dimensions();
-    const std::size_t length = block_of(d);
+    const std::size_t length = trajectory_length(d);
     PointSet set{.dimensions = d,
                  .sequences = length,
                  .coordinates = room_for(trajectories * static_cast<std::int64_t>(length), d),
@@ -160,8 +160,8 @@ DesignInfo morris_design() {
         .extends = true,
         .independent_sequences = false,
         .purpose = Purpose::morris,
-        .size = size,
-        .block = block_of,
+        .size = morris_size,
+        .block = trajectory_length,
         .sample = morris_points};
 }
 

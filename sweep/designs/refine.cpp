@@ -129,7 +129,7 @@ private:
 };
 
 /// The levels of combination c, the last factor fastest; 0 for the factor refined.
-std::vector<std::size_t> levels_of(const Question& question, std::size_t c) {
+std::vector<std::size_t> levels_at(const Question& question, std::size_t c) {
     std::vector<std::size_t> numbers(question.levels.size());
     for (std::size_t j = numbers.size(); j-- > 0;) {
         numbers[j] = c % question.levels[j];
@@ -139,14 +139,14 @@ std::vector<std::size_t> levels_of(const Question& question, std::size_t c) {
 }
 
 /// All rounds that follow from the answers; the points of the last one are not all answered, or it asks nothing.
-struct Course {
+struct RefineCourse {
     Question question;
     std::vector<Search> searches;
     PointSet points;
 };
 
-Course course_of(const DesignRequest& request) {
-    Course course{question_of(request), {}, {}};
+RefineCourse course_of(const DesignRequest& request) {
+    RefineCourse course{question_of(request), {}, {}};
     const auto& question = course.question;
     auto& points = course.points;
     const auto known = request.answers.find(request.word("observable"));
@@ -160,7 +160,7 @@ Course course_of(const DesignRequest& request) {
         const std::size_t before = points.repeat.size();
         for (std::size_t c = 0; c < question.combinations; ++c) {
             auto& search = course.searches[c];
-            const auto others = levels_of(question, c);
+            const auto others = levels_at(question, c);
             for (const std::size_t number : search.wanted()) {
                 const auto& level = search.level(number);
                 for (std::size_t j = 0; j < d; ++j)
@@ -214,7 +214,7 @@ std::vector<Bracket> brackets(const DesignRequest& request) {
     std::vector<Bracket> found;
     for (std::size_t c = 0; c < course.searches.size(); ++c) {
         found.push_back(course.searches[c].bracket());
-        found.back().levels = levels_of(course.question, c);
+        found.back().levels = levels_at(course.question, c);
         found.back().levels.erase(found.back().levels.begin() + static_cast<std::ptrdiff_t>(course.question.factor));
     }
     return found;

@@ -18,7 +18,7 @@ std::size_t block_of(std::size_t factors) {
     return factors + 2;
 }
 
-std::int64_t size(const DesignRequest& request) {
+std::int64_t saltelli_size(const DesignRequest& request) {
     return request.count("base_points") * static_cast<std::int64_t>(block_of(request.dimensions()));
 }
 
@@ -65,7 +65,7 @@ DesignInfo saltelli_design() {
             .extends = true,
             .independent_sequences = false,
             .purpose = Purpose::saltelli,
-            .size = size,
+            .size = saltelli_size,
             .block = block_of,
             .sample = saltelli_points};
 }

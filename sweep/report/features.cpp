@@ -18,7 +18,7 @@ constexpr std::string_view features_path = "$.model.features";
 constexpr double logarithm_from = 2.5;  // high/low
 
 /// The levels as numbers, exact where the identity of the campaign has them; none where one is a word.
-std::optional<std::vector<double>> numbers_of(const FactorColumn& column, const campaign::StatedFactor& stated) {
+std::optional<std::vector<double>> ordered_numbers(const FactorColumn& column, const campaign::StatedFactor& stated) {
     std::map<std::string, double> exact;  // by the text a column shows
     for (const auto& level : stated.levels)
         if (const auto number = number_in(level)) exact.try_emplace(fmt::format("{:.6g}", *number), *number);
@@ -63,7 +63,7 @@ std::vector<ModelFactor> model_factors(const Responses& responses) {
             factor.low = column.low;
             factor.high = column.high;
             factor.log = column.log;
-        } else if (auto numbers = numbers_of(column, stated[j])) {
+        } else if (auto numbers = ordered_numbers(column, stated[j])) {
             std::ranges::sort(*numbers);
             factor.numbers = std::move(*numbers);
             if (!factor.numbers.empty()) factor.low = factor.numbers.front(), factor.high = factor.numbers.back();
@@ -81,7 +81,7 @@ std::vector<Setting> settings_of(const Responses& responses, std::span<const Mod
     for (std::size_t j = 0; j < factors.size(); ++j) {
         const auto& column = responses.factors[j];
         std::vector<double> of_level;  // columns keep the order of the campaign file
-        if (!factors[j].numbers.empty()) of_level = *numbers_of(column, stated[j]);
+        if (!factors[j].numbers.empty()) of_level = *ordered_numbers(column, stated[j]);
         for (std::size_t row = 0; row < settings.size(); ++row) {
             const double value = column.values[row];
             settings[row][j] = of_level.empty() ? value : of_level[static_cast<std::size_t>(value)];

@@ -40,7 +40,7 @@ unsigned cost(std::uint32_t z, unsigned k) {
     return zeros < most_zeros ? zeros + 1 + k : most_zeros + 1 + raw_bits;
 }
 
-void write(BitWriter& out, std::span<const std::uint32_t> items) {
+void write_items(BitWriter& out, std::span<const std::uint32_t> items) {
     if (std::ranges::all_of(items, [](std::uint32_t z) { return z == 0; })) return out.put(as_predicted, 5);
     std::uint64_t sum = 0;
     for (const auto z : items) sum += z;
@@ -92,7 +92,7 @@ std::string pack_film_column(std::span<const std::uint16_t> values, std::size_t 
         const auto way = static_cast<unsigned>(std::min_element(left.begin(), left.begin() + ways) - left.begin());
         out.put(way, 2);
         for (std::size_t i = 0; i < items; i += group)
-            write(out, std::span(rests[way]).subspan(i, std::min(group, items - i)));
+            write_items(out, std::span(rests[way]).subspan(i, std::min(group, items - i)));
     }
     return out.finish();
 }

@@ -23,17 +23,17 @@ constexpr double far_beyond = 1.5;        // times that quantile
 constexpr std::size_t sampled = 200'000;  // values that determine a quantile
 constexpr double bytes_per_sphere = 8.3;  // and frame, as text
 
-struct Range {
+struct ValueRange {
     double low = 0, high = 0;
     bool clipped = false;  ///< a few values lie beyond
 };
 
 /// From the values that are numbers: from 0, or around 0, or from the least where all are far from 0 and differ.
-Range range_of(std::vector<float> values) {
+ValueRange range_of(std::vector<float> values) {
     std::erase_if(values, [](float x) { return !std::isfinite(x); });
     if (values.empty()) return {};
     const auto [least, most] = std::ranges::minmax(values);
-    Range range{least, most, false};
+    ValueRange range{least, most, false};
     for (float& x : values) x = std::abs(x);
     const auto rank =
         values.begin() + static_cast<std::ptrdiff_t>(std::ceil(common_share * static_cast<double>(values.size() - 1)));
@@ -47,7 +47,7 @@ Range range_of(std::vector<float> values) {
     return {range.low, end, clipped};
 }
 
-std::uint16_t colour_of(double x, const Range& range) {
+std::uint16_t colour_of(double x, const ValueRange& range) {
     if (!std::isfinite(x)) return 0;
     const double width = range.high - range.low;
     const double share = width > 0 ? std::clamp((x - range.low) / width, 0.0, 1.0) : 0.0;
@@ -163,7 +163,7 @@ private:
                             text;
         std::vector<std::pair<std::string, Json>> columns;  // packed, and described
         for (const auto& name : column_names()) {
-            const Range range = range_of(sample_of(name));
+            const ValueRange range = range_of(sample_of(name));
             columns.emplace_back(pack_film_column(shades_of(name, range), n), coloured(name, range));
         }
         std::stable_sort(columns.begin() + (columns.empty() ? 0 : 1), columns.end(),
@@ -180,7 +180,7 @@ private:
         }
     }
 
-    [[nodiscard]] Numbers shades_of(const std::string& name, const Range& range) const {
+    [[nodiscard]] Numbers shades_of(const std::string& name, const ValueRange& range) const {
         const std::size_t n = film_.spheres_.size();
         Numbers values(n * film_.frames_.size());
         for (std::size_t f = 0; f < film_.frames_.size(); ++f) {
@@ -216,7 +216,7 @@ private:
         return sample;
     }
 
-    [[nodiscard]] Json coloured(const std::string& name, const Range& range) const {
+    [[nodiscard]] Json coloured(const std::string& name, const ValueRange& range) const {
         const auto unit = film_.units_.find(name);
         return {{"name", name},
                 {"unit", unit == film_.units_.end() ? "" : unit->second},
@@ -280,7 +280,7 @@ private:
             std::vector<float> all;
             for (const auto& plane : slice.planes) all.insert(all.end(), plane.begin(), plane.end());
             Json one = coloured(slice.quantity, range_of(std::move(all)));
-            const Range range{one["low"].get<double>(), one["high"].get<double>(), false};
+            const ValueRange range{one["low"].get<double>(), one["high"].get<double>(), false};
             one["component"] = slice.component;
             one["field"] = slice.field;
             one["faces"] = slice.faces;

@@ -19,7 +19,7 @@
 namespace grainsweep::report {
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double monotone_share = 0.9;
 constexpr std::size_t most_pieces = 15, most_coefficients = 160;
 
@@ -42,7 +42,7 @@ Grid grid_of(const Responses& responses, const ResponseColumn& response) {
     const auto repeated = repeated_places(responses);
     auto points = responses.settled == 0 ? 0 : static_cast<std::size_t>(responses.points[responses.settled - 1] + 1);
     for (const auto& place : repeated) points = std::max(points, static_cast<std::size_t>(place.point) + 1);
-    Grid grid{std::vector<double>(points * d, none), std::vector<double>(points, none)};
+    Grid grid{std::vector<double>(points * d, not_a_number), std::vector<double>(points, not_a_number)};
     std::vector<double> sums(points), counts(points);
     const auto place_row = [&](std::size_t point, std::size_t row) {
         for (std::size_t j = 0; j < d; ++j) grid.coordinates[point * d + j] = responses.factors[j].coordinate(row);
@@ -115,7 +115,7 @@ double variance_in_bins(const Responses& responses, const stats::PureError& pure
     }
     for (const auto& bin : bins) squares -= static_cast<double>(bin.count) * bin.mean * bin.mean;
     const double freedom = n - static_cast<double>(bins.size());
-    return freedom > 0 ? std::max(0.0, squares / freedom) : none;
+    return freedom > 0 ? std::max(0.0, squares / freedom) : not_a_number;
 }
 
 /// The response bends where its binned means leave the best rising and the best falling curve by more than scatter
@@ -164,7 +164,7 @@ void add_trends(Influence& influence, const Responses& responses, const Response
             for (double& level : x) level = levels[static_cast<std::size_t>(level)];
         auto& rank = found.rank_correlation;
         rank = stats::rank_correlation(x, values, labels);
-        if (!responses.ordered_sample()) rank.half_width = none;
+        if (!responses.ordered_sample()) rank.half_width = not_a_number;
         if (found.effects) {
             const double size = found.effects->mu_star;
             if (size > 0)
@@ -218,7 +218,7 @@ void add_given_data(Influence& influence, const Responses& responses, const Resp
         const auto indices = stats::first_order_indices(coordinates, 1, values, labels, found.bins);
         found.first = indices.first[0];
         // Lines of a lattice are no sample of it: leaving some out says nothing about the error.
-        if (lattice) found.first.half_width = none;
+        if (lattice) found.first.half_width = not_a_number;
         if (lattice && influence.split.pure.freedom > 0) take_out_scatter(found, influence.split, values);
         influence.used = indices.count;
         influence.excluded = indices.excluded;
@@ -295,8 +295,8 @@ void withdraw_errors_of_repeated_cases(Influence& influence, const Responses& re
     const auto repeated = repeated_places(responses).size();
     if (repeated <= responses.settled) return;
     for (auto& factor : influence.factors) {
-        factor.first_saltelli.half_width = factor.total.half_width = none;
-        if (factor.effects) factor.effects->mu_star_half_width = none;
+        factor.first_saltelli.half_width = factor.total.half_width = not_a_number;
+        if (factor.effects) factor.effects->mu_star_half_width = not_a_number;
     }
     influence.notes.push_back(fmt::format("the {} places of the design are {} different cases: errors are unknown",
                                           repeated + responses.settled, responses.settled));

@@ -33,8 +33,8 @@ std::vector<std::size_t> groups_of(const Responses& responses, std::span<const s
 }
 
 /// Features of points of the cube of the factors that vary; the others stay where they are.
-stats::FeatureMap map_of(const ObservableModel& model, const std::vector<ModelFactor>& factors,
-                         const std::vector<std::size_t>& varied) {
+stats::FeatureMap model_map(const ObservableModel& model, const std::vector<ModelFactor>& factors,
+                            const std::vector<std::size_t>& varied) {
     return [&model, &factors, &varied](stats::Rows points) {
         std::vector<double> rows;
         std::vector<double> u(factors.size(), 0);
@@ -81,7 +81,7 @@ ModelInfluence model_influence_of(const Responses& responses, const ResponseColu
     found.model = std::get<ObservableModel>(std::move(learned));
     found.without_value = responses.without_value(response);
     found.indices = stats::model_indices(found.model->model, varied.size(), groups_of(responses, rows),
-                                         map_of(*found.model, cases.factors, varied));
+                                         model_map(*found.model, cases.factors, varied));
     return found;
 }
 

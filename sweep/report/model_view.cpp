@@ -83,8 +83,8 @@ void check_defined(const Mapped& mapped, const std::vector<double>& features) {
 }
 
 /// Features of scramblings of one size: of each as many points as every one has within the `where` clause.
-std::vector<double> integration_points(const campaign::Campaign& campaign, const Mapped& mapped,
-                                       const campaign::Filter& filter) {
+std::vector<double> view_points(const campaign::Campaign& campaign, const Mapped& mapped,
+                                const campaign::Filter& filter) {
     std::array<std::vector<double>, integration_sets> parts;
     std::size_t least = std::numeric_limits<std::size_t>::max();
     for (std::size_t k = 0; k < integration_sets; ++k) {
@@ -134,7 +134,7 @@ schedule::ModelView model_view(const campaign::Campaign& campaign, std::int64_t 
     schedule::ModelView view;
     view.space.dimensions = d;
     view.space.scramblings = integration_sets;
-    view.space.integration = integration_points(campaign, *mapped, filter);
+    view.space.integration = view_points(campaign, *mapped, filter);
     view.space.low.assign(d, std::numeric_limits<double>::infinity());
     view.space.high.assign(d, -std::numeric_limits<double>::infinity());
     for (std::size_t i = 0; i < view.space.integration.size(); ++i) {

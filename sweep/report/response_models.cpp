@@ -49,7 +49,7 @@ std::optional<double> same_word(const ModelFactor& from, const ModelFactor& to, 
     return static_cast<double>(found - to.words.begin());
 }
 
-void add_cases(ModelCases& cases, const Responses& responses, std::set<std::string>& seen) {
+void add_model_cases(ModelCases& cases, const Responses& responses, std::set<std::string>& seen) {
     const auto factors = model_factors(responses);
     const auto settings = settings_of(responses, factors);
     for (std::size_t row = 0; row < responses.rows(); ++row) {
@@ -233,7 +233,7 @@ ModelCases read_model_cases(const store::Store& store, std::string_view name) {
         const auto responses = read_responses(store, record);
         if (cases.campaign.name.empty()) cases = without_cases(responses);
         const auto before = cases.settings.size();
-        add_cases(cases, responses, seen);
+        add_model_cases(cases, responses, seen);
         if (record.name != cases.campaign.name && cases.settings.size() > before) cases.further.push_back(record.name);
     }
     return cases;

@@ -42,7 +42,7 @@ double number(const Cell& cell) {
 }
 
 /// A level as it is shown; a file by its name.
-std::string level_text(const Cell& cell) {
+std::string column_level(const Cell& cell) {
     if (const auto* word = std::get_if<std::string>(&cell)) {
         const auto file = file_word(*word);
         return file ? std::filesystem::path(file->path).filename().string() : *word;
@@ -69,7 +69,7 @@ void read_levels(FactorColumn& factor, const std::vector<Cell>& cells, const std
     keys.reserve(cells.size());
     for (const auto& cell : cells) {
         keys.push_back(key_of_cell(cell));
-        texts.try_emplace(keys.back(), level_text(cell));
+        texts.try_emplace(keys.back(), column_level(cell));
     }
     std::map<std::string, std::size_t> index, place_of;
     for (const auto& level : listed) {

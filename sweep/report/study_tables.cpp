@@ -56,7 +56,7 @@ double weight(const FactorInfluence& factor) {
     return std::isfinite(value) ? value : -1;
 }
 
-Cell points_needed(const History& history) {
+Cell needed_cell(const History& history) {
     const auto& check = judged_check(history);
     return check.points_needed ? Cell{*check.points_needed} : Cell{};
 }
@@ -222,7 +222,7 @@ Json to_json(const Responses& responses, const ResponseColumn& response, const H
     value["converged_at"] = judged ? Json(converged->points) : Json(nullptr);
     const auto& held_back = judged_check(history).held_back;
     value["held_back_by"] = !judged && held_back ? Json(stats::to_string(*held_back)) : Json(nullptr);
-    value["points_needed"] = to_json(points_needed(history));
+    value["points_needed"] = to_json(needed_cell(history));
     value["verdict"] = history.verdict;
     value["notes"] = history.warnings;
     value["checks"] = to_json(checks_rows(responses, response, history));

@@ -42,7 +42,7 @@ void add_extreme(store::Table& table, const Responses& responses, const Response
 }
 
 /// "gap (m)"; a pure number and a word have no unit.
-std::string with_unit(const std::string& name, const std::string& unit) {
+std::string unit_heading(const std::string& name, const std::string& unit) {
     return unit.empty() || unit == "1" ? name : fmt::format("{} ({})", name, unit);
 }
 
@@ -116,8 +116,8 @@ store::Table extremes_table(const Responses& responses, const ResponseColumn& re
     store::Table table;
     table.columns = {"", "point"};
     if (responses.campaign.replicates > 1) table.columns.emplace_back("replicate");
-    for (const auto& factor : responses.factors) table.columns.push_back(with_unit(factor.name, factor.unit));
-    table.columns.push_back(with_unit(response.name, response.unit));
+    for (const auto& factor : responses.factors) table.columns.push_back(unit_heading(factor.name, factor.unit));
+    table.columns.push_back(unit_heading(response.name, response.unit));
     if (!responses.case_ids.empty()) table.columns.emplace_back("case_id");
     const auto values = responses.known(response);
     const auto finite =

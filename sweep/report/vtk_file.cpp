@@ -69,7 +69,7 @@ std::string indices(Appended& appended, std::string_view name, const std::vector
 
 /// All columns of particles, or all quantities of cells.
 template <class Owner>
-std::string columns_of(Appended& appended, const Owner& owner, std::string_view what, std::size_t n) {
+std::string appended_columns(Appended& appended, const Owner& owner, std::string_view what, std::size_t n) {
     std::string text;
     for (const auto& [name, values] : owner.scalars) {
         require_length(what, name, values.size(), n);
@@ -156,7 +156,7 @@ std::string vtp(const Snapshot& snapshot, double time) {
     Appended appended;
     std::string inside = poly_piece(n, 1, 0, 0);
     inside += "<Points>\n" + column(appended, "Points", snapshot.positions) + "</Points>\n";
-    inside += "<PointData>\n" + columns_of(appended, snapshot, "particles", n) + "</PointData>\n";
+    inside += "<PointData>\n" + appended_columns(appended, snapshot, "particles", n) + "</PointData>\n";
     inside += all_in_one_cell(appended, n) + "</Piece>\n";
     return file("PolyData", "", time, inside, appended);
 }
@@ -181,7 +181,7 @@ std::string vtk_grid(const FlowField& field, double time) {
     std::string attributes = fmt::format(" WholeExtent=\"{}\"", extent);
     Appended appended;
     std::string inside = fmt::format("<Piece Extent=\"{}\">\n<CellData>\n", extent);
-    inside += columns_of(appended, field, "cells", field.cells()) + "</CellData>\n";
+    inside += appended_columns(appended, field, "cells", field.cells()) + "</CellData>\n";
     if (image) {
         attributes += fmt::format(" Origin=\"{} {} {}\" Spacing=\"{} {} {}\"", x.front(), y.front(), z.front(),
                                   width(x), width(y), width(z));

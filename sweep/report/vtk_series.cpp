@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view particles = "particles";
 
-void write(const std::filesystem::path& path, const std::string& bytes) {
+void write_file(const std::filesystem::path& path, const std::string& bytes) {
     std::error_code none;
     if (std::filesystem::is_symlink(std::filesystem::symlink_status(path, none)))
         throw store::BrokenWorld("'" + path.string() + "' is a symbolic link; a picture does not replace it");
@@ -68,7 +68,7 @@ void VtkSeries::add(const Snapshot& snapshot, double time) {
     if (moments_ == 0) begin();
     if (shows_particles(snapshot)) {
         const std::string file = file_of("", ".vtp");
-        write(folder_ / file, vtp(snapshot, time));
+        write_file(folder_ / file, vtp(snapshot, time));
         list(particles, file, time);
     }
     for (const auto& wall : snapshot.walls) {
@@ -76,18 +76,18 @@ void VtkSeries::add(const Snapshot& snapshot, double time) {
         if (file.empty() || !same(shown, wall)) {
             file = file_of(wall.name, ".vtp");
             shown = wall;
-            write(folder_ / file, vtp(wall, time));
+            write_file(folder_ / file, vtp(wall, time));
         }
         list(wall.name, file, time);
     }
     for (const auto& field : snapshot.fields) {
         const std::string file = file_of(field.name, extension_of(field));
-        write(folder_ / file, vtk_grid(field, time));
+        write_file(folder_ / file, vtk_grid(field, time));
         list(field.name, file, time);
     }
     ++moments_;
-    write(collection(), "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n" +
-                            entries_ + "</Collection>\n</VTKFile>\n");
+    write_file(collection(), "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n" +
+                                 entries_ + "</Collection>\n</VTKFile>\n");
 }
 
 }  // namespace grainsweep::report

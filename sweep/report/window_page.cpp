@@ -35,7 +35,7 @@ FactorCurve curve_through(const ModelCases& cases, const WindowRequest& request,
     return curve;
 }
 
-double range_of(std::span<const Judgement> judged, double (*of)(const Judgement&)) {
+double width_of(std::span<const Judgement> judged, double (*of)(const Judgement&)) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const auto& one : judged) {
         low = std::min(low, of(one));
@@ -59,8 +59,8 @@ double objective_of(const Judgement& one) {
 std::vector<std::size_t> order_of(std::span<const FactorCurve> curves, bool objective, double whole_range) {
     std::vector<double> weights;
     for (const auto& curve : curves) {
-        double weight = range_of(curve.judged, probability_of);
-        if (objective && whole_range > 0) weight += range_of(curve.judged, objective_of) / whole_range;
+        double weight = width_of(curve.judged, probability_of);
+        if (objective && whole_range > 0) weight += width_of(curve.judged, objective_of) / whole_range;
         weights.push_back(weight);
     }
     std::vector<std::size_t> order(curves.size());

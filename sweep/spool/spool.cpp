@@ -106,7 +106,7 @@ void put_in_place(const fs::path& file, std::string_view text) {
     sync_folder(file.parent_path());
 }
 
-std::string text_of(const Asked& asked) {
+std::string asked_text(const Asked& asked) {
     const std::string body = fmt::format("{}{}\n{}\n{}", campaign_head, asked.folder.string(), asked.cases, asked.text);
     return body + "\n" + campaign::content_hash(body) + "\n";
 }
@@ -181,7 +181,7 @@ Spool::Spool(fs::path folder, const Asked& asked, const SceneInfo& scene) : fold
     }
     const auto file = folder_ / "campaign";
     // Tasks that begin together write the same.
-    if (!fs::exists(file)) put_in_place(file, text_of(asked));
+    if (!fs::exists(file)) put_in_place(file, asked_text(asked));
     if (const auto there = asked_in(folder_); there.cases != asked.cases)
         throw campaign::wrong_question("--spool", folder_.string(),
                                        "is a spool of other cases; take another folder for this campaign file");

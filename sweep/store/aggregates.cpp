@@ -81,7 +81,7 @@ std::optional<double> stddev_samp(std::span<double> x) {
 }
 
 /// Rows of two numbers as two columns.
-std::array<std::vector<double>, 2> columns_of(std::span<const double> rows) {
+std::array<std::vector<double>, 2> transposed(std::span<const double> rows) {
     std::array<std::vector<double>, 2> columns;
     for (std::size_t k = 0; k + 1 < rows.size(); k += 2) {
         columns[0].push_back(rows[k]);
@@ -92,7 +92,7 @@ std::array<std::vector<double>, 2> columns_of(std::span<const double> rows) {
 
 /// The p-quantile; `share` is the same for every row.
 std::optional<double> quantile_of(std::span<const double> rows, double whole, const char* rule) {
-    auto [x, shares] = columns_of(rows);
+    auto [x, shares] = transposed(rows);
     const double p = shares.front() / whole;
     if (!(p >= 0 && p <= 1) || !all_equal(shares)) throw std::invalid_argument(rule);
     std::ranges::sort(x);
@@ -119,19 +119,19 @@ double product_moment(std::span<const double> x, std::span<const double> y) {
 }
 
 std::optional<double> covar_pop(std::span<double> rows) {
-    const auto [x, y] = columns_of(rows);
+    const auto [x, y] = transposed(rows);
     return product_moment(x, y);
 }
 
 std::optional<double> covar_samp(std::span<double> rows) {
-    const auto [x, y] = columns_of(rows);
+    const auto [x, y] = transposed(rows);
     if (x.size() < 2) return std::nullopt;
     const auto n = static_cast<double>(x.size());
     return product_moment(x, y) * (n / (n - 1));
 }
 
 std::optional<double> corr(std::span<double> rows) {
-    const auto [x, y] = columns_of(rows);
+    const auto [x, y] = transposed(rows);
     if (all_equal(x) || all_equal(y)) return std::nullopt;
     const double spread = std::sqrt(central_moment(x, 2)) * std::sqrt(central_moment(y, 2));
     return std::clamp(product_moment(x, y) / spread, -1.0, 1.0);

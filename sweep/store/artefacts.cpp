@@ -39,7 +39,7 @@ struct Header {
 };
 static_assert(sizeof(Header) == 40 && std::is_trivially_copyable_v<Header>);
 
-std::array<std::uint64_t, 2> checksum_of(std::string_view key, std::span<const std::byte> contents) {
+std::array<std::uint64_t, 2> artefact_checksum(std::string_view key, std::span<const std::byte> contents) {
     struct Free {
         void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
     };
@@ -126,7 +126,7 @@ std::optional<Bytes> ArtefactFolder::read(const std::filesystem::path& file, std
     if (!stream.read(reinterpret_cast<char*>(contents.data()), static_cast<std::streamsize>(contents.size())))
         return std::nullopt;
     damage = "its checksum does not fit its contents";
-    if (stored_key != key || header.checksum != checksum_of(key, contents)) return std::nullopt;
+    if (stored_key != key || header.checksum != artefact_checksum(key, contents)) return std::nullopt;
     damage.clear();
     return contents;
 }
@@ -169,7 +169,7 @@ void ArtefactFolder::put(std::string_view key, std::span<const std::byte> conten
     if (!std::exchange(swept_, true))  // no file takes a day to write
         sweep_leftovers(folder_,
                         [](const std::filesystem::path&, auto silent) { return silent > std::chrono::hours(24); });
-    const Header header{magic, key.size(), contents.size(), checksum_of(key, contents)};
+    const Header header{magic, key.size(), contents.size(), artefact_checksum(key, contents)};
     AsideFile aside(file_of(folder_, key));
     aside.write(std::as_bytes(std::span(&header, 1)));
     aside.write(std::as_bytes(std::span(key)));

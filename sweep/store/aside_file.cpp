@@ -25,7 +25,7 @@ namespace {
     throw BrokenWorld(fmt::format("'{}': cannot be {}: {}", file.string(), what, std::strerror(errno)));
 }
 
-std::string host_name() {
+std::string own_host() {
     std::array<char, 65> host{};
     gethostname(host.data(), host.size() - 1);
     return host.data();
@@ -44,7 +44,7 @@ bool runs(pid_t process) {
 /// In the target's folder; the name does not grow with the target's.
 std::filesystem::path aside_of(const std::filesystem::path& target) {
     static std::atomic<unsigned> count = 0;
-    return target.parent_path() / fmt::format(".{}.{}.{}{}", host_name(), getpid(), count++, AsideFile::extension);
+    return target.parent_path() / fmt::format(".{}.{}.{}{}", own_host(), getpid(), count++, AsideFile::extension);
 }
 
 }  // namespace
@@ -61,7 +61,7 @@ AsideFile::~AsideFile() {
 
 std::optional<bool> AsideFile::writer_runs(const std::filesystem::path& file) {
     std::string name = file.stem().string();  // .host.process.count; a host's name may have dots
-    const std::string start = fmt::format(".{}.", host_name());
+    const std::string start = fmt::format(".{}.", own_host());
     if (!name.starts_with(start)) return std::nullopt;
     name.erase(0, start.size());
     pid_t process = 0;

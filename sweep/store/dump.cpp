@@ -30,7 +30,7 @@ namespace {
 
 using Sink = std::function<void(std::string_view line)>;
 
-std::string number(double x) {
+std::string number_text(double x) {
     return std::isnan(x) ? "-" : campaign::shortest(x);
 }
 
@@ -67,10 +67,11 @@ void dump_observations(const Connection& db, std::int64_t key, const Sink& sink)
     while (rows.next()) {
         const auto name = rows.get<std::string_view>(0);
         if (rows.get<std::string_view>(1) == "scalar") {
-            sink(fmt::format("  scalar {} = {}", name, number(rows.get<double>(5))));
+            sink(fmt::format("  scalar {} = {}", name, number_text(rows.get<double>(5))));
         } else {
-            sink(fmt::format("  series {} {} {} {} {}", name, rows.get<std::int64_t>(2), number(rows.get<double>(3)),
-                             number(rows.get<double>(4)), number(rows.get<double>(5))));
+            sink(fmt::format("  series {} {} {} {} {}", name, rows.get<std::int64_t>(2),
+                             number_text(rows.get<double>(3)), number_text(rows.get<double>(4)),
+                             number_text(rows.get<double>(5))));
         }
     }
 }
@@ -126,7 +127,7 @@ void dump_convergence(const Connection& db, std::int64_t campaign, std::optional
     while (rows.next()) {
         std::string line = fmt::format("  convergence {} {} excluded={} converged={}", rows.get<std::string_view>(0),
                                        rows.get<std::int64_t>(1), rows.get<std::int64_t>(2), rows.get<std::int64_t>(3));
-        for (int column = 4; column < 15; ++column) line += ' ' + number(rows.get<double>(column));
+        for (int column = 4; column < 15; ++column) line += ' ' + number_text(rows.get<double>(column));
         sink(line);
     }
 }

@@ -76,7 +76,7 @@ void refuse_chains(const Written& written) {
 
 /// Prepares the expression as the only output of one SELECT over one row of inputs, and reports which columns it
 /// reads. The authorizer sees everything the expression would do.
-std::set<std::string> check(Connection& db, const Written& written, std::span<const std::string> names) {
+std::set<std::string> check_names(Connection& db, const Written& written, std::span<const std::string> names) {
     refuse_chains(written);
     const std::string_view expression = written.text;
     db.execute("DROP TABLE IF EXISTS inputs");
@@ -144,7 +144,7 @@ public:
     Condition(std::string_view expression, std::span<const std::string> names)
         : text_(expression), db_(Connection::in_memory()) {
         db_.limit_lengths(longest_value);
-        const auto read = check(db_, condition_of(expression), names);
+        const auto read = check_names(db_, condition_of(expression), names);
         columns_.assign(read.begin(), read.end());
         const std::string sql = fmt::format("SELECT (({}\n)) IS TRUE FROM (SELECT {}) AS inputs",
                                             with_real_division(expression), row_of(columns_));
@@ -189,7 +189,7 @@ public:
             const std::string place = fmt::format("{}[{}]", path, k);
             const Written written{place, expressions[k], "a feature is a number of one case"};
             require_sane(written);
-            if (check(db_, written, names).empty())
+            if (check_names(db_, written, names).empty())
                 throw refusal(written, "depends on no factor: it would be the same everywhere");
             columns += fmt::format("{0}iif(typeof(({1}\n)) IN ('integer', 'real'), ({1}\n), NULL)", k == 0 ? "" : ", ",
                                    with_real_division(expressions[k]));

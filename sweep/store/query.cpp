@@ -49,10 +49,10 @@ private:
     const Connection* db_;
 };
 
-using Columns = std::function<void(const std::vector<std::string>& columns)>;
-using Row = std::function<void(const std::vector<Table::Cell>& row)>;
+using ColumnSink = std::function<void(const std::vector<std::string>& columns)>;
+using RowSink = std::function<void(const std::vector<Table::Cell>& row)>;
 
-void visit_rows(const Connection& db, std::string_view sql, const Columns& begin, const Row& each) {
+void visit_rows(const Connection& db, std::string_view sql, const ColumnSink& begin, const RowSink& each) {
     Statement statement = db.prepare(sql);
     if (!statement.valid()) throw RefusedSql("the question is empty");
     for (auto rest = statement.tail(); !rest.empty();) {
@@ -109,7 +109,7 @@ std::vector<std::string> tables_of(const Connection& db) {
 
 /// By the statement: a view may stand in the place of the function pragma_table_info(). Of a view that cannot be read,
 /// none.
-std::vector<std::string> columns_of(const Connection& db, const std::string& table) {
+std::vector<std::string> table_columns(const Connection& db, const std::string& table) {
     std::vector<std::string> names;
     try {
         auto columns = db.prepare(fmt::format("PRAGMA table_info({})", quoted_name(table)));
@@ -141,7 +141,7 @@ campaign::WrongQuestion refusal_of_column(const Connection& db, std::string_view
     std::vector<std::string> near, elsewhere;
     std::string rule = fmt::format("no such column: {}", column);
     for (const auto& table : tables_of(db)) {
-        const auto columns = columns_of(db, table);
+        const auto columns = table_columns(db, table);
         if (mentions(sql, table)) {
             rule += fmt::format("; {} has {}", table, campaign::listed(columns));
             near.insert(near.end(), columns.begin(), columns.end());
@@ -156,7 +156,7 @@ campaign::WrongQuestion refusal_of_column(const Connection& db, std::string_view
     return campaign::wrong_question("SQL", {}, rule, campaign::nearest_word(plain, near));
 }
 
-campaign::WrongQuestion refusal(const Connection& db, std::string_view sql, std::string_view words) {
+campaign::WrongQuestion refused_query(const Connection& db, std::string_view sql, std::string_view words) {
     const auto after = [&](std::string_view start) {
         return words.starts_with(start) ? words.substr(start.size()) : std::string_view{};
     };
@@ -183,7 +183,7 @@ Table Store::query(std::string_view sql) const {
     return table;
 }
 
-void Store::query(std::string_view sql, const QueryLimits& limits, const Columns& begin, const Row& each) const {
+void Store::query(std::string_view sql, const QueryLimits& limits, const ColumnSink& begin, const RowSink& each) const {
     const Authorized authorized(impl_->db);
     try {
         const Limited limited(impl_->db, limits);
@@ -193,7 +193,7 @@ void Store::query(std::string_view sql, const QueryLimits& limits, const Columns
                                        fmt::format("{} (limits: {} s of processor time, {} MiB)", limit.words(),
                                                    campaign::shortest(limits.seconds), limits.bytes >> 20U));
     } catch (const RefusedSql& refused) {
-        throw refusal(impl_->db, sql, refused.words());
+        throw refused_query(impl_->db, sql, refused.words());
     }
 }
 

@@ -42,7 +42,7 @@ Damage described(const Connection& db, const DamagedTable& damage) {
 }
 
 /// SQLite's own checks: pages, cells, indices, constraints, references.
-void check_structure(const Connection& db, std::vector<Damage>& found) {
+void check_database(const Connection& db, std::vector<Damage>& found) {
     auto pages = db.prepare("PRAGMA integrity_check");
     while (pages.step()) {
         if (pages.get<std::string_view>(0) != "ok") found.push_back({"file", "", "", "", pages.get<std::string>(0)});
@@ -88,7 +88,7 @@ std::vector<Damage> Store::verify() const {
     auto& db = impl_->db;
     const Transaction one_state(db, Transaction::Kind::read);
     std::vector<Damage> found;
-    guarded([&] { check_structure(db, found); }, found);
+    guarded([&] { check_database(db, found); }, found);
     std::vector<DamagedTable> tables;
     const auto gather = [&](auto&& part) {
         guarded([&] { std::ranges::move(part(), std::back_inserter(tables)); }, found);

@@ -22,7 +22,7 @@ namespace {
 // Far above the bytes at 2^30 that SQLite locks, and above any size a database has.
 constexpr off_t locked_byte = off_t{1} << 61U;
 
-[[noreturn]] void fail(const std::filesystem::path& database, const char* what, int number) {
+[[noreturn]] void fail_to(const std::filesystem::path& database, const char* what, int number) {
     throw BrokenWorld(fmt::format("database '{}': {}: {}", database.string(), what, std::strerror(number)));
 }
 
@@ -33,7 +33,7 @@ constexpr off_t locked_byte = off_t{1} << 61U;
 // database, because closing it would release what SQLite holds.
 std::optional<WriterLock> WriterLock::take(const std::filesystem::path& database) {
     const int descriptor = open(database.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-    if (descriptor < 0) fail(database, "cannot be opened to write", errno);
+    if (descriptor < 0) fail_to(database, "cannot be opened to write", errno);
     struct flock range {};
     range.l_type = F_WRLCK;
     range.l_whence = SEEK_SET;
@@ -43,7 +43,7 @@ std::optional<WriterLock> WriterLock::take(const std::filesystem::path& database
     const int number = errno;
     close(descriptor);
     if (number == EAGAIN || number == EACCES) return std::nullopt;
-    fail(database, "this file system gives no locks; keep the database on one that does", number);
+    fail_to(database, "this file system gives no locks; keep the database on one that does", number);
 }
 
 WriterLock::WriterLock(WriterLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}

@@ -114,7 +114,7 @@ Found find(const campaign::FromReply&, bool, Documents&) {
     throw std::logic_error("a reply has no file");
 }
 
-void add(const ProgramObservable& declared, Found&& found, Observations& into) {
+void add_found(const ProgramObservable& declared, Found&& found, Observations& into) {
     const auto check = [&](double value, std::size_t k) {
         if (declared.bounds.contains(value)) return;
         const auto number = declared.shape == Shape::scalar ? "" : fmt::format(" number {}", k);
@@ -174,9 +174,9 @@ ProgramReply measured_in(const Json& object, const Program& program) {
         const auto value = observables->find(declared.name);
         if (value == observables->end()) throw Unusable(fmt::format("it replied without {}", declared.name));
         if (declared.shape == Shape::scalar)
-            add(declared, {number_in(*value, "its " + declared.name), {}, {}}, reply.observations);
+            add_found(declared, {number_in(*value, "its " + declared.name), {}, {}}, reply.observations);
         else
-            add(declared, pairs_in(*value, declared.name), reply.observations);
+            add_found(declared, pairs_in(*value, declared.name), reply.observations);
     }
     return reply;
 }
@@ -204,7 +204,7 @@ ProgramReply results_in(const ProgramFolder& folder, const Program& program) {
             auto found =
                 std::visit([&](const auto& from) { return find(from, declared.shape == Shape::scalar, documents); },
                            declared.from);
-            add(declared, std::move(found), reply.observations);
+            add_found(declared, std::move(found), reply.observations);
         }
         return reply;
     } catch (const Unusable& why) {

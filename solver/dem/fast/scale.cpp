@@ -87,11 +87,11 @@ Needs make_needs(const Setup& setup, bool resting) {
         n.frozen = n.frozen || !s.mobile;
     }
     n.combination = choose_combination(materials_of(setup), [&](const CombinationFacts& facts) {
-        return !n.unequal || facts.columns != Columns::equal;
+        return !n.unequal || facts.columns != dem::Columns::equal;
     });
     n.frozen_differ = frozen_differ(setup);
     // what is compiled for any spheres computes with each particle's own radius
-    n.unequal = n.unequal || facts_of(n.combination).columns == Columns::any;
+    n.unequal = n.unequal || facts_of(n.combination).columns == dem::Columns::any;
     n.skips = n.resting || (n.frozen && !n.unequal && facts_of(n.combination).spin);
     return n;
 }

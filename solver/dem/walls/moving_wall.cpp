@@ -76,14 +76,14 @@ void append(const S& shape, const Vec3& x, double reach, std::uint32_t entry, au
 
 }  // namespace
 
-MovingWall::MovingWall(Wall wall, const Domain& domain, double largest) : wall_(std::move(wall)) {
+MovingWall::MovingWall(Wall wall, const geometry::Domain& domain, double largest) : wall_(std::move(wall)) {
     const auto refuse_flaw = [](const std::string& flaw) {
         if (!flaw.empty()) throw std::invalid_argument(flaw);
     };
     refuse_flaw(std::visit([](const auto& s) { return s.flaw(); }, wall_.shape));
     for (const Motion& m : wall_.motions) refuse_flaw(flaw(m));
     refuse_flaw(flaw(wall_.surface, "a wall"));
-    std::erase_if(wall_.motions, is_still);
+    std::erase_if(wall_.motions, geometry::is_still);
     single_contact_ = std::visit([](const auto& s) { return SingleContact<decltype(s)>; }, wall_.shape);
     displacing_ = displacing(wall_.shape, wall_.motions);
     switches_ = std::ranges::any_of(displacing_, switches);
@@ -118,7 +118,7 @@ MovingWall::MovingWall(Wall wall, const Domain& domain, double largest) : wall_(
     place(0);
 }
 
-void MovingWall::require_possible(const Domain& domain) const {
+void MovingWall::require_possible(const geometry::Domain& domain) const {
     for (std::size_t k = 0; k < 3; ++k) {
         if (!domain.periodic[k]) continue;
         for (const Motion& m : displacing_)
@@ -136,8 +136,8 @@ void MovingWall::require_possible(const Domain& domain) const {
 /// A particle is taken to the nearest image of the middle: what is touched there is all of the shape, and as much of
 /// its images as half a period reaches. No list reaches farther, else a particle would find an image of a partner
 /// twice.
-Shape MovingWall::with_images(const Domain& domain) const {
-    Domain around = domain;
+Shape MovingWall::with_images(const geometry::Domain& domain) const {
+    geometry::Domain around = domain;
     double margin = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < 3; ++k) {
         around.periodic[k] = body_image_.period[k] > 0;

@@ -11,9 +11,8 @@
 namespace grainsweep::spreading {
 namespace {
 
-constexpr double layer_thickness = 0.5;            // of the velocity profile, in diameters
-constexpr double profile_reach = 6;                // ahead of the edge, in diameters
-constexpr double behind_from = 5, behind_to = 15;  // of solid_behind, in diameters
+constexpr double profile_reach = 6;  // ahead of the edge, in diameters
+constexpr double behind_from = 5;    // of solid_behind, in diameters
 constexpr std::array tool_names = {"blade", "roller", "tool"};
 
 }  // namespace

@@ -10,6 +10,9 @@
 
 namespace grainsweep::spreading {
 
+inline constexpr double layer_thickness = 0.5;  // of the velocity profile, in diameters
+inline constexpr double behind_to = 15;         // of solid_behind, in diameters
+
 /// What is said of each layer; NaN: undefined.
 struct LayerAnswer {
     static constexpr double none = std::numeric_limits<double>::quiet_NaN();
