@@ -10,9 +10,7 @@
 #include <string>
 #include <vector>
 
-using namespace grainsweep;
-
-namespace {
+namespace grainsweep::tests::includes_test {
 
 namespace fs = std::filesystem;
 
@@ -254,4 +252,4 @@ TEST(Architecture, NoFileIsNamedForNothingOrEndless) {
     }
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::includes_test

@@ -7,9 +7,7 @@
 #include <fstream>
 #include <string>
 
-using namespace grainsweep;
-
-namespace {
+namespace grainsweep::tests::skips_test {
 
 // The only reason to leave a test out is that root may write everywhere, so that what is tested
 // cannot occur.
@@ -26,4 +24,4 @@ TEST(Tests, AreLeftOutForRootOnly) {
     }
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::skips_test

@@ -35,12 +35,12 @@
 
 using namespace grainsweep;
 using dem::Method;
-using test::compare_means;
-using test::error_of_mean;
-using test::mean;
-using test::processor_seconds;
-using test::Runs;
-using test::Setting;
+using tests::compare_means;
+using tests::error_of_mean;
+using tests::mean;
+using tests::processor_seconds;
+using tests::Runs;
+using tests::Setting;
 
 namespace {
 
@@ -87,7 +87,7 @@ constexpr double sphere = 2e-3;  // m, of collision and settling
 
 dem::Setup impacts(double fraction, double stiffness) {
     dem::Setup s;
-    s.material = test::steel_like();
+    s.material = tests::steel_like();
     s.material.youngs_modulus *= stiffness;
     s.gravity = {0, 0, 0};
     const double pitch = 6 * sphere;
@@ -133,7 +133,7 @@ void collision(std::vector<Setting>& all) {
             s.error = std::sqrt(square / static_cast<double>(state.id.size())) / 0.5;  // each comes at 0.5 m/s
         }
         all.push_back(s);
-        std::printf("%s\n", test::json_line(s).c_str());
+        std::printf("%s\n", tests::json_line(s).c_str());
         std::fflush(stdout);
     }
 }
@@ -142,7 +142,7 @@ void collision(std::vector<Setting>& all) {
 
 dem::Setup falling(double fraction, double stiffness, std::uint64_t seed) {
     dem::Setup s;
-    s.material = test::steel_like();
+    s.material = tests::steel_like();
     s.material.youngs_modulus *= stiffness;
     constexpr int side = 8;
     const double pitch = 1.2 * sphere;
@@ -181,8 +181,8 @@ void chaotic(std::vector<Setting>& all, const std::string& scene, const std::str
                      error_of_mean(runs[k]), s.cost);
     }
     compare_means(settings, runs);
-    test::mark_dominated(settings);
-    for (const auto& s : settings) std::printf("%s\n", test::json_line(s).c_str());
+    tests::mark_dominated(settings);
+    for (const auto& s : settings) std::printf("%s\n", tests::json_line(s).c_str());
     std::fflush(stdout);
     all.insert(all.end(), settings.begin(), settings.end());
 }
@@ -205,12 +205,12 @@ void settling(std::vector<Setting>& all, int seeds) {
 // ---- chute -----------------------------------------------------------------------------------------------------
 
 void chute(std::vector<Setting>& all, int seeds) {
-    test::BedOptions o;
+    tests::BedOptions o;
     o.per_side = 10, o.layers = 20;
-    const dem::Setup bed = test::settled_bed(o);
+    const dem::Setup bed = tests::settled_bed(o);
     std::map<std::uint64_t, dem::Setup> starts;
     for (int seed = 1; seed <= seeds; ++seed)  // each start is later in the same flow
-        starts[static_cast<std::uint64_t>(seed)] = test::flowing(bed, 26, 0.02 + 0.004 * seed);
+        starts[static_cast<std::uint64_t>(seed)] = tests::flowing(bed, 26, 0.02 + 0.004 * seed);
     const double radius = bed.spheres[0].radius;
     chaotic(all, "chute", "mean velocity", numerics(0.02, false, false), seeds,
             [&](const Numerics& n, std::uint64_t seed) {
@@ -298,8 +298,8 @@ void spreading(std::vector<Setting>& all, int seeds, const std::string& only) {
                      error_of_mean(runs[k]), s.cost);
     }
     compare_means(settings, runs);
-    test::mark_dominated(settings);
-    for (const auto& s : settings) std::printf("%s\n", test::json_line(s).c_str());
+    tests::mark_dominated(settings);
+    for (const auto& s : settings) std::printf("%s\n", tests::json_line(s).c_str());
     all.insert(all.end(), settings.begin(), settings.end());
 }
 
@@ -339,7 +339,7 @@ int main(int argc, char** argv) {
     if (wanted("settling")) settling(all, seeds);
     if (wanted("chute")) chute(all, seeds);
     if (wanted("spreading")) spreading(all, seeds, only);
-    test::mark_dominated(all);
-    if (!figure.empty()) test::draw(all, figure);
+    tests::mark_dominated(all);
+    if (!figure.empty()) tests::draw(all, figure);
     return 0;
 }

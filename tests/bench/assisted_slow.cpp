@@ -12,7 +12,7 @@
 #include <vector>
 
 using namespace grainsweep::stats;
-using namespace grainsweep::testing;
+using namespace grainsweep::tests;
 
 namespace {
 

@@ -19,10 +19,10 @@
 #include <cstdio>
 
 using namespace grainsweep;
-using grainsweep::testing::answered;
-using grainsweep::testing::calibration_request;
-using grainsweep::testing::Responses;
-using grainsweep::testing::spreading_response;
+using grainsweep::tests::answered;
+using grainsweep::tests::calibration_request;
+using grainsweep::tests::Responses;
+using grainsweep::tests::spreading_response;
 
 namespace {
 

@@ -56,8 +56,8 @@ double restitution(double law, double steps_per_contact, double gap) {
     return 0.5 * (cloud.velocity[1][0] - cloud.velocity[0][0]);
 }
 
-test::Setting sub_steps(double per_contact) {
-    test::Setting s;
+tests::Setting sub_steps(double per_contact) {
+    tests::Setting s;
     s.scene = "collision";
     s.name = fmt::format("{} sub-steps a contact", per_contact);
     s.measured = "restitution";
@@ -101,14 +101,14 @@ std::pair<double, double> two_way(const TwoWayCase& asked, std::uint64_t seed) {
     return {found.scalars.at("kinetic_energy"), cost};
 }
 
-std::vector<test::Setting> kernel_widths(int seeds) {
+std::vector<tests::Setting> kernel_widths(int seeds) {
     const double usual = std::get<double>(find_scene("thermovibration")->defaults().at("kernel_width"));
     const std::vector<TwoWayCase> all = {{usual, 40}, {usual, 20},     {usual, 28},       {usual, 34},
                                          {0, 28},     {usual / 2, 28}, {usual * 1.5, 28}, {usual * 2, 28}};
     std::vector<double> reference;
-    std::vector<test::Setting> settings;
+    std::vector<tests::Setting> settings;
     for (const auto& asked : all) {
-        test::Setting s;
+        tests::Setting s;
         s.scene = "kernel width";
         s.name = fmt::format("{} on {} cells", asked.kernel_width, asked.cells);
         s.measured = "kinetic energy";
@@ -135,10 +135,10 @@ int main(int argc, char** argv) {
     int seeds = 4;
     for (int k = 1; k + 1 < argc; k += 2)
         if (std::string(argv[k]) == "--seeds") seeds = std::stoi(argv[k + 1]);
-    std::vector<test::Setting> settings;
+    std::vector<tests::Setting> settings;
     for (const double per_contact : {5.0, 10.0, 20.0, 40.0, 80.0}) settings.push_back(sub_steps(per_contact));
     for (auto& s : kernel_widths(seeds)) settings.push_back(std::move(s));
-    test::mark_dominated(settings);
-    for (const auto& s : settings) std::printf("%s\n", test::json_line(s).c_str());
+    tests::mark_dominated(settings);
+    for (const auto& s : settings) std::printf("%s\n", tests::json_line(s).c_str());
     return 0;
 }

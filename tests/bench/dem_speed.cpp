@@ -99,9 +99,9 @@ void run_everywhere(const Options& o, const std::string& scene, const dem::Setup
 void spread(const Options& o, const std::string& scene, double diameter, double gap) {
     for (const auto& [name, path] : path_names) {
         if (!dem::fast::supports(path) || (!o.path.empty() && o.path != name)) continue;
-        const auto engine = dem::fast::make_mixed_engine(test::spreading_start(diameter, 0.2, 1), path);
+        const auto engine = dem::fast::make_mixed_engine(tests::spreading_start(diameter, 0.2, 1), path);
         measure(scene + "_settling", name, *engine, 15000);
-        engine->set_walls(test::spreading_blade(gap, 1.4));
+        engine->set_walls(tests::spreading_blade(gap, 1.4));
         measure(scene + "_sweeping", name, *engine, 5000);
     }
 }
@@ -164,10 +164,10 @@ double step_cost(const dem::Setup& setup, dem::Method::Path path) {
 void pairs(const Options& o, const dem::Setup& bed) {
     dem::State state;
     dem::fast::make_mixed_engine(bed, dem::Method::Path::best)->state(state);
-    const double contacts = test::figures_of(state, bed).coordination / 2;
+    const double contacts = tests::figures_of(state, bed).coordination / 2;
     for (const auto& [name, path] : path_names) {
         if (!dem::fast::supports(path) || (!o.path.empty() && o.path != name)) continue;
-        const double alone = step_cost(test::loose_gas(27), path), together = step_cost(bed, path);
+        const double alone = step_cost(tests::loose_gas(27), path), together = step_cost(bed, path);
         std::printf(
             "{\"bench\": \"dem_speed\", \"scene\": \"pairs\", \"path\": \"%s\", \"ns_per_lone_particle\": "
             "%.2f, \"ns_per_contact\": %.2f, \"contacts_per_particle\": %.2f}\n",
@@ -181,29 +181,29 @@ void pairs(const Options& o, const dem::Setup& bed) {
 int main(int argc, char** argv) {
     const Options o = read_options(argc, argv);
     if (!o.bed.empty()) {
-        run_everywhere(o, o.bed, test::tilted(test::read_bed(o.bed), o.angle), o.steps);
+        run_everywhere(o, o.bed, tests::tilted(tests::read_bed(o.bed), o.angle), o.steps);
         return 0;
     }
     std::map<double, dem::Setup> beds;  // each settled once
     const auto bed = [&](double spread_of_radii) -> const dem::Setup& {
         if (!beds.contains(spread_of_radii)) {
-            test::BedOptions b;
+            tests::BedOptions b;
             b.spread = spread_of_radii;
             if (spread_of_radii > 0) b.per_side = 20, b.layers = 50;
-            beds[spread_of_radii] = test::settled_bed(b);
+            beds[spread_of_radii] = tests::settled_bed(b);
         }
         return beds.at(spread_of_radii);
     };
     std::optional<dem::Setup> drum;
     const auto turning_drum = [&] {
-        if (!drum) drum = test::turning_drum();
+        if (!drum) drum = tests::turning_drum();
         return *drum;
     };
     const std::map<std::string, std::function<void(const std::string&)>> scenes = {
         {"settled_20k", [&](const auto& s) { run_everywhere(o, s, bed(0), o.steps); }},
-        {"chute_20k", [&](const auto& s) { run_everywhere(o, s, test::flowing(bed(0), 26, 0.02), o.steps); }},
+        {"chute_20k", [&](const auto& s) { run_everywhere(o, s, tests::flowing(bed(0), 26, 0.02), o.steps); }},
         {"chute_unequal_20k",
-         [&](const auto& s) { run_everywhere(o, s, test::flowing(bed(0.25), 26, 0.02), o.steps); }},
+         [&](const auto& s) { run_everywhere(o, s, tests::flowing(bed(0.25), 26, 0.02), o.steps); }},
         {"cohesive_20k",
          [&](const auto& s) {
              dem::Setup setup = bed(0);
@@ -212,11 +212,11 @@ int main(int argc, char** argv) {
          }},
         {"chute_180k",
          [&](const auto& s) {
-             run_everywhere(o, s, test::replicated(test::flowing(bed(0), 26, 0.02), 3, 3), o.steps / 4);
+             run_everywhere(o, s, tests::replicated(tests::flowing(bed(0), 26, 0.02), 3, 3), o.steps / 4);
          }},
-        {"loose_gas_20k", [&](const auto& s) { run_everywhere(o, s, test::loose_gas(27), o.steps); }},
+        {"loose_gas_20k", [&](const auto& s) { run_everywhere(o, s, tests::loose_gas(27), o.steps); }},
         {"drum", [&](const auto& s) { run_everywhere(o, s, turning_drum(), o.steps); }},
-        {"drum_mesh", [&](const auto& s) { run_everywhere(o, s, test::of_triangles(turning_drum()), o.steps); }},
+        {"drum_mesh", [&](const auto& s) { run_everywhere(o, s, tests::of_triangles(turning_drum()), o.steps); }},
         {"drum_rolling",
          [&](const auto& s) {
              dem::Setup setup = turning_drum();

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-using namespace grainsweep::test;
+using namespace grainsweep::tests;
 using grainsweep::tests::tried;
 
 namespace {

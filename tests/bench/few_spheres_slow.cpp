@@ -22,7 +22,7 @@ struct Count {
 Count count(std::string_view scene, double step) {
     Count found;
     for (std::uint64_t k = 0; k < cases; ++k) {
-        const auto fate = test::fate_of(scene, test::few_spheres(scene, k, step));
+        const auto fate = tests::fate_of(scene, tests::few_spheres(scene, k, step));
         const bool created = fate.fault.find("contacts created") != std::string::npos;
         if (created) {
             std::printf("  %s %d: %s\n", std::string(scene).c_str(), static_cast<int>(k), fate.fault.c_str());
@@ -41,18 +41,18 @@ Count count(std::string_view scene, double step) {
 
 // A case that is called unstable at the default step is truly so if a quarter of the step creates no energy.
 TEST(FewSpheres, AtTheDefaultStepNoneIsCalledUnstableThatIsNot) {
-    for (const auto scene : test::granular_scenes()) {
+    for (const auto scene : tests::granular_scenes()) {
         const Count found = count(scene, 0.2);
         EXPECT_LE(found.created.size(), 2U) << scene;
         for (const std::uint64_t k : found.created) {
-            const auto finer = test::fate_of(scene, test::few_spheres(scene, k, 0.05));
+            const auto finer = tests::fate_of(scene, tests::few_spheres(scene, k, 0.05));
             EXPECT_EQ(finer.fault.find("contacts created"), std::string::npos) << scene << " " << k << finer.fault;
         }
     }
 }
 
 TEST(FewSpheres, BeyondTheLimitNearlyAllAreFound) {
-    for (const auto scene : test::granular_scenes())
+    for (const auto scene : tests::granular_scenes())
         for (const double step : {2.0, 4.0, 10.0}) {
             const Count found = count(scene, step);
             EXPECT_LT(found.completed, 0.1 * cases) << scene << " " << step;

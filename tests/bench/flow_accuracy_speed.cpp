@@ -98,7 +98,7 @@ double cube_step(int cells) {
     return milliseconds(3, [&] { flow.step(); });
 }
 
-std::vector<test::Setting> settings;
+std::vector<tests::Setting> settings;
 
 void add(const std::string& scene, const std::string& name, const std::string& measured, double error, double seconds,
          bool is_reference = false) {
@@ -200,8 +200,8 @@ int main(int argc, char** argv) {
             interpolate<coupling::Solenoidal>("solenoidal", cells, clustering);
         }
     }
-    test::mark_dominated(settings);
-    for (const auto& s : settings) std::printf("%s\n", test::json_line(s).c_str());
-    if (!figure.empty()) test::draw(settings, figure);
+    tests::mark_dominated(settings);
+    for (const auto& s : settings) std::printf("%s\n", tests::json_line(s).c_str());
+    if (!figure.empty()) tests::draw(settings, figure);
     return 0;
 }

@@ -36,8 +36,8 @@
 #include <vector>
 
 using namespace grainsweep;
-using test::DrumFrames;
-using test::DrumPicture;
+using tests::DrumFrames;
+using tests::DrumPicture;
 
 namespace {
 

@@ -47,7 +47,7 @@ double user_seconds() {
 
 struct Measured {
     double nanoseconds = 0;  ///< per particle and step
-    test::Figures figures;
+    tests::Figures figures;
 };
 
 Measured ours(const dem::Setup& setup, Method::Path path, std::int64_t steps) {
@@ -59,26 +59,26 @@ Measured ours(const dem::Setup& setup, Method::Path path, std::int64_t steps) {
     dem::State state;
     engine->state(state);
     return {1e9 * spent / static_cast<double>(steps - 5) / static_cast<double>(engine->size()),
-            test::figures_of(state, setup)};
+            tests::figures_of(state, setup)};
 }
 
 /// The fastest over the skins.
-std::optional<Measured> theirs(const Options& o, test::Peer::Program program, const dem::Setup& setup,
+std::optional<Measured> theirs(const Options& o, tests::Peer::Program program, const dem::Setup& setup,
                                std::int64_t steps, bool forgetful = false) {
-    const std::string name = program == test::Peer::Program::liggghts ? "liggghts" : "lmp";
-    if (!test::installed(name)) return std::nullopt;
+    const std::string name = program == tests::Peer::Program::liggghts ? "liggghts" : "lmp";
+    if (!tests::installed(name)) return std::nullopt;
     std::optional<Measured> best;
-    const test::Folder folder;
-    test::write_bed(setup, folder.path());
+    const tests::Folder folder;
+    tests::write_bed(setup, folder.path());
     for (const double skin : o.skins) {
         double seconds[2] = {0, 0};
         std::string out;
         for (int k = 0; k < 2; ++k) {
-            const test::Peer peer{program, skin * 2 * setup.spheres[0].radius, k == 0 ? 5 : steps, 100, forgetful};
-            const auto deck = test::deck_of(setup, peer);
+            const tests::Peer peer{program, skin * 2 * setup.spheres[0].radius, k == 0 ? 5 : steps, 100, forgetful};
+            const auto deck = tests::deck_of(setup, peer);
             if (!deck) return std::nullopt;
             folder.write("in.bed", *deck);
-            const auto ran = test::run_timed({name, "-in", "in.bed", "-log", "none"}, folder.path());
+            const auto ran = tests::run_timed({name, "-in", "in.bed", "-log", "none"}, folder.path());
             if (ran.code != 0) {
                 std::fprintf(stderr, "%s ended with %d:\n%s\n", name.c_str(), ran.code,
                              ran.out.substr(ran.out.size() - std::min<std::size_t>(400, ran.out.size())).c_str());
@@ -89,7 +89,7 @@ std::optional<Measured> theirs(const Options& o, test::Peer::Program program, co
         }
         const double ns = 1e9 * (seconds[1] - seconds[0]) / static_cast<double>(steps - 5) /
                           static_cast<double>(setup.spheres.size());
-        if (!best || ns < best->nanoseconds) best = Measured{ns, test::printed_figures(out)};
+        if (!best || ns < best->nanoseconds) best = Measured{ns, tests::printed_figures(out)};
     }
     return best;
 }
@@ -102,8 +102,8 @@ std::string as_json(const std::optional<Measured>& m) {
 }
 
 void compare(const Options& o, const std::string& scene, const dem::Setup& setup, std::int64_t steps) {
-    const auto liggghts = theirs(o, test::Peer::Program::liggghts, setup, steps);
-    const auto lammps = theirs(o, test::Peer::Program::lammps, setup, steps);
+    const auto liggghts = theirs(o, tests::Peer::Program::liggghts, setup, steps);
+    const auto lammps = theirs(o, tests::Peer::Program::lammps, setup, steps);
     for (const auto& [name, path] : {std::pair{"avx512", Method::Path::avx512}, std::pair{"avx2", Method::Path::avx2},
                                      std::pair{"baseline", Method::Path::baseline}}) {
         if (!dem::fast::supports(path)) continue;
@@ -126,14 +126,14 @@ void compare(const Options& o, const std::string& scene, const dem::Setup& setup
 /// lists of its own pace and with lists anew every step, which changes its law (Peer::forgetful).
 void statistics() {
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-        const dem::Setup setup = test::small_chute(seed);
-        const auto steps = std::llround(test::small_chute_time / setup.time_step) - 100;
+        const dem::Setup setup = tests::small_chute(seed);
+        const auto steps = std::llround(tests::small_chute_time / setup.time_step) - 100;
         const auto us = ours(setup, Method::Path::best, steps);
         Options once;
         once.skins = {0.3};
-        const auto lasting = theirs(once, test::Peer::Program::liggghts, setup, steps);
+        const auto lasting = theirs(once, tests::Peer::Program::liggghts, setup, steps);
         once.skins = {0.1};
-        const auto forgetful = theirs(once, test::Peer::Program::liggghts, setup, steps, true);
+        const auto forgetful = theirs(once, tests::Peer::Program::liggghts, setup, steps, true);
         fmt::print(
             "{{\"bench\": \"peers\", \"scene\": \"chute_statistics\", \"seed\": {}, \"grainsweep\": {}, "
             "\"liggghts\": {}, \"liggghts_forgetful\": {}}}\n",
@@ -145,30 +145,30 @@ void statistics() {
 /// The 16 spreading cases, end to end.
 void spreading() {
     const auto table = tests::read_table(tests::reference("spreading/mfr_table.csv"));
-    const bool peer = test::installed("liggghts");
+    const bool peer = tests::installed("liggghts");
     double ours_total = 0, theirs_total = 0;
-    const test::Folder folder;
+    const tests::Folder folder;
     folder.write("case.json",
                  R"({"campaign": "side_by_side", "scene": "powder_spreading", "factors": [)"
                  R"({"name": "friction", "between": [0.1, 0.3]}, {"name": "diameter", "between": [0.001, 0.003]},)"
                  R"({"name": "gap", "between": [0.001, 0.005]}, {"name": "speed", "between": [1.0, 1.6]}],)"
                  R"("fixed": {"time_step": 1e-5}, "design": {"kind": "halton", "points": 1}})");
     for (std::size_t row = 0; row < table.rows; ++row) {
-        test::SpreadingPeer q;
+        tests::SpreadingPeer q;
         q.friction = table.at("mu", row), q.speed = table.at("v", row);
         q.diameter = table.at("D_mm", row) * 1e-3, q.gap = table.at("gap_mm", row) * 1e-3;
-        std::vector<std::string> argv = test::program_command({"solve", "case.json"});
+        std::vector<std::string> argv = tests::program_command({"solve", "case.json"});
         for (const auto& [name, value] : {std::pair{"friction", q.friction}, std::pair{"diameter", q.diameter},
                                           std::pair{"gap", q.gap}, std::pair{"speed", q.speed}}) {
             argv.emplace_back("--set");
             argv.push_back(fmt::format("{}={}", name, value));
         }
-        const auto us = test::run_timed(argv, folder.path());
+        const auto us = tests::run_timed(argv, folder.path());
         if (us.code != 0) std::fprintf(stderr, "%s\n", us.out.c_str());
-        test::Ran them;
+        tests::Ran them;
         if (peer) {
-            test::write_spreading(q, test::spreading_start(q.diameter, q.friction, 1), folder.path());
-            them = test::run_timed({"liggghts", "-in", "in.spread", "-log", "none"}, folder.path());
+            tests::write_spreading(q, tests::spreading_start(q.diameter, q.friction, 1), folder.path());
+            them = tests::run_timed({"liggghts", "-in", "in.spread", "-log", "none"}, folder.path());
             if (them.code != 0)
                 std::fprintf(stderr, "liggghts ended with %d:\n%s\n", them.code,
                              them.out.substr(them.out.size() - std::min<std::size_t>(400, them.out.size())).c_str());
@@ -189,7 +189,7 @@ void spreading() {
 
 double wall_seconds(const std::vector<std::string>& argv, const std::filesystem::path& folder) {
     const auto start = std::chrono::steady_clock::now();
-    const auto ran = test::run_timed(argv, folder);
+    const auto ran = tests::run_timed(argv, folder);
     if (ran.code != 0) std::fprintf(stderr, "%s: %d\n%s\n", argv[0].c_str(), ran.code, ran.out.c_str());
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -197,23 +197,23 @@ double wall_seconds(const std::vector<std::string>& argv, const std::filesystem:
 void campaign() {
     constexpr std::size_t sample = 24;
     const std::string config = tests::source("configs/wu2020_lds.json");
-    const test::Folder folder;
-    const auto planned = test::run_program({"plan", config, "--format", "json"}, folder.path());
+    const tests::Folder folder;
+    const auto planned = tests::run_program({"plan", config, "--format", "json"}, folder.path());
     const auto plan = nlohmann::json::parse(planned.out);
     const auto cases = plan.at("cases").get<double>();
     const double ours_wall = wall_seconds(
-        test::program_command({"run", config, "--db", "sample.db", "--max-cases", "24", "--quiet"}), folder.path());
+        tests::program_command({"run", config, "--db", "sample.db", "--max-cases", "24", "--quiet"}), folder.path());
     double theirs_wall = 0;
-    if (test::installed("liggghts") && test::installed("parallel")) {
+    if (tests::installed("liggghts") && tests::installed("parallel")) {
         std::string jobs;
         for (std::size_t k = 0; k < sample; ++k) {
             const auto& row = plan.at("rows").at(k);
-            test::SpreadingPeer q;
+            tests::SpreadingPeer q;
             q.friction = row.at("friction"), q.diameter = row.at("diameter");
             q.gap = row.at("gap"), q.speed = row.at("speed");
             const auto job = folder.path() / fmt::format("case_{:02}", k);
             std::filesystem::create_directory(job);
-            test::write_spreading(q, test::spreading_start(q.diameter, q.friction, k + 1), job);
+            tests::write_spreading(q, tests::spreading_start(q.diameter, q.friction, k + 1), job);
             jobs += job.string() + "\n";
         }
         folder.write("jobs.txt", jobs);
@@ -240,16 +240,16 @@ int main(int argc, char** argv) {
     std::map<double, dem::Setup> beds;
     const auto bed = [&](double spread_of_radii) -> const dem::Setup& {
         if (!beds.contains(spread_of_radii)) {
-            test::BedOptions b;
+            tests::BedOptions b;
             b.spread = spread_of_radii;
             if (spread_of_radii > 0) b.per_side = 20, b.layers = 50;
-            beds[spread_of_radii] = test::settled_bed(b);
+            beds[spread_of_radii] = tests::settled_bed(b);
         }
         return beds.at(spread_of_radii);
     };
     std::optional<dem::Setup> flow;  // in full flow
     const auto chute = [&]() -> const dem::Setup& {
-        if (!flow) flow = test::flowing(bed(0), 26, 0.02);
+        if (!flow) flow = tests::flowing(bed(0), 26, 0.02);
         return *flow;
     };
     const auto cohesive = [](dem::Setup s) {
@@ -259,11 +259,11 @@ int main(int argc, char** argv) {
     const std::vector<std::pair<std::string, std::function<void(const std::string&)>>> scenes = {
         {"settled_20k", [&](const auto& s) { compare(o, s, bed(0), 1000); }},
         {"chute_20k", [&](const auto& s) { compare(o, s, chute(), 1000); }},
-        {"chute_unequal_20k", [&](const auto& s) { compare(o, s, test::flowing(bed(0.25), 26, 0.02), 1000); }},
+        {"chute_unequal_20k", [&](const auto& s) { compare(o, s, tests::flowing(bed(0.25), 26, 0.02), 1000); }},
         {"cohesive_20k", [&](const auto& s) { compare(o, s, cohesive(bed(0)), 1000); }},
         {"cohesive_chute_20k", [&](const auto& s) { compare(o, s, cohesive(chute()), 1000); }},
-        {"settled_180k", [&](const auto& s) { compare(o, s, test::replicated(bed(0), 3, 3), 200); }},
-        {"chute_180k", [&](const auto& s) { compare(o, s, test::replicated(chute(), 3, 3), 200); }},
+        {"settled_180k", [&](const auto& s) { compare(o, s, tests::replicated(bed(0), 3, 3), 200); }},
+        {"chute_180k", [&](const auto& s) { compare(o, s, tests::replicated(chute(), 3, 3), 200); }},
         {"chute_statistics", [&](const auto&) { statistics(); }},
         {"spreading", [&](const auto&) { spreading(); }},
         {"campaign", [&](const auto&) { campaign(); }},

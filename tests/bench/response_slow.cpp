@@ -5,7 +5,7 @@
 
 #include <cstdio>
 
-using namespace grainsweep::testing;
+using namespace grainsweep::tests;
 
 TEST(ResponseModel, IntervalsHoldOver200Campaigns) {
     const auto counts = count_intervals(200);

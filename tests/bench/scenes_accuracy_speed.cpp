@@ -22,8 +22,8 @@
 #include "tests/support/trade_off.hpp"
 
 using namespace grainsweep;
-using test::Runs;
-using test::Setting;
+using tests::Runs;
+using tests::Setting;
 
 namespace {
 
@@ -103,20 +103,20 @@ void ask(const Question& q, int seeds, int double_share) {
     std::vector<Runs> runs;
     for (const auto& choice : choices_of(scene, double_share)) {
         const int count = std::max(2, seeds / choice.share);
-        const double start = test::processor_seconds();
+        const double start = tests::processor_seconds();
         Runs values;
         for (int seed = 1; seed <= count; ++seed)
             values.push_back(answer(scene, q, choice.inputs, static_cast<std::uint64_t>(seed)));
-        Setting s{q.name, choice.name, q.measured, (test::processor_seconds() - start) / count};
+        Setting s{q.name, choice.name, q.measured, (tests::processor_seconds() - start) / count};
         s.is_reference = choice.is_reference;
         settings.push_back(s);
-        std::fprintf(stderr, "%s, %s: %.5g +- %.2g, %.3g s\n", q.name, s.name.c_str(), test::mean(values),
-                     test::error_of_mean(values), s.cost);
+        std::fprintf(stderr, "%s, %s: %.5g +- %.2g, %.3g s\n", q.name, s.name.c_str(), tests::mean(values),
+                     tests::error_of_mean(values), s.cost);
         runs.push_back(std::move(values));
     }
-    test::compare_means(settings, runs);
-    test::mark_dominated(settings);
-    for (const auto& s : settings) std::printf("%s\n", test::json_line(s).c_str());
+    tests::compare_means(settings, runs);
+    tests::mark_dominated(settings);
+    for (const auto& s : settings) std::printf("%s\n", tests::json_line(s).c_str());
     std::fflush(stdout);
 }
 

@@ -31,7 +31,7 @@ struct Reference {
 std::map<std::string, std::map<std::string, Reference>> references() {
     std::map<std::string, std::map<std::string, Reference>> all;
     for (const char* file : {"walls/ensembles.csv", "walls/ensembles_more_seeds.csv"}) {
-        const grainsweep::testing::ReferenceTable table(file);
+        const grainsweep::tests::ReferenceTable table(file);
         for (std::size_t row = 0; row < table.size(); ++row) {
             Reference& one = all[table.cell(row, "case")][table.cell(row, "quantity")];
             std::istringstream values(table.cell(row, "values"));

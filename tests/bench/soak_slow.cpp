@@ -23,7 +23,7 @@
 #include <thread>
 #include <vector>
 
-using namespace grainsweep::test;
+using namespace grainsweep::tests;
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using grainsweep::stats::Generator;

@@ -36,7 +36,7 @@ struct Scatter {
 std::map<std::string, Scatter> reference_runs() {
     std::map<std::string, Scatter> runs;
     for (const char* name : {"walls/ensembles.csv", "walls/ensembles_more_seeds.csv"}) {
-        const grainsweep::testing::ReferenceTable table(name);
+        const grainsweep::tests::ReferenceTable table(name);
         for (std::size_t row = 0; row < table.size(); ++row) {
             if (!table.cell(row, "case").starts_with("roller")) continue;
             std::istringstream values(table.cell(row, "values"));

@@ -85,17 +85,17 @@ public:
         if (!options_.mode.empty() && options_.mode != mode && mode != "one") return;
         folder_.write(mode + ".json", campaign(times_, threads).dump());
         const double start = now();
-        const auto ended = test::run_program({"run", mode + ".json", "--db", mode + ".db", "--quiet"}, folder_.path());
+        const auto ended = tests::run_program({"run", mode + ".json", "--db", mode + ".db", "--quiet"}, folder_.path());
         const double seconds = now() - start;
         if (ended.code != 0) std::fprintf(stderr, "%s\n", ended.err.c_str());
         if (mode == "one") {
             for (const auto& row : query("SELECT wall_seconds FROM attempt", mode))
                 of_cases_.push_back(row.at("wall_seconds"));
             work_ = std::accumulate(of_cases_.begin(), of_cases_.end(), 0.0);
-            dump_ = test::run_program({"dump", "one.db"}, folder_.path()).out;
+            dump_ = tests::run_program({"dump", "one.db"}, folder_.path()).out;
         }
         const double most = query("SELECT max(threads) AS most FROM attempt", mode).at(0).at("most");
-        show(mode, seconds, most, test::run_program({"dump", mode + ".db"}, folder_.path()).out == dump_);
+        show(mode, seconds, most, tests::run_program({"dump", mode + ".db"}, folder_.path()).out == dump_);
     }
     void run_in_order() {
         if (!options_.mode.empty() && options_.mode != "in_order") return;
@@ -108,7 +108,7 @@ public:
                     for (std::size_t k = next++; k < times_.size(); k = next++) {
                         const auto set = "turning_time=" + json(times_[k]).dump();
                         failed +=
-                            test::run_program({"solve", "one.json", "--set", set, "--threads", "1"}, folder_.path())
+                            tests::run_program({"solve", "one.json", "--set", set, "--threads", "1"}, folder_.path())
                                 .code != 0;
                     }
                 });
@@ -119,7 +119,7 @@ public:
 
 private:
     [[nodiscard]] json query(const std::string& sql, const std::string& mode) const {
-        return json::parse(test::run_program({"query", mode + ".db", sql, "--format", "json"}, folder_.path()).out);
+        return json::parse(tests::run_program({"query", mode + ".db", sql, "--format", "json"}, folder_.path()).out);
     }
     /// Seconds until the last case is done where each core takes the next of the list.
     [[nodiscard]] double in_order(const std::vector<double>& cases) const {
@@ -161,7 +161,7 @@ private:
     Options options_;
     std::vector<double> times_;
     unsigned cores_ = std::max(1U, std::thread::hardware_concurrency());
-    test::Folder folder_;
+    tests::Folder folder_;
     std::vector<double> of_cases_;  ///< seconds, one thread each
     double work_ = 0;               ///< their sum
     std::string dump_;

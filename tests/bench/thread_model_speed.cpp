@@ -179,13 +179,13 @@ int main(int argc, char** argv) {
     const double one_core = bandwidth(1);
     fmt::print("{{\"bench\": \"memory\", \"gb_per_s_one\": {:.1f}, \"gb_per_s_two\": {:.1f}}}\n", 1e-9 * one_core,
                1e-9 * bandwidth(2));
-    const dem::Setup bed = test::settled_bed({});
+    const dem::Setup bed = tests::settled_bed({});
     std::vector<Scene> scenes;
     for (const int across : large ? std::vector{1, 3, 7} : std::vector{1, 3}) {
         scenes.push_back(measure(across == 1   ? "settled_20k"
                                  : across == 3 ? "settled_180k"
                                                : "settled_1M",
-                                 test::replicated(bed, across, across)));
+                                 tests::replicated(bed, across, across)));
         const double cached = scenes.front().cost;
         for (const Count& count : scenes.back().counts) {
             fmt::print(

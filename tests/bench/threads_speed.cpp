@@ -168,7 +168,7 @@ dem::Setup full_cell() {
     constexpr double edge = 100, thickness = 4, closest = 0.9;
     const auto packing = particles::random_close_packing({.edge = edge, .fraction = 0.62, .seed = 1});
     const geometry::TpmsShell shell(geometry::TpmsCell::schwarz_p, +1, edge, thickness);
-    return test::cell_of(particles::fill_tpms(packing, shell, closest), edge, 0, 0);
+    return tests::cell_of(particles::fill_tpms(packing, shell, closest), edge, 0, 0);
 }
 
 Options read_options(int argc, char** argv) {
@@ -203,25 +203,25 @@ int main(int argc, char** argv) try {
     };
     dem::Setup bed, chute;
     const auto chosen = [&](const char* name) { return o.scene == name || (o.large && o.scene.empty()); };
-    if (wanted("settled_20k") || wanted("settled_180k") || chosen("settled_1M")) bed = test::settled_bed({});
-    if (wanted("chute_20k") || wanted("chute_180k")) chute = test::flowing(test::settled_bed({}), 26, 0.02);
-    run("small_chute_2k", [] { return test::flowing(test::small_chute(1), 26, test::small_chute_time); });
+    if (wanted("settled_20k") || wanted("settled_180k") || chosen("settled_1M")) bed = tests::settled_bed({});
+    if (wanted("chute_20k") || wanted("chute_180k")) chute = tests::flowing(tests::settled_bed({}), 26, 0.02);
+    run("small_chute_2k", [] { return tests::flowing(tests::small_chute(1), 26, tests::small_chute_time); });
     run("settled_20k", [&] { return bed; });
     run("chute_20k", [&] { return chute; });
     run("chute_unequal_20k", [] {
-        test::BedOptions b;
+        tests::BedOptions b;
         b.spread = 0.25, b.per_side = 20, b.layers = 50;
-        return test::flowing(test::settled_bed(b), 26, 0.02);
+        return tests::flowing(tests::settled_bed(b), 26, 0.02);
     });
     if (wanted("drum") || wanted("drum_mesh")) {
-        const dem::Setup drum = test::turning_drum();
+        const dem::Setup drum = tests::turning_drum();
         run("drum", [&] { return drum; });
-        run("drum_mesh", [&] { return test::of_triangles(drum); });
+        run("drum_mesh", [&] { return tests::of_triangles(drum); });
     }
-    run("settled_180k", [&] { return test::replicated(bed, 3, 3); });
-    run("chute_180k", [&] { return test::replicated(chute, 3, 3); });
+    run("settled_180k", [&] { return tests::replicated(bed, 3, 3); });
+    run("chute_180k", [&] { return tests::replicated(chute, 3, 3); });
     if (chosen("full_cell")) compare(o, "full_cell", full_cell());
-    if (chosen("settled_1M")) compare(o, "settled_1M", test::replicated(bed, 7, 7));
+    if (chosen("settled_1M")) compare(o, "settled_1M", tests::replicated(bed, 7, 7));
     return 0;
 } catch (const std::invalid_argument& wrong) {
     std::fprintf(stderr, "%s\n", wrong.what());

@@ -27,7 +27,7 @@ using namespace grainsweep;
 
 namespace {
 
-constexpr double diameter = test::cell_diameter, time_step = 1e-6, shell_thickness = 2, end_time = 6.1;
+constexpr double diameter = tests::cell_diameter, time_step = 1e-6, shell_thickness = 2, end_time = 6.1;
 
 double user_seconds() {
     rusage used{};
@@ -39,11 +39,11 @@ void compare(const std::string& name, geometry::TpmsCell cell, const char* word,
              const particles::Packing& packing) {
     const geometry::TpmsShell shell(cell, +1, edge, shell_thickness);
     // every wall sphere is there
-    const dem::Setup setup = test::cell_of(particles::fill_tpms(packing, shell, 0), edge, cohesion, 0);
+    const dem::Setup setup = tests::cell_of(particles::fill_tpms(packing, shell, 0), edge, cohesion, 0);
     const double gravity = 9.81 * 100 / edge;
     const auto steps = std::llround(std::ceil(end_time * std::sqrt(2 * edge * diameter / gravity) / time_step));
 
-    const test::Folder folder;
+    const tests::Folder folder;
     std::string rows = "x,y,z\n";
     for (const auto& x : packing.positions) rows += fmt::format("{},{},{}\n", x[0], x[1], x[2]);
     folder.write("packing.csv", rows);
@@ -60,7 +60,7 @@ void compare(const std::string& name, geometry::TpmsCell cell, const char* word,
                           {"design", {{"kind", "lattice"}}}};
     const auto solve = [&] {
         folder.write("cell.json", config.dump());
-        const auto ran = test::run_timed(test::program_command({"solve", "cell.json"}), folder.path());
+        const auto ran = tests::run_timed(tests::program_command({"solve", "cell.json"}), folder.path());
         if (ran.code != 0) std::fprintf(stderr, "%s\n", ran.out.c_str());
         return ran.user_seconds;
     };
@@ -76,12 +76,12 @@ void compare(const std::string& name, geometry::TpmsCell cell, const char* word,
     engine->run(steps);
     const double plain = user_seconds() - start;
 
-    test::Ran them;
-    if (test::installed("liggghts")) {
-        test::write_bed(setup, folder.path());
-        const test::Peer peer{test::Peer::Program::liggghts, 0.2 * diameter, steps, 1, false};
-        folder.write("in.cell", test::deck_of(setup, peer).value());
-        them = test::run_timed({"liggghts", "-in", "in.cell", "-log", "none"}, folder.path());
+    tests::Ran them;
+    if (tests::installed("liggghts")) {
+        tests::write_bed(setup, folder.path());
+        const tests::Peer peer{tests::Peer::Program::liggghts, 0.2 * diameter, steps, 1, false};
+        folder.write("in.cell", tests::deck_of(setup, peer).value());
+        them = tests::run_timed({"liggghts", "-in", "in.cell", "-log", "none"}, folder.path());
         if (them.code != 0)
             std::fprintf(stderr, "liggghts ended with %d:\n%s\n", them.code,
                          them.out.substr(them.out.size() - std::min<std::size_t>(400, them.out.size())).c_str());

@@ -32,8 +32,8 @@ using dem::Method;
 
 namespace {
 
-using test::cell_of;
-constexpr double diameter = test::cell_diameter;
+using tests::cell_of;
+constexpr double diameter = tests::cell_diameter;
 
 double processor_seconds() {
     timespec t{};
@@ -167,9 +167,9 @@ struct Measured {
 
 void accuracy(double edge, int seeds, const Measured& measured, const std::vector<Numerics>& all) {
     std::vector<std::vector<double>> found(all.size());
-    std::vector<test::Setting> settings;
+    std::vector<tests::Setting> settings;
     for (std::size_t k = 0; k < all.size(); ++k) {
-        test::Setting s;
+        tests::Setting s;
         s.scene = "tpms_discharge";
         s.name = all[k].name;
         s.measured = measured.name;
@@ -201,8 +201,8 @@ void accuracy(double edge, int seeds, const Measured& measured, const std::vecto
         }
         settings.push_back(s);
     }
-    test::mark_dominated(settings);
-    for (const auto& s : settings) std::printf("%s\n", test::json_line(s).c_str());
+    tests::mark_dominated(settings);
+    for (const auto& s : settings) std::printf("%s\n", tests::json_line(s).c_str());
     std::fflush(stdout);
 }
 

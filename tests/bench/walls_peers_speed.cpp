@@ -41,7 +41,7 @@ double user_seconds() {
     return static_cast<double>(used.ru_utime.tv_sec) + 1e-6 * static_cast<double>(used.ru_utime.tv_usec);
 }
 
-Measured ours(const test::WallDeck& deck) {
+Measured ours(const tests::WallDeck& deck) {
     const double user = user_seconds();
     const auto start = std::chrono::steady_clock::now();
     const auto engine = dem::make_engine(deck.start, {.precision = dem::Method::Precision::mixed});
@@ -60,21 +60,21 @@ Measured ours(const test::WallDeck& deck) {
 }
 
 /// The fastest over the skins.
-std::optional<Measured> theirs(const test::WallDeck& deck, const std::vector<double>& skins) {
-    if (!test::installed("liggghts")) return std::nullopt;
+std::optional<Measured> theirs(const tests::WallDeck& deck, const std::vector<double>& skins) {
+    if (!tests::installed("liggghts")) return std::nullopt;
     std::optional<Measured> best;
     const double diameter = 2 * deck.start.spheres[0].radius;
     for (const double skin : skins) {
-        const test::Folder folder;
-        test::write_deck(deck, skin * diameter, folder.path());
-        const auto ran = test::run_timed({"liggghts", "-in", "in.walls", "-log", "none"}, folder.path());
+        const tests::Folder folder;
+        tests::write_deck(deck, skin * diameter, folder.path());
+        const auto ran = tests::run_timed({"liggghts", "-in", "in.walls", "-log", "none"}, folder.path());
         if (ran.code != 0) {
             std::fprintf(stderr, "liggghts ended with %d:\n%s\n", ran.code,
                          ran.out.substr(ran.out.size() - std::min<std::size_t>(400, ran.out.size())).c_str());
             return std::nullopt;
         }
-        const Measured m{1e9 * ran.user_seconds / test::particle_steps(ran.out), ran.user_seconds, ran.wall_seconds,
-                         deck.figure(test::last_frame(deck, folder.path())), skin};
+        const Measured m{1e9 * ran.user_seconds / tests::particle_steps(ran.out), ran.user_seconds, ran.wall_seconds,
+                         deck.figure(tests::last_frame(deck, folder.path())), skin};
         if (!best || m.user_seconds < best->user_seconds) best = m;
     }
     return best;
@@ -85,7 +85,7 @@ std::string as_json(const Measured& m) {
                        m.nanoseconds, m.user_seconds, m.wall_seconds, m.figure);
 }
 
-void print(const test::WallDeck& deck, const char* walls, const Measured& us, const std::optional<Measured>& them) {
+void print(const tests::WallDeck& deck, const char* walls, const Measured& us, const std::optional<Measured>& them) {
     fmt::print(
         "{{\"bench\": \"walls_peers\", \"deck\": \"{}\", \"walls\": \"{}\", \"particles\": {}, \"steps\": {}, "
         "\"measured\": \"{}\", \"grainsweep\": {}, \"liggghts\": {}, \"skin\": {}, \"times_liggghts\": {}}}\n",
@@ -95,7 +95,7 @@ void print(const test::WallDeck& deck, const char* walls, const Measured& us, co
     std::fflush(stdout);
 }
 
-void compare(const std::vector<std::pair<const char*, test::WallDeck>>& walls, const std::vector<double>& skins) {
+void compare(const std::vector<std::pair<const char*, tests::WallDeck>>& walls, const std::vector<double>& skins) {
     std::vector<Measured> before;
     for (const auto& [name, deck] : walls) before.push_back(ours(deck));
     const auto them = theirs(walls[0].second, skins);
@@ -114,17 +114,18 @@ int main(int argc, char** argv) {
         if (std::string(argv[i]) == "--deck") wanted = argv[i + 1];
         if (std::string(argv[i]) == "--skins") skins.resize(std::clamp<std::size_t>(std::stoul(argv[i + 1]), 1, 3));
     }
-    if (!test::installed("liggghts"))
+    if (!tests::installed("liggghts"))
         std::fprintf(stderr, "LIGGGHTS is not installed (Debian package liggghts): only grainsweep is measured\n");
-    using test::WallsAs;
+    using tests::WallsAs;
     const auto asked = [&](const char* name) { return wanted.empty() || wanted == name; };
-    if (asked("drum")) compare({{"curved", test::drum_deck()}}, skins);
+    if (asked("drum")) compare({{"curved", tests::drum_deck()}}, skins);
     if (asked("hopper"))
-        compare({{"curved", test::hopper_deck(WallsAs::curved)}, {"triangles", test::hopper_deck(WallsAs::triangles)}},
-                skins);
+        compare(
+            {{"curved", tests::hopper_deck(WallsAs::curved)}, {"triangles", tests::hopper_deck(WallsAs::triangles)}},
+            skins);
     if (asked("heap"))
-        compare({{"curved", test::heap_deck(WallsAs::curved)}, {"triangles", test::heap_deck(WallsAs::triangles)}},
+        compare({{"curved", tests::heap_deck(WallsAs::curved)}, {"triangles", tests::heap_deck(WallsAs::triangles)}},
                 skins);
-    if (asked("roller")) compare({{"curved", test::roller_deck()}}, skins);
+    if (asked("roller")) compare({{"curved", tests::roller_deck()}}, skins);
     return 0;
 }

@@ -12,9 +12,7 @@
 #include <string>
 #include <thread>
 
-using namespace grainsweep::test;
-
-namespace {
+namespace grainsweep::tests::assisted_test {
 
 /// y = (6 + x1 + ... + x4) (1 + e), e even in [-0.005, 0.005].
 std::string config(const std::string& rule, const std::string& more = "") {
@@ -39,8 +37,6 @@ std::string output(const Folder& folder, const std::vector<std::string>& argumen
     EXPECT_EQ(ended.code, 0) << ended.err;
     return ended.out;
 }
-
-}  // namespace
 
 TEST(Assisted, StopsWherePlainErrorsAreFarFromItAndTheTruthIsWithinItsErrors) {
     const Folder folder;
@@ -117,3 +113,5 @@ TEST(Assisted, WhatCannotBeJudgedIsRefusedInOneSentence) {
     few.replace(few.find("\"sequences\": 8"), 14, "\"sequences\": 2");
     EXPECT_NE(refused(few).find("$.convergence.rule"), std::string::npos);
 }
+
+}  // namespace grainsweep::tests::assisted_test

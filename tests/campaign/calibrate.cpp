@@ -9,11 +9,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-using namespace grainsweep::test;
+namespace grainsweep::tests::calibrate_test {
+
 using nlohmann::json;
 using ::testing::HasSubstr;
-
-namespace {
 
 /// What the spreading response is at x1 = 0.3, x2 = 0.6, "measured" under two conditions.
 json config() {
@@ -44,8 +43,6 @@ std::string refusal(const Folder& folder, const json& changed) {
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "none.db"));
     return ended.err;
 }
-
-}  // namespace
 
 TEST(CalibrateCampaign, FindsTheTruthAndNamesTheRidge) {
     const Folder folder;
@@ -142,8 +139,6 @@ TEST(CalibrateCampaign, FollowsAMeasuredCurve) {
     EXPECT_THAT(refusal(folder, asked), HasSubstr("is a curve"));
 }
 
-namespace {
-
 /// p(x) = a x^2 + b at eleven places in the order of `places`, a list in Python; measured at `measured`.
 json profile_campaign(const Folder& folder, const std::string& places, const std::string& measured) {
     folder.write("f.py",
@@ -158,8 +153,6 @@ json profile_campaign(const Folder& folder, const std::string& places, const std
       "calibration": {"targets": [{"observable": "p", "file": "m.csv", "error": 0.02}], "discrepancy": {"p": 0.01},
                       "waves": 1, "points_per_wave": 24, "checks": 2}})");
 }
-
-}  // namespace
 
 TEST(CalibrateCampaign, TheOrderInWhichAProgramWritesACurveDoesNotMatter) {
     json before;
@@ -281,3 +274,5 @@ TEST(CalibrateCampaign, GivesAWindowWhoseNextCasesRun) {
     const auto after = run_program({"window", "a.db", "--maximize", "y", "--format", "json"}, folder.path());
     EXPECT_EQ(after.code, 0) << "the next cases come into the same model: " << after.err;
 }
+
+}  // namespace grainsweep::tests::calibrate_test

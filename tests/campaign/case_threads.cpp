@@ -12,11 +12,10 @@
 #include <string>
 #include <thread>
 
-using namespace grainsweep::test;
+namespace grainsweep::tests::case_threads_test {
+
 using nlohmann::json;
 using testing::HasSubstr;
-
-namespace {
 
 // Particles enough for two threads; the last case takes several times as long as the others.
 json drum(const json& execution) {
@@ -135,4 +134,4 @@ TEST_F(Drum, ACaseInDoublePrecisionHasOne) {
     EXPECT_EQ(ask("double", "SELECT max(threads) FROM attempt"), 1);
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::case_threads_test

@@ -9,9 +9,7 @@
 #include <string>
 #include <thread>
 
-using namespace grainsweep::test;
-
-namespace {
+namespace grainsweep::tests::checkpoints_test {
 
 // A second or two of real physics; the launcher shortens the interval between checkpoints.
 const char* config = R"({
@@ -89,4 +87,4 @@ TEST(Checkpoints, ThoseOfAnotherInstructionPathAreSweptWithTheirCase) {
     EXPECT_EQ(files_in(folder / "c.artefacts"), 0U);
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::checkpoints_test

@@ -8,9 +8,7 @@
 #include <string>
 #include <vector>
 
-using namespace grainsweep::test;
-
-namespace {
+namespace grainsweep::tests::clock_test {
 
 TEST(AClockThatIsSet, LeavesRateAndTimeLeftAsTheyPass) {
     for (const char* seconds : {"3600", "-86400"}) {
@@ -32,4 +30,4 @@ TEST(AClockThatIsSet, LeavesRateAndTimeLeftAsTheyPass) {
     }
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::clock_test

@@ -7,10 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-using namespace grainsweep::test;
-using nlohmann::json;
+namespace grainsweep::tests::commands_test {
 
-namespace {
+using nlohmann::json;
 
 const char* config = R"({"campaign": "c", "scene": "rehearsal",
   "factors": [{"name": "x1", "between": [0.1, 0.3]}, {"name": "x2", "between": [0.001, 0.1], "scale": "log"},
@@ -18,7 +17,7 @@ const char* config = R"({"campaign": "c", "scene": "rehearsal",
   "fixed": {"x3": 0.25}, "design": {"kind": "halton", "points": 20}, "replicates": 2})";
 
 Ended in_folder(const Folder& folder, const std::vector<std::string>& arguments) {
-    return grainsweep::test::run_program(arguments, folder.path());
+    return grainsweep::tests::run_program(arguments, folder.path());
 }
 
 json solved(const Folder& folder, std::vector<std::string> arguments, int code = 0) {
@@ -28,8 +27,6 @@ json solved(const Folder& folder, std::vector<std::string> arguments, int code =
     EXPECT_EQ(ended.err, "");
     return json::parse(ended.out);
 }
-
-}  // namespace
 
 TEST(Commands, PlanShowsEveryCaseAndTheCost) {
     const Folder folder;
@@ -253,3 +250,5 @@ TEST(Commands, VersionNamesTheBuild) {
         EXPECT_NE(ended.out.find(word), std::string::npos) << word << " is not in " << ended.out;
     }
 }
+
+}  // namespace grainsweep::tests::commands_test

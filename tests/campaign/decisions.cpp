@@ -12,10 +12,9 @@
 #include <numbers>
 #include <string>
 
-using namespace grainsweep::test;
-using nlohmann::json;
+namespace grainsweep::tests::decisions_test {
 
-namespace {
+using nlohmann::json;
 
 std::string campaign_of(const std::string& response, int factors, int points) {
     json campaign = {{"campaign", "c"}, {"scene", "rehearsal"}, {"seed", 3}};
@@ -55,7 +54,7 @@ double ishigami(std::span<const double> u) {
 }
 
 double spreading(std::span<const double> u) {
-    return grainsweep::testing::spreading_response(u);
+    return grainsweep::tests::spreading_response(u);
 }
 
 /// Share of points of an additive recurrence whose true response lies within 1.96 stated standard errors of the mean.
@@ -272,4 +271,4 @@ TEST(Window, RefusesInOneSentence) {
               std::string::npos);
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::decisions_test

@@ -6,10 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-using namespace grainsweep::test;
-using nlohmann::json;
+namespace grainsweep::tests::factor_order_test {
 
-namespace {
+using nlohmann::json;
 
 struct FactorOrder : testing::Test {
     Folder folder;
@@ -50,8 +49,6 @@ json turned_round(json campaign) {
     return campaign;
 }
 
-}  // namespace
-
 TEST_F(FactorOrder, OfAHaltonDesignIsTheStoredOne) {
     const json campaign = campaign_of({{"kind", "halton"}, {"points", 20}, {"sequences", 4}});
     expect_same(campaign, turned_round(campaign));
@@ -85,3 +82,5 @@ TEST_F(FactorOrder, AnotherFactorIsAnotherCampaign) {
     EXPECT_EQ(refused.code, 2);
     EXPECT_NE(refused.err.find("$.factors"), std::string::npos) << refused.err;
 }
+
+}  // namespace grainsweep::tests::factor_order_test

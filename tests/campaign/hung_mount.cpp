@@ -14,11 +14,10 @@
 #include <string>
 #include <thread>
 
-using namespace grainsweep::test;
+namespace grainsweep::tests::hung_mount_test {
+
 using namespace std::chrono_literals;
 using testing::HasSubstr;
-
-namespace {
 
 const char* impatient = R"("workers": 2, "silence_seconds": 3,
     "launcher": ["/bin/sh", "-c", "exec \"$@\" --checkpoint-seconds 0", "sh"])";
@@ -91,4 +90,4 @@ TEST(HungMount, AnInputFileThatDoesNotOpenIsNoFailureOfTheCase) {
     EXPECT_EQ(ask("SELECT failures, attempts, outcome FROM sim_case"), "failures,attempts,outcome\n0,2,completed\n");
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::hung_mount_test

@@ -12,12 +12,11 @@
 #include <thread>
 #include <vector>
 
-using namespace grainsweep::test;
+namespace grainsweep::tests::interference_test {
+
 using namespace std::chrono_literals;
 using nlohmann::json;
 using testing::HasSubstr;
-
-namespace {
 
 // What the worker writes is kept in a file, and the interval between checkpoints is short.
 const char* plain = "exec \"$@\" --checkpoint-seconds 0.1 > >(exec tee -a lines)";
@@ -173,4 +172,4 @@ TEST(Interference, AMainProgramThatIsStoppedForLongFindsItsCasesGivenBack) {
     EXPECT_EQ(campaign.ask("SELECT failures FROM sim_case"), 0);
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::interference_test

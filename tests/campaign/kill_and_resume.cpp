@@ -10,10 +10,9 @@
 #include <string>
 #include <thread>
 
-using namespace grainsweep::test;
-using grainsweep::stats::Stream;
+namespace grainsweep::tests::kill_and_resume_test {
 
-namespace {
+using stats::Stream;
 
 constexpr int cases = 240;
 
@@ -161,4 +160,4 @@ TEST(KillAndResume, AnInterruptedRunParksAndGoesOn) {
     EXPECT_TRUE(dump(db, folder) == calm);
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::kill_and_resume_test

@@ -13,8 +13,7 @@
 #include <thread>
 #include <vector>
 
-namespace grainsweep::test {
-namespace {
+namespace grainsweep::tests::lease_test {
 
 using namespace std::chrono_literals;
 
@@ -62,5 +61,4 @@ TEST(Lease, TimeSpentStoppedDoesNotCountSilenceDoes) {
     EXPECT_EQ(both.wait().code, 3);
 }
 
-}  // namespace
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests::lease_test

@@ -12,11 +12,10 @@
 #include <string>
 #include <thread>
 
-using namespace grainsweep::test;
+namespace grainsweep::tests::limited_time_test {
+
 using nlohmann::json;
 using testing::HasSubstr;
-
-namespace {
 
 constexpr int again = 75;
 
@@ -128,4 +127,4 @@ TEST(Walltime, TheEndOfTheJobIsOne) {
     EXPECT_EQ(campaign.ask("SELECT count(*) FROM attempt WHERE outcome = 'abandoned'"), 1);
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::limited_time_test

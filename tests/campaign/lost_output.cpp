@@ -12,9 +12,7 @@
 #include <string>
 #include <vector>
 
-using namespace grainsweep::test;
-
-namespace {
+namespace grainsweep::tests::lost_output_test {
 
 // Unstable cases make notes while the campaign runs; they also make its exit code 1, which nothing else here gives.
 const char* config = R"({"campaign": "unheard", "scene": "rehearsal",
@@ -94,4 +92,4 @@ TEST_F(LostOutput, AClosedTerminalIsSurvived) {
     expect_whole();
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::lost_output_test

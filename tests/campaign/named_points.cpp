@@ -9,9 +9,7 @@
 #include <string>
 #include <vector>
 
-using namespace grainsweep::test;
-
-namespace {
+namespace grainsweep::tests::named_points_test {
 
 constexpr int killed = 128 + 9;
 
@@ -82,4 +80,4 @@ TEST(NamedPoints, ACheckpointThatCannotBeWrittenEndsTheRun) {
     }
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::named_points_test

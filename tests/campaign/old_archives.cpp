@@ -12,11 +12,9 @@
 #include <iterator>
 #include <string>
 
-using namespace grainsweep::test;
-using grainsweep::tests::reference;
-using nlohmann::json;
+namespace grainsweep::tests::old_archives_test {
 
-namespace {
+using nlohmann::json;
 
 std::string contents(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
@@ -78,4 +76,4 @@ TEST_F(OldArchive, ItsAttemptsAreOfTheMachineThatRanThem) {
     EXPECT_EQ(query("SELECT count(*) AS n FROM attempt WHERE computer_id IS NULL")[0]["n"], 0);
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::old_archives_test

@@ -11,9 +11,7 @@
 #include <thread>
 #include <vector>
 
-using namespace grainsweep::test;
-
-namespace {
+namespace grainsweep::tests::one_file_test {
 
 std::vector<std::string> names_of(const Folder& folder, const std::string& start) {
     std::vector<std::string> names;
@@ -27,8 +25,6 @@ std::vector<std::string> names_of(const Folder& folder, const std::string& start
 
 const char* config = R"({"campaign": "c", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
     "fixed": {"wait_seconds": 0.01}, "design": {"kind": "halton", "points": 400}})";
-
-}  // namespace
 
 TEST(OneFile, AfterARunThatShowedItsTables) {
     const Folder folder;
@@ -63,3 +59,5 @@ TEST(OneFile, AfterTheMainProgramWasKilledAndOneCommandReadIt) {
     EXPECT_EQ(names_of(folder, "c.db"), std::vector<std::string>{"c.db"});
     EXPECT_EQ(run_program({"status", "c.db", "--format", "csv"}, folder.path()).out, status.out);
 }
+
+}  // namespace grainsweep::tests::one_file_test

@@ -8,9 +8,7 @@
 #include <filesystem>
 #include <string>
 
-using namespace grainsweep::test;
-
-namespace {
+namespace grainsweep::tests::outcomes_test {
 
 std::string config(const std::string& fixed, const std::string& limits = R"({"attempts": 3})") {
     return R"({"campaign": "trouble", "scene": "rehearsal",
@@ -241,4 +239,4 @@ TEST(Outcomes, ReplayAgreesWithTheArchive) {
     EXPECT_EQ(replay.code, 0) << replay.err << replay.out;
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::outcomes_test

@@ -9,10 +9,9 @@
 
 #include "tests/support/process.hpp"
 
-using namespace grainsweep::test;
-using nlohmann::json;
+namespace grainsweep::tests::pictures_test {
 
-namespace {
+using nlohmann::json;
 
 const char* cell = R"({"campaign": "c", "scene": "tpms_discharge", "factors": [{"name": "cohesion", "levels": [0]}],
   "fixed": {"edge": 8, "shell": 2, "gravity": 122.6, "end_time": 0.5}, "design": {"kind": "lattice"}})";
@@ -36,8 +35,6 @@ std::vector<double> moments(const std::filesystem::path& pvd) {
     }
     return times;
 }
-
-}  // namespace
 
 TEST(Pictures, AreEvenlySpacedAndChangeNoBit) {
     const Folder folder;
@@ -77,3 +74,5 @@ TEST(Pictures, OfNothingAreRefused) {
     EXPECT_NE(ended.err.find("shows no particles"), std::string::npos) << ended.err;
     EXPECT_EQ(run_program({"solve", "c.json", "--frames", "5"}, folder.path()).code, 2);
 }
+
+}  // namespace grainsweep::tests::pictures_test

@@ -5,10 +5,9 @@
 
 #include <chrono>
 
-using namespace grainsweep::test;
-using nlohmann::json;
+namespace grainsweep::tests::program_lines_test {
 
-namespace {
+using nlohmann::json;
 
 /// A program in Python that replies to each question q by what `reply` evaluates to.
 std::string replying(const std::string& before, const std::string& reply) {
@@ -107,4 +106,4 @@ TEST(ProgramLines, SolveAndReplayAskItToo) {
     EXPECT_EQ(run_program({"replay", "p.db", id}, folder.path()).code, 0);
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::program_lines_test

@@ -8,10 +8,9 @@
 #include <fstream>
 #include <thread>
 
-using namespace grainsweep::test;
-using nlohmann::json;
+namespace grainsweep::tests::programs_test {
 
-namespace {
+using nlohmann::json;
 
 constexpr const char* sound_script = "echo \"{\\\"y\\\": $1}\" > out.json\n";
 
@@ -305,4 +304,4 @@ TEST(Programs, OneThatIsGoneEndsTheRunAndNothingIsSpent) {
     EXPECT_EQ(run_program({"run", "c.json"}, folder.path()).code, 2);  // it is not here
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::programs_test

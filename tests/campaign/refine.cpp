@@ -7,10 +7,9 @@
 #include <fstream>
 #include <string>
 
-using namespace grainsweep::test;
-using ::testing::HasSubstr;
+namespace grainsweep::tests::refine_test {
 
-namespace {
+using ::testing::HasSubstr;
 
 std::string config(const std::string& options, const std::string& more = "") {
     return R"({"campaign": "cliff", "scene": "rehearsal",
@@ -31,8 +30,6 @@ Ended refine(const Folder& folder, const std::string& db, const std::vector<std:
     words.insert(words.end(), more.begin(), more.end());
     return run_program(words, folder.path());
 }
-
-}  // namespace
 
 TEST(RefineCampaign, EveryCombinationFindsItsCliffAndSaysSo) {
     const Folder folder;
@@ -106,3 +103,5 @@ TEST(RefineCampaign, AnotherWidthUnderTheSameNameAndAskingAgainAreRefused) {
     EXPECT_EQ(narrower.code, 2);
     EXPECT_THAT(narrower.err, HasSubstr("width = 0.1"));
 }
+
+}  // namespace grainsweep::tests::refine_test

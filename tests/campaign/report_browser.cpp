@@ -13,9 +13,7 @@
 #include <string_view>
 #include <utility>
 
-using namespace grainsweep::test;
-
-namespace {
+namespace grainsweep::tests::report_browser_test {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
@@ -314,4 +312,4 @@ TEST_F(ReportInABrowser, ShowsCurvesAndTheCampaignsOfAnotherDatabase) {
     EXPECT_EQ(seen["second"], "plain");
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::report_browser_test

@@ -8,9 +8,7 @@
 #include <iterator>
 #include <string>
 
-using namespace grainsweep::test;
-
-namespace {
+namespace grainsweep::tests::reports_test {
 
 std::string contents(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
@@ -57,4 +55,4 @@ TEST(Report, ReplacesAPageOnlyByAWholePage) {
         EXPECT_NE(entry.path().extension(), ".aside") << entry.path();
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::reports_test

@@ -16,14 +16,13 @@
 #include <string>
 #include <vector>
 
-using namespace grainsweep::test;
+namespace grainsweep::tests::shells_test {
+
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsSupersetOf;
 using testing::Not;
-
-namespace {
 
 struct Shells : testing::Test {
     Folder folder;
@@ -60,8 +59,6 @@ struct Shells : testing::Test {
         return names;
     }
 };
-
-}  // namespace
 
 TEST_F(Shells, BashCompletesCommandsOptionsAndWords) {
     EXPECT_EQ(bash("'" + grainsweep::tests::executable().string() + "' completion bash | bash -n").err, "");
@@ -229,3 +226,5 @@ TEST_F(Shells, TheManualNamesEveryCommandSceneDesignAndOption) {
             << "a page has no clock";
     }
 }
+
+}  // namespace grainsweep::tests::shells_test

@@ -16,14 +16,13 @@
 #include <thread>
 #include <vector>
 
-using namespace grainsweep::test;
-using grainsweep::stats::Stream;
+namespace grainsweep::tests::spooled_tasks_test {
+
 using nlohmann::json;
+using stats::Stream;
 using testing::HasSubstr;
 
 namespace fs = std::filesystem;
-
-namespace {
 
 class SpooledCampaign {
 public:
@@ -258,4 +257,4 @@ TEST(Spool, TheArrayOfTheJobGivesTheShare) {
     EXPECT_EQ(json::parse(ended.out).at("share"), "3/4");
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::spooled_tasks_test

@@ -10,13 +10,12 @@
 #include <chrono>
 #include <functional>
 
-using namespace grainsweep::test;
-using grainsweep::store::Connection;
+namespace grainsweep::tests::strangers_database_test {
+
 using nlohmann::json;
+using store::Connection;
 using testing::HasSubstr;
 using testing::Not;
-
-namespace {
 
 struct StrangersDatabase : testing::Test {
     Folder folder;
@@ -161,4 +160,4 @@ TEST_F(StrangersDatabase, ALongFunctionEndsAtTheLimitOfAQuery) {
     EXPECT_EQ(run({"query", "c.db", "SELECT count(*) FROM c", "--limit-seconds", "0.3"}).code, 0);
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::strangers_database_test

@@ -15,11 +15,10 @@
 #include <iterator>
 #include <thread>
 
-using namespace grainsweep::test;
-using grainsweep::store::Connection;
-using testing::HasSubstr;
+namespace grainsweep::tests::tampered_run_test {
 
-namespace {
+using store::Connection;
+using testing::HasSubstr;
 
 struct TamperedRun : testing::Test {
     Folder folder;
@@ -134,4 +133,4 @@ TEST_F(TamperedRun, WhatChangesWhileARunResumesIsFoundToo) {
     EXPECT_EQ(run({"dump", "t.db"}).code, 3);
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::tampered_run_test

@@ -17,10 +17,9 @@
 #include <string>
 #include <vector>
 
-using namespace grainsweep::test;
-using nlohmann::json;
+namespace grainsweep::tests::terminal_test {
 
-namespace {
+using nlohmann::json;
 
 namespace fs = std::filesystem;
 
@@ -88,8 +87,6 @@ std::size_t widest_line(const std::string& text) {
     for (std::string line; std::getline(stream, line);) widest = std::max(widest, width_of(line));
     return widest;
 }
-
-}  // namespace
 
 TEST_F(Terminal, NoLineOfTextIsWiderThan80Or100Columns) {
     for (const auto& command : commands_of_text()) {
@@ -245,3 +242,5 @@ TEST_F(Terminal, ThePageGoesToStandardOutput) {
     EXPECT_TRUE(page.out.starts_with("<!doctype html>"));
     EXPECT_FALSE(fs::exists(folder / "-"));
 }
+
+}  // namespace grainsweep::tests::terminal_test

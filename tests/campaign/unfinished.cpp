@@ -8,12 +8,11 @@
 #include <string>
 #include <vector>
 
-using namespace grainsweep::test;
+namespace grainsweep::tests::unfinished_test {
+
 using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
-
-namespace {
 
 std::string with_design(const std::string& design, const std::string& more = "") {
     return R"({"campaign": "c", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]},
@@ -177,4 +176,4 @@ TEST_F(Campaigns, AWordOfSqlIsNoName) {
     EXPECT_FALSE(std::filesystem::exists(folder / "Select.db"));
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::unfinished_test

@@ -14,9 +14,7 @@
 #include <thread>
 #include <vector>
 
-using namespace grainsweep::test;
-
-namespace {
+namespace grainsweep::tests::verify_test {
 
 std::string config(int points, const std::string& wait = "0") {
     return R"({"campaign": "c", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}], "fixed":
@@ -95,8 +93,6 @@ TEST_F(Damaged, WhatIsReadableIsCopiedOutByTheAdvisedCommand) {
     EXPECT_EQ(run({"verify", "copy.db"}).code, 0);
     EXPECT_TRUE(run({"dump", "copy.db"}).out == dump);
 }
-
-}  // namespace
 
 TEST_F(Damaged, ANumberIsFoundNamedAndAskedAgain) {
     EXPECT_EQ(run({"verify", "c.db"}).code, 0);
@@ -228,3 +224,5 @@ TEST(AFullDisk, ADatabaseIsNotItsOwnFolderOfArtefacts) {
     EXPECT_TRUE(std::filesystem::is_directory(folder / "x.artefacts.artefacts"));
     EXPECT_EQ(run_program({"verify", "x.artefacts"}, folder.path()).code, 0);
 }
+
+}  // namespace grainsweep::tests::verify_test

@@ -17,10 +17,9 @@
 #include "tests/support/browser.hpp"
 #include "tests/support/process.hpp"
 
-using namespace grainsweep::test;
-using nlohmann::json;
+namespace grainsweep::tests::watch_test {
 
-namespace {
+using nlohmann::json;
 
 const char* cell = R"({"campaign": "c", "scene": "tpms_discharge", "factors": [{"name": "cohesion", "levels": [0]}],
   "fixed": {"edge": 8, "shell": 2, "gravity": 122.6, "end_time": 0.5}, "design": {"kind": "lattice"}})";
@@ -49,8 +48,6 @@ json watched(const char* config, const char* frames, const Folder& folder) {
     EXPECT_GT(told.at("turned"), 100) << told;
     return told;
 }
-
-}  // namespace
 
 TEST(Watch, ACellIsPlayedInTheBrowser) {
     const Folder folder;
@@ -189,3 +186,5 @@ TEST(Watch, FilmsOfAReportPlayBesideTheirCase) {
     EXPECT_EQ(other.document.find("<canvas class=\"watch-canvas\""), std::string::npos);
     EXPECT_THAT(other.console, testing::IsEmpty());
 }
+
+}  // namespace grainsweep::tests::watch_test

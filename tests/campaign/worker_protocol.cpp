@@ -8,11 +8,10 @@
 #include <string>
 #include <vector>
 
-using namespace grainsweep::test;
+namespace grainsweep::tests::worker_protocol_test {
+
 using nlohmann::json;
 using testing::HasSubstr;
-
-namespace {
 
 const char* completed = "SELECT count(*) FROM scripted WHERE outcome = 'completed'";
 
@@ -220,4 +219,4 @@ TEST(WorkerProtocol, GarbageOnAWorkersInputEndsItWithASentence) {
     }
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::worker_protocol_test

@@ -15,12 +15,11 @@
 #include <thread>
 #include <vector>
 
-using namespace grainsweep::test;
-using grainsweep::stats::Stream;
-using nlohmann::json;
-using testing::HasSubstr;
+namespace grainsweep::tests::workers_on_hosts_test {
 
-namespace {
+using nlohmann::json;
+using stats::Stream;
+using testing::HasSubstr;
 
 json hosted_config(int points, double seconds) {
     return {{"campaign", "hosted"},
@@ -284,4 +283,4 @@ TEST(Hosts, WhatHasNoEffectIsRefused) {
     EXPECT_THAT(ended.err, HasSubstr("$.execution.workers_per_host"));
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::workers_on_hosts_test

@@ -9,9 +9,7 @@
 #include <string>
 #include <vector>
 
-using namespace grainsweep::test;
-
-namespace {
+namespace grainsweep::tests::wrong_questions_test {
 
 struct Wrong {
     std::string what, text;
@@ -94,4 +92,4 @@ TEST(WrongArguments, ExitWithTwo) {
     EXPECT_EQ(run_program({"--version"}, folder.path()).code, 0);
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::wrong_questions_test

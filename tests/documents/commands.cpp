@@ -13,12 +13,9 @@
 #include <sstream>
 #include <string_view>
 
-using namespace grainsweep::test;
-using grainsweep::tests::executable;
-using grainsweep::tests::source;
-using nlohmann::json;
+namespace grainsweep::tests::commands_test {
 
-namespace {
+using nlohmann::json;
 
 namespace fs = std::filesystem;
 
@@ -272,4 +269,4 @@ TEST(Options, InTheDocumentsExist) {
     }
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::commands_test

@@ -6,10 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-using namespace grainsweep::test;
-using nlohmann::json;
+namespace grainsweep::tests::keys_test {
 
-namespace {
+using nlohmann::json;
 
 using Keys = std::set<std::string>;  // "seed", "design.points", "factors.name"
 
@@ -62,4 +61,4 @@ TEST(CampaignFilePage, ShowsEveryKeyOfTheSchemaAndNoOther) {
     for (const auto& key : shown) EXPECT_TRUE(known.contains(key)) << "the schema has no key " << key;
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::keys_test

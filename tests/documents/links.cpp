@@ -8,10 +8,7 @@
 #include <regex>
 #include <set>
 
-using namespace grainsweep::test;
-using grainsweep::tests::source;
-
-namespace {
+namespace grainsweep::tests::links_test {
 
 namespace fs = std::filesystem;
 
@@ -97,4 +94,4 @@ TEST(Documents, SayThingsInTheFieldsTerms) {
     }
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::links_test

@@ -12,7 +12,7 @@
 #include <regex>
 #include <sstream>
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 namespace fs = std::filesystem;
 
@@ -162,4 +162,4 @@ std::vector<std::string> options_of(const std::string& command) {
     return options;
 }
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 struct Block {
     std::string language;
@@ -61,4 +61,4 @@ void PrintTo(const Page& page, std::ostream* stream);
 /// Options that `grainsweep COMMAND --help` lists, with their dashes; an empty command: those of the program.
 [[nodiscard]] std::vector<std::string> options_of(const std::string& command);
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

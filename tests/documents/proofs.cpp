@@ -9,10 +9,7 @@
 #include <regex>
 #include <set>
 
-using namespace grainsweep::test;
-using grainsweep::tests::source;
-
-namespace {
+namespace grainsweep::tests::proofs_test {
 
 namespace fs = std::filesystem;
 
@@ -86,4 +83,4 @@ TEST(Proofs, EveryLineOfTheTrustTableNamesATestOrProgram) {
     EXPECT_GE(rows, 15U);
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::proofs_test

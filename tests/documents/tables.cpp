@@ -17,10 +17,9 @@
 #include <sstream>
 #include <stdexcept>
 
-using namespace grainsweep::test;
-using nlohmann::ordered_json;
+namespace grainsweep::tests::tables_test {
 
-namespace {
+using nlohmann::ordered_json;
 
 ordered_json catalogue(std::vector<std::string> arguments) {
     arguments.insert(arguments.end(), {"--format", "json"});
@@ -302,4 +301,4 @@ TEST(Tables, SuffixesOfColumnsAreThoseOfAView) {
         EXPECT_NE(text_of_page.find(suffix), std::string::npos) << suffix;
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::tables_test

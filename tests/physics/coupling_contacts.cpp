@@ -8,11 +8,9 @@
 #include <algorithm>
 #include <cmath>
 
-using namespace grainsweep;
-using namespace grainsweep::tests;
-using flow::Boussinesq;
+namespace grainsweep::tests::coupling_contacts_test {
 
-namespace {
+using flow::Boussinesq;
 
 // Two spheres flying at each other through almost no fluid; what they do to it is not looked at.
 struct Collision {
@@ -50,8 +48,6 @@ Collision collide(double restitution, double speed, double offset, double fricti
     found.after_j = cloud.velocity[1];
     return found;
 }
-
-}  // namespace
 
 // Head-on in vacuum: v' = -e v, whatever the speed; momentum untouched.
 TEST(SpringContacts, ReturnTheRestitutionOfTheirLaw) {
@@ -127,7 +123,7 @@ TEST(SpringContacts, TurnWithTheShearBesideAWall) {
 TEST(SpringContacts, AParticlePressedToAWallRestsThere) {
     const Sphere sphere{3.49, 3.1e-4, 18, 1.09e8, 1};
     const double r = sphere.radius();
-    const Setting setting{cube(6), closed, sphere, 1e-5, 1};
+    const BoxCase setting{cube(6), closed, sphere, 1e-5, 1};
     Cloud cloud;
     cloud.position = {{0, 0.5 - 1.02 * r, 0}};
     cloud.velocity = {{}};
@@ -152,7 +148,7 @@ TEST(ProjectedContacts, WhatRestsOnAWallGivesTheFluidNothing) {
     const Sphere sphere{3.49, 3.1e-4, 18, 1.09e8, 1};  // tau = 6.9e-5
     const double r = sphere.radius();
     for (const double dt : {5e-6, 1e-4}) {
-        const Setting setting{cube(6), closed, sphere, dt, 2};
+        const BoxCase setting{cube(6), closed, sphere, dt, 2};
         Cloud cloud;
         cloud.position = {{0, 0.5 - 1.02 * r, 0}, {0.2, 0.5 - 1.5 * r, 0.2}};
         cloud.velocity = {{}, {}};
@@ -170,7 +166,7 @@ TEST(ProjectedContacts, PressACloudToAWallAsSpringsDo) {
     const Sphere sphere{3.49, 3.1e-4, 18, 1.09e6, 1};
     const double r = sphere.radius();
     const std::size_t particles = 60;
-    Setting setting{cube(6), closed, sphere, 2e-4, particles};
+    BoxCase setting{cube(6), closed, sphere, 2e-4, particles};
     setting.friction = 0;
     const auto cloud = random_cloud(particles, box(closed, r), stats::Stream(6, 1));
     const auto pressed = [&]<class Interaction>(Interaction) {
@@ -196,3 +192,5 @@ TEST(ProjectedContacts, PressACloudToAWallAsSpringsDo) {
     EXPECT_GT(hard, 0.5 - 3 * r);
     EXPECT_NEAR(soft, hard, 0.3 * r);
 }
+
+}  // namespace grainsweep::tests::coupling_contacts_test

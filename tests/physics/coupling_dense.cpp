@@ -9,11 +9,9 @@
 #include <algorithm>
 #include <cmath>
 
-using namespace grainsweep;
-using namespace grainsweep::tests;
-using flow::Boussinesq;
+namespace grainsweep::tests::coupling_dense_test {
 
-namespace {
+using flow::Boussinesq;
 
 template <class Together>
 double fluid_momentum(const Together& together, std::size_t d, int n) {
@@ -24,8 +22,6 @@ double fluid_momentum(const Together& together, std::size_t d, int n) {
             for (int i = 1; i <= n; ++i) sum += together.fluid_flux(d, static_cast<std::size_t>(shape.index(i, j, k)));
     return sum / (n * n * n);
 }
-
-}  // namespace
 
 // phi_p(new) - phi_p(old) = -dt div j in every cell, whatever the particles do: across cells, along walls, over
 // periodic sides, on clustered grids, spread or not; and the total is the particles' volume.
@@ -102,7 +98,7 @@ void expect_momentum_conserved(double fraction_of_close) {
     const int n = 6;
     const Sphere sphere{2.65, 4e-4, 18, 1e7, 1};
     const auto particles = static_cast<std::size_t>(fraction_of_close / sphere.volume());
-    const Setting setting{cube(n), endless, sphere, 2e-5, particles};
+    const BoxCase setting{cube(n), endless, sphere, 2e-5, particles};
     const flow::Vibration vibration{1e4, 0.4};
     auto together =
         setting.together<Interaction>(vibration, random_cloud(particles, box(endless, 0), stats::Stream(1, 1)));
@@ -137,7 +133,7 @@ TEST(DenseSuspension, BecomesTwoWayWhenItsVolumeVanishes) {
     const auto distance = [&](double stokes, double xi) {
         const Sphere sphere{xi, stokes, 18, 5e7 / xi, 1};
         const std::size_t particles = 300;
-        const Setting setting{cube(n), closed, sphere, 2e-5, particles};
+        const BoxCase setting{cube(n), closed, sphere, 2e-5, particles};
         const flow::Vibration vibration{1e4, 0};
         const Walls around = box(closed, sphere.radius());
         const auto cloud = random_cloud(particles, around, stats::Stream(2, 1));
@@ -183,7 +179,7 @@ TEST(DenseSuspension, AnIdleLawChangesNoBit) {
                 cloud.position.push_back({0.2 * i - 0.3, 0.2 * j - 0.3, 0.2 * k - 0.3});
                 cloud.velocity.push_back({});
             }
-    Setting setting{cube(8), closed, sphere, 1e-5, particles};
+    BoxCase setting{cube(8), closed, sphere, 1e-5, particles};
     setting.kernel_width = 0.06;
     const auto state = [&]<class Interaction>(Interaction) {
         auto together = setting.together<Interaction>(vibration, cloud);
@@ -201,7 +197,7 @@ TEST(DenseSuspension, AnIdleLawChangesNoBit) {
 TEST(SolidsPressure, KeepsThePackingLimit) {
     const Sphere sphere{2.65, 4e-4, 18, 1e6, 1};
     const std::size_t particles = static_cast<std::size_t>(0.12 / sphere.volume());
-    const Setting setting{cube(6), closed, sphere, 2e-5, particles};
+    const BoxCase setting{cube(6), closed, sphere, 2e-5, particles};
     const stats::Stream random(8, 1);
     Cloud cloud;
     for (std::uint64_t p = 0; p < particles; ++p) {
@@ -234,7 +230,7 @@ TEST(SolidsPressure, SpreadsADenseLayer) {
         cloud.velocity.push_back({});
     }
     const auto width = [&](double theta) {
-        Setting setting{cube(8), closed, sphere, 1e-4, particles};
+        BoxCase setting{cube(8), closed, sphere, 1e-4, particles};
         setting.granular_temperature = theta;
         auto together = setting.together<Ddpm>({}, cloud);
         for (int s = 0; s < 40; ++s) together.step();
@@ -249,7 +245,7 @@ template <class Interaction>
 std::vector<std::byte> dense_state_after(int steps, int cut) {
     const Sphere sphere{1.65, 4e-4, 18, 1e7, 1};
     const std::size_t particles = 150;
-    const Setting setting{cube(6), closed, sphere, 2e-5, particles};
+    const BoxCase setting{cube(6), closed, sphere, 2e-5, particles};
     const auto make = [&] {
         Boussinesq heat;
         heat.sides[2] = {flow::Isothermal{-0.5}, flow::Isothermal{0.5}};
@@ -283,3 +279,5 @@ TEST(DenseSuspension, ContinuesBitForBitFromASavedState) {
     EXPECT_EQ(dense_state_after<SpringContacts>(12, 0), dense_state_after<SpringContacts>(12, 7));
     EXPECT_EQ(dense_state_after<ProjectedContacts>(12, 0), dense_state_after<ProjectedContacts>(12, 7));
 }
+
+}  // namespace grainsweep::tests::coupling_dense_test

@@ -10,16 +10,12 @@
 #include <cstdio>
 #include <numbers>
 
-using namespace grainsweep;
-using namespace grainsweep::tests;
-using flow::Boussinesq;
+namespace grainsweep::tests::coupling_two_way_test {
 
-namespace {
+using flow::Boussinesq;
 
 template <class Level, class Heat = flow::NoHeat>
 using Together = Suspension<Heat, Level, Trilinear, SchillerNaumann>;
-
-}  // namespace
 
 // Periodic box, no other force: fluid momentum after step n plus the particles' before it (their inertia is handed
 // over one step later) equals the impulse of the vibrational buoyancy, to round-off at every step.
@@ -246,3 +242,5 @@ TEST(Suspension, ContinuesBitForBitFromASavedState) {
     EXPECT_EQ(state_after<TwoWay<ForceForm>>(12, 0), state_after<TwoWay<ForceForm>>(12, 7));
     EXPECT_EQ(state_after<TwoWay<EquationNine>>(12, 0), state_after<TwoWay<EquationNine>>(12, 7));
 }
+
+}  // namespace grainsweep::tests::coupling_two_way_test

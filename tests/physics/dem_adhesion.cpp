@@ -13,13 +13,12 @@
 #include <cmath>
 #include <numbers>
 
-using namespace grainsweep;
+namespace grainsweep::tests::dem_adhesion_test {
+
 using dem::CohesionLaw;
 using dem::Method;
 using dem::Vec3;
 using std::numbers::pi;
-
-namespace {
 
 constexpr double radius = 15e-6;
 
@@ -101,8 +100,6 @@ double rebound(const dem::Material& material, double speed, Method::Precision pr
     EXPECT_EQ(engine->fault(), "");
     return 0;
 }
-
-}  // namespace
 
 TEST(Jkr, HasTheRadiusAndForceOfTheLargestRoot) {
     for (const double w : {1e-6, 1e-3, 0.1})
@@ -249,12 +246,12 @@ TEST(Adhesion, RestsWhereTheForceVanishes) {
 TEST(Adhesion, ManySpheresAsPlainly) {
     for (const auto law : {CohesionLaw::jkr, CohesionLaw::dmt})
         for (const auto rolling : {dem::RollingLaw::epsd, dem::RollingLaw::cdt}) {
-            dem::Setup s = test::boxed_lattice(4, 0.3, 0.25, 15);
+            dem::Setup s = tests::boxed_lattice(4, 0.3, 0.25, 15);
             s.material.cohesion_law = law;
             s.material.surface_energy = 2;
             s.material.rolling_friction = 0.1;
             s.material.rolling_law = rolling;
-            test::PlainDem plain(s);
+            tests::PlainDem plain(s);
             plain.run(400);
             const auto engine = dem::make_engine(s, {});
             engine->run(250);
@@ -281,7 +278,7 @@ TEST(Adhesion, ManySpheresAsPlainly) {
 // of all, with what contacts hold, only falls when two meet.
 TEST(Adhesion, TheEngineFindsNoEnergyFromNowhere) {
     for (const auto precision : both) {
-        dem::Setup s = test::thrown_lattice(5, 0.3, 0.25, 16);
+        dem::Setup s = tests::thrown_lattice(5, 0.3, 0.25, 16);
         s.material.cohesion_law = CohesionLaw::jkr;
         s.material.surface_energy = 2;
         s.material.restitution = 1;
@@ -295,3 +292,5 @@ TEST(Adhesion, TheEngineFindsNoEnergyFromNowhere) {
             << "some last beyond touch";
     }
 }
+
+}  // namespace grainsweep::tests::dem_adhesion_test

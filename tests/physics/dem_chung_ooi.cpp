@@ -18,13 +18,12 @@
 #include <numbers>
 #include <string>
 
-using namespace grainsweep;
+namespace grainsweep::tests::dem_chung_ooi_test {
+
 using dem::Method;
 using dem::Vec3;
 using Precision = dem::Method::Precision;
 using geometry::operator+;
-
-namespace {
 
 constexpr double steps_per_contact = 2000;
 
@@ -165,8 +164,6 @@ Sliding after_sliding(double velocity, double turn, double change) {
 
 class DemChungOoi : public testing::TestWithParam<Precision> {};
 
-}  // namespace
-
 TEST_P(DemChungOoi, ElasticNormalImpactOfTwoSpheres) {
     Score time("1 two spheres, elastic", "duration, peak force", GetParam(), 6e-4);
     for (const double v : {2.0, 20.0}) {
@@ -270,8 +267,6 @@ TEST_P(DemChungOoi, NormalImpactsOfASpinningSphere) {
     }
 }
 
-namespace {
-
 /// Spinning spheres that meet head-on and slide throughout: both feel J = mu (1 + e) m* v.
 void spinning_pair(Score& score, double second_radius, Precision precision) {
     constexpr double mu = 0.3, approach = 0.4;
@@ -288,8 +283,6 @@ void spinning_pair(Score& score, double second_radius, Precision precision) {
     }
 }
 
-}  // namespace
-
 TEST_P(DemChungOoi, SpinningEqualSpheres) {
     Score score("7 spinning equal spheres", "v_t', R w' of both", GetParam(), 2e-3);
     spinning_pair(score, 1e-5, GetParam());
@@ -304,3 +297,5 @@ INSTANTIATE_TEST_SUITE_P(Engines, DemChungOoi, testing::Values(Precision::double
                          [](const auto& engine) {
                              return engine.param == Precision::mixed ? std::string("Mixed") : std::string("Double");
                          });
+
+}  // namespace grainsweep::tests::dem_chung_ooi_test

@@ -9,10 +9,7 @@
 
 #include <cmath>
 
-using namespace grainsweep;
-using tests::state_of;
-
-namespace {
+namespace grainsweep::tests::dem_closed_forms_test {
 
 constexpr double radius = 0.001;
 
@@ -43,8 +40,6 @@ Rebound rebound(const dem::Setup& setup) {
         if (overlap <= 0 && s.velocity[0][2] > 0) return {s.velocity[0], s.angular_velocity[0], r.duration, r.deepest};
     }
 }
-
-}  // namespace
 
 // Elastic impact on a plane: duration 2.868 (m^2/(R E*^2 v))^(1/5), depth (15 m v^2/(16 sqrt(R) E*))^(2/5). The step
 // resolves the contact into 2000, so the duration is known to one part in a thousand.
@@ -186,3 +181,5 @@ TEST(DemClosedForms, IntegrationIsOfSecondOrder) {
         last = error;
     }
 }
+
+}  // namespace grainsweep::tests::dem_closed_forms_test

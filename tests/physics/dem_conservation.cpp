@@ -8,11 +8,9 @@
 #include <algorithm>
 #include <cmath>
 
-using namespace grainsweep;
-using namespace grainsweep::geometry;
-using tests::state_of;
+namespace grainsweep::tests::dem_conservation_test {
 
-namespace {
+using namespace geometry;
 
 /// A dense cluster falling into itself: no walls, all fly towards the middle.
 dem::Setup imploding_cluster(double ratio) {
@@ -45,8 +43,6 @@ Momenta momenta(const dem::Setup& setup, const dem::State& s) {
     }
     return total;
 }
-
-}  // namespace
 
 // To rounding: about 2000 steps of contacts, each adding equal and opposite forces and torques about one point.
 TEST(DemConservation, MomentumAndAngularMomentumOfAFreeCluster) {
@@ -157,3 +153,5 @@ TEST(DemConservation, PeriodicFacesJoinAndOpenFacesRemove) {
     engine->run(10);
     EXPECT_EQ(engine->fault(), "");
 }
+
+}  // namespace grainsweep::tests::dem_conservation_test

@@ -18,9 +18,7 @@
 #include <numbers>
 #include <vector>
 
-using namespace grainsweep;
-
-namespace {
+namespace grainsweep::tests::dem_granular_test {
 
 constexpr double d = 2e-3, gravity = 9.81;
 
@@ -32,7 +30,7 @@ dem::Method mixed() {
 
 dem::Setup soft_powder() {
     dem::Setup s;
-    s.material = test::steel_like();
+    s.material = tests::steel_like();
     s.material.youngs_modulus = 2e6;  // overlaps below 1 %: flow does not feel it
     s.material.friction = 0.5;
     s.gravity = {0, 0, -gravity};
@@ -148,8 +146,6 @@ struct Mean {
     [[nodiscard]] double error() const { return std::sqrt((square - sum * sum / n) / (n - 1) / n); }
 };
 
-}  // namespace
-
 TEST(DemGranular, AnOrificeDischargesAsBeverlooFound) {
     std::vector<double> holes, roots;
     const Bed bed = deep_bed();
@@ -198,13 +194,13 @@ TEST(DemGranular, AChuteFlowsAsInLiggghts) {
     constexpr std::array contacts = {2.6244, 2.7584, 2.7098, 2.7033};               // per mobile particle
     Mean energy, velocity, coordination, their_energy, their_velocity, their_coordination;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-        const dem::Setup setup = test::small_chute(seed);
+        const dem::Setup setup = tests::small_chute(seed);
         const auto engine = dem::make_engine(setup, mixed());
-        engine->run(std::llround(test::small_chute_time / setup.time_step));
+        engine->run(std::llround(tests::small_chute_time / setup.time_step));
         EXPECT_EQ(engine->fault(), "");
         dem::State state;
         engine->state(state);
-        const auto figures = test::figures_of(state, setup);
+        const auto figures = tests::figures_of(state, setup);
         energy.add(figures.kinetic_energy), velocity.add(figures.velocity_x), coordination.add(figures.coordination);
         their_energy.add(energies[seed - 1]), their_velocity.add(velocities[seed - 1]);
         their_coordination.add(contacts[seed - 1]);
@@ -217,3 +213,5 @@ TEST(DemGranular, AChuteFlowsAsInLiggghts) {
     equal(velocity, their_velocity, "mean velocity");
     equal(coordination, their_coordination, "coordination");
 }
+
+}  // namespace grainsweep::tests::dem_granular_test

@@ -12,11 +12,10 @@
 #include <filesystem>
 #include <numbers>
 
-using namespace grainsweep;
+namespace grainsweep::tests::dem_rolling_test {
+
 using dem::Method;
 using dem::Vec3;
-
-namespace {
 
 constexpr double radius = 1e-3;
 constexpr double gravity = 9.81;
@@ -99,8 +98,6 @@ double acceleration(const dem::Setup& setup, Method::Precision precision, std::i
     EXPECT_EQ(engine->fault(), "");
     return (tests::state_of(*engine).velocity[0][0] - before) / (setup.time_step * static_cast<double>(last - first));
 }
-
-}  // namespace
 
 // Same formulas and time step: a pair differs by rounding, which a contact that yields does not multiply; in mixed
 // precision the forces' roundings of 6e-8 add up over thousands of steps. At a plane LIGGGHTS turns a spring by (R -
@@ -265,3 +262,5 @@ TEST(DemRolling, AConstantTorqueIsDirectedByTheWholeRotation) {
         EXPECT_NEAR(contacts[0].rolling_moment[0] / (0.3 * elastic * effective), 0, tolerance);
     }
 }
+
+}  // namespace grainsweep::tests::dem_rolling_test

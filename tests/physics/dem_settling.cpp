@@ -20,9 +20,7 @@
 #include <sstream>
 #include <utility>
 
-using namespace grainsweep;
-
-namespace {
+namespace grainsweep::tests::dem_settling_test {
 
 constexpr double diameter = 0.003;
 constexpr double reference_skin = 0.2 * diameter;
@@ -77,8 +75,6 @@ std::vector<double> distances(const dem::State& state, const tests::Table& table
     return result;
 }
 
-}  // namespace
-
 TEST(DemSettling, FollowsLiggghtsParticleByParticle) {
     const auto setup = mini_scene();
     const auto table = tests::read_table(tests::reference("spreading/mini_settle.csv"));
@@ -110,3 +106,5 @@ TEST(DemSettling, ForgettingAtSeparationMattersToFew) {
     EXPECT_LT(std::ranges::count_if(d, [](double x) { return x > 1e-12; }), 20);
     EXPECT_LT(*std::ranges::max_element(d), 1e-4);
 }
+
+}  // namespace grainsweep::tests::dem_settling_test

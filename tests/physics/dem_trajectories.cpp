@@ -11,10 +11,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-using namespace grainsweep;
-using nlohmann::json;
+namespace grainsweep::tests::dem_trajectories_test {
 
-namespace {
+using nlohmann::json;
 
 /// Largest differences over all reported steps: positions over the diameter, velocities and R w over the largest
 /// speed of the case.
@@ -67,8 +66,6 @@ json cases() {
     return json::parse(in);
 }
 
-}  // namespace
-
 // Rounding alone: an independent program in another order of operations differs by 6e-15 from the reference.
 TEST(DemTrajectories, EqualLiggghtsToRounding) {
     int seen = 0;
@@ -114,3 +111,5 @@ TEST(DemTrajectories, BladeTouchesAtItsClosestPoint) {
         }
     }
 }
+
+}  // namespace grainsweep::tests::dem_trajectories_test

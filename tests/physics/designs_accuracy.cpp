@@ -11,10 +11,7 @@
 #include <string>
 #include <vector>
 
-using namespace grainsweep;
-using namespace grainsweep::testing;
-
-namespace {
+namespace grainsweep::tests::designs_accuracy_test {
 
 struct Errors {
     double mean = 0, sd = 0, kurtosis = 0;
@@ -35,8 +32,6 @@ Errors errors_of(const std::string& kind, std::int64_t n) {
     }
     return {std::sqrt(squares.mean), std::sqrt(squares.sd), std::sqrt(squares.kurtosis)};
 }
-
-}  // namespace
 
 TEST(DesignsAccuracy, RandomisedDesignsErrAsMuchAsInTheStudy) {
     const ReferenceTable table("designs/convergence_rmse.csv");
@@ -66,3 +61,5 @@ TEST(DesignsAccuracy, RandomisedDesignsErrAsMuchAsInTheStudy) {
     }
     EXPECT_EQ(compared, 8);
 }
+
+}  // namespace grainsweep::tests::designs_accuracy_test

@@ -9,12 +9,7 @@
 
 #include <sstream>
 
-using namespace grainsweep;
-using grainsweep::testing::ask_design;
-using grainsweep::testing::Options;
-using grainsweep::testing::ReferenceTable;
-
-namespace {
+namespace grainsweep::tests::designs_reference_test {
 
 /// Compares a design that starts at `first` with a table "index,x1,...,xd". Returns the numbers compared.
 std::size_t expect_same_bits(const ReferenceTable& table, const std::string& kind, const Options& options) {
@@ -26,8 +21,6 @@ std::size_t expect_same_bits(const ReferenceTable& table, const std::string& kin
             EXPECT_EQ(set.point(p)[j], table.number(p, j + 1)) << kind << " point " << p << " factor " << j + 1;
     return compared;
 }
-
-}  // namespace
 
 TEST(DesignsReference, PlainHalton) {
     const ReferenceTable table("designs/halton_plain.csv");
@@ -122,3 +115,5 @@ TEST(DesignsReference, Sobol) {
     const ReferenceTable table("designs/sobol_joekuo_64x8.csv");
     EXPECT_EQ(expect_same_bits(table, "sobol", {{"points", 64}, {"scramble", "none"}}), 512U);
 }
+
+}  // namespace grainsweep::tests::designs_reference_test

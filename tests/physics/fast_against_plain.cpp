@@ -11,64 +11,61 @@
 #include "tests/support/granular_scenes.hpp"
 #include "tests/support/plain_dem.hpp"
 
-using namespace grainsweep;
+namespace grainsweep::tests::fast_against_plain_test {
+
 using dem::Method;
 
-using test::path_name;
-using test::paths;
-using test::plain_state;
-
 TEST(FastAgainstPlain, EqualSpheresThrownTogether) {
-    test::compare_with_plain({"periodic", test::thrown_lattice(5, 1.0, 0, 1), 600});
-    test::compare_with_plain({"boxed", test::boxed_lattice(5, 0.5, 0, 2), 800});
+    tests::compare_with_plain({"periodic", tests::thrown_lattice(5, 1.0, 0, 1), 600});
+    tests::compare_with_plain({"boxed", tests::boxed_lattice(5, 0.5, 0, 2), 800});
 }
 
 TEST(FastAgainstPlain, UnequalSpheres) {
-    test::compare_with_plain({"unequal_periodic", test::thrown_lattice(5, 1.0, 0.3, 3), 600});
-    test::compare_with_plain({"unequal_boxed", test::boxed_lattice(5, 0.5, 0.25, 4), 800});
+    tests::compare_with_plain({"unequal_periodic", tests::thrown_lattice(5, 1.0, 0.3, 3), 600});
+    tests::compare_with_plain({"unequal_boxed", tests::boxed_lattice(5, 0.5, 0.25, 4), 800});
 }
 
 TEST(FastAgainstPlain, FrozenSpheresAreWallsOfSpheres) {
     for (const double spread : {0.0, 0.2}) {
-        dem::Setup s = test::thrown_lattice(5, 1.0, spread, 5);
+        dem::Setup s = tests::thrown_lattice(5, 1.0, spread, 5);
         for (std::size_t i = 0; i < 25; ++i) {
             s.spheres[i].mobile = false;
             s.spheres[i].velocity = s.spheres[i].angular_velocity = {};
         }
         s.gravity = {1, 0, -9.81};
-        test::compare_with_plain({spread == 0 ? "frozen" : "frozen_unequal", s, 600});
+        tests::compare_with_plain({spread == 0 ? "frozen" : "frozen_unequal", s, 600});
     }
 }
 
 TEST(FastAgainstPlain, WithoutFriction) {
-    dem::Setup s = test::boxed_lattice(5, 0.5, 0, 6);
+    dem::Setup s = tests::boxed_lattice(5, 0.5, 0, 6);
     s.material.friction = 0;
-    test::compare_with_plain({"frictionless", s, 800});
-    s = test::boxed_lattice(4, 0.5, 0.2, 6);
+    tests::compare_with_plain({"frictionless", s, 800});
+    s = tests::boxed_lattice(4, 0.5, 0.2, 6);
     s.material.friction = 0;
-    test::compare_with_plain({"frictionless_unequal", s, 800});
-    s = test::boxed_lattice(5, 0.4, 0, 12);  // some touch at the start: no dashpot may act on them
+    tests::compare_with_plain({"frictionless_unequal", s, 800});
+    s = tests::boxed_lattice(5, 0.4, 0, 12);  // some touch at the start: no dashpot may act on them
     s.material.friction = 0;
     s.material.cohesion = 2e5;
-    test::compare_with_plain({"frictionless_cohesive", s, 600});
+    tests::compare_with_plain({"frictionless_cohesive", s, 600});
 }
 
 TEST(FastAgainstPlain, EveryCohesionAndLimit) {
     for (const auto area : {dem::CohesionLaw::sjkr, dem::CohesionLaw::sjkr2, dem::CohesionLaw::paper})
         for (const auto limit : {dem::FrictionLimit::contact, dem::FrictionLimit::net})
             for (const double spread : {0.0, 0.2}) {
-                dem::Setup s = test::boxed_lattice(4, 0.3, spread, 8);
+                dem::Setup s = tests::boxed_lattice(4, 0.3, spread, 8);
                 s.material.cohesion = 2e5;
                 s.material.cohesion_law = area;
                 s.material.friction_limit = limit;
-                test::compare_with_plain({"cohesive", s, 600});
+                tests::compare_with_plain({"cohesive", s, 600});
             }
 }
 
 TEST(FastAgainstPlain, BladeMovingAndVibrating) {
     for (const double round : {0.0, 0.4e-3})
         for (const double spread : {0.0, 0.2}) {
-            dem::Setup s = test::boxed_lattice(5, 0.2, spread, 9);
+            dem::Setup s = tests::boxed_lattice(5, 0.2, spread, 9);
             dem::Blade b;
             b.front = s.domain.low[0] + 2.95e-3;  // just outside the lattice
             b.thickness = 2e-3;
@@ -80,7 +77,7 @@ TEST(FastAgainstPlain, BladeMovingAndVibrating) {
             b.edge_radius = round;
             s.walls.erase(s.walls.begin() + 1);  // the plane where the blade comes from
             s.walls.push_back(b);
-            test::compare_with_plain({round == 0 ? "blade_sharp" : "blade_round", s, 500});
+            tests::compare_with_plain({round == 0 ? "blade_sharp" : "blade_round", s, 500});
         }
 }
 
@@ -90,7 +87,7 @@ TEST(FastAgainstPlain, RollingResistance) {
     for (const double spread : {0.0, 0.25})
         for (const double friction : {0.0, 0.4})
             for (const double cohesion : {0.0, 2e5}) {
-                dem::Setup s = test::boxed_lattice(5, 0.4, spread, 12);
+                dem::Setup s = tests::boxed_lattice(5, 0.4, spread, 12);
                 s.material.friction = friction;
                 s.material.rolling_friction = 0.15;
                 s.material.cohesion = cohesion;
@@ -105,18 +102,18 @@ TEST(FastAgainstPlain, RollingResistance) {
                 b.speed = 0.8;
                 s.walls.erase(s.walls.begin() + 1);
                 s.walls.push_back(b);
-                test::compare_with_plain({"rolling", s, 300});
+                tests::compare_with_plain({"rolling", s, 300});
             }
 }
 
 TEST(FastAgainstPlain, AConstantTorqueAgainstRolling) {
     for (const double spread : {0.0, 0.25})
         for (const double cohesion : {0.0, 2e5}) {
-            dem::Setup s = test::boxed_lattice(5, 0.4, spread, 13);
+            dem::Setup s = tests::boxed_lattice(5, 0.4, spread, 13);
             s.material.rolling_friction = 0.2;
             s.material.rolling_law = dem::RollingLaw::cdt;
             s.material.cohesion = cohesion;
-            test::compare_with_plain({"constant_torque", s, 300});
+            tests::compare_with_plain({"constant_torque", s, 300});
         }
 }
 
@@ -126,19 +123,19 @@ TEST(FastAgainstPlain, SurfaceEnergy) {
         for (const auto rolling : {dem::RollingLaw::epsd, dem::RollingLaw::cdt})
             for (const auto limit : {dem::FrictionLimit::contact, dem::FrictionLimit::net})
                 for (const double spread : {0.0, 0.25}) {
-                    dem::Setup s = test::boxed_lattice(4, 0.3, spread, 14);
+                    dem::Setup s = tests::boxed_lattice(4, 0.3, spread, 14);
                     s.material.cohesion_law = law;
                     s.material.surface_energy = 2;
                     s.material.rolling_law = rolling;
                     s.material.rolling_friction = spread > 0 ? 0.1 : 0;
                     s.material.friction_limit = limit;
-                    test::compare_with_plain({law == dem::CohesionLaw::jkr ? "jkr" : "dmt", s, 400});
+                    tests::compare_with_plain({law == dem::CohesionLaw::jkr ? "jkr" : "dmt", s, 400});
                 }
 }
 
 TEST(FastAgainstPlain, NewWallsAndRemovedParticles) {
-    dem::Setup s = test::boxed_lattice(5, 0.5, 0, 10);
-    test::PlainDem plain(s);
+    dem::Setup s = tests::boxed_lattice(5, 0.5, 0, 10);
+    tests::PlainDem plain(s);
     const std::vector<std::int32_t> out{3, 60, 61, 124, 4000};
     std::vector<dem::Wall> fewer(s.walls.begin(), s.walls.begin() + 3);
     plain.run(300);
@@ -161,7 +158,9 @@ TEST(FastAgainstPlain, NewWallsAndRemovedParticles) {
         dem::State state;
         engine->state(state);
         const dem::State expected = plain_state(plain, state);
-        EXPECT_LT(test::position_difference(state, expected, s.domain, 1e-3), 1e-5);
-        EXPECT_LT(test::velocity_difference(state, expected), 1e-4);
+        EXPECT_LT(tests::position_difference(state, expected, s.domain, 1e-3), 1e-5);
+        EXPECT_LT(tests::velocity_difference(state, expected), 1e-4);
     }
 }
+
+}  // namespace grainsweep::tests::fast_against_plain_test

@@ -14,8 +14,7 @@
 #include "tests/support/against_plain.hpp"
 #include "tests/support/granular_beds.hpp"
 
-namespace grainsweep::tests {
-namespace {
+namespace grainsweep::tests::fast_large_beds_test {
 
 using dem::fast::make_mixed_engine;
 
@@ -25,8 +24,8 @@ constexpr double d = 45e-6;  // m
 
 /// 768 spheres that slide in all directions at once: contacts that stay, slip, begin and end.
 dem::Setup small_bed(double spread) {
-    dem::Setup bed = test::settled_bed({.per_side = 8, .layers = 12, .spread = spread, .settle_time = 1e-3});
-    bed = test::tilted(bed, 26);
+    dem::Setup bed = tests::settled_bed({.per_side = 8, .layers = 12, .spread = spread, .settle_time = 1e-3});
+    bed = tests::tilted(bed, 26);
     for (std::size_t i = 0; i < bed.spheres.size(); ++i)
         if (auto& p = bed.spheres[i]; p.mobile) p.velocity[i % 2] += i % 3 == 0 ? 0.02 : -0.01;
     return bed;
@@ -69,10 +68,10 @@ class FastLargeBeds : public testing::TestWithParam<double> {};
 
 TEST_P(FastLargeBeds, ManySmallBedsSideBySideMoveAsOne) {
     const dem::Setup small = small_bed(GetParam());
-    const dem::Setup large = test::replicated(small, along, along);
+    const dem::Setup large = tests::replicated(small, along, along);
     ASSERT_GT(large.spheres.size(), 120'000U) << "as many as leave the caches";
-    for (const auto path : test::paths()) {
-        SCOPED_TRACE(test::path_name(path));
+    for (const auto path : tests::paths()) {
+        SCOPED_TRACE(tests::path_name(path));
         const auto after = [&](const dem::Setup& setup) {
             const auto engine = make_mixed_engine(setup, path);
             engine->run(steps);
@@ -98,8 +97,8 @@ TEST_P(FastLargeBeds, ManySmallBedsSideBySideMoveAsOne) {
 }
 
 TEST_P(FastLargeBeds, SeveralThreadsAndACheckpointKeepEveryBit) {
-    const dem::Setup large = test::replicated(small_bed(GetParam()), along, along);
-    const auto path = test::paths().back();
+    const dem::Setup large = tests::replicated(small_bed(GetParam()), along, along);
+    const auto path = tests::paths().back();
     const auto bytes_of = [](const dem::Engine& engine) {
         std::vector<std::byte> bytes;
         engine.save(bytes);
@@ -123,5 +122,4 @@ TEST_P(FastLargeBeds, SeveralThreadsAndACheckpointKeepEveryBit) {
 INSTANTIATE_TEST_SUITE_P(Sizes, FastLargeBeds, testing::Values(0.0, 0.25),
                          [](const auto& tested) { return tested.param > 0 ? "Unequal" : "Equal"; });
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::fast_large_beds_test

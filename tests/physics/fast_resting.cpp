@@ -12,13 +12,12 @@
 #include "solver/geometry/vector.hpp"
 #include "tests/support/granular_scenes.hpp"
 
-using namespace grainsweep;
-using namespace grainsweep::geometry;
+namespace grainsweep::tests::fast_resting_test {
+
+using namespace geometry;
 using dem::ContactForce;
 using dem::Method;
 using dem::fast::make_mixed_engine;
-
-namespace {
 
 constexpr double d = 1e-3;
 constexpr double slow = 2e-3;  // m/s; a sphere falls through its radius in seven times this, times seven
@@ -33,7 +32,7 @@ std::vector<Method::Path> paths() {
 /// Four layers on a frozen floor inside planes, each sphere in a hollow of the layer below; not quite regular.
 dem::Setup pile(bool cohesive = false, double spread = 0) {
     dem::Setup s;
-    s.material = test::steel_like();
+    s.material = tests::steel_like();
     s.material.friction = 0.5;
     s.material.cohesion = cohesive ? 1e5 : 0;
     s.time_step = 2e-6;
@@ -107,8 +106,6 @@ double at_rest(dem::Engine& engine) {
 }
 
 constexpr std::int64_t settling = 60000;
-
-}  // namespace
 
 TEST(FastResting, APileComesToRestAndCarriesItsWeight) {
     for (const auto path : paths())
@@ -194,7 +191,7 @@ TEST(FastResting, AFallingSphereBouncesAsFromAPileThatIsAdvanced) {
 
 TEST(FastResting, ABridgeWithoutItsSupportFalls) {
     dem::Setup s;
-    s.material = test::steel_like();
+    s.material = tests::steel_like();
     s.material.friction = 0.5;
     s.time_step = 2e-6;
     s.domain = {{-5 * d, -5 * d, -20 * d}, {5 * d, 5 * d, 5 * d}, {}};
@@ -244,7 +241,7 @@ TEST(FastResting, ACheckpointOfPowderAtRestContinuesBitForBit) {
 TEST(FastResting, WhereNoneIsSlowTheLawsAreThePlainOnes) {
     for (const auto path : paths())
         for (const double spread : {0.0, 0.1}) {
-            const dem::Setup setup = test::boxed_lattice(4, 3, spread, 3);
+            const dem::Setup setup = tests::boxed_lattice(4, 3, spread, 3);
             const auto may_rest = make_mixed_engine(setup, path, 0, 1e-9), plain = make_mixed_engine(setup, path);
             may_rest->run(3000), plain->run(3000);
             EXPECT_EQ(may_rest->work().resting_steps, 0);
@@ -265,3 +262,5 @@ TEST(FastResting, ShakenAndWeightlessPowderHasNoRestSpeed) {
     for (const auto& setup : {shaken, weightless, bladed})
         EXPECT_THROW((void)dem::make_engine(setup, method), std::invalid_argument);
 }
+
+}  // namespace grainsweep::tests::fast_resting_test

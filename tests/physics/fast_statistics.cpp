@@ -11,16 +11,14 @@
 #include "tests/support/granular_scenes.hpp"
 #include "tests/support/plain_dem.hpp"
 
-using namespace grainsweep;
-
-namespace {
+namespace grainsweep::tests::fast_statistics_test {
 
 constexpr double diameter = 1e-3;
 constexpr int particles = 180;
 
 dem::Setup falling_bed(std::uint64_t seed) {
     dem::Setup s;
-    s.material = test::steel_like();
+    s.material = tests::steel_like();
     s.material.friction = 0.3;
     s.domain = {{0, 0, -2e-3}, {6e-3, 6e-3, 14e-3}, {true, true, false}};
     s.time_step = 1e-5;
@@ -76,12 +74,10 @@ void expect_equal(const Moments& a, const Moments& b, const char* what) {
     EXPECT_LT(error, 0.03 * a.average()) << what << ": too much scatter to tell anything";
 }
 
-}  // namespace
-
 TEST(FastStatistics, SettledBedsEqualThoseOfDoublePrecision) {
     Moments plain_height, plain_coordination, height, coordination;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-        test::PlainDem plain(falling_bed(seed));
+        tests::PlainDem plain(falling_bed(seed));
         plain.run(9000);
         const Bed b = describe(plain.position());
         plain_height.add(b.height);
@@ -101,3 +97,5 @@ TEST(FastStatistics, SettledBedsEqualThoseOfDoublePrecision) {
     expect_equal(coordination, plain_coordination, "coordination");
     EXPECT_GT(coordination.average(), 3);
 }
+
+}  // namespace grainsweep::tests::fast_statistics_test

@@ -20,10 +20,9 @@
 #include "tests/support/places.hpp"
 #include "tests/support/trajectory_case.hpp"
 
-using namespace grainsweep;
-using nlohmann::json;
+namespace grainsweep::tests::fast_trajectories_test {
 
-namespace {
+using nlohmann::json;
 
 using Rows = std::vector<std::vector<double>>;  // step, t, id, x y z, vx vy vz, omega x y z, force x y z
 
@@ -52,8 +51,6 @@ dem::Setup setup_of(const json& c) {
     }
     return s;
 }
-
-}  // namespace
 
 TEST(FastTrajectories, AgreeWithLiggghts) {
     std::ifstream in(tests::reference("trajectories/cases.json"));
@@ -125,3 +122,5 @@ TEST(FastTrajectories, CohesivePairsRestAtTheirEquilibrium) {
                     1e-6 * low + 2 * (2.05 * 80 + 32) * radius / 4294967296.0);
     }
 }
+
+}  // namespace grainsweep::tests::fast_trajectories_test

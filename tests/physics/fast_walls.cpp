@@ -16,12 +16,9 @@
 #include "tests/support/spheres.hpp"
 #include "tests/support/surfaces.hpp"
 
-using namespace grainsweep;
-using namespace geometry;
-using tests::all_moving_walls;
-using tests::one_sphere;
+namespace grainsweep::tests::fast_walls_test {
 
-namespace {
+using namespace geometry;
 
 constexpr double radius = tests::sphere_at_walls;
 
@@ -69,7 +66,7 @@ struct Crowd {
     Vec3 centre{};
     double half = 0;
 
-    explicit Crowd(double spread) : setup(test::boxed_lattice(5, 0.5, spread, 24)) {
+    explicit Crowd(double spread) : setup(tests::boxed_lattice(5, 0.5, spread, 24)) {
         for (const auto& s : setup.spheres) centre += (1.0 / static_cast<double>(setup.spheres.size())) * s.position;
         for (const auto& s : setup.spheres) half = std::max(half, std::abs(s.position[2] - centre[2]) + s.radius);
     }
@@ -80,11 +77,9 @@ struct Crowd {
     }
 };
 
-}  // namespace
-
 // Single precision rounds each force to 1e-7: a collision sums some hundred of them.
 TEST(FastWalls, LoadsAreTheReaction) {
-    for (const auto path : test::paths())
+    for (const auto path : tests::paths())
         for (const auto& m : all_moving_walls())
             for (const double rolling : {0.0, 0.1}) {
                 SCOPED_TRACE(m.name);
@@ -101,7 +96,7 @@ TEST(FastWalls, LoadsAreTheReaction) {
 // Without friction and damping an impact gives back what it took, up to the work of the wall: the error is that of the
 // integrator, as in double precision.
 TEST(FastWalls, EnergyIsConservedUpToTheWorkOfTheWall) {
-    for (const auto path : test::paths())
+    for (const auto path : tests::paths())
         for (const auto& m : all_moving_walls()) {
             SCOPED_TRACE(m.name);
             auto setup = one_sphere(m.position, m.velocity, {m.wall});
@@ -116,7 +111,7 @@ TEST(FastWalls, EnergyIsConservedUpToTheWorkOfTheWall) {
 
 // An impact on each shape in each motion, as the double engine computes it.
 TEST(FastWalls, EqualTheDoubleEngine) {
-    for (const auto path : test::paths())
+    for (const auto path : tests::paths())
         for (const auto& m : all_moving_walls()) {
             SCOPED_TRACE(m.name);
             auto setup = one_sphere(m.position, m.velocity, {m.wall});
@@ -140,7 +135,7 @@ TEST(FastWalls, CrowdsAmongMovingWallsEqualThePlainLaw) {
         const Crowd crowd(spread);
         const Vec3 &c = crowd.centre, top = c + Vec3{0, 0, crowd.half};
         const auto compare = [&](const std::string& name, const dem::Wall& wall) {
-            test::compare_with_plain({name, crowd.among(wall), 500});
+            tests::compare_with_plain({name, crowd.among(wall), 500});
         };
         const dem::Cylinder drum{.point = c, .axis = {0, 1, 0}, .radius = 1.42 * crowd.half};
         const dem::Cylinder roller{.point = top + Vec3{0, 0, 1.05e-3},
@@ -177,7 +172,7 @@ TEST(FastWalls, AtRestHaveTheLoadsOfARunStepByStep) {
         auto setup = crowd.among({paddle, {dem::Translation{.velocity = {0.1, 0, -0.6}}}, {}});
         setup.walls.push_back({dem::Mesh(tests::surface_of(block)), {}, {.friction = 0.4}});
         setup.material.rolling_friction = spread > 0 ? 0.1 : 0;
-        for (const auto path : test::paths()) {
+        for (const auto path : tests::paths()) {
             const auto at_once = dem::fast::make_mixed_engine(setup, path);
             const auto by_steps = dem::fast::make_mixed_engine(setup, path);
             std::vector<int> loaded(setup.walls.size());
@@ -228,15 +223,15 @@ TEST(FastWalls, CrowdsAmongTrianglesEqualTheDoubleEngine) {
             const auto reference = dem::make_engine(setup, {}), other = dem::make_engine(moved, {});
             reference->run(500), other->run(500);
             const auto expected = tests::state_of(*reference), disturbed = tests::state_of(*other);
-            const double grown = test::velocity_difference(expected, disturbed);
+            const double grown = tests::velocity_difference(expected, disturbed);
             EXPECT_LT(grown, 1e-3);
             const double work = reference->wall_load(5, {}).work;
             EXPECT_NE(work, 0);
-            for (const auto path : test::paths()) {
+            for (const auto path : tests::paths()) {
                 const auto engine = dem::fast::make_mixed_engine(setup, path);
                 engine->run(500);
                 EXPECT_EQ(engine->fault(), "");
-                EXPECT_LT(test::velocity_difference(tests::state_of(*engine), expected), 10 * grown);
+                EXPECT_LT(tests::velocity_difference(tests::state_of(*engine), expected), 10 * grown);
                 std::vector<dem::ContactForce> a, b;
                 engine->contacts(a), reference->contacts(b);
                 EXPECT_EQ(a.size(), b.size());
@@ -245,3 +240,5 @@ TEST(FastWalls, CrowdsAmongTrianglesEqualTheDoubleEngine) {
         }
     }
 }
+
+}  // namespace grainsweep::tests::fast_walls_test

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
-using namespace grainsweep::flow;
+namespace grainsweep::tests::flow_cavities_test {
 
-namespace {
+using namespace flow;
 
 constexpr std::array<Side, 2> slip{FreeSlip{}, FreeSlip{}};
 constexpr std::array<Side, 2> walls{NoSlip{}, NoSlip{}};
@@ -99,8 +99,6 @@ HeatedSquare heated_square(double rayleigh, int n, double clustering, double dt)
     return result;
 }
 
-}  // namespace
-
 // Ghia, Ghia & Shin 1982, doi 10.1016/0021-9991(82)90058-4, table I. The tolerance is theirs: extrapolated from 64
 // and 128 cells this code gives u(0.8516) = 0.2365 at Re = 100 where they print 0.2315, and at Re = 1000 they are
 // up to 0.006 from the spectral solution.
@@ -167,3 +165,5 @@ TEST(HeatedSquare, DeVahlDavis) {
         EXPECT_NEAR(found.v_max, reference.v_max, 0.006 * reference.v_max) << reference.rayleigh;
     }
 }
+
+}  // namespace grainsweep::tests::flow_cavities_test

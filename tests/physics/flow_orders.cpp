@@ -7,9 +7,9 @@
 #include <complex>
 #include <numbers>
 
-using namespace grainsweep::flow;
+namespace grainsweep::tests::flow_orders_test {
 
-namespace {
+using namespace flow;
 
 constexpr double pi = std::numbers::pi;
 
@@ -94,8 +94,6 @@ double observed_order(double coarse, double fine) {
     return std::log2(coarse / fine);
 }
 
-}  // namespace
-
 // h and dt halve together, on every pair of axes, uniform and clustered: the asymptotic order is 2 and the measured
 // one must lie within 0.15 of it (the next term of the error expansion is an order smaller at n = 32).
 TEST(TaylorGreen, SecondOrderInSpaceAndTimeTogether) {
@@ -137,8 +135,6 @@ TEST(TaylorGreen, SecondOrderInTime) {
 
 // Infinite slab |z| < 1/2, v = v(z, t), theta = z: v = Re[Vh e^{i Omega t}] up to a phase,
 // Vh = -(B/Omega)[z - sinh(kz)/(2 sinh(k/2))], k = sqrt(i Omega/Pr), for the force -B z sin(Omega t).
-namespace {
-
 std::complex<double> slab_amplitude(double forcing, double frequency, double viscosity, double z) {
     const std::complex<double> k = std::sqrt(std::complex<double>(0, frequency / viscosity));
     return -(forcing / frequency) * (z - std::sinh(k * z) / (2.0 * std::sinh(k * 0.5)));
@@ -184,8 +180,6 @@ double slab_error(int n, int steps_per_period, double clustering) {
     return error / peak;
 }
 
-}  // namespace
-
 TEST(OscillatingSlab, ExactAmplitudesAreThePublishedOnes) {
     // Independent values of the formula itself: |Vh|(0.25) and the largest |Vh| of three runs.
     EXPECT_NEAR(std::abs(slab_amplitude(8.658e6, 1.667e4, 18, 0.25)), 129.107, 2e-3);
@@ -215,8 +209,6 @@ TEST(OscillatingSlab, SecondOrderInTime) {
     EXPECT_NEAR(observed_order(coarse, fine), 2, 0.2);
 }
 
-namespace {
-
 Flow<NoHeat> stirred_box(double viscosity, double dt, double clustering) {
     const std::array<Side, 2> walls{NoSlip{}, NoSlip{}};
     Flow<NoHeat> flow({Grid{{Axis::clustered(12, 0, 1, clustering), Axis::clustered(10, 0, 1, clustering),
@@ -230,8 +222,6 @@ Flow<NoHeat> stirred_box(double viscosity, double dt, double clustering) {
     });
     return flow;
 }
-
-}  // namespace
 
 // Convection does no work on a divergence-free field: sum over the faces of u . C(u) vanishes against the sum of
 // the magnitudes, on clustered grids as well.
@@ -306,8 +296,6 @@ TEST(Conservation, InsulatedHeatIsKept) {
     EXPECT_NEAR(total(), before, 1e-12);
 }
 
-namespace {
-
 // |dE/dt - (work of buoyancy - dissipation)| over the dissipation, in the step that ends at t = 0.1.
 double energy_residual(int steps) {
     constexpr int n = 12;
@@ -353,8 +341,6 @@ double energy_residual(int steps) {
     return std::abs(change - work + dissipation) / dissipation;
 }
 
-}  // namespace
-
 // Kinetic energy changes by the work of buoyancy less the dissipation; what the time scheme leaves over is of second
 // order.
 TEST(Conservation, TheEnergyBudgetCloses) {
@@ -363,3 +349,5 @@ TEST(Conservation, TheEnergyBudgetCloses) {
     EXPECT_LT(fine, 1e-3);
     EXPECT_GT(std::log2(coarse / fine), 1.7);
 }
+
+}  // namespace grainsweep::tests::flow_orders_test

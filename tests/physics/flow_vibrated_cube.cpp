@@ -10,8 +10,9 @@
 #include <string>
 #include <vector>
 
-using namespace grainsweep;
-using namespace grainsweep::flow;
+namespace grainsweep::tests::flow_vibrated_cube_test {
+
+using namespace flow;
 
 // Largest first-harmonic amplitudes over the box in the 20th period, uniform grid, 32 steps per period: v 151.9 and w
 // 153.0 by an independent finite-difference program, v 152.9 and w 149 to 151 by a finite-volume one.
@@ -57,3 +58,5 @@ TEST(VibratedCube, FirstHarmonicsAreThoseOfOtherPrograms) {
     RecordProperty("w", std::to_string(largest(2)));
     EXPECT_LT(fluid.largest_divergence(), 1e-8);  // velocity over cell width is 6000
 }
+
+}  // namespace grainsweep::tests::flow_vibrated_cube_test

@@ -15,12 +15,11 @@
 #include "tests/support/against_plain.hpp"
 #include "tests/support/granular_scenes.hpp"
 
-using namespace grainsweep;
+namespace grainsweep::tests::frozen_surfaces_test {
+
 using dem::CohesionLaw;
 using dem::Material;
 using dem::Surface;
-
-namespace {
 
 struct Powder {
     std::string name;
@@ -61,7 +60,7 @@ std::vector<Powder> powders() {
 /// (seeds 21 to 32) eight, and this one most of all, keep clear of the limits between stick and slip for every powder:
 /// the engine then errs by 0.3 of what the last digit grows to. After the others that growth depends on the digit.
 dem::Setup box(const Powder& powder, double spread) {
-    dem::Setup s = test::boxed_lattice(4, 0.3, spread, 31);
+    dem::Setup s = tests::boxed_lattice(4, 0.3, spread, 31);
     powder.change(s.material);
     s.frozen = powder.frozen;
     for (std::size_t i = 0; i < s.spheres.size(); i += 3) {
@@ -79,7 +78,7 @@ double effective_radius(const dem::Setup& s) {
 /// Two equal spheres at rest that overlap; which of them move.
 dem::Setup two(double overlap, bool first, bool second) {
     dem::Setup s;
-    s.material = test::steel_like();
+    s.material = tests::steel_like();
     s.gravity = {};
     s.time_step = 1e-7;
     s.domain = {{-0.01, -0.01, -0.01}, {0.01, 0.01, 0.01}, {}};
@@ -98,11 +97,9 @@ double force_of_one_contact(const dem::Setup& s, dem::Method::Precision precisio
     return contacts.empty() ? NAN : contacts[0].normal_force;
 }
 
-}  // namespace
-
 TEST(FrozenSurfaces, TheFastEngineAsPlainly) {
     for (const Powder& powder : powders())
-        for (const double spread : {0.0, 0.2}) test::compare_with_plain({powder.name, box(powder, spread), 300});
+        for (const double spread : {0.0, 0.2}) tests::compare_with_plain({powder.name, box(powder, spread), 300});
 }
 
 TEST(FrozenSurfaces, TheClearEngineAsPlainly) {
@@ -110,16 +107,16 @@ TEST(FrozenSurfaces, TheClearEngineAsPlainly) {
         for (const double spread : {0.0, 0.2}) {
             SCOPED_TRACE(powder.name);
             const dem::Setup s = box(powder, spread);
-            test::PlainDem plain(s);
+            tests::PlainDem plain(s);
             plain.run(400);
             const auto engine = dem::make_engine(s, {});
             engine->run(400);
             ASSERT_EQ(engine->fault(), "");
             dem::State state;
             engine->state(state);
-            const dem::State expected = test::plain_state(plain, state);
-            EXPECT_LT(test::position_difference(state, expected, s.domain, 1e-3), 1e-9);
-            EXPECT_LT(test::velocity_difference(state, expected), 1e-7);
+            const dem::State expected = tests::plain_state(plain, state);
+            EXPECT_LT(tests::position_difference(state, expected, s.domain, 1e-3), 1e-9);
+            EXPECT_LT(tests::velocity_difference(state, expected), 1e-7);
         }
 }
 
@@ -156,7 +153,7 @@ TEST(FrozenSurfaces, TheSameSurfaceIsNoOther) {
         EXPECT_EQ(a.position, b.position);
         EXPECT_EQ(a.angular_velocity, b.angular_velocity);
     }
-    dem::Setup none = test::boxed_lattice(3, 0.3, 0, 1);
+    dem::Setup none = tests::boxed_lattice(3, 0.3, 0, 1);
     none.frozen.friction = 0.9;
     EXPECT_FALSE(dem::frozen_differ(none)) << "nothing is frozen";
 }
@@ -197,7 +194,7 @@ TEST(FrozenSurfaces, WhatCannotBeIsRefused) {
               "jkr needs surface energy in all contacts or in none: a small one, or dmt, where there is none");
 
     // of walls that are set later, what lists are not made for
-    dem::Setup s = test::boxed_lattice(3, 0.3, 0, 1);
+    dem::Setup s = tests::boxed_lattice(3, 0.3, 0, 1);
     jkr(s.material);
     for (const auto precision : {dem::Method::Precision::double_precision, dem::Method::Precision::mixed}) {
         dem::Method method;
@@ -210,3 +207,5 @@ TEST(FrozenSurfaces, WhatCannotBeIsRefused) {
         EXPECT_NO_THROW(engine->set_walls(walls));
     }
 }
+
+}  // namespace grainsweep::tests::frozen_surfaces_test

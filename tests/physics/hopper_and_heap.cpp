@@ -7,9 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-using namespace grainsweep;
-
-namespace {
+namespace grainsweep::tests::hopper_and_heap_test {
 
 std::unique_ptr<Scene> make(const char* scene, const Inputs& changed, std::uint64_t seed = 1) {
     NoArtefacts none;
@@ -67,8 +65,6 @@ Inputs with(Inputs inputs, const Inputs& changed) {
     for (const auto& [name, value] : changed) inputs[name] = value;
     return inputs;
 }
-
-}  // namespace
 
 TEST(Hopper, NeitherSlicesNorCheckpointsChangeAnything) {
     for (const char* precision : {"mixed", "double"})
@@ -166,3 +162,5 @@ TEST(Heap, FrictionMakesIt) {
         run("heap", with(common, {{"friction", 0.0}, {"rolling_friction", 0.0}, {"end_time", 1.0}})).scalars;
     EXPECT_LT(none.contains("angle_moment") ? none.at("angle_moment") : 0, 3);
 }
+
+}  // namespace grainsweep::tests::hopper_and_heap_test

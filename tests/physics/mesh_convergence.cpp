@@ -11,15 +11,11 @@
 #include <numbers>
 #include <vector>
 
-using namespace grainsweep;
+namespace grainsweep::tests::mesh_convergence_test {
+
 using namespace geometry;
 using dem::Vec3;
 using std::numbers::pi;
-using tests::one_sphere;
-using tests::Soup;
-using tests::state_of;
-
-namespace {
 
 constexpr double radius = tests::sphere_at_walls;
 
@@ -64,8 +60,6 @@ double observed_order(const std::vector<int>& n, const std::vector<double>& erro
     const auto count = static_cast<double>(n.size());
     return -(count * sxy - sx * sy) / (count * sxx - sx * sx);
 }
-
-}  // namespace
 
 // 2, 8 and 200 triangles, and corners at other places on the one half than on the other: a sphere that bounces, slides
 // and rolls over them for 80 ms is where it is on the plane.
@@ -190,3 +184,5 @@ TEST(MeshConvergence, WithoutTheAngleAnInnerEdgeIsTwoContacts) {
         EXPECT_EQ(contacts(smooth(frustum(n, drum, drum, 0.01), n)), 1U) << n;
     }
 }
+
+}  // namespace grainsweep::tests::mesh_convergence_test

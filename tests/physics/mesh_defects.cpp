@@ -16,17 +16,13 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-using namespace grainsweep;
+namespace grainsweep::tests::mesh_defects_test {
+
 using namespace geometry;
 using dem::Vec3;
 using nlohmann::json;
 using std::numbers::pi;
 using testing::HasSubstr;
-using tests::one_sphere;
-using tests::Soup;
-using tests::state_of;
-
-namespace {
 
 constexpr double radius = tests::sphere_at_walls;
 
@@ -97,8 +93,9 @@ double apart(const Course& a, const Course& b) {
 }
 
 /// As a mesh starts: no velocity before the first step.
-std::vector<Motion> from_rest(std::vector<Motion> motions) {
-    for (Motion& m : motions) std::visit([](auto& one) { one.start = std::numeric_limits<double>::min(); }, m);
+std::vector<geometry::Motion> from_rest(std::vector<geometry::Motion> motions) {
+    for (geometry::Motion& m : motions)
+        std::visit([](auto& one) { one.start = std::numeric_limits<double>::min(); }, m);
     return motions;
 }
 
@@ -117,8 +114,6 @@ double least_distance(const Course& c, const Soup& soup) {
                 least = std::min(least, norm(c.position[k] - tests::plain_nearest(triangle, c.position[k])));
     return least;
 }
-
-}  // namespace
 
 // 1. A sphere beside a convex edge touches the face alone, whatever the order of the triangles.
 TEST(MeshDefects, OneContactAtASharedEdgeInEveryOrder) {
@@ -366,7 +361,7 @@ TEST(MeshDefects, APlateGoesOnAcrossAPeriodicFace) {
         setup.gravity = {0, 0, -9.81};
         setup.time_step = 2e-6;
         for (const auto& motions :
-             std::vector<std::vector<Motion>>{{}, {dem::Translation{.velocity = {0.2, 0.1, 0}}}}) {
+             std::vector<std::vector<geometry::Motion>>{{}, {dem::Translation{.velocity = {0.2, 0.1, 0}}}}) {
             setup.walls = {{dem::Plane{}, from_rest(motions)}};
             const Course whole = course(setup, 20000);
             setup.walls = {{mesh(tests::plate(0.01, cuts)), motions}};
@@ -388,3 +383,5 @@ TEST(MeshDefects, APlateGoesOnAcrossAPeriodicFace) {
         }
     }
 }
+
+}  // namespace grainsweep::tests::mesh_defects_test

@@ -12,10 +12,9 @@
 #include <optional>
 #include <set>
 
-using namespace grainsweep;
-using nlohmann::json;
+namespace grainsweep::tests::mesh_trajectories_test {
 
-namespace {
+using nlohmann::json;
 
 struct Expected {
     std::string table;         ///< of the reference, to compare with; empty: none
@@ -75,8 +74,6 @@ double largest_of(const json& values, std::size_t first) {
     return most;
 }
 
-}  // namespace
-
 TEST(MeshTrajectories, EqualTheReferenceToRounding) {
     std::set<std::string> seen;
     for (const auto& [name, c] : cases()) {
@@ -132,10 +129,12 @@ TEST(MeshTrajectories, MixedPrecisionEqualsTheReference) {
         double tolerance = std::max(expected.tolerance, name.starts_with("m_box_face_near") ? 3e-4 : 3e-6);
         if (beyond.contains(name)) tolerance = beyond.at(name);
         const auto setup = tests::setup_of_wall_case(c);
-        for (const auto path : test::paths()) {
+        for (const auto path : tests::paths()) {
             const auto d = tests::deviation(expected.table, setup, {dem::Method::Precision::mixed, path});
             EXPECT_EQ(d.fault, "") << name;
-            EXPECT_LT(d.largest(), tolerance) << name << " " << test::path_name(path);
+            EXPECT_LT(d.largest(), tolerance) << name << " " << tests::path_name(path);
         }
     }
 }
+
+}  // namespace grainsweep::tests::mesh_trajectories_test

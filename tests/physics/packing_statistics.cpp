@@ -9,9 +9,9 @@
 
 #include "solver/particles/packing.hpp"
 
-using namespace grainsweep::particles;
+namespace grainsweep::tests::packing_statistics_test {
 
-namespace {
+using namespace particles;
 
 /// Distances below 2.5 diameters between nearest images, all pairs tried; and contacts per sphere.
 struct Statistics {
@@ -52,8 +52,6 @@ struct Statistics {
     }
 };
 
-}  // namespace
-
 TEST(PackingStatistics, AgreeWithThoseOfAnotherProgram) {
     const Packing packing = random_close_packing({20, 0.62, 1, 2e-5});
     ASSERT_EQ(packing.positions.size(), 9473U);  // round(6 x 0.62 x 8000/pi), the reference's own count
@@ -89,3 +87,5 @@ TEST(PackingStatistics, FillTheCubeEvenly) {
         ++octants[(x[0] < 10 ? 0U : 1U) + (x[1] < 10 ? 0U : 2U) + (x[2] < 10 ? 0U : 4U)];
     for (const int count : octants) EXPECT_NEAR(count, 9473 / 8.0, 34);
 }
+
+}  // namespace grainsweep::tests::packing_statistics_test

@@ -11,9 +11,7 @@
 #include <set>
 #include <string>
 
-using namespace grainsweep;
-
-namespace {
+namespace grainsweep::tests::powder_spreading_test {
 
 constexpr double forever = std::numeric_limits<double>::infinity();
 
@@ -59,8 +57,6 @@ void expect_equal(const Observations& a, const Observations& b) {
                 << name;
     }
 }
-
-}  // namespace
 
 TEST(PowderSpreading, MeasuresWhatItDeclares) {
     Inputs inputs = small_case();
@@ -241,3 +237,5 @@ TEST(PowderSpreading, AgreesWithLiggghts) {
         EXPECT_LE(std::abs(mfr - there), 3 * error) << "point " << row + 1;
     }
 }
+
+}  // namespace grainsweep::tests::powder_spreading_test

@@ -13,9 +13,7 @@
 #include <utility>
 #include <vector>
 
-using namespace grainsweep;
-
-namespace {
+namespace grainsweep::tests::powder_spreading_savings_test {
 
 constexpr double forever = std::numeric_limits<double>::infinity();
 
@@ -75,8 +73,6 @@ Answer ask(const Inputs& inputs, std::uint64_t seed = 1) {
     NoArtefacts none;
     return finish(*make(inputs, seed, none));
 }
-
-}  // namespace
 
 TEST(WantedStandardError, OutOfReachChangesNothing) {
     EXPECT_EQ(ask(small_case({{"standard_error", 1e-12}})).bits(), ask(small_case()).bits());
@@ -242,3 +238,5 @@ TEST(SharedBed, DamagedOrLateItDoesNoHarm) {
     bed.resize(bed.size() / 2);
     EXPECT_EQ(finish(*make(inputs, 1, shelf)).bits(), expected.bits());
 }
+
+}  // namespace grainsweep::tests::powder_spreading_savings_test

@@ -8,9 +8,7 @@
 #include <map>
 #include <numbers>
 
-using namespace grainsweep;
-
-namespace {
+namespace grainsweep::tests::powder_spreading_sizes_test {
 
 std::unique_ptr<Scene> make(const Inputs& inputs, std::uint64_t seed) {
     static NoArtefacts none;
@@ -29,8 +27,6 @@ double volume(const std::vector<double>& diameters) {
     for (const double d : diameters) sum += std::numbers::pi / 6 * d * d * d;
     return sum;
 }
-
-}  // namespace
 
 // The sizes of a layer of about 9000 particles: shares of the five classes by chi-square with 4 degrees of freedom,
 // 18.5 at one in a thousand; and half of the last sphere is all the volume may miss.
@@ -111,3 +107,5 @@ TEST(PowderSizes, RefusesSpheresTooLargeForTheWidth) {
     inputs["width"] = 4.0;
     EXPECT_THROW((void)make(inputs, 1), std::invalid_argument);
 }
+
+}  // namespace grainsweep::tests::powder_spreading_sizes_test

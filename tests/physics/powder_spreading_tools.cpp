@@ -11,10 +11,9 @@
 #include <map>
 #include <string>
 
-using namespace grainsweep;
-using testing::HasSubstr;
+namespace grainsweep::tests::powder_spreading_tools_test {
 
-namespace {
+using testing::HasSubstr;
 
 constexpr double forever = std::numeric_limits<double>::infinity();
 
@@ -93,8 +92,6 @@ void expect_equal(const Observations& a, const Observations& b) {
                 << name;
     }
 }
-
-}  // namespace
 
 // A box of triangles is the blade: in double precision the sums are the same up to rounding until chaos sets in, and
 // over the whole sweep the same flux within its scatter.
@@ -242,3 +239,5 @@ TEST(SpreadingLayers, NeedWholeSweepsAndAPlatform) {
         HasSubstr("make travel longer"));
     EXPECT_THAT(refusal(small_case({{"layers", std::int64_t{1000}}})), HasSubstr("at most 1 m"));
 }
+
+}  // namespace grainsweep::tests::powder_spreading_tools_test

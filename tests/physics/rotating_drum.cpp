@@ -7,9 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-using namespace grainsweep;
-
-namespace {
+namespace grainsweep::tests::rotating_drum_test {
 
 const SceneInfo& info() {
     return *find_scene("rotating_drum");
@@ -55,8 +53,6 @@ void expect_same(const Observations& a, const Observations& b) {
         for (std::size_t k = 0; k < samples.size(); ++k) ASSERT_EQ(samples[k].value, others[k].value) << name << k;
     }
 }
-
-}  // namespace
 
 // Angular momentum about the axis: torque of the walls = moment of the weights + dL/dt; over a time in which L hardly
 // changes the drum's torque is the mean of sum m g (-x).
@@ -193,3 +189,5 @@ TEST(RotatingDrum, APeriodOfTwoAndAHalfDiametersIsLongEnough) {
     inputs["length"] = 0.00374;
     EXPECT_THROW(make(inputs), std::invalid_argument);
 }
+
+}  // namespace grainsweep::tests::rotating_drum_test

@@ -9,9 +9,7 @@
 #include <memory>
 #include <string>
 
-using namespace grainsweep;
-
-namespace {
+namespace grainsweep::tests::scene_thermovibration_test {
 
 class Shelf final : public Artefacts {
 public:
@@ -80,8 +78,6 @@ const std::vector<Inputs> kinds = {
     {{"particles", std::int64_t{0}}},
     {{"frequency", 0.0}, {"rayleigh", 1e4}, {"acceleration", 1e6}, {"end_time", 0.01}},
 };
-
-}  // namespace
 
 TEST(Thermovibration, MeasuresWhatItDeclares) {
     NoArtefacts none;
@@ -298,3 +294,5 @@ TEST(Thermovibration, ReportsTheGershuniNumber) {
     const auto found = finish(*make(small({{"particles", std::int64_t{0}}}), none));
     EXPECT_NEAR(found.scalars.at("gershuni"), 7.49e3, 5);
 }
+
+}  // namespace grainsweep::tests::scene_thermovibration_test

@@ -13,11 +13,9 @@
 #include <iostream>
 #include <vector>
 
-using namespace grainsweep;
-using namespace grainsweep::stats;
-using namespace grainsweep::testing;
+namespace grainsweep::tests::stats_convergence_reference_test {
 
-namespace {
+using namespace stats;
 
 constexpr int randomisations = 200;
 
@@ -95,8 +93,6 @@ Expected from_study(const std::string& gate, const std::string& model, const std
                     table.number(r, "false_stop_rate_gate")};
     throw std::runtime_error("no such row in the study");
 }
-
-}  // namespace
 
 TEST(ConvergenceReference, TheResponseHasTheKnownMoments) {
     const Summary a = truth(1.0);
@@ -207,3 +203,5 @@ TEST(ConvergenceReference, PredictionsMadeEarlyAreOfTheRightSize) {
     EXPECT_GT(ratios[10], 0.4);
     EXPECT_LT(ratios[90], 4.0);
 }
+
+}  // namespace grainsweep::tests::stats_convergence_reference_test

@@ -11,10 +11,7 @@
 #include <string>
 #include <vector>
 
-using namespace grainsweep;
-using namespace grainsweep::testing;
-
-namespace {
+namespace grainsweep::tests::stats_discrepancy_reference_test {
 
 /// The points of a reference design, where the catalogue makes it.
 std::optional<std::vector<double>> points_of(const std::string& design, std::size_t d, std::int64_t n,
@@ -42,8 +39,6 @@ std::optional<std::vector<double>> points_of(const std::string& design, std::siz
     }
     return std::nullopt;
 }
-
-}  // namespace
 
 TEST(DiscrepancyReference, SquaredL2Measures) {
     const ReferenceTable table("designs/discrepancy.csv");
@@ -85,3 +80,5 @@ TEST(DiscrepancyReference, StarDiscrepancyOfEveryPair) {
     }
     EXPECT_EQ(compared, 10);  // five designs, 100 and 400 points: the figures the catalogue quotes
 }
+
+}  // namespace grainsweep::tests::stats_discrepancy_reference_test

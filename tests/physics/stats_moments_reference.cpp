@@ -11,11 +11,9 @@
 #include <map>
 #include <vector>
 
-using namespace grainsweep;
-using namespace grainsweep::stats;
-using grainsweep::testing::ReferenceTable;
+namespace grainsweep::tests::stats_moments_reference_test {
 
-namespace {
+using namespace stats;
 
 std::vector<double> generated(const std::string& name, std::uint64_t seed, std::size_t n) {
     Generator generator(seed);
@@ -66,8 +64,6 @@ void expect_near(double got, double expected, double scale, double tolerance, co
     EXPECT_NEAR(got, expected, tolerance * std::max(std::abs(expected), scale) + grain) << what;
 }
 
-}  // namespace
-
 TEST(MomentsReference, GeneratorsMatch) {
     const ReferenceTable table("moments/moments_generator_check.csv");
     for (std::size_t r = 0; r < table.size(); ++r) {
@@ -112,3 +108,5 @@ TEST(MomentsReference, EverySample) {
         expect_near(s.skewness, table.number(r, "skew_pearson2"), 1, 1e-12, name + " skewness");
     }
 }
+
+}  // namespace grainsweep::tests::stats_moments_reference_test

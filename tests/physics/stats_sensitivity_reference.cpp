@@ -11,11 +11,9 @@
 #include <numbers>
 #include <vector>
 
-using namespace grainsweep;
-using namespace grainsweep::stats;
-using namespace grainsweep::testing;
+namespace grainsweep::tests::stats_sensitivity_reference_test {
 
-namespace {
+using namespace stats;
 
 using Response = std::function<double(std::span<const double>)>;
 
@@ -66,8 +64,6 @@ std::pair<std::vector<double>, std::vector<double>> expected_indices(const std::
         }
     return {first, total};
 }
-
-}  // namespace
 
 TEST(SensitivityReference, EstimatorsOnFixedPoints) {
     const ReferenceTable table("sensitivity/sensitivity_fixed_data.csv");
@@ -145,3 +141,5 @@ TEST(SensitivityReference, SpreadingResponseAsAccurateAsStated) {
     EXPECT_NEAR(std::sqrt(squares_by_bins), 0.0013, 0.0004);
     EXPECT_LT(std::sqrt(squares), 0.0008);
 }
+
+}  // namespace grainsweep::tests::stats_sensitivity_reference_test

@@ -8,9 +8,7 @@
 #include "solver/particles/tpms_filling.hpp"
 #include "solver/scenes/scene.hpp"
 
-using namespace grainsweep;
-
-namespace {
+namespace grainsweep::tests::tpms_discharge_test {
 
 std::unique_ptr<dem::Engine> engine_of(const particles::TpmsFilling& filling, double edge,
                                        dem::Method::Precision precision, double margin = 2) {
@@ -31,8 +29,6 @@ std::unique_ptr<dem::Engine> engine_of(const particles::TpmsFilling& filling, do
     method.precision = precision;
     return dem::make_engine(setup, method);
 }
-
-}  // namespace
 
 class TpmsWall : public testing::TestWithParam<dem::Method::Precision> {};
 INSTANTIATE_TEST_SUITE_P(Both, TpmsWall,
@@ -126,3 +122,5 @@ TEST(TpmsDischarge, EarlyRetentionOfASmallCellIsThatOfAnotherProgram) {
     EXPECT_LT(answer.scalars.at("max_overlap"), 0.02);            // 0.0153
     EXPECT_GT(answer.scalars.at("max_overlap"), 0.01);
 }
+
+}  // namespace grainsweep::tests::tpms_discharge_test

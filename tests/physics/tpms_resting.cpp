@@ -9,9 +9,7 @@
 #include "solver/scenes/scene.hpp"
 #include "tests/support/tpms_cells.hpp"
 
-using namespace grainsweep;
-
-namespace {
+namespace grainsweep::tests::tpms_resting_test {
 
 Inputs jammed_cell(double rest_speed) {
     Inputs inputs = find_scene("tpms_discharge")->defaults();
@@ -46,14 +44,12 @@ std::pair<double, double> end_of(const Inputs& inputs) {
     return {contacts, answer_of(*scene).scalars.at("retention")};
 }
 
-}  // namespace
-
 TEST(TpmsResting, SlicesAndCheckpointsDoNotChangeTheAnswer) {
     const Inputs inputs = jammed_cell(1e-3);
     const auto whole = make(inputs);
     whole->advance(1e9);
     Bytes checkpoint;
-    const auto scene = test::run_in_slices([&] { return make(inputs); }, checkpoint);
+    const auto scene = tests::run_in_slices([&] { return make(inputs); }, checkpoint);
     const Observations a = answer_of(*whole), b = answer_of(*scene);
     for (const char* name : {"retention", "peak_velocity", "max_overlap", "max_force"})
         EXPECT_EQ(a.scalars.at(name), b.scalars.at(name)) << name;
@@ -78,3 +74,5 @@ TEST(TpmsResting, NotInACellThatVibrates) {
     inputs["vibration_frequency"] = 100.0;
     EXPECT_THROW((void)make(inputs), std::invalid_argument);
 }
+
+}  // namespace grainsweep::tests::tpms_resting_test

@@ -13,9 +13,7 @@
 #include "solver/scenes/scene.hpp"
 #include "tests/support/tpms_cells.hpp"
 
-using namespace grainsweep;
-
-namespace {
+namespace grainsweep::tests::tpms_scene_test {
 
 using Point = std::array<double, 3>;
 
@@ -88,8 +86,6 @@ std::vector<Point> loose_spheres(double edge) {
                 if (shell.classify({x, y, z}) == geometry::TpmsRegion::kept) spheres.push_back({x, y, z});
     return spheres;
 }
-
-}  // namespace
 
 TEST(TpmsScene, SpheresWithoutWallFallFreely) {
     // z(t) = z0 - g t^2/2: in the cell until t = sqrt(2 z0/g), that is sqrt(z0/L) t*.
@@ -244,7 +240,7 @@ TEST_P(TpmsPrecision, SlicesAndCheckpointsDoNotChangeTheAnswer) {
     const Observations whole = run(inputs);
 
     Bytes bytes;
-    const auto scene = test::run_in_slices([&] { return make(inputs); }, bytes);
+    const auto scene = tests::run_in_slices([&] { return make(inputs); }, bytes);
     Observations sliced;
     scene->observe(sliced);
     expect_same(whole, sliced);
@@ -382,3 +378,5 @@ TEST(TpmsScene, TooLongAStepIsReportedUnstable) {
     scene->advance(1e9);
     EXPECT_FALSE(scene->health().stable());
 }
+
+}  // namespace grainsweep::tests::tpms_scene_test

@@ -14,14 +14,11 @@
 #include <numbers>
 #include <vector>
 
-using namespace grainsweep;
+namespace grainsweep::tests::wall_motions_test {
+
 using dem::Vec3;
 using namespace geometry;
 using std::numbers::pi;
-using tests::all_moving_walls;
-using tests::one_sphere;
-
-namespace {
 
 constexpr double radius = tests::sphere_at_walls;
 constexpr double gravity = 9.81;
@@ -71,8 +68,6 @@ Booked booked(const dem::Setup& setup, std::int64_t steps) {
 }
 
 constexpr std::int64_t long_enough = 1200;  // steps of 1 us: one impact
-
-}  // namespace
 
 // Momentum and angular momentum of the sphere are what the wall took, step by step: rounding alone.
 TEST(WallMotions, LoadsAreTheReaction) {
@@ -285,3 +280,5 @@ TEST(MeshDefects, AMeshDoesNotDrift) {
         }
     }
 }
+
+}  // namespace grainsweep::tests::wall_motions_test

@@ -10,11 +10,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-using namespace grainsweep;
+namespace grainsweep::tests::wall_trajectories_test {
+
 using dem::Method;
 using nlohmann::json;
-
-namespace {
 
 /// The cases without meshes that name the velocity of the surface itself.
 std::vector<std::pair<std::string, json>> cases() {
@@ -32,8 +31,6 @@ std::vector<std::pair<std::string, json>> cases() {
     }
     return chosen;
 }
-
-}  // namespace
 
 // Rounding alone: an independent evaluation differs by up to 1e-12 of the largest speed from the reference.
 TEST(WallTrajectories, EqualTheReferenceToRounding) {
@@ -56,10 +53,12 @@ TEST(WallTrajectories, MixedPrecisionEqualsTheReference) {
                                                   {"x_zcyl_spin_helix_surface", 3e-5},
                                                   {"p_plane_tilt30_bounce", 5e-4}};
     for (const auto& [name, c] : cases())
-        for (const auto path : test::paths()) {
+        for (const auto path : tests::paths()) {
             const auto d = tests::deviation(name, tests::setup_of_wall_case(c), {Method::Precision::mixed, path});
-            EXPECT_EQ(d.fault, "") << name << " " << test::path_name(path);
+            EXPECT_EQ(d.fault, "") << name << " " << tests::path_name(path);
             const double tolerance = beyond.contains(name) ? beyond.at(name) : 3e-6;
-            EXPECT_LT(d.largest(), tolerance) << name << " " << test::path_name(path);
+            EXPECT_LT(d.largest(), tolerance) << name << " " << tests::path_name(path);
         }
 }
+
+}  // namespace grainsweep::tests::wall_trajectories_test

@@ -14,9 +14,7 @@
 #include <string>
 #include <vector>
 
-using namespace grainsweep;
-
-namespace {
+namespace grainsweep::tests::convergence_verdicts_test {
 
 constexpr int campaigns = 200;
 const std::string halton = R"({"kind": "halton", "sequences": 8, "points": 4096})";
@@ -67,8 +65,6 @@ Tally count_verdicts(const std::string& factors, const std::string& rule, double
 const std::string two_ranges = R"([{"name": "x1", "between": [0, 1]}, {"name": "x2", "between": [0, 1]}])";
 const std::string six_cases = R"([{"name": "x1", "levels": [0, 1]}, {"name": "x2", "levels": [0, 0.5, 1]}])";
 
-}  // namespace
-
 TEST(Verdicts, SixRunsAreNeverKnownToAFewPercent) {
     const Response noisy = [](const Inputs&, std::uint64_t seed) { return 1 + scatter(seed, 0.5); };
     for (const auto* rule : {"replicates", "any_change", "all_change"})
@@ -101,3 +97,5 @@ TEST(Verdicts, OrdinaryResponsesConvergeAndAreRight) {
     EXPECT_EQ(tally.converged, campaigns);
     EXPECT_LE(tally.wrong, campaigns / 20);
 }
+
+}  // namespace grainsweep::tests::convergence_verdicts_test

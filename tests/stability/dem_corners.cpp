@@ -10,10 +10,7 @@
 
 #include <cmath>
 
-using namespace grainsweep;
-using tests::state_of;
-
-namespace {
+namespace grainsweep::tests::dem_corners_test {
 
 /// Runs and expects finite numbers and, without a fault, an energy that has not grown; `stored` is in contacts at the
 /// start.
@@ -38,8 +35,6 @@ std::string verdict(const dem::Setup& setup, std::int64_t steps, double stored =
     }
     return engine->fault();
 }
-
-}  // namespace
 
 TEST(DemCorners, LargeTimeStepsAreSoundOrReported) {
     for (const double restitution : {1.0, 0.5, 0.1})
@@ -178,3 +173,5 @@ TEST(DemCorners, CheckpointsContinueBitForBit) {
                                  std::invalid_argument);
                 }
 }
+
+}  // namespace grainsweep::tests::dem_corners_test

@@ -14,11 +14,9 @@
 #include <numbers>
 #include <string>
 
-using namespace grainsweep;
-using dem::Method;
-using tests::state_of;
+namespace grainsweep::tests::dem_stress_test {
 
-namespace {
+using dem::Method;
 
 enum class Expected { sound, fault, either };
 
@@ -99,8 +97,6 @@ dem::Setup packed(double fraction) {
     setup.time_step = 0.2 * limit_of(setup, d / 2, 0.5);
     return setup;
 }
-
-}  // namespace
 
 TEST_P(DemStress, TimeStepsFromHalfToTenTimesTheLimit) {
     for (const double share : {0.1, 0.2, 0.5, 1.0, 1.5, 2.0, 3.0, 10.0}) {
@@ -247,3 +243,5 @@ INSTANTIATE_TEST_SUITE_P(Precision, DemStress,
                              return method.param == Method::Precision::mixed ? std::string("mixed")
                                                                              : std::string("double");
                          });
+
+}  // namespace grainsweep::tests::dem_stress_test

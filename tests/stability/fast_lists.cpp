@@ -10,10 +10,9 @@
 #include "stats/random.hpp"
 #include "tests/support/granular_scenes.hpp"
 
-using namespace grainsweep;
-using dem::Method;
+namespace grainsweep::tests::fast_lists_test {
 
-namespace {
+using dem::Method;
 
 /// Largest overlap over the smaller diameter, over all pairs of which one moves.
 double largest_overlap(const dem::State& s, const dem::Domain& domain) {
@@ -57,13 +56,11 @@ void watch(const dem::Setup& setup, Method::Path path, int steps) {
 
 /// Few enough pairs that the deepest contact changes hands often.
 dem::Setup violent(int per_side, double spread, std::uint64_t seed) {
-    dem::Setup s = test::thrown_lattice(per_side, 2.0, spread, seed);
+    dem::Setup s = tests::thrown_lattice(per_side, 2.0, spread, seed);
     s.time_step = 2e-6;
     s.material.restitution = 0.95;
     return s;
 }
-
-}  // namespace
 
 TEST(FastLists, DeepestContactIsAlwaysTheDeepest) {
     for (const auto path : {Method::Path::baseline, Method::Path::avx2, Method::Path::avx512}) {
@@ -74,7 +71,7 @@ TEST(FastLists, DeepestContactIsAlwaysTheDeepest) {
 }
 
 TEST(FastLists, SizesOneToTwenty) {
-    dem::Setup s = test::thrown_lattice(3, 0, 0, 3);
+    dem::Setup s = tests::thrown_lattice(3, 0, 0, 3);
     s.spheres.clear();
     const stats::Stream stream(5, 5);
     std::uint64_t draw = 0;
@@ -106,7 +103,7 @@ TEST(FastLists, SizesOneToTwenty) {
 
 TEST(FastLists, ClustersMeetAtSpeed) {
     // two dense clusters fly into each other across a periodic face
-    dem::Setup s = test::thrown_lattice(4, 0.1, 0, 4);
+    dem::Setup s = tests::thrown_lattice(4, 0.1, 0, 4);
     const double length = s.domain.high[0] - s.domain.low[0];
     s.domain.high[0] += 2 * length;
     for (std::size_t i = 0; i < s.spheres.size(); ++i) s.spheres[i].velocity[0] += 4;
@@ -122,7 +119,7 @@ TEST(FastLists, ClustersMeetAtSpeed) {
 }
 
 TEST(FastLists, AnElasticGasKeepsItsEnergy) {
-    dem::Setup s = test::thrown_lattice(6, 1.0, 0.1, 6);
+    dem::Setup s = tests::thrown_lattice(6, 1.0, 0.1, 6);
     for (std::size_t a = 0; a < 3; ++a) s.domain.high[a] += 4e-3;
     s.material.restitution = 1;
     s.material.friction = 0;
@@ -145,3 +142,5 @@ TEST(FastLists, AnElasticGasKeepsItsEnergy) {
         EXPECT_GT(now, 0.9);
     }
 }
+
+}  // namespace grainsweep::tests::fast_lists_test

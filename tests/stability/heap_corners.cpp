@@ -3,18 +3,14 @@
 
 #include <gtest/gtest.h>
 
-using namespace grainsweep;
-
-namespace {
+namespace grainsweep::tests::heap_corners_test {
 
 const SceneInfo& heap() {
     return *find_scene("heap");
 }
 
-}  // namespace
-
 TEST(HeapCorners, EveryBoundIsMadeOrRefused) {
-    test::expect_bounds_are_made_or_refused(heap());
+    tests::expect_bounds_are_made_or_refused(heap());
 }
 
 TEST(HeapCorners, EveryExtremeIsAnsweredOrReported) {
@@ -24,7 +20,7 @@ TEST(HeapCorners, EveryExtremeIsAnsweredOrReported) {
     small["tube_diameter"] = 0.03;
     small["settle_time"] = 0.1;
     small["end_time"] = 0.3;
-    const std::vector<test::Changes> table = {
+    const std::vector<tests::Changes> table = {
         {},
         {{"precision", in_double}},
         {{"floor", rough}},
@@ -57,8 +53,10 @@ TEST(HeapCorners, EveryExtremeIsAnsweredOrReported) {
         {{"tube_diameter", 10.0}},
         {{"tube_diameter", 10.0}, {"floor", rough}},
     };
-    auto outcomes = test::outcomes_of(heap(), small, table);
+    auto outcomes = tests::outcomes_of(heap(), small, table);
     EXPECT_GT(outcomes[campaign::Outcome::completed], 20);
     EXPECT_GE(outcomes[campaign::Outcome::unstable], 1);
     EXPECT_GE(outcomes[campaign::Outcome::rejected], 2);
 }
+
+}  // namespace grainsweep::tests::heap_corners_test

@@ -3,18 +3,14 @@
 
 #include <gtest/gtest.h>
 
-using namespace grainsweep;
-
-namespace {
+namespace grainsweep::tests::hopper_corners_test {
 
 const SceneInfo& hopper() {
     return *find_scene("hopper");
 }
 
-}  // namespace
-
 TEST(HopperCorners, EveryBoundIsMadeOrRefused) {
-    test::expect_bounds_are_made_or_refused(hopper());
+    tests::expect_bounds_are_made_or_refused(hopper());
 }
 
 TEST(HopperCorners, EveryExtremeIsAnsweredOrReported) {
@@ -25,7 +21,7 @@ TEST(HopperCorners, EveryExtremeIsAnsweredOrReported) {
     small["opening_size"] = 0.02;
     small["settle_time"] = 0.1;
     small["end_time"] = 0.2;
-    const std::vector<test::Changes> table = {
+    const std::vector<tests::Changes> table = {
         {},
         {{"precision", in_double}},
         {{"shape", conical}, {"half_angle", 5.0}},
@@ -63,8 +59,10 @@ TEST(HopperCorners, EveryExtremeIsAnsweredOrReported) {
         {{"container_diameter", 0.0151}, {"opening_size", 0.01}},
         {{"container_diameter", 10.0}},
     };
-    auto outcomes = test::outcomes_of(hopper(), small, table);
+    auto outcomes = tests::outcomes_of(hopper(), small, table);
     EXPECT_GT(outcomes[campaign::Outcome::completed], 22);
     EXPECT_GE(outcomes[campaign::Outcome::unstable], 1);
     EXPECT_GE(outcomes[campaign::Outcome::rejected], 5);
 }
+
+}  // namespace grainsweep::tests::hopper_corners_test

@@ -13,9 +13,7 @@
 #include <utility>
 #include <vector>
 
-using namespace grainsweep;
-
-namespace {
+namespace grainsweep::tests::powder_spreading_corners_test {
 
 const SceneInfo& spreading() {
     return *find_scene("powder_spreading");
@@ -50,8 +48,6 @@ Inputs small_case() {
     inputs["travel"] = 0.03;
     return inputs;
 }
-
-}  // namespace
 
 TEST(PowderSpreadingCorners, DefaultsLieWithinTheBoundsAndAreRelevantOnce) {
     for (const auto& p : spreading().parameters) {
@@ -261,3 +257,5 @@ TEST(PowderSpreadingCorners, EveryExtremeIsAnsweredOrReported) {
     EXPECT_GT(outcomes[campaign::Outcome::unstable], 2);
     EXPECT_GT(outcomes[campaign::Outcome::rejected], 2);
 }
+
+}  // namespace grainsweep::tests::powder_spreading_corners_test

@@ -3,9 +3,7 @@
 
 #include <gtest/gtest.h>
 
-using namespace grainsweep;
-
-namespace {
+namespace grainsweep::tests::rotating_drum_corners_test {
 
 const SceneInfo& drum() {
     return *find_scene("rotating_drum");
@@ -22,14 +20,12 @@ Inputs small_case() {
     return inputs;
 }
 
-}  // namespace
-
 TEST(RotatingDrumCorners, EveryBoundIsMadeOrRefused) {
-    test::expect_bounds_are_made_or_refused(drum());
+    tests::expect_bounds_are_made_or_refused(drum());
 }
 
 TEST(RotatingDrumCorners, EveryExtremeIsAnsweredOrReported) {
-    const std::vector<test::Changes> table = {
+    const std::vector<tests::Changes> table = {
         {{"rpm", 1e-3}},
         {{"rpm", 600.0}},
         {{"rpm", 6000.0}},
@@ -66,8 +62,10 @@ TEST(RotatingDrumCorners, EveryExtremeIsAnsweredOrReported) {
         {{"diameter", 0.02}},
         {{"drum_diameter", 1e-4}},
     };
-    auto outcomes = test::outcomes_of(drum(), small_case(), table);
+    auto outcomes = tests::outcomes_of(drum(), small_case(), table);
     EXPECT_GT(outcomes[campaign::Outcome::completed], 20);
     EXPECT_GE(outcomes[campaign::Outcome::unstable], 1);
     EXPECT_GE(outcomes[campaign::Outcome::rejected], 6);
 }
+
+}  // namespace grainsweep::tests::rotating_drum_corners_test

@@ -10,8 +10,7 @@
 #include <optional>
 #include <string>
 
-namespace grainsweep::tests {
-namespace {
+namespace grainsweep::tests::store_bit_rot_test {
 
 using store::Store;
 
@@ -110,5 +109,4 @@ TEST_F(StoreBitRot, TheNextRunPutsItRightOrRefuses) {
     EXPECT_GT(right, 30);
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::store_bit_rot_test

@@ -8,8 +8,7 @@
 #include <fstream>
 #include <iterator>
 
-namespace grainsweep::tests {
-namespace {
+namespace grainsweep::tests::store_damage_test {
 
 using store::Store;
 
@@ -126,5 +125,4 @@ TEST_F(StoreDamage, ALogCutShortOrZeroedIsAnEarlierLog) {
     EXPECT_EQ(dump_of(Store(place / "c.db", Store::Mode::read)), whole.undisturbed());
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::store_damage_test

@@ -9,8 +9,7 @@
 #include <ostream>
 #include <string>
 
-namespace grainsweep::tests {
-namespace {
+namespace grainsweep::tests::store_faults_test {
 
 using Fault = FailingDisk::Fault;
 using Calls = FailingDisk::Calls;
@@ -86,5 +85,4 @@ INSTANTIATE_TEST_SUITE_P(
                     Failing{Disk::network, Calls::looks, Fault::input_output, false, "NetworkLookOnce"}),
     [](const auto& kind) { return std::string(kind.param.name); });
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::store_faults_test

@@ -9,8 +9,7 @@
 
 #include <csignal>
 
-namespace grainsweep::tests {
-namespace {
+namespace grainsweep::tests::store_kill_test {
 
 /// Runs the campaign in a child that tells each number it shows through a pipe and then waits for leave to go on.
 class Child {
@@ -166,5 +165,4 @@ TEST(StoreKill, TheQuotaEndsInMidWrite) {
     EXPECT_GT(broken, 3);
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::store_kill_test

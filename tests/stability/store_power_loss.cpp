@@ -8,8 +8,7 @@
 
 #include <tuple>
 
-namespace grainsweep::tests {
-namespace {
+namespace grainsweep::tests::store_power_loss_test {
 
 using Kind = FailingDisk::Event::Kind;
 
@@ -80,5 +79,4 @@ INSTANTIATE_TEST_SUITE_P(Disks, StorePowerLoss,
                                           testing::Values(Unsynced::lost, Unsynced::kept, Unsynced::torn)),
                          kind_name);
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::store_power_loss_test

@@ -12,9 +12,7 @@
 #include <utility>
 #include <vector>
 
-using namespace grainsweep;
-
-namespace {
+namespace grainsweep::tests::thermovibration_corners_test {
 
 const SceneInfo& info() {
     return *find_scene("thermovibration");
@@ -51,8 +49,6 @@ Inputs tiny() {
     inputs["sampling_cells"] = std::int64_t{3};
     return inputs;
 }
-
-}  // namespace
 
 // Every number at its lowest and highest, one at a time and in pairs, in every coupling; 20 steps each.
 TEST(ThermovibrationCorners, FinishOrSayWhatWentWrong) {
@@ -124,8 +120,6 @@ TEST(ThermovibrationCorners, LookAtEveryPhaseOfTheVibration) {
         }
 }
 
-namespace {
-
 const char* const levels[] = {"one_way", "two_way", "ddpm", "ddpm_ktgf", "cfd_dem"};
 
 // A coarse run 21 for some periods: an answer, or empty and a reason.
@@ -150,8 +144,6 @@ Observations answer(const char* level, const Inputs& changes, double periods, st
         for (const double x : particle) EXPECT_LE(std::abs(x), 0.5) << level;
     return found;
 }
-
-}  // namespace
 
 // Light and heavy particles, small and large, weak and violent convection: no energy out of nothing. The fluid cannot
 // be faster than the forces could make it in a quarter of a period where the cloud, random at the start, is thirty
@@ -252,3 +244,5 @@ TEST(ThermovibrationCorners, PackedCubesRunOrSayWhyNot) {
                 }
             }
 }
+
+}  // namespace grainsweep::tests::thermovibration_corners_test

@@ -9,9 +9,7 @@
 
 #include "solver/scenes/scene.hpp"
 
-using namespace grainsweep;
-
-namespace {
+namespace grainsweep::tests::tpms_corners_test {
 
 const SceneInfo& info() {
     return *find_scene("tpms_discharge");
@@ -62,8 +60,6 @@ protected:
 };
 INSTANTIATE_TEST_SUITE_P(Both, TpmsStress, testing::Values("mixed", "double"),
                          [](const auto& precision) { return std::string(precision.param); });
-
-}  // namespace
 
 TEST_P(TpmsStress, CohesionFarBeyondTheStudyIsAnsweredOrReported) {
     // Two spheres rest at an overlap of (k_c/E*)^2 (3 pi/4)^2 2 d to first order: 17 % of a diameter at 200 kJ/m3,
@@ -150,3 +146,5 @@ TEST(TpmsStressOfBothPrecisions, AgreeUntilDisturbancesHaveGrown) {
     const double particles = exact.answer.scalars.at("particles");
     for (const double t : {0.1, 0.25, 0.5}) EXPECT_NEAR(at(mixed.answer, t), at(exact.answer, t), 2 / particles) << t;
 }
+
+}  // namespace grainsweep::tests::tpms_corners_test

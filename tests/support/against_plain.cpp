@@ -9,7 +9,7 @@
 #include "stats/random.hpp"
 #include "tests/support/granular_scenes.hpp"
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 using dem::Method;
 
@@ -85,4 +85,4 @@ void compare_with_plain(const Question& q) {
     }
 }
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

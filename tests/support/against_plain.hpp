@@ -7,7 +7,7 @@
 #include "solver/dem/engine.hpp"
 #include "tests/support/plain_dem.hpp"
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 struct Question {
     std::string name;
@@ -26,4 +26,4 @@ struct Question {
 /// by ten times what that grows to. A wrong convention (torque arm, order of damping and limit) differs by 1e-2.
 void compare_with_plain(const Question& q);
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

@@ -12,19 +12,6 @@
 
 namespace grainsweep::tests {
 
-Folder::Folder() {
-    // In memory where the system offers it: syncs cost nothing and files are files all the same.
-    const std::filesystem::path memory = "/dev/shm";
-    const auto parent = access(memory.c_str(), W_OK) == 0 ? memory : std::filesystem::temp_directory_path();
-    std::string pattern = (parent / "grainsweep-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    path_ = pattern;
-}
-Folder::~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-}
-
 campaign::Campaign small_campaign(const std::string& name, std::size_t factors) {
     static const SceneInfo scene = rehearsal_scene();
     campaign::Campaign campaign;

@@ -1,9 +1,9 @@
-// Campaigns of the rehearsal scene made by hand, answers made up from their ids, and a folder that goes away:
-// what the tests of the store need.
+// What the tests of the store need: campaigns of the rehearsal scene made by hand, and answers made up from their ids.
 #pragma once
 
 #include "sweep/campaign/campaign.hpp"
 #include "sweep/store/store.hpp"
+#include "tests/support/process.hpp"
 
 #include <filesystem>
 #include <string>
@@ -11,20 +11,6 @@
 #include <vector>
 
 namespace grainsweep::tests {
-
-/// A new empty folder, removed with everything in it at the end.
-class Folder {
-public:
-    Folder();
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    ~Folder();
-    [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
-private:
-    std::filesystem::path path_;
-};
 
 /// `factors` factors x1, x2, ... between 0 and 1 over the rehearsal scene, a Halton design.
 [[nodiscard]] campaign::Campaign small_campaign(const std::string& name, std::size_t factors = 2);

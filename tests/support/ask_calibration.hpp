@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace grainsweep::testing {
+namespace grainsweep::tests {
 
 /// Of a point of the unit box; conditions are coordinates like the others.
 using Responses = std::map<std::string, std::function<double(std::span<const double>)>>;
@@ -48,4 +48,4 @@ inline designs::Calibration answered(designs::DesignRequest& request, const Resp
     }
 }
 
-}  // namespace grainsweep::testing
+}  // namespace grainsweep::tests

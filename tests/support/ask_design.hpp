@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace grainsweep::testing {
+namespace grainsweep::tests {
 
 using Options = std::map<std::string, designs::OptionValue, std::less<>>;
 
@@ -27,4 +27,4 @@ inline designs::PointSet ask_design(const std::string& kind, std::size_t dimensi
     return ask_design(kind, std::vector<std::size_t>(dimensions, 0), options, seed);
 }
 
-}  // namespace grainsweep::testing
+}  // namespace grainsweep::tests

@@ -7,7 +7,7 @@
 
 #include "tests/support/process.hpp"
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 namespace {
 
 constexpr const char* program = "/usr/bin/chromium";
@@ -46,4 +46,4 @@ Browsed browse(const std::filesystem::path& page, const std::string& fragment, c
     return seen;
 }
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

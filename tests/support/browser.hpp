@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 struct Browsed {
     int code = -1;
@@ -22,4 +22,4 @@ struct Browsed {
 [[nodiscard]] Browsed browse(const std::filesystem::path& page, const std::string& fragment,
                              const std::filesystem::path& folder);
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 namespace {
 
 constexpr double masked = 0.6;   // of R^2
@@ -198,4 +198,4 @@ std::vector<char> DrumPicture::read(const std::filesystem::path& file) const {
     return picture;
 }
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

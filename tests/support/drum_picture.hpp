@@ -20,7 +20,7 @@
 #include <span>
 #include <vector>
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 /// x to the right and z up, m, and the radii, of the same particles in each frame.
 struct DrumFrames {
@@ -55,4 +55,4 @@ private:
     std::vector<char> mask_;
 };
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 namespace {
 
 // A thousandth of a slice between checkpoints: each slice is saved.
@@ -92,4 +92,4 @@ std::string SmallCampaign::complaint_of(const FailingCall& call, const std::stri
     return {};
 }
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

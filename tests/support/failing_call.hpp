@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 /// Which call of which process; the words are those of tests/preload/failing_calls.cpp.
 struct FailingCall {
@@ -53,4 +53,4 @@ private:
     std::string undisturbed_;
 };
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 namespace {
 
 class Draws {
@@ -215,4 +215,4 @@ Fate fate_of(std::string_view scene, const FewSpheres& question) {
     return fate;
 }
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 struct FewSpheres {
     Inputs inputs;
@@ -31,4 +31,4 @@ struct Fate {
 };
 [[nodiscard]] Fate fate_of(std::string_view scene, const FewSpheres& question);
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

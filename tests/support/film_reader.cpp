@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 namespace {
 
 class Bits {
@@ -73,4 +73,4 @@ ReadFilm read_film(const std::string& bytes) {
     return {nlohmann::json::parse(bytes.substr(8, length)), bytes.substr(8 + length)};
 }
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

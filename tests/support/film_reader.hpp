@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 /// Throws std::out_of_range where the bytes end too early.
 [[nodiscard]] std::vector<std::uint16_t> unpack_film_column(std::string_view bytes, std::size_t frames,
@@ -24,4 +24,4 @@ struct ReadFilm {
 };
 [[nodiscard]] ReadFilm read_film(const std::string& bytes);
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

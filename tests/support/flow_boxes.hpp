@@ -45,7 +45,7 @@ using Ddpm = SolidsPressure<AlgebraicTemperature>;
 using DdpmKtgf = SolidsPressure<TransportedTemperature>;
 
 /// Every interaction with the same arguments.
-struct Setting {
+struct BoxCase {
     Grid grid;
     flow::Sides sides;
     Sphere sphere;

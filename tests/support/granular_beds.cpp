@@ -10,7 +10,7 @@
 #include "stats/random.hpp"
 #include "tests/support/surfaces.hpp"
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 namespace {
 
@@ -264,4 +264,4 @@ std::vector<dem::Wall> spreading_blade(double gap, double speed) {
     return {dem::Plane{{0, 0, 0}, {0, 0, 1}}, b};
 }
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

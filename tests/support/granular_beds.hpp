@@ -6,7 +6,7 @@
 
 #include "solver/dem/engine.hpp"
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 /// Powder of the comparison: d = 45 um, density 4430, E 1e7, nu 0.3, e 0.6, mu 0.5, 5e-7 s (19 % of the Rayleigh time).
 struct BedOptions {
@@ -48,4 +48,4 @@ inline constexpr double small_chute_time = 0.012;  // s
 /// Base and blade of the sweep.
 [[nodiscard]] std::vector<dem::Wall> spreading_blade(double gap, double speed);
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

@@ -5,7 +5,7 @@
 
 #include "stats/random.hpp"
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 using dem::Vec3;
 
@@ -93,4 +93,4 @@ double spin_difference(const dem::State& a, const dem::State& b) {
     return most;
 }
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

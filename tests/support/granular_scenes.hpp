@@ -5,7 +5,7 @@
 
 #include "solver/dem/engine.hpp"
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 /// Material of the spreading study.
 [[nodiscard]] dem::Material steel_like();
@@ -25,4 +25,4 @@ namespace grainsweep::test {
 /// Largest difference of angular velocities, rad/s.
 [[nodiscard]] double spin_difference(const dem::State& a, const dem::State& b);
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

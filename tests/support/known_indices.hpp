@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace grainsweep::testing {
+namespace grainsweep::tests {
 
 struct KnownIndices {
     std::string name;
@@ -98,4 +98,4 @@ inline std::vector<KnownIndices> known_indices() {
     };
 }
 
-}  // namespace grainsweep::testing
+}  // namespace grainsweep::tests

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace grainsweep::testing {
+namespace grainsweep::tests {
 
 struct KnownResponse {
     std::string name;
@@ -99,4 +99,4 @@ inline std::vector<double> integration_points(std::size_t dimensions, unsigned p
     return points;
 }
 
-}  // namespace grainsweep::testing
+}  // namespace grainsweep::tests

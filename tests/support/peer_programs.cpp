@@ -16,7 +16,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 namespace {
 
@@ -286,4 +286,4 @@ void write_spreading(const SpreadingPeer& q, const dem::Setup& start, const std:
         << fmt::format("run {}\n", std::llround(q.travel / q.speed / q.time_step));
 }
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

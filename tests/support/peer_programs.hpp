@@ -12,7 +12,7 @@
 
 #include "solver/dem/engine.hpp"
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 [[nodiscard]] bool installed(const std::string& program);
 
@@ -65,4 +65,4 @@ struct SpreadingPeer {
 /// Writes deck `in.spread`, blade.stl and start.data.
 void write_spreading(const SpreadingPeer& question, const dem::Setup& start, const std::filesystem::path& folder);
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

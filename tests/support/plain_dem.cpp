@@ -5,7 +5,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 using dem::Vec3;
 using std::numbers::pi;
@@ -319,4 +319,4 @@ void PlainDem::remove(std::int32_t id) {
     forces(false);
 }
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

@@ -9,7 +9,7 @@
 
 #include "solver/dem/engine.hpp"
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 /// Velocity Verlet with the Hertz-Mindlin law of solver/dem/engine.hpp, forces of the start without histories. A shaken
 /// vessel is computed in the laboratory's frame: frozen spheres move (walls do not: give none), and so, at the start,
@@ -58,4 +58,4 @@ private:
     double largest_overlap_ = 0;
 };
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

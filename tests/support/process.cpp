@@ -16,7 +16,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 namespace {
 
 namespace fs = std::filesystem;
@@ -143,4 +143,4 @@ fs::path Folder::write(const std::string& name, const std::string& text) const {
     return path_ / name;
 }
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

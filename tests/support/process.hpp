@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 struct Ended {
     int code = -1;  ///< exit code, or 128 + signal
@@ -65,4 +65,4 @@ private:
 /// Where files are in memory, if the system offers it: syncs cost nothing there, and files are files all the same.
 [[nodiscard]] std::filesystem::path in_memory();
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

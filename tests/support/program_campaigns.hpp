@@ -7,7 +7,7 @@
 
 #include <string>
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 /// A campaign "p" over x in [0, 1] with so many points: "script.sh" answers, its observable y in out.json. `more` are
 /// further keys of the section "program", over those here.
@@ -42,4 +42,4 @@ namespace grainsweep::test {
     return ended.code == 0 ? nlohmann::json::parse(ended.out) : nlohmann::json(ended.err);
 }
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

@@ -12,7 +12,7 @@
 
 #include "tests/support/places.hpp"
 
-namespace grainsweep::testing {
+namespace grainsweep::tests {
 
 class ReferenceTable {
 public:
@@ -62,4 +62,4 @@ private:
     std::vector<std::vector<std::string>> rows_;
 };
 
-}  // namespace grainsweep::testing
+}  // namespace grainsweep::tests

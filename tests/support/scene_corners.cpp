@@ -8,7 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 void expect_bounds_are_made_or_refused(const SceneInfo& scene) {
     for (const auto& p : scene.parameters) {
@@ -66,4 +66,4 @@ std::map<campaign::Outcome, int> outcomes_of(const SceneInfo& scene, const Input
     return outcomes;
 }
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 using Changes = std::vector<std::pair<const char*, Value>>;
 
@@ -21,4 +21,4 @@ void expect_bounds_are_made_or_refused(const SceneInfo& scene);
 [[nodiscard]] std::map<campaign::Outcome, int> outcomes_of(const SceneInfo& scene, const Inputs& inputs,
                                                            const std::vector<Changes>& table);
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

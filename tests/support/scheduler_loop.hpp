@@ -61,7 +61,7 @@ protected:
         return std::get<std::int64_t>(table.rows.at(0).at(0));
     }
 
-    test::Folder folder;
+    tests::Folder folder;
     campaign::Campaign campaign;
     std::vector<campaign::PlacedCase> placed;
     std::vector<double> seconds;  ///< predicted; empty: 1 of each

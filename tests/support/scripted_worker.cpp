@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 namespace {
 
 const char* prelude = R"(ready=$("$@" </dev/null | head -n1)
@@ -59,4 +59,4 @@ nlohmann::json ScriptedCampaign::ask(const std::string& sql) const {
     return rows.size() == 1 && rows[0].size() == 1 ? rows[0].front() : nlohmann::json();
 }
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

@@ -8,7 +8,7 @@
 
 #include <string>
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 /// A campaign "scripted" of the rehearsal scene whose workers run a script, in a folder of its own.
 ///
@@ -32,4 +32,4 @@ private:
     Folder folder_;
 };
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <span>
 
-namespace grainsweep::testing {
+namespace grainsweep::tests {
 
 inline double spreading_response(std::span<const double> u, double onset = 1.0) {
     const double friction = 0.1 + 0.2 * u[0];
@@ -25,4 +25,4 @@ inline constexpr double spreading_sd = 0.214471;
 inline constexpr double spreading_skewness = -0.236620;
 inline constexpr double spreading_kurtosis = 1.559886;
 
-}  // namespace grainsweep::testing
+}  // namespace grainsweep::tests

@@ -16,7 +16,7 @@
 #include <variant>
 #include <vector>
 
-namespace grainsweep::testing {
+namespace grainsweep::tests {
 
 /// Sum of eight cosines with random frequencies over two factors.
 class RandomResponse {
@@ -76,4 +76,4 @@ inline IntervalCounts count_intervals(std::uint64_t campaigns) {
     return counts;
 }
 
-}  // namespace grainsweep::testing
+}  // namespace grainsweep::tests

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace grainsweep::testing {
+namespace grainsweep::tests {
 
 struct TableOfCases {
     std::vector<std::string> names;
@@ -80,4 +80,4 @@ inline std::vector<double> features_of(const TableOfCases& table, std::size_t fi
     return features;
 }
 
-}  // namespace grainsweep::testing
+}  // namespace grainsweep::tests

@@ -1,6 +1,6 @@
 #include "tests/support/tpms_cells.hpp"
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 dem::Setup cell_of(const particles::TpmsFilling& filling, double edge, double cohesion, double floor) {
     dem::Setup s;
@@ -42,4 +42,4 @@ std::unique_ptr<Scene> run_in_slices(const std::function<std::unique_ptr<Scene>(
     return scene;
 }
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

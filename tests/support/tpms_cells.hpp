@@ -8,7 +8,7 @@
 #include <functional>
 #include <memory>
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 inline constexpr double cell_diameter = 45e-6;  ///< m
 
@@ -21,4 +21,4 @@ inline constexpr double cell_diameter = 45e-6;  ///< m
 [[nodiscard]] std::unique_ptr<Scene> run_in_slices(const std::function<std::unique_ptr<Scene>()>& make,
                                                    Bytes& checkpoint);
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

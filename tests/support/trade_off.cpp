@@ -8,7 +8,7 @@
 #include <fstream>
 #include <stdexcept>
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 namespace {
 
@@ -157,4 +157,4 @@ void draw(const std::vector<Setting>& settings, const std::filesystem::path& svg
     if (!out.flush()) throw std::runtime_error("cannot write " + svg.string());
 }
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

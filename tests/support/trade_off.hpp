@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 struct Setting {
     std::string scene, name;    ///< e.g. "spreading", "time step 0.2"
@@ -41,4 +41,4 @@ void mark_dominated(std::vector<Setting>& settings);
 /// Where a scene has more than twenty settings only those are named.
 void draw(const std::vector<Setting>& settings, const std::filesystem::path& svg);
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

@@ -15,13 +15,13 @@
 #include "stats/random.hpp"
 #include "tests/support/peer_programs.hpp"
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 namespace {
 
 using dem::Vec3;
 using geometry::operator+;
+using std::numbers::pi;
 
-constexpr double pi = std::numbers::pi;
 constexpr double grain = 5e-3;  // mean diameter of the powder of drum, hopper and heap, m
 constexpr int facets = 48;      // of a tessellated circle
 
@@ -53,7 +53,7 @@ dem::Material glass_like(double friction, double rolling_friction) {
     return {.youngs_modulus = 5e6, .density = 2500, .friction = friction, .rolling_friction = rolling_friction};
 }
 
-double volume(double d) {
+double sphere_volume(double d) {
     return pi / 6 * d * d * d;
 }
 
@@ -115,8 +115,8 @@ WallDeck drum_deck() {
     deck.start.domain = {{0, -radius - 2 * grain, -radius - 2 * grain},
                          {length, radius + 2 * grain, radius + 2 * grain},
                          {true, false, false}};
-    deck.start.spheres = lattice(std::llround(0.35 * pi * radius * radius * length * 0.58 / volume(grain)), grain, 0.1,
-                                 {0, -radius, -radius + 0.1 * grain}, {length, radius, radius},
+    deck.start.spheres = lattice(std::llround(0.35 * pi * radius * radius * length * 0.58 / sphere_volume(grain)),
+                                 grain, 0.1, {0, -radius, -radius + 0.1 * grain}, {length, radius, radius},
                                  [radius](const Vec3& x) { return std::hypot(x[1], x[2]) < radius - 0.6 * grain; });
     deck.start.walls.emplace_back(dem::Cylinder{.axis = {1, 0, 0}, .radius = radius},
                                   std::vector<geometry::Motion>{dem::Rotation{.axis = {1, 0, 0}, .speed = -omega}});
@@ -314,4 +314,4 @@ double particle_steps(const std::string& out) {
     return sum;
 }
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

@@ -14,7 +14,7 @@
 
 #include "solver/dem/engine.hpp"
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 /// What our walls are where LIGGGHTS's are triangles.
 enum class WallsAs { curved, triangles };
@@ -45,4 +45,4 @@ void write_deck(const WallDeck& deck, double skin, const std::filesystem::path& 
 /// Particles times steps, from the numbers of particles that a run printed on its way.
 [[nodiscard]] double particle_steps(const std::string& out);
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests

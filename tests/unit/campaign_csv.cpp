@@ -6,8 +6,9 @@
 #include <stdexcept>
 #include <string>
 
-namespace grainsweep::campaign {
-namespace {
+namespace grainsweep::tests::campaign_csv_test {
+
+using namespace campaign;
 
 void throw_rule(const std::string& rule) {
     throw std::invalid_argument(rule);
@@ -50,5 +51,4 @@ TEST(CsvTable, RefusesWhatIsNoHeader) {
     EXPECT_EQ(refusal("\n\n"), "the file is empty; a header and records are expected");
 }
 
-}  // namespace
-}  // namespace grainsweep::campaign
+}  // namespace grainsweep::tests::campaign_csv_test

@@ -10,11 +10,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-using namespace grainsweep;
-using namespace grainsweep::campaign;
-using nlohmann::json;
+namespace grainsweep::tests::campaign_errors_test {
 
-namespace {
+using namespace campaign;
+using nlohmann::json;
 
 constexpr const char* sound = R"({
   "campaign": "trial", "scene": "rehearsal",
@@ -44,8 +43,6 @@ struct Wrong {
 };
 
 class WrongCampaign : public testing::TestWithParam<Wrong> {};
-
-}  // namespace
 
 TEST_P(WrongCampaign, GetsItsSentence) {
     EXPECT_EQ(sentence_of(patched(GetParam().patch)), GetParam().sentence);
@@ -386,3 +383,5 @@ TEST(CampaignText, WrongTypesNeverCrash) {
         }
     }
 }
+
+}  // namespace grainsweep::tests::campaign_errors_test

@@ -9,11 +9,10 @@
 #include <limits>
 #include <string>
 
-using namespace grainsweep;
-using namespace grainsweep::campaign;
-using testing::ElementsAre;
+namespace grainsweep::tests::campaign_identity_test {
 
-namespace {
+using namespace campaign;
+using testing::ElementsAre;
 
 Identity identity_in(const std::string& text) {
     return identity_of(parse_campaign(text, "."));
@@ -79,4 +78,4 @@ TEST(StoredText, PhasesComeBack) {
         EXPECT_EQ(phases_in(other), std::nullopt) << other;
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::campaign_identity_test

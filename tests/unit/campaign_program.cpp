@@ -15,11 +15,10 @@
 #include <stdexcept>
 #include <string>
 
-using namespace grainsweep;
-using namespace grainsweep::campaign;
-using nlohmann::json;
+namespace grainsweep::tests::campaign_program_test {
 
-namespace {
+using namespace campaign;
+using nlohmann::json;
 
 namespace fs = std::filesystem;
 
@@ -283,4 +282,4 @@ TEST(ProgramSection, TheHashIsOfWhatChangesAnAnswer) {
     EXPECT_NE(same, name_of({}));
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::campaign_program_test

@@ -6,8 +6,9 @@
 #include <cmath>
 #include <variant>
 
-namespace grainsweep::campaign {
-namespace {
+namespace grainsweep::tests::campaign_ranges_test {
+
+using namespace campaign;
 
 // Without care rounding misses the ends: 30000 (1e6/30000)^1 is 1000000.0000000001, and 0.2 + (0.9 - 0.2) is
 // 0.8999999999999999.
@@ -31,5 +32,4 @@ TEST(ParameterSpace, EveryRangeHasItsEndsExactlyAndNothingBeyond) {
     EXPECT_EQ(at({0.2, 0.9, Scale::linear}, 1), 0.9);
 }
 
-}  // namespace
-}  // namespace grainsweep::campaign
+}  // namespace grainsweep::tests::campaign_ranges_test

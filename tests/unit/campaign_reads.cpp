@@ -4,8 +4,9 @@
 
 #include <gtest/gtest.h>
 
-using namespace grainsweep;
-using namespace grainsweep::campaign;
+namespace grainsweep::tests::campaign_reads_test {
+
+using namespace campaign;
 
 TEST(CampaignFile, IsReadAsItWasMeant) {
     const std::string text = R"({
@@ -68,8 +69,6 @@ TEST(Forecast, CountsEveryQuestionOnce) {
     EXPECT_NEAR(cost.longest_seconds, 2, 1e-4);
 }
 
-namespace {
-
 Convergence convergence_of(int points, const std::string& design, const std::string& rule) {
     const std::string text = R"({"campaign": "c", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
         "design": {)" + design +
@@ -77,8 +76,6 @@ Convergence convergence_of(int points, const std::string& design, const std::str
                              rule + "}}";
     return *parse_campaign(text, ".").convergence;
 }
-
-}  // namespace
 
 // A rule that can never be checked looks like one that is never met.
 TEST(CampaignFile, WithoutABlockTheDesignIsCheckedEightTimes) {
@@ -137,3 +134,5 @@ TEST(Forecast, CountsWarningsByKind) {
     EXPECT_EQ(warnings[0].rfind("gap below half a diameter: 2 of 4 cases, first at point 0: a gap of 0.0001 m", 0), 0U)
         << warnings[0];
 }
+
+}  // namespace grainsweep::tests::campaign_reads_test

@@ -13,11 +13,10 @@
 #include <set>
 #include <string>
 
-using namespace grainsweep;
-using namespace grainsweep::campaign;
-using nlohmann::json;
+namespace grainsweep::tests::campaign_schema_test {
 
-namespace {
+using namespace campaign;
+using nlohmann::json;
 
 std::set<std::string> keys_of(const json& object) {
     std::set<std::string> keys;
@@ -49,8 +48,6 @@ const json sound = json::parse(R"({"campaign": "trial", "scene": "rehearsal",
     "factors": [{"name": "x1", "between": [0, 1]}], "fixed": {"noise": 0.1},
     "design": {"kind": "halton", "points": 64, "sequences": 4},
     "convergence": {"observable": "y"}, "limits": {"attempts": 1}, "execution": {"workers": 1}})");
-
-}  // namespace
 
 TEST(Schema, IsDraft2020AndRefusesUnknownKeysEverywhere) {
     EXPECT_EQ(schema()["$schema"], "https://json-schema.org/draft/2020-12/schema");
@@ -167,3 +164,5 @@ TEST(Configs, EveryFileReadsWithoutError) {
     }
     EXPECT_GT(read, 0U);
 }
+
+}  // namespace grainsweep::tests::campaign_schema_test

@@ -10,18 +10,15 @@
 #include <string>
 #include <vector>
 
-using namespace grainsweep;
-using campaign::nearest_word;
+namespace grainsweep::tests::campaign_synonyms_test {
 
-namespace {
+using campaign::nearest_word;
 
 std::vector<std::string> parameters_of(const char* scene) {
     std::vector<std::string> names;
     for (const auto& parameter : find_scene(scene)->parameters) names.push_back(parameter.name);
     return names;
 }
-
-}  // namespace
 
 TEST(Synonyms, OfDesigns) {
     std::vector<std::string> designs;
@@ -78,3 +75,5 @@ TEST(Synonyms, OfOptions) {
     EXPECT_EQ(nearest_word("--json", options), "--format json");
     EXPECT_EQ(nearest_word("--jobs", std::vector<std::string>{"--db"}), "");
 }
+
+}  // namespace grainsweep::tests::campaign_synonyms_test

@@ -14,10 +14,9 @@
 #include <fstream>
 #include <set>
 
-using namespace grainsweep;
-using namespace grainsweep::campaign;
+namespace grainsweep::tests::campaign_unfold_test {
 
-namespace {
+using namespace campaign;
 
 const SceneInfo& rehearsal() {
     return *find_scene("rehearsal");
@@ -42,8 +41,6 @@ const std::string three_by_two = R"({
   "fixed": {"x3": 0.25},
   "design": {"kind": "lattice", "levels": 3}
 })";
-
-}  // namespace
 
 TEST(ParameterSpace, LinearMapIsLowPlusUTimesRange) {
     for (const double u : {0.0, 0.1, 1.0 / 3, 0.7, 1.0}) {
@@ -320,8 +317,6 @@ TEST(WholeFile, HoldsEveryByteOrSaysWhyNot) {
     std::filesystem::remove_all(folder);
 }
 
-namespace {
-
 /// A scene with parameters that depend on each other, as the blade's do.
 SceneInfo dependent_scene() {
     SceneInfo scene;
@@ -339,8 +334,6 @@ SceneInfo dependent_scene() {
     scene.accuracy = {{"fast", {{"fraction", 0.4}, {"strength", 2.0}}}};
     return scene;
 }
-
-}  // namespace
 
 TEST(Relevance, AFactorSatisfiesAConditionIfAnyOfItsValuesCan) {
     const SceneInfo scene = dependent_scene();
@@ -397,3 +390,5 @@ TEST(NearestWord, IsTheOneWithTheFewestSlips) {
     EXPECT_EQ(nearest_word("", words), "");
     EXPECT_EQ(nearest_word(std::string(100'000, 'x'), words), "");
 }
+
+}  // namespace grainsweep::tests::campaign_unfold_test

@@ -5,8 +5,9 @@
 #include <ctime>
 #include <string>
 
-namespace grainsweep::cli {
-namespace {
+namespace grainsweep::tests::cli_walltime_test {
+
+using namespace cli;
 
 TEST(Walltime, IsTheEarlierOfWhatIsConfiguredAndTheJobsEnd) {
     EXPECT_FALSE(time_given(0, "", "", 1000));
@@ -75,5 +76,4 @@ TEST(Walltime, ATenthIsKeptBackWithinBounds) {
     EXPECT_EQ(kept_back(4), 2);
 }
 
-}  // namespace
-}  // namespace grainsweep::cli
+}  // namespace grainsweep::tests::cli_walltime_test

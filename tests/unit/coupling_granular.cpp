@@ -8,10 +8,9 @@
 
 #include <cmath>
 
-using namespace grainsweep;
-using namespace grainsweep::coupling;
+namespace grainsweep::tests::coupling_granular_test {
 
-namespace {
+using namespace coupling;
 
 constexpr double pi = 3.14159265358979323846;
 
@@ -34,8 +33,6 @@ std::vector<Vec3> lattice(int n) {
                 positions.push_back({(i + 0.5) / n - 0.5, (j + 0.5) / n - 0.5, (k + 0.5) / n - 0.5});
     return positions;
 }
-
-}  // namespace
 
 TEST(Granular, RadialDistributionAndSolidsPressure) {
     // (a/a_max)^(1/3) = 1/2 at a = a_max/8: g0 = 2.
@@ -235,3 +232,5 @@ TEST(HystereticSpring, HasTheClosedFormsOfACollision) {
         EXPECT_NEAR(steps * h, spring.contact_time(mass), 2e-3 * spring.contact_time(mass)) << e;
     }
 }
+
+}  // namespace grainsweep::tests::coupling_granular_test

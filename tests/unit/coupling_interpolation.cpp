@@ -7,12 +7,11 @@
 #include <algorithm>
 #include <cmath>
 
-using namespace grainsweep;
-using namespace grainsweep::coupling;
+namespace grainsweep::tests::coupling_interpolation_test {
+
+using namespace coupling;
 using flow::Axis;
 using flow::Grid;
-
-namespace {
 
 constexpr std::array<flow::Side, 2> walls{flow::NoSlip{}, flow::NoSlip{}};
 constexpr std::array<flow::Side, 2> slip{flow::FreeSlip{}, flow::FreeSlip{}};
@@ -72,8 +71,6 @@ const Grid uniform{{Axis::uniform(9, -0.5, 0.5), Axis::uniform(8, -0.5, 0.5), Ax
 const Grid clustered{
     {Axis::clustered(9, -0.5, 0.5, 1.3), Axis::clustered(8, -0.5, 0.5, 1.5), Axis::clustered(10, -0.5, 0.5, 1)}};
 
-}  // namespace
-
 // The spline is piecewise quadratic, so a central difference inside a piece is exact to its round-off (1e-10); pieces
 // meet with continuous slopes, so straddling a knot leaves a second difference times e, below 1e-3.
 TEST(Solenoidal, HasNoDivergenceBetweenTheNodes) {
@@ -83,8 +80,6 @@ TEST(Solenoidal, HasNoDivergenceBetweenTheNodes) {
     // The trilinear field of the same nodes compresses by order one.
     EXPECT_GT(largest_divergence<Trilinear>(uniform, {walls, walls, walls}), 0.1);
 }
-
-namespace {
 
 // The nodes of a plane flow against the wall y = 0 that obeys it and div V = 0: u = 2 a x y, v = -a y^2, a = 1.
 flow::FaceVectors stagnation(const Grid& grid) {
@@ -112,8 +107,6 @@ BesideWall beside_wall(const Grid& grid, double x, double y) {
     const auto at = [&](double px, double py) { return gather<Kernel>(grid, {}, field, {px, py, 0.5}); };
     return {at(x, y), (at(x + e, y)[0] - at(x - e, y)[0] + at(x, y + e)[1] - at(x, y - e)[1]) / (2 * e)};
 }
-
-}  // namespace
 
 // In the half cell beside a no-slip wall, at distance y < h/2, both kernels carry the particle towards the wall by
 // v = -a h y instead of -a y^2. Trilinear follows the shear u = 2 a x y exactly and so compresses by a (2 y - h);
@@ -261,3 +254,5 @@ TEST(RandomCloud, StandsWhereCentresMayBe) {
     EXPECT_LT(std::abs(mean), 4 * 0.4 / std::sqrt(3.0 * 2000));  // four standard errors
     EXPECT_GT(largest, 0.49);
 }
+
+}  // namespace grainsweep::tests::coupling_interpolation_test

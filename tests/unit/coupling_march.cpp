@@ -9,10 +9,10 @@
 #include <numeric>
 #include <vector>
 
-namespace {
+namespace grainsweep::tests::coupling_march_test {
 
-using namespace grainsweep::coupling;
-using grainsweep::stats::Stream;
+using namespace coupling;
+using stats::Stream;
 
 constexpr double ulp = std::numeric_limits<double>::epsilon();
 
@@ -100,4 +100,4 @@ TEST(March, ChangesNoBit) {
         }
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::coupling_march_test

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <complex>
 
-using namespace grainsweep::coupling;
+namespace grainsweep::tests::coupling_motion_test {
 
-namespace {
+using namespace coupling;
 
 constexpr double pi = 3.14159265358979323846;
 
@@ -34,8 +34,6 @@ std::complex<double> response(double eps, double xi, int steps_per_period, int p
     }
     return sum * std::complex<double>(0, frequency);
 }
-
-}  // namespace
 
 // V_p/U = (1 + 3/2 i eps)/(1 + i (xi + 1/2) eps), eps = Omega St/Pr: exact for linear drag (Maxey-Riley without
 // history). Transients of the slowest case, (xi + 1/2) eps = 40, have died after 60 periods.
@@ -147,3 +145,5 @@ TEST(Walls, ReflectAtRadiusOrCentreWithRestitution) {
     EXPECT_LE(std::abs(x[0]), 0.5);
     EXPECT_LE(std::abs(x[1]), 0.5);
 }
+
+}  // namespace grainsweep::tests::coupling_motion_test

@@ -6,10 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-using namespace grainsweep;
-using namespace grainsweep::coupling;
+namespace grainsweep::tests::coupling_periodic_flow_test {
 
-namespace {
+using namespace coupling;
 
 constexpr double pi = 3.14159265358979323846;
 
@@ -33,8 +32,6 @@ flow::FaceVectors field_at(const flow::Grid& grid, double phase, double fifth, s
         }
     return field;
 }
-
-}  // namespace
 
 // Sixteen equidistant samples determine the five terms exactly, and a fifth harmonic does not leak into them.
 TEST(PeriodicFlow, GivesBackWhatItKeepsAtEveryPhase) {
@@ -90,3 +87,5 @@ TEST(VisitOrder, VisitsEveryParticleOnceNeighboursTogether) {
     std::ranges::sort(order);
     for (std::uint32_t p = 0; p < 500; ++p) EXPECT_EQ(order[p], p);
 }
+
+}  // namespace grainsweep::tests::coupling_periodic_flow_test

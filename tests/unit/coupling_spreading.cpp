@@ -9,11 +9,11 @@
 #include <numbers>
 #include <vector>
 
-namespace {
+namespace grainsweep::tests::coupling_spreading_test {
 
-using namespace grainsweep::coupling;
-using grainsweep::flow::Axis;
-using grainsweep::flow::Grid;
+using namespace coupling;
+using flow::Axis;
+using flow::Grid;
 
 struct Line {
     Axis axis;
@@ -199,4 +199,4 @@ TEST(Spreading, ReflectsAtWalls) {
         }
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::coupling_spreading_test

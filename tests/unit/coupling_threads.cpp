@@ -15,10 +15,9 @@
 #include <string>
 #include <vector>
 
-using namespace grainsweep;
-using namespace grainsweep::flow;
+namespace grainsweep::tests::coupling_threads_test {
 
-namespace {
+using namespace flow;
 
 using State = std::vector<std::byte>;
 constexpr int steps = 4;
@@ -190,4 +189,4 @@ TEST(CouplingThreadsScene, ACaseHasTheBitsOfOneThreadHoweverManyItHas) {
     }
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::coupling_threads_test

@@ -12,14 +12,13 @@
 #include "solver/geometry/vector.hpp"
 #include "tests/support/granular_scenes.hpp"
 
-using namespace grainsweep;
-using namespace grainsweep::dem;
+namespace grainsweep::tests::dem_contact_forces_test {
+
+using namespace dem;
 using geometry::operator*;
 using geometry::operator-;
 using geometry::operator+=;
 using geometry::operator-=;
-
-namespace {
 
 constexpr double diameter = 45e-6;
 
@@ -58,7 +57,7 @@ std::vector<ContactForce> contacts_of(const Engine& engine) {
 
 /// Thrown spheres of unequal size between planes, lossless: then no force depends on a velocity.
 dem::Setup lossless_box() {
-    dem::Setup s = test::boxed_lattice(4, 0.5, 0.2, 3);
+    dem::Setup s = tests::boxed_lattice(4, 0.5, 0.2, 3);
     s.material.restitution = 1;
     s.material.friction = 0.4;
     s.material.cohesion = 20e3;
@@ -86,8 +85,6 @@ std::map<std::int32_t, Load> loads_of(const Engine& engine, const State& state) 
     }
     return loads;
 }
-
-}  // namespace
 
 TEST_P(ContactForces, NetForceIsThatOfAnotherProgram) {
     // LIGGGHTS 3.8, SJKR, two spheres at rest: overlap 0.45 um, contact area 3.16496e-11 m2, net force 4.57375e-07 N.
@@ -174,7 +171,7 @@ TEST_P(ContactForces, MoveTheParticlesAsNewtonSays) {
 }
 
 TEST(ContactForcesOfBothEngines, Agree) {
-    dem::Setup setup = test::boxed_lattice(4, 0.5, 0, 3);
+    dem::Setup setup = tests::boxed_lattice(4, 0.5, 0, 3);
     setup.material.cohesion = 30e3;
     setup.material.friction_limit = FrictionLimit::net;
     setup.spheres[17].mobile = setup.spheres[40].mobile = false;
@@ -237,3 +234,5 @@ TEST_P(ContactForces, PeakOverlapIsTheLargestOfAllSteps) {
     restored->run(1);
     EXPECT_EQ(restored->peak_overlap(), restored->largest_overlap());
 }
+
+}  // namespace grainsweep::tests::dem_contact_forces_test

@@ -9,10 +9,10 @@
 #include <cmath>
 #include <numbers>
 
-using namespace grainsweep::dem;
-using std::numbers::pi;
+namespace grainsweep::tests::dem_laws_test {
 
-namespace {
+using namespace dem;
+using std::numbers::pi;
 
 /// Spheres of radii 2 and 1 mm, overlap 0.02 mm.
 Touch<Partner::particle> pair(double normal_velocity = 0) {
@@ -36,8 +36,6 @@ Touch<Partner::wall> wall() {
     t.overlap = 2e-5;
     return t;
 }
-
-}  // namespace
 
 TEST(Material, DerivesTheEffectiveModuli) {
     const Material m;  // E 21 MPa, nu 0.3
@@ -195,3 +193,5 @@ TEST(MovingWall, ABladeFollowsItsLaw) {
     EXPECT_EQ(touched[0].entry, 7U);
     EXPECT_NEAR(touched[0].place.distance, 0.5e-3, 1e-12);
 }
+
+}  // namespace grainsweep::tests::dem_laws_test

@@ -12,12 +12,11 @@
 #include "tests/support/granular_scenes.hpp"
 #include "tests/support/plain_dem.hpp"
 
-using namespace grainsweep;
+namespace grainsweep::tests::dem_shaking_test {
+
 using dem::Method;
 using dem::Vec3;
 using geometry::operator-;
-
-namespace {
 
 class Shaking : public testing::TestWithParam<Method::Precision> {
 protected:
@@ -36,7 +35,7 @@ constexpr double diameter = 1e-3;
 /// A tray of frozen spheres with mobile ones above, shaken obliquely at about 4 g.
 dem::Setup tray() {
     dem::Setup s;
-    s.material = test::steel_like();
+    s.material = tests::steel_like();
     s.material.cohesion = 5e3;
     s.time_step = 2e-6;
     s.domain = {{-5e-3, -5e-3, -5e-3}, {10e-3, 10e-3, 10e-3}, {}};
@@ -65,8 +64,6 @@ dem::State state_of(const dem::Engine& engine) {
     return state;
 }
 
-}  // namespace
-
 TEST_P(Shaking, AFreeSphereKeepsItsParabolaInTheLaboratory) {
     dem::Setup s = tray();
     s.spheres = {{{1e-3, 1e-3, 5e-3}, {0.1, 0, 0.2}, {}, diameter / 2, true}};
@@ -89,7 +86,7 @@ TEST_P(Shaking, AFreeSphereKeepsItsParabolaInTheLaboratory) {
 
 TEST_P(Shaking, IsTheSameInTheFrameOfTheLaboratory) {
     const dem::Setup s = tray();
-    test::PlainDem plain(s);
+    tests::PlainDem plain(s);
     const auto engine = engine_of(s);
     double lifted = 0;
     for (int block = 0; block < 8; ++block) {
@@ -144,3 +141,5 @@ TEST_P(Shaking, TooFewStepsPerPeriodAreRefused) {
     s.shaking.frequency = 0.06 / s.time_step;
     EXPECT_THROW(engine_of(s), std::invalid_argument);
 }
+
+}  // namespace grainsweep::tests::dem_shaking_test

@@ -14,10 +14,9 @@
 #include <string>
 #include <vector>
 
-using namespace grainsweep;
-using namespace grainsweep::geometry;
-using tests::all_moving_walls;
-using tests::one_sphere;
+namespace grainsweep::tests::dem_walls_test {
+
+using namespace geometry;
 
 // A surface of its own: the wall's friction where it slides, its restitution, and none of it between spheres.
 TEST(DemWalls, AWallHasItsOwnSurface) {
@@ -191,3 +190,5 @@ TEST(DemWalls, AlteredCheckpointsOfAMeshAreRefusedOrGoOn) {
     }
     EXPECT_GT(refused, 100);
 }
+
+}  // namespace grainsweep::tests::dem_walls_test

@@ -7,9 +7,9 @@
 #include <limits>
 #include <vector>
 
-using namespace grainsweep::designs;
+namespace grainsweep::tests::designs_braaten_weller_test {
 
-namespace {
+using namespace designs;
 
 /// The rule in whole numbers: b^2 N^2 times the varying part of the squared L2 star discrepancy of the sorted
 /// digits, sum_i (2 N d_(i) - (2i - 1) b)^2.
@@ -42,8 +42,6 @@ int digits_obeying_the_rule(std::span<const std::uint8_t> row) {
     }
     return obeying;
 }
-
-}  // namespace
 
 TEST(BraatenWeller, EveryDigitUpToBase53ObeysTheRule) {
     for (const auto table : {BraatenWellerTable::original, BraatenWellerTable::vc2006}) {
@@ -83,3 +81,5 @@ TEST(BraatenWeller, TheTablesDifferWhereTheLiteratureSays) {
             different.push_back(bases[j]);
     EXPECT_EQ(different, (std::vector<std::uint32_t>{5, 7, 11, 29, 31, 41, 43, 47, 53}));
 }
+
+}  // namespace grainsweep::tests::designs_braaten_weller_test

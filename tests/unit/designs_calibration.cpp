@@ -9,14 +9,10 @@
 #include <cmath>
 #include <limits>
 
-using namespace grainsweep;
-using designs::MeasuredTarget;
-using grainsweep::testing::answer;
-using grainsweep::testing::answered;
-using grainsweep::testing::calibration_request;
-using ::testing::HasSubstr;
+namespace grainsweep::tests::designs_calibration_test {
 
-namespace {
+using designs::MeasuredTarget;
+using ::testing::HasSubstr;
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 using Point = std::span<const double>;
@@ -24,8 +20,6 @@ using Point = std::span<const double>;
 double noise(std::uint64_t stream, std::size_t point) {
     return stats::to_unit(stats::bits_at(7, stream, point)) - 0.5;
 }
-
-}  // namespace
 
 // Two responses, both linear in two factors: the posterior is Gaussian, z = A u + e, covariance (A^T V^-1 A)^-1.
 TEST(CalibrationWaves, OfLinearResponsesHasTheGaussianPosterior) {
@@ -238,7 +232,7 @@ TEST(CalibrationWaves, ACurveOfManyPointsIsNoMoreCertainThanWhatItLeavesOut) {
     // The same shift along the whole curve: twelve points determine it little better than the discrepancy of one.
     const auto sd_of = [](std::size_t points) {
         std::vector<MeasuredTarget> targets;
-        grainsweep::testing::Responses responses;
+        grainsweep::tests::Responses responses;
         for (std::size_t k = 0; k < points; ++k) {
             const auto name = "c@" + std::to_string(static_cast<double>(k) / static_cast<double>(points - 1));
             targets.push_back({name, 0.5, 0.01, 0.05, {}, 1});
@@ -252,3 +246,5 @@ TEST(CalibrationWaves, ACurveOfManyPointsIsNoMoreCertainThanWhatItLeavesOut) {
     EXPECT_GT(twelve, 0.5 * 0.05);
     EXPECT_NEAR(twelve, six, 0.005);
 }
+
+}  // namespace grainsweep::tests::designs_calibration_test

@@ -4,8 +4,7 @@
 
 #include <algorithm>
 
-using namespace grainsweep;
-using grainsweep::testing::ask_design;
+namespace grainsweep::tests::designs_catalogue_test {
 
 TEST(Catalogue, EveryKindSaysWhatItIsAndExtendsWhereItClaims) {
     for (const auto& info : designs::design_catalogue()) {
@@ -71,3 +70,5 @@ TEST(Catalogue, MissingOrMistypedOptionsAreNamed) {
         EXPECT_NE(std::string(error.what()).find("sequences"), std::string::npos) << error.what();
     }
 }
+
+}  // namespace grainsweep::tests::designs_catalogue_test

@@ -6,9 +6,9 @@
 
 #include <set>
 
-using namespace grainsweep;
-using namespace grainsweep::designs;
-using grainsweep::testing::ask_design;
+namespace grainsweep::tests::designs_halton_test {
+
+using namespace designs;
 
 TEST(Halton, PlainPointsAreMirroredDigits) {
     const auto set = ask_design("halton", 3, {{"points", 4}, {"scramble", "none"}});
@@ -67,3 +67,5 @@ TEST(Halton, SaysWhatCannotBe) {
                  std::invalid_argument);
     EXPECT_EQ(ask_design("halton", 40, {{"points", 8}}).size(), 8U);
 }
+
+}  // namespace grainsweep::tests::designs_halton_test

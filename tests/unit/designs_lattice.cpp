@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-using namespace grainsweep;
-using grainsweep::testing::ask_design;
+namespace grainsweep::tests::designs_lattice_test {
+
 using Counts = std::vector<std::int64_t>;
 
 TEST(Lattice, LastFactorRunsFastest) {
@@ -44,3 +44,5 @@ TEST(Lattice, SaysWhatCannotBe) {
                  std::invalid_argument);
     EXPECT_THROW((void)ask_design("lattice", 12, {{"levels", 10}}), std::invalid_argument);
 }
+
+}  // namespace grainsweep::tests::designs_lattice_test

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <set>
 
-using namespace grainsweep;
-using grainsweep::testing::ask_design;
+namespace grainsweep::tests::designs_random_test {
 
 TEST(RandomDesign, ExtendsAndDependsOnTheSeed) {
     const auto few = ask_design("random", 3, {{"points", 10}}, 7);
@@ -48,3 +47,5 @@ TEST(ListDesign, TakesRowsAsTheyAre) {
     EXPECT_THROW((void)ask_design("list", 3, {{"rows", rows}}), std::invalid_argument);
     EXPECT_THROW((void)ask_design("list", 3, {}), std::invalid_argument);
 }
+
+}  // namespace grainsweep::tests::designs_random_test

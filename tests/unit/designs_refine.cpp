@@ -10,12 +10,11 @@
 #include <functional>
 #include <limits>
 
-using namespace grainsweep;
+namespace grainsweep::tests::designs_refine_test {
+
 using designs::Bracket;
 using designs::DesignRequest;
 using ::testing::ElementsAre;
-
-namespace {
 
 double uniform_at(std::uint64_t seed, std::uint64_t stream, std::uint64_t counter) {
     return stats::to_unit(stats::bits_at(seed, stream, counter));
@@ -57,8 +56,6 @@ int run(DesignRequest& asked, const std::function<double(std::span<const double>
 double step(double u, double at) {
     return u < at ? 0.0 : 1.0;
 }
-
-}  // namespace
 
 TEST(Refine, BracketsAStepInNineRunsToOnePartIn128) {
     for (const double at : {0.003, 0.25, 0.3337, 0.77, 0.999}) {
@@ -191,3 +188,5 @@ TEST(Refine, SaysWhatCannotBe) {
     EXPECT_THAT(refused(request({0, 2000, 2000}, 0.5, 1)), ::testing::HasSubstr("combinations"));
     EXPECT_THAT(refused(request({2}, 0.5, 1)), ::testing::HasSubstr("does not vary"));
 }
+
+}  // namespace grainsweep::tests::designs_refine_test

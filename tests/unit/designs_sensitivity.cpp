@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-using namespace grainsweep;
-using grainsweep::testing::ask_design;
+namespace grainsweep::tests::designs_sensitivity_test {
 
 TEST(SaltelliDesign, BlocksAreAThenBThenRadialRows) {
     constexpr std::size_t d = 4;
@@ -88,3 +87,5 @@ TEST(MorrisDesign, LevelsThatNoTrajectoryMeetsAreRefused) {
     EXPECT_EQ(said(9, 9), "");
     EXPECT_NE(said(1, 9).find("factor 2 has one level"), std::string::npos);
 }
+
+}  // namespace grainsweep::tests::designs_sensitivity_test

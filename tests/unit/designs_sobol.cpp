@@ -6,8 +6,7 @@
 #include <cstdint>
 #include <set>
 
-using namespace grainsweep;
-using grainsweep::testing::ask_design;
+namespace grainsweep::tests::designs_sobol_test {
 
 TEST(Sobol, UnscrambledBeginsAsPublished) {
     const auto set = ask_design("sobol", 3, {{"points", 4}, {"scramble", "none"}});
@@ -49,3 +48,5 @@ TEST(Sobol, SequencesShareNoScrambling) {
     EXPECT_THROW((void)ask_design("sobol", 2, {{"points", 8}, {"sequences", 4}, {"scramble", "none"}}),
                  std::invalid_argument);
 }
+
+}  // namespace grainsweep::tests::designs_sobol_test

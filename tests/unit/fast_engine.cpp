@@ -10,11 +10,10 @@
 #include "solver/dem/fast/mixed_engine.hpp"
 #include "tests/support/granular_scenes.hpp"
 
-using namespace grainsweep;
+namespace grainsweep::tests::fast_engine_test {
+
 using dem::Method;
 using dem::fast::make_mixed_engine;
-
-namespace {
 
 std::vector<Method::Path> paths() {
     std::vector<Method::Path> all;
@@ -38,17 +37,15 @@ void expect_same_bits(const dem::Engine& a, const dem::Engine& b) {
 dem::Setup one_sphere(const dem::Vec3& velocity) {
     dem::Setup s;
     s.domain = {{0, 0, 0}, {10e-3, 10e-3, 10e-3}, {true, true, true}};
-    s.material = test::steel_like();
+    s.material = tests::steel_like();
     s.gravity = {0, 0, 0};
     s.time_step = 1e-5;
     s.spheres = {{{5e-3, 5e-3, 5e-3}, velocity, {1, 2, 3}, 0.5e-3, true}};
     return s;
 }
 
-}  // namespace
-
 TEST(FastEngine, StateReturnsTheStart) {
-    const dem::Setup setup = test::boxed_lattice(3, 1.0, 0.2, 1);
+    const dem::Setup setup = tests::boxed_lattice(3, 1.0, 0.2, 1);
     for (const auto path : paths()) {
         const auto engine = make_mixed_engine(setup, path);
         dem::State s;
@@ -65,7 +62,7 @@ TEST(FastEngine, StateReturnsTheStart) {
 }
 
 TEST(FastEngine, HowARunIsCutChangesNoBit) {
-    const dem::Setup setup = test::boxed_lattice(4, 0.5, 0, 2);
+    const dem::Setup setup = tests::boxed_lattice(4, 0.5, 0, 2);
     for (const auto path : paths()) {
         const auto whole = make_mixed_engine(setup, path), cut = make_mixed_engine(setup, path);
         whole->run(700);
@@ -81,7 +78,7 @@ TEST(FastEngine, HowARunIsCutChangesNoBit) {
 TEST(FastEngine, RestoredEnginesContinueBitForBit) {
     for (const auto& [spread, rolling] : {std::pair(0.0, 0.0), std::pair(0.3, 0.0), std::pair(0.3, 0.2)})
         for (const auto path : paths()) {
-            dem::Setup setup = test::boxed_lattice(4, 0.5, spread, 3);
+            dem::Setup setup = tests::boxed_lattice(4, 0.5, spread, 3);
             setup.material.rolling_friction = rolling;
             const auto first = make_mixed_engine(setup, path), second = make_mixed_engine(setup, path);
             first->run(350);
@@ -105,10 +102,10 @@ TEST(FastEngine, RestoredEnginesContinueBitForBit) {
 }
 
 TEST(FastEngine, ForeignCheckpointsAreRefused) {
-    const auto a = make_mixed_engine(test::boxed_lattice(3, 0.5, 0, 4), Method::Path::baseline);
+    const auto a = make_mixed_engine(tests::boxed_lattice(3, 0.5, 0, 4), Method::Path::baseline);
     std::vector<std::byte> bytes;
     a->save(bytes);
-    auto setup = test::boxed_lattice(3, 0.5, 0, 4);
+    auto setup = tests::boxed_lattice(3, 0.5, 0, 4);
     setup.material.friction = 0.3;
     EXPECT_THROW(make_mixed_engine(setup, Method::Path::baseline)->restore(bytes), std::invalid_argument);
     for (const std::size_t cut : {std::size_t{0}, std::size_t{10}, bytes.size() / 2, bytes.size() - 1}) {
@@ -120,7 +117,7 @@ TEST(FastEngine, ForeignCheckpointsAreRefused) {
 }
 
 TEST(FastEngine, PathsAgreeToSinglePrecision) {
-    const dem::Setup setup = test::boxed_lattice(4, 0.5, 0.1, 5);
+    const dem::Setup setup = tests::boxed_lattice(4, 0.5, 0.1, 5);
     dem::State reference, other;
     const auto base = make_mixed_engine(setup, Method::Path::baseline);
     base->run(200);
@@ -129,8 +126,8 @@ TEST(FastEngine, PathsAgreeToSinglePrecision) {
         const auto engine = make_mixed_engine(setup, path);
         engine->run(200);
         engine->state(other);
-        EXPECT_LT(test::position_difference(reference, other, setup.domain, 1e-3), 1e-6);
-        EXPECT_LT(test::velocity_difference(reference, other), 1e-5);
+        EXPECT_LT(tests::position_difference(reference, other, setup.domain, 1e-3), 1e-6);
+        EXPECT_LT(tests::velocity_difference(reference, other), 1e-5);
     }
 }
 
@@ -254,7 +251,7 @@ TEST(FastEngine, ImpossibleSetupsAreRefusedInOneSentence) {
 }
 
 TEST(FastEngine, MomentumOfAFreeClusterStays) {
-    dem::Setup setup = test::thrown_lattice(5, 1.0, 0.2, 8);
+    dem::Setup setup = tests::thrown_lattice(5, 1.0, 0.2, 8);
     for (const auto path : paths()) {
         const auto engine = make_mixed_engine(setup, path);
         dem::State s;
@@ -300,3 +297,5 @@ TEST(FastEngine, FetchesAsFarAheadAsMostPartnersAre) {
     first.resize(particles - 16);
     EXPECT_EQ(distance(), 0);
 }
+
+}  // namespace grainsweep::tests::fast_engine_test

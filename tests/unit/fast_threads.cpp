@@ -14,12 +14,11 @@
 #include "tests/support/granular_scenes.hpp"
 #include "tests/support/surfaces.hpp"
 
-using namespace grainsweep;
+namespace grainsweep::tests::fast_threads_test {
+
 using dem::Method;
 using dem::fast::make_mixed_engine;
 using dem::fast::Threads;
-
-namespace {
 
 using Bytes = std::vector<std::byte>;
 
@@ -49,7 +48,7 @@ struct Case {
 };
 
 dem::Setup in_a_box(double spread, void (*change)(dem::Material&)) {
-    dem::Setup s = test::boxed_lattice(5, 0.5, spread, 4);
+    dem::Setup s = tests::boxed_lattice(5, 0.5, spread, 4);
     change(s.material);
     s.time_step = 4e-6;
     return s;
@@ -83,7 +82,7 @@ std::vector<Case> laws() {
 dem::Setup pile() {
     constexpr double d = 1e-3;
     dem::Setup s;
-    s.material = test::steel_like();
+    s.material = tests::steel_like();
     s.material.friction = 0.5;
     s.time_step = 4e-6;
     s.domain = {{-2 * d, -2 * d, -2 * d}, {8 * d, 8 * d, 20 * d}, {}};
@@ -100,7 +99,7 @@ dem::Setup pile() {
 
 /// Powder above a floor of triangles, in a drum.
 dem::Setup among_triangles() {
-    dem::Setup s = test::boxed_lattice(5, 0.5, 0, 8);
+    dem::Setup s = tests::boxed_lattice(5, 0.5, 0, 8);
     s.time_step = 4e-6;
     for (dem::Sphere& p : s.spheres) p.position[2] += 2.2e-3;
     s.domain = {{-0.02, -0.02, -0.02}, {0.02, 0.02, 0.02}, {}};
@@ -110,7 +109,7 @@ dem::Setup among_triangles() {
 
 /// Powder tumbling in a drum of triangles, many of which a sphere is near, and out of its ends.
 dem::Setup in_a_drum_of_triangles(double spread) {
-    dem::Setup s = test::boxed_lattice(6, 0.5, spread, 8);
+    dem::Setup s = tests::boxed_lattice(6, 0.5, spread, 8);
     s.time_step = 4e-6;
     dem::Vec3 middle{};
     const auto share = 1 / static_cast<double>(s.spheres.size());
@@ -126,7 +125,7 @@ dem::Setup in_a_drum_of_triangles(double spread) {
 
 /// A cloud that flies apart, fast, out of an open box: lists are made anew all the time, with fewer particles each.
 dem::Setup flying_apart(double spread) {
-    dem::Setup s = test::thrown_lattice(6, 3.0, spread, 2);
+    dem::Setup s = tests::thrown_lattice(6, 3.0, spread, 2);
     s.domain.periodic = {true, false, false};
     for (std::size_t a = 1; a < 3; ++a) s.domain.low[a] -= 1e-5, s.domain.high[a] += 1e-5;
     return s;
@@ -140,10 +139,10 @@ std::vector<dem::Wall> drum() {
 
 std::vector<Case> cases() {
     std::vector<Case> all = laws();
-    all.push_back({"a gas in a periodic box", test::thrown_lattice(6, 2.0, 0, 1), 250});
-    all.push_back({"a gas of many sizes", test::thrown_lattice(6, 2.0, 0.3, 1), 250});
+    all.push_back({"a gas in a periodic box", tests::thrown_lattice(6, 2.0, 0, 1), 250});
+    all.push_back({"a gas of many sizes", tests::thrown_lattice(6, 2.0, 0.3, 1), 250});
     all.push_back({"powder at rest", pile(), 1500, 2e-3});
-    dem::Setup frozen = test::boxed_lattice(5, 0.5, 0, 3);
+    dem::Setup frozen = tests::boxed_lattice(5, 0.5, 0, 3);
     for (std::size_t i = 0; i < frozen.spheres.size(); i += 7) {
         frozen.spheres[i].mobile = false;
         frozen.spheres[i].velocity = frozen.spheres[i].angular_velocity = {};
@@ -180,8 +179,6 @@ void expect_same_answers(const dem::Engine& a, const dem::Engine& b, std::size_t
     EXPECT_EQ(a.peak_overlap(), b.peak_overlap());
     EXPECT_EQ(a.work().pair_visits, b.work().pair_visits);
 }
-
-}  // namespace
 
 TEST(FastThreads, TheirNumberChangesNoByteOfACheckpoint) {
     int number = 0;
@@ -234,7 +231,7 @@ TEST(FastThreads, RebuildsAreTheSame) {
 }
 
 TEST(FastThreads, VerbsAnswerTheSame) {
-    const dem::Setup setup = test::boxed_lattice(5, 0.5, 0.2, 6);
+    const dem::Setup setup = tests::boxed_lattice(5, 0.5, 0.2, 6);
     for (const auto path : paths()) {
         const auto alone = make_mixed_engine(setup, path),
                    together = make_mixed_engine(setup, path, 0, 0, small_parts(3));
@@ -255,7 +252,7 @@ TEST(FastThreads, VerbsAnswerTheSame) {
 TEST(FastThreads, CheckpointsPassBetweenNumbersOfThreads) {
     for (const auto path : paths())
         for (const double rest : {0.0, 2e-3}) {
-            const dem::Setup setup = rest > 0 ? pile() : test::boxed_lattice(5, 0.5, 0, 7);
+            const dem::Setup setup = rest > 0 ? pile() : tests::boxed_lattice(5, 0.5, 0, 7);
             const auto alone = make_mixed_engine(setup, path, 0, rest);
             Bytes bytes = bytes_of(*alone);
             for (const int threads : {2, 7, 1, 3, 3}) {  // each goes on from where the one before stopped
@@ -271,7 +268,7 @@ TEST(FastThreads, CheckpointsPassBetweenNumbersOfThreads) {
 }
 
 TEST(FastThreads, TheirNumberMayChangeInTheMiddle) {
-    const dem::Setup setup = test::boxed_lattice(5, 0.5, 0.2, 7);
+    const dem::Setup setup = tests::boxed_lattice(5, 0.5, 0.2, 7);
     const auto path = paths().back();
     const auto alone = make_mixed_engine(setup, path), changing = make_mixed_engine(setup, path, 0, 0, small_parts(1));
     for (const int threads : {1, 2, 7, 1, 3, 0, 2}) {
@@ -283,7 +280,7 @@ TEST(FastThreads, TheirNumberMayChangeInTheMiddle) {
 }
 
 TEST(FastThreads, FaultsAreTheSame) {
-    dem::Setup setup = test::boxed_lattice(5, 3.0, 0, 7);
+    dem::Setup setup = tests::boxed_lattice(5, 3.0, 0, 7);
     setup.time_step = 6e-5;
     const auto path = paths().back();
     const auto alone = make_mixed_engine(setup, path), together = make_mixed_engine(setup, path, 0, 0, small_parts(4));
@@ -294,7 +291,7 @@ TEST(FastThreads, FaultsAreTheSame) {
 }
 
 TEST(FastThreads, DamagedCheckpointsAreRefusedOrComputed) {
-    const dem::Setup setup = test::boxed_lattice(4, 0.5, 0, 7);
+    const dem::Setup setup = tests::boxed_lattice(4, 0.5, 0, 7);
     const auto path = paths().back();
     const auto engine = make_mixed_engine(setup, path, 0, 0, small_parts(2));
     engine->run(100);
@@ -312,3 +309,5 @@ TEST(FastThreads, DamagedCheckpointsAreRefusedOrComputed) {
         }
     }
 }
+
+}  // namespace grainsweep::tests::fast_threads_test

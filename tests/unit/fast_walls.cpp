@@ -14,17 +14,14 @@
 #include <string>
 #include <vector>
 
-using namespace grainsweep;
-using dem::fast::make_mixed_engine;
-using namespace grainsweep::geometry;
-using tests::all_moving_walls;
-using tests::one_sphere;
+namespace grainsweep::tests::fast_walls_test {
 
-namespace {
+using dem::fast::make_mixed_engine;
+using namespace geometry;
 
 /// A turning drum with end plates, half full, a bar and a block of triangles in it.
 dem::Setup drum_of_spheres() {
-    dem::Setup s = test::boxed_lattice(6, 0.3, 0.2, 3);
+    dem::Setup s = tests::boxed_lattice(6, 0.3, 0.2, 3);
     dem::Vec3 c{};
     for (const auto& p : s.spheres) c += (1.0 / static_cast<double>(s.spheres.size())) * p.position;
     const dem::Rotation turns{.point = c, .axis = {0, 1, 0}, .speed = 60};
@@ -41,10 +38,8 @@ dem::Setup drum_of_spheres() {
     return s;
 }
 
-}  // namespace
-
 TEST(FastWalls, AWallHasItsOwnSurface) {
-    for (const auto path : test::paths()) {
+    for (const auto path : tests::paths()) {
         auto setup =
             one_sphere({0, 0, 1.001e-3}, {0.3, 0, -0.3}, {{dem::Plane{}, {}, {.friction = 0.1, .restitution = 0.9}}});
         const auto own = make_mixed_engine(setup, path);
@@ -70,7 +65,7 @@ TEST(FastWalls, AWallHasItsOwnSurface) {
 
 // Bit for bit, in the middle of contacts, with walls that turn; the walls of a checkpoint take the place of others.
 TEST(FastWalls, CheckpointsContinueBitForBit) {
-    for (const auto path : test::paths()) {
+    for (const auto path : tests::paths()) {
         for (const auto& m : all_moving_walls()) {
             SCOPED_TRACE(m.name);
             auto setup = one_sphere(m.position, m.velocity, {m.wall});
@@ -113,7 +108,7 @@ TEST(FastWalls, ListsFollowTurningWalls) {
     often->run(500), rarely->run(500);
     EXPECT_EQ(often->fault(), "");
     EXPECT_GT(often->work().rebuilds, 4 * rarely->work().rebuilds);
-    EXPECT_LT(test::velocity_difference(tests::state_of(*often), tests::state_of(*rarely)), 1e-3);
+    EXPECT_LT(tests::velocity_difference(tests::state_of(*often), tests::state_of(*rarely)), 1e-3);
     for (std::size_t w = 0; w < setup.walls.size(); ++w)
         EXPECT_LT(norm(often->wall_load(w, {}).force - rarely->wall_load(w, {}).force),
                   0.02 * norm(rarely->wall_load(w, {}).force) + 1e-5);
@@ -180,3 +175,5 @@ TEST(FastWalls, PeriodicImagesAreMet) {
     EXPECT_LT(norm(a.velocity[0] - b.velocity[0]), 1e-5);
     EXPECT_LT(norm(a.angular_velocity[0] - b.angular_velocity[0]), 1e-2);
 }
+
+}  // namespace grainsweep::tests::fast_walls_test

@@ -7,11 +7,10 @@
 
 #include <cmath>
 
-using namespace grainsweep;
-using namespace grainsweep::dem;
-using namespace grainsweep::dem::fast;
+namespace grainsweep::tests::fast_watch_test {
 
-namespace {
+using namespace dem;
+using namespace dem::fast;
 
 /// Two spheres of 1 mm without contact, of which the second moves.
 struct Two {
@@ -45,8 +44,6 @@ struct Two {
         for (auto& m : motions) m.velocity = {0, 0, v};
     }
 };
-
-}  // namespace
 
 TEST(FastWatch, FallingIsSoundAlsoThroughAPeriodicFace) {
     for (const bool periodic : {false, true}) {
@@ -102,3 +99,5 @@ TEST(FastWatch, LimitsTheSpeedByWhatTheCaseCanProduce) {
     for (int k = 0; k < 30; ++k) periodic.add_travel(0.1);
     EXPECT_TRUE(periodic.due(1)) << "a quarter of a period of 20 diameters may have been covered";
 }
+
+}  // namespace grainsweep::tests::fast_watch_test

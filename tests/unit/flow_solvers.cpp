@@ -13,10 +13,10 @@
 #include <cmath>
 #include <limits>
 
-using namespace grainsweep::flow;
-using grainsweep::stats::Stream;
+namespace grainsweep::tests::flow_solvers_test {
 
-namespace {
+using namespace flow;
+using stats::Stream;
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -38,8 +38,6 @@ Field noise(const Grid& grid, std::uint64_t stream) {
                 field(i, j, k) = random.uniform(static_cast<std::uint64_t>(field.index(i, j, k))) - 0.5;
     return field;
 }
-
-}  // namespace
 
 TEST(Axis, ClusteringKeepsEndsAndSymmetry) {
     const Axis axis = Axis::clustered(40, -0.5, 0.5, 1.5);
@@ -342,3 +340,5 @@ TEST(Flow, FastestNamesTheFirstValueThatIsNoNumber) {
     EXPECT_EQ(fastest.component, 0);
     EXPECT_DOUBLE_EQ(fastest.position[0], 0.5);
 }
+
+}  // namespace grainsweep::tests::flow_solvers_test

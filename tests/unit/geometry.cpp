@@ -13,10 +13,9 @@
 #include <cmath>
 #include <numbers>
 
-using namespace grainsweep;
-using namespace grainsweep::geometry;
+namespace grainsweep::tests::geometry_test {
 
-namespace {
+using namespace geometry;
 
 /// Distance from the rounded bar by brute force: the least over many points of its outline.
 double sampled_distance(const Bar& bar, double x, double z) {
@@ -44,8 +43,6 @@ bool inside(const Bar& bar, double x, double z) {
     const double dz = std::max(bar.bottom + r - z, 0.0);
     return dx == 0 || dz == 0 || std::hypot(dx, dz) <= r;
 }
-
-}  // namespace
 
 TEST(Bar, FindsTheClosestPointOfSharpAndRoundedEdges) {
     for (const double radius : {0.0, 0.7, 2.5}) {
@@ -103,8 +100,6 @@ TEST(Domain, WrapsIntoThePeriodAndSeesTheNearestImage) {
     EXPECT_EQ(domain.image_shifts()[14], (Vec3{2, 0, 0}));
 }
 
-namespace {
-
 /// Distance from a body of revolution about z between two radii, by brute force: the least over points of its meridian
 /// in the half plane of the point, negative in the solid.
 double sampled_round(const Cone& cone, const Vec3& x) {
@@ -128,8 +123,6 @@ double sampled_round(const Cone& cone, const Vec3& x) {
 Vec3 tilted(const Vec3& a) {
     return {0.8 * a[0] + 0.6 * a[2], a[1], -0.6 * a[0] + 0.8 * a[2]};
 }
-
-}  // namespace
 
 TEST(RoundBody, FindsTheClosestPointOfConesAndCylinders) {
     const stats::Stream random(3, 2);
@@ -212,3 +205,5 @@ TEST(Motions, ComposeInClosedForm) {
     const std::vector<Motion> turns = {Rotation{.axis = {0, 0, 1}, .speed = 2 * std::numbers::pi}};
     EXPECT_NEAR(norm(pose_at(turns, 1e6).from_body({1, 0, 0}) - Vec3{1, 0, 0}), 0, 1e-9);
 }
+
+}  // namespace grainsweep::tests::geometry_test

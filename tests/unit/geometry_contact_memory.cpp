@@ -6,10 +6,9 @@
 
 #include <cmath>
 
-using namespace grainsweep;
-using namespace grainsweep::geometry;
+namespace grainsweep::tests::geometry_contact_memory_test {
 
-namespace {
+using namespace geometry;
 
 Vec3 tilted(double angle) {
     return {std::sin(angle), 0, std::cos(angle)};
@@ -41,8 +40,6 @@ std::vector<std::vector<int>> numbers_along(const Mesh& mesh, const Vec3& from, 
     }
     return way;
 }
-
-}  // namespace
 
 TEST(ContactMemory, GoesToTheNearestNormalAndToOneOnly) {
     using Matches = std::vector<std::uint32_t>;
@@ -83,3 +80,5 @@ TEST(ContactMemory, ADiagonalIsNotNoticedAndAConcaveEdgeBeginsAnother) {
     EXPECT_EQ(way[100].size(), 2U);
     EXPECT_EQ(way.back(), std::vector<int>{1});
 }
+
+}  // namespace grainsweep::tests::geometry_contact_memory_test

@@ -11,9 +11,9 @@
 
 #include "solver/geometry/tpms.hpp"
 
-using namespace grainsweep::geometry;
+namespace grainsweep::tests::geometry_level_surface_test {
 
-namespace {
+using namespace geometry;
 
 double area(const TriangleSurface& surface) {
     double sum = 0;
@@ -28,8 +28,6 @@ double area(const TriangleSurface& surface) {
 TriangleSurface sphere(int cells) {
     return level_surface([](const Vec3& x) { return norm(x) - 0.4; }, {-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, cells);
 }
-
-}  // namespace
 
 TEST(LevelSurface, OfASphereIsClosedAndLooksOutwards) {
     const auto surface = sphere(24);
@@ -81,3 +79,5 @@ TEST(LevelSurface, OfTpmsCellsHasTheirAreaAndEndsOnTheFaces) {
         }
     }
 }
+
+}  // namespace grainsweep::tests::geometry_level_surface_test

@@ -8,15 +8,9 @@
 #include <cmath>
 #include <numbers>
 
-using namespace grainsweep;
-using namespace grainsweep::geometry;
-using tests::draw;
-using tests::random_fans;
-using tests::random_soup;
-using tests::shattered_plate;
-using tests::Soup;
+namespace grainsweep::tests::geometry_mesh_test {
 
-namespace {
+using namespace geometry;
 
 Mesh mesh_of(const Soup& soup, double one_contact_angle = 0) {
     return Mesh(tests::surface_of(soup), one_contact_angle);
@@ -39,8 +33,6 @@ void expect_as_plain(const Soup& soup, const Mesh& mesh, const Vec3& x, double r
         ASSERT_NEAR(norm(found[k].normal), 1, 1e-14);
     }
 }
-
-}  // namespace
 
 TEST(Mesh, FindsTheContactsOfThePlainRule) {
     for (std::uint64_t seed = 1; seed <= 12; ++seed) {
@@ -361,3 +353,5 @@ TEST(Mesh, RefusesWhatIsNoSurface) {
     EXPECT_THROW(Mesh({{{0, 0, 0}, {1, 0, 0}, {NAN, 1, 0}}, {{0, 1, 2}}}), std::invalid_argument);
     EXPECT_THROW(mesh_of(tests::plate(1, 1), 1), std::invalid_argument);
 }
+
+}  // namespace grainsweep::tests::geometry_mesh_test

@@ -8,13 +8,10 @@
 #include <cstring>
 #include <limits>
 
-using namespace grainsweep;
-using namespace grainsweep::geometry;
+namespace grainsweep::tests::geometry_stl_test {
+
+using namespace geometry;
 using testing::HasSubstr;
-
-namespace {
-
-using tests::Soup;
 
 void append(std::string& bytes, const void* from, std::size_t size) {
     const std::size_t at = bytes.size();
@@ -66,8 +63,6 @@ std::string refusal(const std::string& contents, double scale = 1) {
 bool same(const TriangleSurface& a, const TriangleSurface& b) {
     return a.corners == b.corners && a.triangles == b.triangles;
 }
-
-}  // namespace
 
 TEST(Stl, ReadsBinaryAndTextAlike) {
     const Soup soup = tests::box(4, 8);  // exact in single precision
@@ -173,3 +168,5 @@ TEST(Stl, RefusesCornersThatAreNoNumbers) {
         EXPECT_THAT(refusal(text_stl(soup)), HasSubstr("STL: ")) << wrong;
     }
 }
+
+}  // namespace grainsweep::tests::geometry_stl_test

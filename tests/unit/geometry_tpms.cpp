@@ -11,10 +11,9 @@
 
 #include "stats/random.hpp"
 
-using namespace grainsweep;
-using namespace grainsweep::geometry;
+namespace grainsweep::tests::geometry_tpms_test {
 
-namespace {
+using namespace geometry;
 
 using Point = std::array<double, 3>;
 constexpr double pi = std::numbers::pi;
@@ -59,8 +58,6 @@ void over_cell(int m, Visit&& visit) {
         for (int j = 0; j < m; ++j)
             for (int i = 0; i < m; ++i) visit(Point{at(i), at(j), at(k)});
 }
-
-}  // namespace
 
 TEST(TpmsLevelSet, NamesFindTheirCells) {
     for (const auto& known : tpms_cells) {
@@ -211,3 +208,5 @@ TEST(TpmsShell, RefusesWhatIsNoShell) {
     EXPECT_THROW(TpmsShell(TpmsCell::gyroid, 1, 20, 0), std::invalid_argument);
     EXPECT_THROW(TpmsShell(TpmsCell::gyroid, 1, 20, 10), std::invalid_argument);
 }
+
+}  // namespace grainsweep::tests::geometry_tpms_test

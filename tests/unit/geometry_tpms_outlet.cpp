@@ -7,7 +7,8 @@
 
 #include "solver/observables/beverloo.hpp"
 
-using namespace grainsweep;
+namespace grainsweep::tests::geometry_tpms_outlet_test {
+
 using geometry::TpmsCell;
 using geometry::TpmsShell;
 
@@ -40,3 +41,5 @@ TEST(Beverloo, IsThePublishedLaw) {
     EXPECT_NEAR(observables::beverloo_rate(21.4e-3, 1e-3, 0.6, 9.81) / once, std::pow(2, 2.5), 1e-12);
     EXPECT_NEAR(observables::beverloo_rate(11.4e-3, 1e-3, 0.6, 4 * 9.81) / once, 2, 1e-12);
 }
+
+}  // namespace grainsweep::tests::geometry_tpms_outlet_test

@@ -19,8 +19,7 @@
 #include <string_view>
 #include <vector>
 
-namespace grainsweep::tests {
-namespace {
+namespace grainsweep::tests::hostile_readers_test {
 
 /// Some of: a byte changed, a part cut out or doubled, a word put in that means something to somebody.
 std::string altered(std::string text, stats::Generator& chance) {
@@ -244,5 +243,4 @@ TEST(HostileReaders, StlFiles) {
     EXPECT_GT(refused, 3000);
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::hostile_readers_test

@@ -6,10 +6,9 @@
 
 #include <cmath>
 
-using namespace grainsweep;
-using namespace grainsweep::observables;
+namespace grainsweep::tests::observables_test {
 
-namespace {
+using namespace observables;
 
 const Box cube{{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}};
 
@@ -21,8 +20,6 @@ std::vector<Vec3> random_cloud(std::size_t n, std::uint64_t stream) {
             {random.uniform(3 * p) - 0.5, random.uniform(3 * p + 1) - 0.5, random.uniform(3 * p + 2) - 0.5});
     return cloud;
 }
-
-}  // namespace
 
 TEST(Accumulation, IsOneInOneCellAndZeroOnePerCell) {
     const std::vector<Vec3> point(500, Vec3{0.1, 0.1, 0.1});
@@ -106,7 +103,7 @@ TEST(KineticEnergy, OfAUniformStreamIsExact) {
     const flow::Grid grid{{flow::Axis::uniform(6, 0, 2), flow::Axis::uniform(4, 0, 1), flow::Axis::uniform(3, 0, 1)}};
     auto velocity = flow::face_vectors(grid);
     for (double& v : velocity[1].values()) v = 3;  // as along a periodic axis
-    EXPECT_NEAR(kinetic_energy(grid, velocity), 4.5, 1e-14);
+    EXPECT_NEAR(observables::kinetic_energy(grid, velocity), 4.5, 1e-14);
     EXPECT_EQ(peak_velocity(grid, velocity), 3);
 }
 
@@ -120,3 +117,5 @@ TEST(Nusselt, OfConductionIsOne) {
     EXPECT_NEAR(nusselt(grid, theta, 2, 1, 0.5), 1, 1e-13);
     EXPECT_NEAR(nusselt(grid, theta, 2, 0, -0.5), 1, 1e-13);
 }
+
+}  // namespace grainsweep::tests::observables_test

@@ -6,10 +6,9 @@
 #include <cmath>
 #include <numbers>
 
-using namespace grainsweep;
-using namespace grainsweep::observables;
+namespace grainsweep::tests::observables_heap_test {
 
-namespace {
+using namespace observables;
 
 constexpr double degree = std::numbers::pi / 180;
 
@@ -34,8 +33,6 @@ dem::State cone(double radius, double angle, double pitch) {
             }
     return state;
 }
-
-}  // namespace
 
 TEST(HeapShape, OfAnEvenConeIsItsAngle) {
     for (const double angle : {15.0, 25.0, 40.0}) {
@@ -77,3 +74,5 @@ TEST(HeapShape, OfTooLittleIsUnknown) {
     EXPECT_EQ(shape.run_out, 0);
     EXPECT_EQ(rms_speed({}), 0);
 }
+
+}  // namespace grainsweep::tests::observables_heap_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-using namespace grainsweep;
+namespace grainsweep::tests::observables_histogram_test {
 
 TEST(LogHistogram, SharesOfBinsThatHoldSomething) {
     const std::vector<double> values = {0, 0.005, 0.02, 0.0099, 0.5, 1.0, 3.0, 1.1};
@@ -19,3 +19,5 @@ TEST(LogHistogram, SharesOfBinsThatHoldSomething) {
     EXPECT_EQ(shares[2].second, 0.375);
     EXPECT_TRUE(observables::log_histogram({}, 10, 1).empty());
 }
+
+}  // namespace grainsweep::tests::observables_histogram_test

@@ -7,10 +7,9 @@
 #include <cmath>
 #include <numbers>
 
-using namespace grainsweep;
-using namespace grainsweep::observables;
+namespace grainsweep::tests::observables_layer_test {
 
-namespace {
+using namespace observables;
 
 dem::State spheres(std::vector<dem::Vec3> positions, double radius) {
     dem::State s;
@@ -22,8 +21,6 @@ dem::State spheres(std::vector<dem::Vec3> positions, double radius) {
     s.position = std::move(positions);
     return s;
 }
-
-}  // namespace
 
 TEST(Layer, SumsOverCentres) {
     const auto s = spheres({{0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {1.5, 0, 4}}, 0.5);
@@ -125,3 +122,5 @@ TEST(Layer, BlockErrorIsThatOfTheMean) {
     EXPECT_TRUE(std::isnan(block_standard_error(std::vector<double>(19, 1.0), 10)));
     EXPECT_NEAR(block_standard_error(std::vector<double>(20, 1.0), 10), 0, 1e-15);
 }
+
+}  // namespace grainsweep::tests::observables_layer_test

@@ -6,8 +6,9 @@
 #include <cmath>
 #include <numbers>
 
-using namespace grainsweep;
-using namespace grainsweep::observables;
+namespace grainsweep::tests::observables_outflow_test {
+
+using namespace observables;
 
 TEST(Outflow, CountsWhatIsBelowAndWhatIsGone) {
     dem::State state;
@@ -59,3 +60,5 @@ TEST(Outflow, TheSettledFractionLeavesTheEndsOut) {
     EXPECT_TRUE(std::isnan(settled_fraction(state, 40, 1, 25))) << "too low";
     EXPECT_TRUE(std::isnan(settled_fraction({}, 0, 1, 25)));
 }
+
+}  // namespace grainsweep::tests::observables_outflow_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-using namespace grainsweep;
+namespace grainsweep::tests::observables_particle_loads_test {
 
 TEST(ParticleLoads, AddUpPerParticleAndCancelOverall) {
     dem::State state;
@@ -21,3 +21,5 @@ TEST(ParticleLoads, AddUpPerParticleAndCancelOverall) {
     EXPECT_EQ(loads.coordination, (std::vector<double>{1, 2, 2}));
     EXPECT_TRUE(observables::particle_loads({}, {}).force.empty());
 }
+
+}  // namespace grainsweep::tests::observables_particle_loads_test

@@ -6,10 +6,9 @@
 #include <cmath>
 #include <numbers>
 
-using namespace grainsweep;
-using namespace grainsweep::observables;
+namespace grainsweep::tests::observables_turned_bed_test {
 
-namespace {
+using namespace observables;
 
 constexpr double degree = std::numbers::pi / 180;
 
@@ -31,8 +30,6 @@ dem::State segment(double radius, double length, double slope, double height, do
         }
     return state;
 }
-
-}  // namespace
 
 TEST(LineFit, IsExactOnALineAndLeastInBetween) {
     const std::vector<std::array<double, 2>> straight = {{-2, 5}, {1, -1}, {4, -7}};
@@ -170,3 +167,5 @@ TEST(TurnedBed, CoordinationCountsPairsTwiceAndWallsNever) {
     contacts[2].first = 2, contacts[2].second = -1;
     EXPECT_DOUBLE_EQ(coordination(state, contacts), 4.0 / 3);
 }
+
+}  // namespace grainsweep::tests::observables_turned_bed_test

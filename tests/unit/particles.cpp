@@ -13,10 +13,9 @@
 #include <span>
 #include <tuple>
 
-using namespace grainsweep;
-using namespace grainsweep::particles;
+namespace grainsweep::tests::particles_test {
 
-namespace {
+using namespace particles;
 
 struct Cloud {
     Domain domain;
@@ -78,8 +77,6 @@ Cloud cloud(std::size_t n, double ratio, std::array<bool, 3> periodic, double cl
     }
     return c;
 }
-
-}  // namespace
 
 TEST(NeighbourList, EqualsBruteForce) {
     for (const auto& periodic : {std::array{false, false, false}, std::array{true, true, true},
@@ -174,3 +171,5 @@ TEST(Bytes, ReturnWhatWasWrittenAndRefuseLess) {
     longer.get(a);
     EXPECT_THROW(longer.finish(), std::invalid_argument);
 }
+
+}  // namespace grainsweep::tests::particles_test

@@ -11,10 +11,9 @@
 #include "solver/particles/near_pairs.hpp"
 #include "stats/random.hpp"
 
-using namespace grainsweep;
-using namespace grainsweep::particles;
+namespace grainsweep::tests::particles_packing_test {
 
-namespace {
+using namespace particles;
 
 using Point = std::array<double, 3>;
 
@@ -26,8 +25,6 @@ std::string refusal(const std::string& csv, double edge = 10) {
     }
     return "";
 }
-
-}  // namespace
 
 TEST(NearPairs, AreThoseOfAllPairs) {
     const stats::Stream draws(1, 1);
@@ -128,3 +125,5 @@ TEST(PackingText, WrongLinesAreNamed) {
     EXPECT_THAT(refusal("x,y,z\n"), HasSubstr("there is no sphere"));
     EXPECT_THAT(refusal(""), HasSubstr("there is no sphere"));
 }
+
+}  // namespace grainsweep::tests::particles_packing_test

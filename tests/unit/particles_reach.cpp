@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-using namespace grainsweep::particles;
+namespace grainsweep::tests::particles_reach_test {
 
-namespace {
+using namespace particles;
 
 using Point = std::array<double, 3>;
 
@@ -26,8 +26,6 @@ bool interior(const Point& x, int m) {
     for (const double c : x) inside = inside && c > 0.5 && c < m - 1.5;
     return inside;
 }
-
-}  // namespace
 
 TEST(Reach, OnlyTheSkinOfABlockIsTouched) {
     // The widest hole between four spheres of a cubic lattice has radius sqrt(2)/2: a centre kept 0.9 away
@@ -73,3 +71,5 @@ TEST(Reach, AnOpenChannelLetsItIn) {
 TEST(Reach, NothingFrozenNothingTouched) {
     EXPECT_TRUE(reachable({}, {}, 0.9).empty());
 }
+
+}  // namespace grainsweep::tests::particles_reach_test

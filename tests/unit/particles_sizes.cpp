@@ -12,10 +12,9 @@
 #include <string>
 #include <string_view>
 
-using namespace grainsweep;
-using namespace grainsweep::particles;
+namespace grainsweep::tests::particles_sizes_test {
 
-namespace {
+using namespace particles;
 
 /// Mean of d^power by midpoints of u: the quadrature of the inverse distribution.
 double quadrature(const SizeDistribution& sizes, int power) {
@@ -24,8 +23,6 @@ double quadrature(const SizeDistribution& sizes, int power) {
     for (int k = 0; k < n; ++k) sum += std::pow(sizes.diameter((k + 0.5) / n), power) / n;
     return sum;
 }
-
-}  // namespace
 
 TEST(SizeDistribution, EqualIsOne) {
     const SizeDistribution equal;
@@ -189,3 +186,5 @@ TEST(SizeTable, OtherTextsAreRefusedInOneSentence) {
                   "diameter , number_fraction\n1e-3,1\n"),
               "");
 }
+
+}  // namespace grainsweep::tests::particles_sizes_test

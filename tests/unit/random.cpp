@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <set>
 
-using namespace grainsweep::stats;
+namespace grainsweep::tests::random_test {
+
+using namespace stats;
 
 TEST(Random, SplitMix64GivesThePublishedSequence) {
     // First outputs from state 1234567, as published with the generator.
@@ -28,3 +30,5 @@ TEST(Random, AddressesDoNotCollide) {
             for (std::uint64_t counter = 0; counter < 20; ++counter) seen.insert(bits_at(seed, stream, counter));
     EXPECT_EQ(seen.size(), 8000U);
 }
+
+}  // namespace grainsweep::tests::random_test

@@ -12,13 +12,12 @@
 #include <cmath>
 #include <set>
 
-namespace grainsweep::tests {
-namespace {
+namespace grainsweep::tests::report_curves_test {
 
 using testing::ElementsAre;
 
 struct ReportCurves : testing::Test {
-    Folder folder;
+    Folder folder{in_memory()};
     store::Store store{folder / "a.db", store::Store::Mode::create};
 
     /// Six cells, two repeats each; all but the last case answered: a series of 1001 samples, a histogram at eight
@@ -121,5 +120,4 @@ TEST_F(ReportCurves, StandInThePage) {
     EXPECT_EQ(curves["families"][0]["curves"][0]["x"].size(), 200u);
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::report_curves_test

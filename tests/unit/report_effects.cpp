@@ -8,10 +8,9 @@
 #include <numeric>
 #include <vector>
 
-namespace grainsweep::tests {
-using namespace report;
+namespace grainsweep::tests::report_effects_test {
 
-namespace {
+using namespace report;
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -127,5 +126,4 @@ TEST_F(Study, AWhiskerNeedsFourPartsOfTheSample) {
     EXPECT_GT(bins[1].error, 0);
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::report_effects_test

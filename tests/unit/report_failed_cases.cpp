@@ -14,10 +14,9 @@
 
 #include <sstream>
 
-namespace grainsweep::tests {
-using namespace report;
+namespace grainsweep::tests::report_failed_cases_test {
 
-namespace {
+using namespace report;
 
 using testing::AnyOf;
 using testing::Contains;
@@ -174,5 +173,4 @@ TEST_F(FailedCases, PagesDrawThemAndNothingOverThem) {
     EXPECT_TRUE(drawn["curves"][0]["responses"][0][0]["mean"].is_null());
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::report_failed_cases_test

@@ -22,17 +22,15 @@
 #include "tests/support/answered.hpp"
 #include "tests/support/film_reader.hpp"
 
-using namespace grainsweep;
+namespace grainsweep::tests::report_film_test {
+
 using report::Film;
 using report::pack_film_column;
-using test::read_film;
-
-namespace {
 
 using Numbers = std::vector<std::uint16_t>;
 
 void expect_round_trip(const Numbers& values, std::size_t items) {
-    EXPECT_EQ(test::unpack_film_column(pack_film_column(values, items), values.size() / items, items), values);
+    EXPECT_EQ(tests::unpack_film_column(pack_film_column(values, items), values.size() / items, items), values);
 }
 
 std::string packed_film(const Film& film) {
@@ -54,8 +52,6 @@ Film three_spheres() {
     film.add(s, 0.75);
     return film;
 }
-
-}  // namespace
 
 TEST(FilmCodec, GivesBackWhatItWasGiven) {
     expect_round_trip({0}, 1);
@@ -251,8 +247,6 @@ TEST(Film, ColumnsOfAnotherLengthAreRefused) {
     EXPECT_THROW(film.add(s, 0), std::invalid_argument);
 }
 
-namespace {
-
 /// So many spheres in free flight between impacts: every one moves in every frame, up to two diameters, and everything
 /// that is measured of it jumps about. Nothing that powder does is harder to pack.
 Film agitated(std::size_t spheres, std::size_t frames) {
@@ -288,8 +282,6 @@ Film agitated(std::size_t spheres, std::size_t frames) {
     return film;
 }
 
-}  // namespace
-
 TEST(WatchPage, TwentyThousandSpheresInSixtyFramesFitInTenMegabytes) {
     const Film film = agitated(20'000, 60);
     const std::string page = report::watch_page(film, nlohmann::ordered_json::object());
@@ -319,14 +311,10 @@ TEST(WatchPage, AsksNothingOfAnyNetworkAndHoldsItsFilm) {
     EXPECT_NE(page.find(report::base64(raw)), std::string::npos);
 }
 
-namespace {
-
 using ReportStore = store::Store;
 
 const char* rehearsed = R"({"campaign": "one", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
   "design": {"kind": "halton", "points": 40}})";
-
-}  // namespace
 
 TEST(CasesToWatch, SpanWhatTheMainObservableDoes) {
     const tests::Folder folder;
@@ -387,3 +375,5 @@ TEST(CasesToWatch, AreInThePageWithThePlayerOnlyWhereThereAreSome) {
     EXPECT_EQ(without.find(report::player().program), std::string::npos);
     EXPECT_NE(with.find(report::player().program), std::string::npos);
 }
+
+}  // namespace grainsweep::tests::report_film_test

@@ -8,10 +8,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace grainsweep::tests {
-using namespace report;
+namespace grainsweep::tests::report_influence_test {
 
-namespace {
+using namespace report;
 
 using testing::Contains;
 using testing::ElementsAre;
@@ -243,5 +242,4 @@ TEST_F(Study, AReplicatedLatticeHasErrorsOfItsIndices) {
     EXPECT_THAT(unexplained_text(influence), HasSubstr("interactions indistinguishable from zero"));
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::report_influence_test

@@ -12,10 +12,9 @@
 
 #include <cmath>
 
-namespace grainsweep::tests {
-using namespace report;
+namespace grainsweep::tests::report_model_figures_test {
 
-namespace {
+using namespace report;
 
 using store::Store;
 using testing::Contains;
@@ -40,7 +39,7 @@ struct ModelFigures : testing::Test {
         const double x1 = input(inputs, "x1"), x2 = input(inputs, "x2");
         return x1 + 2 * x2 + 4 * (x1 - 0.5) * (x2 - 0.5);
     }
-    Responses responses() { return read_responses(store, store.campaigns().front()); }
+    report::Responses responses() { return read_responses(store, store.campaigns().front()); }
     Estimators estimators() {
         const auto all = responses();
         return estimators_of(store, all, all.observable(""));
@@ -175,5 +174,4 @@ TEST_F(ModelFigures, IndicesAreRefusedWhereAPartOfTheBoxIsLeftOut) {
     EXPECT_THAT(model_influence_of(all, all.observable("")).refused, HasSubstr("leaves a part of the box out"));
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::report_model_figures_test

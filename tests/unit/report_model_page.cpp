@@ -11,10 +11,9 @@
 #include <cmath>
 #include <numbers>
 
-namespace grainsweep::tests {
-using namespace report;
+namespace grainsweep::tests::report_model_page_test {
 
-namespace {
+using namespace report;
 
 using testing::HasSubstr;
 using Json = nlohmann::ordered_json;
@@ -103,5 +102,4 @@ TEST_F(ModelPage, LargeCampaignsHaveOneWhereItIsAskedFor) {
     }
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::report_model_page_test

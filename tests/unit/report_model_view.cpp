@@ -11,10 +11,9 @@
 #include <cmath>
 #include <string>
 
-namespace grainsweep::tests {
-using namespace report;
+namespace grainsweep::tests::report_model_view_test {
 
-namespace {
+using namespace report;
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -88,5 +87,4 @@ TEST(ModelView, RefusesWhatCannotBeIntegrated) {
     EXPECT_THAT(refusal(R"x("where": "x1 + x2 < 0.105",)x"), HasSubstr("$.where: got "));
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::report_model_view_test

@@ -16,10 +16,9 @@
 #include <cmath>
 #include <limits>
 
-namespace grainsweep::tests {
-using namespace report;
+namespace grainsweep::tests::report_models_test {
 
-namespace {
+using namespace report;
 
 using store::Store;
 using testing::DoubleNear;
@@ -314,5 +313,4 @@ TEST_F(Learned, RefusesByItsReason) {
     EXPECT_THAT(refusal([&] { return cases.observable("yy"); }), HasSubstr("Did you mean 'y'"));
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::report_models_test

@@ -22,8 +22,7 @@
 #include <string_view>
 #include <vector>
 
-namespace grainsweep::tests {
-namespace {
+namespace grainsweep::tests::report_page_test {
 
 using Json = nlohmann::ordered_json;
 using store::Store;
@@ -346,5 +345,4 @@ TEST(PageData, CannotEndItsElement) {
     EXPECT_EQ(back["lines"], value["lines"]);
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::report_page_test

@@ -8,8 +8,7 @@
 
 #include <cmath>
 
-namespace grainsweep::tests {
-namespace {
+namespace grainsweep::tests::report_repeated_cases_test {
 
 using testing::Contains;
 using testing::HasSubstr;
@@ -58,5 +57,4 @@ TEST_F(Study, RowsOfAListThatRepeatCountOnce) {
     EXPECT_EQ(history.all.count, 4);
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::report_repeated_cases_test

@@ -14,10 +14,9 @@
 #include <cmath>
 #include <limits>
 
-namespace grainsweep::tests {
-using namespace report;
+namespace grainsweep::tests::report_study_test {
 
-namespace {
+using namespace report;
 
 using report::Responses;
 using store::Store;
@@ -363,5 +362,4 @@ TEST(Figures, ErrorsHaveTwoDigitsAndValuesTheirPlace) {
     EXPECT_EQ(report::with_error(none, 1), "-");
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::report_study_test

@@ -8,10 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-using namespace grainsweep;
-using namespace grainsweep::report;
+namespace grainsweep::tests::report_table_test {
 
-namespace {
+using namespace report;
 
 using Cell = store::Table::Cell;
 
@@ -26,8 +25,6 @@ const store::Table mixed{{"name", "count", "value"},
                           {std::string("a, \"b\"\nc"), Cell{}, -1e-300},
                           {std::string(), std::int64_t{-3}, std::numeric_limits<double>::quiet_NaN()},
                           {std::string("µm"), std::int64_t{9007199254740993}, 1.0 / 3}}};
-
-}  // namespace
 
 TEST(Table, TextIsAlignedAndStaysOnOneLineARow) {
     EXPECT_EQ(written(mixed, Format::text),
@@ -125,3 +122,5 @@ TEST(Table, RowsWrittenAsTheyComeAreTheTable) {
         }
     }
 }
+
+}  // namespace grainsweep::tests::report_table_test

@@ -13,13 +13,12 @@
 #include <string>
 #include <vector>
 
-using namespace grainsweep;
-using namespace grainsweep::report;
+namespace grainsweep::tests::report_text_table_test {
+
+using namespace report;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
-
-namespace {
 
 using Cell = store::Table::Cell;
 
@@ -59,8 +58,6 @@ store::Table campaign_view(std::int64_t rows, int factors) {
     }
     return table;
 }
-
-}  // namespace
 
 TEST(TextTable, NoLineIsWiderThanTheTerminal) {
     for (const std::int64_t rows : {0, 1, 2, 3, 4, 40})
@@ -193,3 +190,5 @@ TEST(FileSize, IsSaidInDecimalUnits) {
     EXPECT_EQ(size_text(999'600), "1.0 MB");
     EXPECT_EQ(size_text(12'345'678'901), "12 GB");
 }
+
+}  // namespace grainsweep::tests::report_text_table_test

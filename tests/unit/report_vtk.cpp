@@ -17,9 +17,7 @@
 #include "sweep/store/broken_world.hpp"
 #include "tests/support/process.hpp"
 
-using namespace grainsweep;
-
-namespace {
+namespace grainsweep::tests::report_vtk_test {
 
 /// What a VTP file says, read strictly: every byte of the appended section belongs to one array.
 struct Read {
@@ -100,8 +98,6 @@ std::string contents(const std::filesystem::path& path) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-}  // namespace
-
 TEST(Vtp, SaysWhatTheSnapshotHolds) {
     const Snapshot s = three_particles();
     const Read r = read(report::vtp(s, 0.1));
@@ -147,8 +143,6 @@ TEST(Vtp, OfAWallHoldsItsLinesAndTriangles) {
     EXPECT_EQ(r.offsets, (std::vector<std::int64_t>{2, 3, 6}));
 }
 
-namespace {
-
 FlowField two_cells(std::vector<double> x) {
     FlowField field;
     field.name = "flow";
@@ -157,8 +151,6 @@ FlowField two_cells(std::vector<double> x) {
     field.vectors["velocity"] = {{1, 2, 3}, {4, 5, 6}};
     return field;
 }
-
-}  // namespace
 
 TEST(VtkGrid, OfEqualCellsIsAnImage) {
     const FlowField field = two_cells({-0.5, 0, 0.5});
@@ -194,7 +186,7 @@ TEST(VtkGrid, ThatIsNoneIsRefused) {
 }
 
 TEST(VtkSeries, WritesAStandingWallOnceAndAMovingOneAtEveryMoment) {
-    const test::Folder folder;
+    const tests::Folder folder;
     report::VtkSeries series(folder.path(), "bed");
     WallSurface base{"base", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {}};
     WallSurface blade = base, gate = base;
@@ -222,7 +214,7 @@ TEST(VtkSeries, WritesAStandingWallOnceAndAMovingOneAtEveryMoment) {
 }
 
 TEST(VtkSeries, OfAFlowAloneHasNoParticles) {
-    const test::Folder folder;
+    const tests::Folder folder;
     report::VtkSeries series(folder.path(), "cavity");
     Snapshot moment;
     moment.fields = {two_cells({0, 1, 3})};
@@ -233,7 +225,7 @@ TEST(VtkSeries, OfAFlowAloneHasNoParticles) {
 }
 
 TEST(VtkSeries, NamesEveryMomentInTheCollection) {
-    const test::Folder folder;
+    const tests::Folder folder;
     report::VtkSeries series(folder / "deep/inside", "cell");
     series.add(three_particles(), 0);
     series.add(three_particles(), 0.25);
@@ -246,7 +238,7 @@ TEST(VtkSeries, NamesEveryMomentInTheCollection) {
 }
 
 TEST(VtkSeries, ReplacesALongerSeriesOfItsName) {
-    const test::Folder folder;
+    const tests::Folder folder;
     report::VtkSeries longer(folder / "p", "cell"), other(folder / "p", "bed"), shorter(folder / "p", "cell");
     for (const double t : {0.0, 1.0, 2.0, 3.0}) longer.add(three_particles(), t);
     for (const double t : {0.0, 1.0, 2.0}) other.add(three_particles(), t);
@@ -258,7 +250,7 @@ TEST(VtkSeries, ReplacesALongerSeriesOfItsName) {
 }
 
 TEST(VtkSeries, AFolderThatCannotBeMadeIsSaid) {
-    const test::Folder folder;
+    const tests::Folder folder;
     folder.write("file", "in the way");
     report::VtkSeries series(folder / "file/inside", "cell");
     EXPECT_THROW(series.add(three_particles(), 0), store::BrokenWorld);
@@ -267,7 +259,7 @@ TEST(VtkSeries, AFolderThatCannotBeMadeIsSaid) {
 }
 
 TEST(VtkSeries, ReplacesNothingThroughASymbolicLink) {
-    const test::Folder folder;
+    const tests::Folder folder;
     std::filesystem::create_directory(folder / "p");
     folder.write("precious", "kept");
     for (const char* name : {"cell_0000.vtp", "cell_0001.vtp"})
@@ -278,3 +270,5 @@ TEST(VtkSeries, ReplacesNothingThroughASymbolicLink) {
     EXPECT_TRUE(std::filesystem::is_symlink(folder / "p/cell_0000.vtp"));
     EXPECT_TRUE(std::filesystem::is_symlink(folder / "p/cell_0001.vtp"));
 }
+
+}  // namespace grainsweep::tests::report_vtk_test

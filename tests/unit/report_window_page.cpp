@@ -12,10 +12,9 @@
 #include <cmath>
 #include <sstream>
 
-namespace grainsweep::tests {
-using namespace report;
+namespace grainsweep::tests::report_window_page_test {
 
-namespace {
+using namespace report;
 
 using testing::HasSubstr;
 using testing::Not;
@@ -136,5 +135,4 @@ TEST_F(WindowPage, IsDrawnWhereNothingMeetsTheConditionToo) {
     EXPECT_THAT(page.str(), Not(HasSubstr("{{")));
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::report_window_page_test

@@ -12,11 +12,10 @@
 #include <utility>
 #include <vector>
 
-using namespace grainsweep;
+namespace grainsweep::tests::scene_estimates_test {
+
 using testing::HasSubstr;
 using testing::ThrowsMessage;
-
-namespace {
 
 const std::string file_input = "file:" + std::string(32, '0') + ":/there";
 
@@ -66,8 +65,6 @@ Inputs with_tool(double scale) {
     inputs["tool_scale"] = scale;
     return inputs;
 }
-
-}  // namespace
 
 // The smallest size sets the step, and their number follows from the mean volume.
 TEST(SceneEstimates, CountWhatIsDrawnFromAFile) {
@@ -136,3 +133,5 @@ TEST(SceneEstimates, APackingWithoutRoomIsRefusedBeforeItsPairs) {
     EXPECT_THAT([&] { (void)particles::read_packing(csv, 10); },
                 ThrowsMessage<std::invalid_argument>(HasSubstr("have room, so that they overlap")));
 }
+
+}  // namespace grainsweep::tests::scene_estimates_test

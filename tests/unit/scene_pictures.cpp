@@ -12,9 +12,7 @@
 #include "solver/scenes/scene.hpp"
 #include "tests/support/surfaces.hpp"
 
-using namespace grainsweep;
-
-namespace {
+namespace grainsweep::tests::scene_pictures_test {
 
 std::unique_ptr<Scene> scene_of(const std::string& name, const Inputs& given) {
     static NoArtefacts none;
@@ -46,19 +44,17 @@ double highest(const WallSurface& wall, std::size_t axis) {
     return most;
 }
 
-}  // namespace
-
 TEST(ScenePictures, APlaneIsCutOutOfTheBox) {
-    const auto flat = surface_of(dem::Plane{{5, 5, 0.25}, {0, 0, 1}}, "base", {0, 0, 0}, {2, 3, 1}, 0);
+    const auto flat = grainsweep::surface_of(dem::Plane{{5, 5, 0.25}, {0, 0, 1}}, "base", {0, 0, 0}, {2, 3, 1}, 0);
     EXPECT_EQ(flat.corners.size(), 4U);
     EXPECT_EQ(flat.triangles.size(), 2U);
     for (const auto& x : flat.corners) EXPECT_NEAR(x[2], 0.25, 1e-12);
     EXPECT_NEAR(highest(flat, 1) - lowest(flat, 1), 3, 1e-9);
     // The plane x + y + z = 3/2 cuts a hexagon out of the unit cube.
     const double n = 1 / std::sqrt(3.0);
-    const auto slope = surface_of(dem::Plane{{0.5, 0.5, 0.5}, {n, n, n}}, "slope", {0, 0, 0}, {1, 1, 1}, 0);
+    const auto slope = grainsweep::surface_of(dem::Plane{{0.5, 0.5, 0.5}, {n, n, n}}, "slope", {0, 0, 0}, {1, 1, 1}, 0);
     EXPECT_EQ(slope.corners.size(), 6U);
-    const auto outside = surface_of(dem::Plane{{0, 0, 7}, {0, 0, 1}}, "lid", {0, 0, 0}, {1, 1, 1}, 0);
+    const auto outside = grainsweep::surface_of(dem::Plane{{0, 0, 7}, {0, 0, 1}}, "lid", {0, 0, 0}, {1, 1, 1}, 0);
     EXPECT_TRUE(outside.triangles.empty());
 }
 
@@ -71,7 +67,7 @@ TEST(ScenePictures, ABladeStandsWhereItMoves) {
                            .amplitude = 0.001,
                            .frequency = 10,
                            .edge_radius = 0.004};
-    const auto seen = surface_of(blade, "blade", {0, 0, 0}, {1, 0.5, 0.05}, 0.025);
+    const auto seen = grainsweep::surface_of(blade, "blade", {0, 0, 0}, {1, 0.5, 0.05}, 0.025);
     EXPECT_NEAR(highest(seen, 0), 0.1 + 2 * 0.025, 1e-12);
     EXPECT_NEAR(lowest(seen, 0), 0.08 + 2 * 0.025, 1e-12);
     EXPECT_NEAR(lowest(seen, 2), 0.01 + 0.001, 1e-12);  // a quarter of a period: the crest
@@ -85,7 +81,7 @@ TEST(ScenePictures, AMeshStandsWhereItMovesAndShowsItsTrueEdges) {
     const dem::Wall wall{
         block,
         {dem::Rotation{.axis = {0, 0, 1}, .speed = std::numbers::pi}, dem::Translation{.velocity = {0.1, 0, 0}}}};
-    const auto seen = surface_of(wall, "block", {0, 0, 0}, {1, 1, 1}, 0.25);  // by an eighth of a turn
+    const auto seen = grainsweep::surface_of(wall, "block", {0, 0, 0}, {1, 1, 1}, 0.25);  // by an eighth of a turn
     ASSERT_EQ(seen.triangles.size(), 12U);
     ASSERT_EQ(seen.corners.size(), 8U);
     EXPECT_EQ(seen.edges.size(), 12U) << "no diagonals";
@@ -93,7 +89,7 @@ TEST(ScenePictures, AMeshStandsWhereItMovesAndShowsItsTrueEdges) {
     EXPECT_NEAR(highest(seen, 1), 0.01 * std::sqrt(2.0), 1e-12);
     EXPECT_NEAR(lowest(seen, 2), -0.02, 1e-15);
     const dem::Mesh plate(tests::surface_of(tests::plate(0.01, 3)));
-    EXPECT_EQ(surface_of(plate, "plate", {}, {}, 0).edges.size(), 12U) << "its rim";
+    EXPECT_EQ(grainsweep::surface_of(plate, "plate", {}, {}, 0).edges.size(), 12U) << "its rim";
 }
 
 TEST(ScenePictures, SpreadingShowsGatesThenTheBlade) {
@@ -226,3 +222,5 @@ TEST(ScenePictures, AStoredFlowIsShownAtThePhaseOfTheParticles) {
     for (const auto& v : picture.fields[0].vectors.at("velocity")) largest = std::max(largest, std::abs(v[1]));
     EXPECT_GT(largest, 0);
 }
+
+}  // namespace grainsweep::tests::scene_pictures_test

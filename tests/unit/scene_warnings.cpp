@@ -7,9 +7,7 @@
 #include <set>
 #include <string>
 
-using namespace grainsweep;
-
-namespace {
+namespace grainsweep::tests::scene_warnings_test {
 
 std::set<std::string> kinds(const std::string& scene, const Inputs& changed) {
     const auto* info = find_scene(scene);
@@ -109,4 +107,4 @@ TEST(SceneWarnings, OfThermovibration) {
     EXPECT_EQ(of({{"stokes", 1e-4}, {"particles", std::int64_t{200}}}), Kinds{"particles larger than cells"});
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::scene_warnings_test

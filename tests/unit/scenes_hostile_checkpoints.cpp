@@ -19,8 +19,7 @@
 #include <string>
 #include <vector>
 
-namespace grainsweep::tests {
-namespace {
+namespace grainsweep::tests::scenes_hostile_checkpoints_test {
 
 struct Hostile {
     std::string scene;
@@ -211,5 +210,4 @@ std::vector<Hostile> kinds() {
 INSTANTIATE_TEST_SUITE_P(Scenes, HostileCheckpoints, testing::ValuesIn(kinds()),
                          [](const auto& kind) { return kind.param.name; });
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::scenes_hostile_checkpoints_test

@@ -13,11 +13,10 @@
 #include <numbers>
 #include <stdexcept>
 
-using namespace grainsweep;
+namespace grainsweep::tests::scenes_kit_test {
+
 using geometry::norm;
 using geometry::operator-;
-
-namespace {
 
 constexpr kit::Powder powder;
 constexpr kit::Whole count{"count", "how many", 3, {0, 10}, {kit::if_set("friction"), kit::if_zero("cohesion")}};
@@ -37,8 +36,6 @@ std::vector<ParameterSpec> block() {
                          powder.cohesion_law, powder.surface_energy, powder.time_step, powder.time_step_fraction,
                          powder.precision);
 }
-
-}  // namespace
 
 TEST(Kit, HandlesReadWhatTheyDeclare) {
     const auto specs = kit::declared(powder.friction, powder.cohesion_law, powder.size_file, count);
@@ -224,3 +221,5 @@ TEST(Kit, AWallFromAnStlFileIsItsContents) {
     EXPECT_EQ(refusal({}), "tool_file: the contents of /somewhere/tool.stl are not given");
     EXPECT_EQ(refusal({{"tool_file", "solid t\nendsolid t\n"}}), "tool_file: STL: there is no triangle in it");
 }
+
+}  // namespace grainsweep::tests::scenes_kit_test

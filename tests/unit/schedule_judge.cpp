@@ -8,12 +8,11 @@
 #include <limits>
 #include <numeric>
 
-using namespace grainsweep;
-using namespace grainsweep::schedule;
+namespace grainsweep::tests::schedule_judge_test {
+
+using namespace schedule;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t sequences = 4;
@@ -372,4 +371,4 @@ TEST(Judge, WithARefusedModelNothingIsDecidedAndItSaysWhy) {
     EXPECT_THROW(Judge(rule, hill.placed, sequences, hill.values), std::invalid_argument);  // no view
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::schedule_judge_test

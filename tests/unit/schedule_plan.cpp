@@ -9,11 +9,10 @@
 #include <numeric>
 #include <queue>
 
-using namespace grainsweep;
-using namespace grainsweep::schedule;
-using campaign::Outcome;
+namespace grainsweep::tests::schedule_plan_test {
 
-namespace {
+using namespace schedule;
+using campaign::Outcome;
 
 campaign::Case question(std::uint32_t i) {
     campaign::Case made;
@@ -295,4 +294,4 @@ TEST(Plan, PrefixWaitsForGaps) {
     EXPECT_EQ(plan.settled_prefix(), 2U);
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::schedule_plan_test

@@ -8,8 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace grainsweep::tests {
-namespace {
+namespace grainsweep::tests::schedule_scheduler_test {
 
 using namespace schedule;
 using campaign::Outcome;
@@ -288,5 +287,4 @@ TEST_F(SchedulerLoop, ARequestOfASystemIsNoInterruptOfTheUser) {
     EXPECT_EQ(stored("completed"), 1);
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::schedule_scheduler_test

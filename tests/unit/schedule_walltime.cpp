@@ -7,8 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace grainsweep::tests {
-namespace {
+namespace grainsweep::tests::schedule_walltime_test {
 
 using SchedulerWalltime = SchedulerLoop;
 
@@ -75,5 +74,4 @@ TEST_F(SchedulerWalltime, NoPartIsBegunForLessThanItsSavingTakes) {
     EXPECT_EQ(crew.started.size(), 3U);
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::schedule_walltime_test

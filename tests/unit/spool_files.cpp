@@ -20,8 +20,9 @@
 #include <set>
 #include <thread>
 
-namespace grainsweep::spool {
-namespace {
+namespace grainsweep::tests::spool_files_test {
+
+using namespace spool;
 
 namespace fs = std::filesystem;
 using campaign::Outcome;
@@ -142,7 +143,7 @@ protected:
         return found;
     }
 
-    tests::Folder folder;
+    tests::Folder folder{in_memory()};
     campaign::Campaign campaign;
     std::vector<campaign::PlacedCase> placed;
     campaign::Cases cases;
@@ -306,5 +307,4 @@ TEST_F(SpoolFolder, ADateInTheFutureIsNoSignOfLife) {
     EXPECT_EQ(own.state_of("node.2.0"), TaskFile::State::dead) << "no task touches that";
 }
 
-}  // namespace
-}  // namespace grainsweep::spool
+}  // namespace grainsweep::tests::spool_files_test

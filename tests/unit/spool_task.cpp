@@ -14,13 +14,11 @@
 #include <utility>
 #include <vector>
 
-namespace grainsweep::spool {
-namespace {
+namespace grainsweep::tests::spool_task_test {
 
+using namespace spool;
 using campaign::Outcome;
 using schedule::Ending;
-
-using tests::ScriptedCrew;
 
 class SpoolTask : public testing::Test {
 protected:
@@ -50,7 +48,7 @@ protected:
         return answer ? std::optional(answer->result.outcome) : std::nullopt;
     }
 
-    tests::Folder folder;
+    tests::Folder folder{in_memory()};
     campaign::Campaign campaign;
     std::vector<campaign::PlacedCase> placed;
     campaign::Cases cases;
@@ -174,5 +172,4 @@ TEST_F(SpoolTask, AStopLeavesNoClaim) {
     EXPECT_EQ(std::get<Answer>(*entry).result.outcome, Outcome::abandoned);
 }
 
-}  // namespace
-}  // namespace grainsweep::spool
+}  // namespace grainsweep::tests::spool_task_test

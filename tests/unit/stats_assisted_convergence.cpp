@@ -9,10 +9,9 @@
 #include <utility>
 #include <vector>
 
-using namespace grainsweep::stats;
-using namespace grainsweep::testing;
+namespace grainsweep::tests::stats_assisted_convergence_test {
 
-namespace {
+using namespace stats;
 
 ConvergenceSettings settings(double tolerance, std::int64_t block = 8) {
     return {.rule = ConvergenceRule::assisted,
@@ -42,8 +41,6 @@ const Checkpoint& look(AssistedConvergence& convergence, const KnownCampaign& c)
     convergence.check(numbers(n), std::span(c.values).first(n), std::span(c.points).first(2 * n));
     return convergence.checkpoints().back();
 }
-
-}  // namespace
 
 TEST(AssistedConvergence, StopsWhereThePlainRuleDoesNotAndTheTruthIsWithinItsErrors) {
     const auto response = hill();
@@ -129,3 +126,5 @@ TEST(AssistedConvergence, WrongSettingsAreRefused) {
     EXPECT_THROW(Convergence{settings(0.01)}, std::invalid_argument);
     EXPECT_EQ(convergence_rule_named("assisted"), ConvergenceRule::assisted);
 }
+
+}  // namespace grainsweep::tests::stats_assisted_convergence_test

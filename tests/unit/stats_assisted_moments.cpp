@@ -10,10 +10,9 @@
 #include <variant>
 #include <vector>
 
-using namespace grainsweep::stats;
-using namespace grainsweep::testing;
+namespace grainsweep::tests::stats_assisted_moments_test {
 
-namespace {
+using namespace stats;
 
 struct Asked {
     KnownCampaign campaign;
@@ -44,8 +43,6 @@ std::string refused(const Asked& asked) {
     const auto answer = assisted_moments(asked.input());
     return std::holds_alternative<Refusal>(answer) ? std::get<Refusal>(answer).sentence : "not refused";
 }
-
-}  // namespace
 
 TEST(MomentStatistics, AreThoseOfMomentsAndTheirGradientsThoseOfDifferences) {
     const std::vector<double> sample{0.3, 1.2, -0.7, 2.5, 0.1, 0.9};
@@ -199,3 +196,5 @@ TEST(AssistedMoments, MissingValuesAreLeftOut) {
     EXPECT_EQ(a.cases, 119U);
     EXPECT_EQ(a.excluded, 1U);
 }
+
+}  // namespace grainsweep::tests::stats_assisted_moments_test

@@ -10,7 +10,9 @@
 #include <stdexcept>
 #include <vector>
 
-using namespace grainsweep::stats;
+namespace grainsweep::tests::stats_calibration_test {
+
+using namespace stats;
 
 TEST(Calibration, ImplausibilityIsTheDistanceInStandardDeviations) {
     const std::vector<Target> targets{{.value = 10, .measured_error = 1, .discrepancy = 2, .replicates = 4}};
@@ -110,3 +112,5 @@ TEST(Posterior, TheSameSeedGivesTheSameSampleAndNonsenseIsRefused) {
     EXPECT_THROW((void)sample_posterior(never, {start, 1}, few), std::invalid_argument);
     EXPECT_THROW((void)sample_posterior(flat, {start, 1}, {.walkers = 7}), std::invalid_argument);
 }
+
+}  // namespace grainsweep::tests::stats_calibration_test

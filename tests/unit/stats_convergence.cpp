@@ -10,9 +10,9 @@
 #include <numeric>
 #include <vector>
 
-using namespace grainsweep::stats;
+namespace grainsweep::tests::stats_convergence_test {
 
-namespace {
+using namespace stats;
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
@@ -36,8 +36,6 @@ ConvergenceSettings replicates(std::vector<Statistic> gates, double tolerance, s
             .block = block,
             .sequences = 8};
 }
-
-}  // namespace
 
 TEST(Confidence, StudentHalfWidthAsTabulated) {
     // t(7, 0.975) = 2.364624; values 1 ... 8: s = sqrt(6).
@@ -288,3 +286,5 @@ TEST(Convergence, WrongSettingsAreRefused) {
     for (const auto rule : {ConvergenceRule::replicates, ConvergenceRule::any_change, ConvergenceRule::all_change})
         EXPECT_EQ(convergence_rule_named(to_string(rule)), rule);
 }
+
+}  // namespace grainsweep::tests::stats_convergence_test

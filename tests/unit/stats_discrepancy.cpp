@@ -6,8 +6,9 @@
 #include <cmath>
 #include <vector>
 
-using namespace grainsweep::stats;
-using grainsweep::testing::ask_design;
+namespace grainsweep::tests::stats_discrepancy_test {
+
+using namespace stats;
 
 TEST(Discrepancy, OnePointByHand) {
     // The star discrepancy of the single point (x, y) is max(1 - x y, x, y).
@@ -40,3 +41,5 @@ TEST(Discrepancy, StarOfAPairAgreesWithTryingEveryBox) {
         for (std::size_t k = 0; k <= 40; ++k) corner(i < 40 ? set.point(i)[0] : 1, k < 40 ? set.point(k)[1] : 1);
     EXPECT_NEAR(star_discrepancy_of_pair(set.coordinates, 2, 0, 1), worst, 1e-14);
 }
+
+}  // namespace grainsweep::tests::stats_discrepancy_test

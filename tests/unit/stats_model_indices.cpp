@@ -10,10 +10,9 @@
 #include <variant>
 #include <vector>
 
-using namespace grainsweep::stats;
-using grainsweep::testing::ask_design;
+namespace grainsweep::tests::stats_model_indices_test {
 
-namespace {
+using namespace stats;
 
 struct Learned {
     std::vector<double> points;
@@ -33,8 +32,6 @@ Learned learn(std::size_t d, std::int64_t n, const Response& response) {
     return {set.coordinates, groups,
             std::get<ResponseModel>(fit_response({set.coordinates, d}, values, {.map = LearnedMap::never}))};
 }
-
-}  // namespace
 
 TEST(ModelIndices, LinearAndProductResponsesAreKnown) {
     // y = x1 + 2 x2 + 3 x1 x2 over [0, 1]^2: effects (1 + 1.5) x1, (2 + 1.5) x2 and 3 (x1 - 1/2)(x2 - 1/2).
@@ -119,3 +116,5 @@ TEST(ModelIndices, IntervalsHoldTheTruthOfIshigami) {
         EXPECT_LT(indices.total[j].half_width, 0.05);
     }
 }
+
+}  // namespace grainsweep::tests::stats_model_indices_test

@@ -8,9 +8,9 @@
 #include <numeric>
 #include <vector>
 
-using namespace grainsweep::stats;
+namespace grainsweep::tests::stats_moments_test {
 
-namespace {
+using namespace stats;
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -40,8 +40,6 @@ Summary two_pass(const std::vector<double>& values) {
     s.kurtosis = static_cast<double>(m4 / (m2 * m2));
     return s;
 }
-
-}  // namespace
 
 TEST(Moments, AgreeWithTwoPassesInExtendedPrecision) {
     const auto values = uniform(12'345, 9);
@@ -119,3 +117,5 @@ TEST(Moments, ZeroSharePearsonAndNames) {
     for (const Statistic statistic : statistics) EXPECT_EQ(statistic_named(to_string(statistic)), statistic);
     EXPECT_FALSE(statistic_named("skew"));
 }
+
+}  // namespace grainsweep::tests::stats_moments_test

@@ -10,8 +10,7 @@
 #include <cmath>
 #include <functional>
 
-namespace grainsweep::tests {
-namespace {
+namespace grainsweep::tests::stats_nearest_cases_test {
 
 using stats::NearestCases;
 using testing::ElementsAre;
@@ -105,5 +104,4 @@ TEST(NearestCases, FindTheCoordinateThatDecides) {
     EXPECT_LT(left_out, 0.06);
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::stats_nearest_cases_test

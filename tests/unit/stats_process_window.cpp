@@ -12,10 +12,9 @@
 #include <variant>
 #include <vector>
 
-using namespace grainsweep::stats;
-using grainsweep::testing::ask_design;
+namespace grainsweep::tests::stats_process_window_test {
 
-namespace {
+using namespace stats;
 
 ResponseModel model_of(const std::function<double(double, double)>& f, std::int64_t n, double noise) {
     const auto set = ask_design("halton", 2, {{"points", n}});
@@ -41,8 +40,6 @@ std::vector<double> grid(std::size_t n) {
         }
     return points;
 }
-
-}  // namespace
 
 TEST(ProcessWindow, BoundsAndAnyConditionAgree) {
     const auto first = model_of(hill, 60, 0.05);
@@ -145,3 +142,5 @@ TEST(ProcessWindow, TradeOffFrontIsWhatNothingBeats) {
     std::ranges::sort(expected, {}, [&](std::size_t i) { return a[i]; });
     EXPECT_EQ(trade_off_front(a, true, b, false), expected);
 }
+
+}  // namespace grainsweep::tests::stats_process_window_test

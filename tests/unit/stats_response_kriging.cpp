@@ -14,10 +14,10 @@
 #include <cmath>
 #include <vector>
 
-using namespace grainsweep::stats;
-using namespace grainsweep::stats::response;
+namespace grainsweep::tests::stats_response_kriging_test {
 
-namespace {
+using namespace stats;
+using namespace stats::response;
 
 /// n uniform points and a smooth response with some scatter.
 struct Sample {
@@ -90,8 +90,6 @@ Sample without(const Sample& s, const std::vector<Eigen::Index>& left_out) {
         if (std::ranges::find(left_out, i) == left_out.end()) kept.push_back(i);
     return {s.x(kept, Eigen::all), s.z(kept)};
 }
-
-}  // namespace
 
 TEST(Kriging, PredictsAsTheDenseSystemSays) {
     const Sample s = sample(23, 3, 1);
@@ -235,3 +233,5 @@ TEST(SpaceFilling, ChoosesFarFromWhatIsChosen) {
     EXPECT_EQ(space_filling_choice(points, 9).size(), 6U);
     EXPECT_EQ(spread_choice(1000, 10), spread_choice(1000, 10));
 }
+
+}  // namespace grainsweep::tests::stats_response_kriging_test

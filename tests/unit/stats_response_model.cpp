@@ -13,10 +13,9 @@
 #include <variant>
 #include <vector>
 
-using namespace grainsweep::stats;
-using grainsweep::testing::ask_design;
+namespace grainsweep::tests::stats_response_model_test {
 
-namespace {
+using namespace stats;
 
 using Response = std::function<double(std::span<const double>)>;
 
@@ -87,8 +86,6 @@ double step(std::span<const double> u) {
 double bend(std::span<const double> u) {
     return std::sin(4 * u[0]) + u[1] * u[1];
 }
-
-}  // namespace
 
 TEST(ResponseModel, LearnsKnownFunctions) {
     const auto smooth = fitted(ask(ishigami, 3, 300, 0), {.map = LearnedMap::never});
@@ -295,7 +292,9 @@ TEST(ResponseModel, ValuesThatAreMissingAreLeftOutAndCounted) {
 
 TEST(ResponseModel, IntervalsHoldOnFunctionsDrawnAtRandom) {
     // 15 campaigns here; slow_response counts 200.
-    const auto counts = grainsweep::testing::count_intervals(15);
+    const auto counts = grainsweep::tests::count_intervals(15);
     EXPECT_NEAR(counts.runs_95 / static_cast<double>(counts.asked), 0.95, 0.05);
     EXPECT_NEAR(counts.means_95 / static_cast<double>(counts.asked), 0.95, 0.08);
 }
+
+}  // namespace grainsweep::tests::stats_response_model_test

@@ -8,10 +8,9 @@
 #include <limits>
 #include <vector>
 
-using namespace grainsweep::stats;
-using grainsweep::testing::ask_design;
+namespace grainsweep::tests::stats_sensitivity_test {
 
-namespace {
+using namespace stats;
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
@@ -22,8 +21,6 @@ std::vector<double> linear(const grainsweep::designs::PointSet& set, const std::
         for (std::size_t j = 0; j < c.size(); ++j) values[p] += c[j] * set.point(p)[j];
     return values;
 }
-
-}  // namespace
 
 TEST(FirstOrder, LinearResponseSharesVarianceByTheSquaresOfItsSlopes) {
     const auto set = ask_design("halton", 3, {{"points", 4096}, {"sequences", 8}});
@@ -166,3 +163,5 @@ TEST(Morris, InteractionsShowAsSpreadAndFailuresAreCounted) {
     const auto halton = ask_design("halton", 2, {{"points", 9}});
     EXPECT_THROW((void)elementary_effects(halton.coordinates, 2, std::vector<double>(9, 1.0)), std::invalid_argument);
 }
+
+}  // namespace grainsweep::tests::stats_sensitivity_test

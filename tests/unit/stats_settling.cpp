@@ -7,9 +7,9 @@
 #include <limits>
 #include <vector>
 
-using namespace grainsweep::stats;
+namespace grainsweep::tests::stats_settling_test {
 
-namespace {
+using namespace stats;
 
 /// x_k = a x_(k-1) + noise: the standard error of its mean is that of independent samples times
 /// sqrt((1 + a)/(1 - a)), for long series.
@@ -24,8 +24,6 @@ std::vector<double> autoregressive(std::size_t n, double a, std::uint64_t seed) 
     }
     return series;
 }
-
-}  // namespace
 
 TEST(Settling, FirstIndexInsideTheBandForGood) {
     EXPECT_EQ(settled_from(std::vector{0.0, 5.0, 9.0, 10.5, 8.0, 10.2, 9.9, 10.0}, 0.5), 5U);
@@ -67,3 +65,5 @@ TEST(BlockedMean, TooShortASeriesSaysSo) {
     EXPECT_EQ(constant.standard_error, 0);
     EXPECT_TRUE(constant.plateau);
 }
+
+}  // namespace grainsweep::tests::stats_settling_test

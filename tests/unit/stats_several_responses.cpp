@@ -10,11 +10,12 @@
 #include <variant>
 #include <vector>
 
-namespace grainsweep::stats {
-namespace {
+namespace grainsweep::tests::stats_several_responses_test {
+
+using namespace stats;
 
 TEST(SeveralResponses, TheFitsOfEachAloneInTheirOrder) {
-    const auto set = testing::ask_design("halton", 2, {{"points", 40}}, 3);
+    const auto set = ask_design("halton", 2, {{"points", 40}}, 3);
     std::vector<std::vector<double>> values(7);
     for (std::size_t i = 0; i < set.size(); ++i) {
         const double x = set.point(i)[0], y = set.point(i)[1];
@@ -26,7 +27,7 @@ TEST(SeveralResponses, TheFitsOfEachAloneInTheirOrder) {
     allow_fits_at_once(3);
     const auto fits = fit_responses({set.coordinates, 2}, values);
     ASSERT_EQ(fits.size(), values.size());
-    const auto asked = testing::ask_design("random", 2, {{"points", 20}}, 4);
+    const auto asked = ask_design("random", 2, {{"points", 20}}, 4);
     for (std::size_t k = 0; k < 6; ++k) {
         const auto alone = fit_response({set.coordinates, 2}, values[k]);
         ASSERT_TRUE(std::holds_alternative<ResponseModel>(alone)) << k;
@@ -41,11 +42,10 @@ TEST(SeveralResponses, TheFitsOfEachAloneInTheirOrder) {
 }
 
 TEST(SeveralResponses, WhatOneFitThrowsIsThrown) {
-    const auto set = testing::ask_design("halton", 2, {{"points", 40}}, 3);
+    const auto set = ask_design("halton", 2, {{"points", 40}}, 3);
     std::vector<std::vector<double>> values(4, std::vector<double>(set.size(), 1.0));
     values[3].pop_back();
     EXPECT_THROW((void)fit_responses({set.coordinates, 2}, values), std::invalid_argument);
 }
 
-}  // namespace
-}  // namespace grainsweep::stats
+}  // namespace grainsweep::tests::stats_several_responses_test

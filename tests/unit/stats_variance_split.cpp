@@ -12,10 +12,9 @@
 #include <numbers>
 #include <vector>
 
-using namespace grainsweep::stats;
-using grainsweep::testing::ask_design;
+namespace grainsweep::tests::stats_variance_split_test {
 
-namespace {
+using namespace stats;
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
@@ -56,8 +55,6 @@ struct Rows {
 double bilinear(std::span<const double> u, double c) {
     return u[0] + u[1] + c * (u[0] - 0.5) * (u[1] - 0.5);
 }
-
-}  // namespace
 
 TEST(PureErrorOfReplicates, IsTheVarianceOfTheScatterWhateverTheResponse) {
     const auto set = ask_design("halton", 2, {{"points", 2000}});
@@ -224,3 +221,5 @@ TEST(RisingShare, IsWhatTheBestRisingSequenceExplains) {
     EXPECT_DOUBLE_EQ(rising_share(std::vector<double>{1, 3, 2, 4}, equal), 4.5 / 5);
     EXPECT_TRUE(std::isnan(rising_share(equal, equal)));
 }
+
+}  // namespace grainsweep::tests::stats_variance_split_test

@@ -14,8 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace grainsweep::tests {
-namespace {
+namespace grainsweep::tests::store_artefacts_test {
 
 using store::ArtefactFolder;
 
@@ -26,7 +25,7 @@ Bytes bytes(std::size_t count, unsigned first = 0) {
 }
 
 struct StoreArtefacts : testing::Test {
-    Folder folder;
+    Folder folder{in_memory()};
     std::filesystem::path place = folder.path() / "new" / "artefacts";
     ArtefactFolder artefacts{place};
 
@@ -229,5 +228,4 @@ TEST_F(StoreArtefacts, AFolderThatCannotBeMadeIsABrokenWorld) {
     EXPECT_FALSE(impossible.get("key"));
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::store_artefacts_test

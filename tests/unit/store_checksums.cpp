@@ -10,8 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace grainsweep::tests {
-namespace {
+namespace grainsweep::tests::store_checksums_test {
 
 using campaign::Outcome;
 using store::BrokenWorld;
@@ -19,7 +18,7 @@ using store::Store;
 using testing::HasSubstr;
 
 struct StoreChecksums : testing::Test {
-    Folder folder;
+    Folder folder{in_memory()};
     std::filesystem::path file = folder / "a.db";
     campaign::Campaign asked = small_campaign("c");
     std::vector<campaign::PlacedCase> cases = small_design(asked, 6);
@@ -101,7 +100,7 @@ TEST_F(StoreChecksums, ANumberThatChangedIsNamed) {
 
 TEST_F(StoreChecksums, WhateverChangesIsFound) {
     store::Connection(file, store::Connection::Access::write).execute("PRAGMA wal_checkpoint(TRUNCATE)");
-    const Folder copies;
+    const Folder copies{in_memory()};
     const auto copy = copies / "a.db";
     for (const auto* change : {
              "UPDATE observation SET sample = 7 WHERE case_key = 1 AND sample = 1",
@@ -264,5 +263,4 @@ TEST_F(StoreChecksums, WhatAUserAddsIsNoDamage) {
     EXPECT_TRUE(verified().empty());
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::store_checksums_test

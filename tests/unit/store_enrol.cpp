@@ -9,8 +9,7 @@
 
 #include <algorithm>
 
-namespace grainsweep::tests {
-namespace {
+namespace grainsweep::tests::store_enrol_test {
 
 using campaign::Campaign;
 using campaign::Outcome;
@@ -18,7 +17,7 @@ using store::Store;
 using testing::HasSubstr;
 
 struct StoreEnrol : testing::Test {
-    Folder folder;
+    Folder folder{in_memory()};
     std::filesystem::path file = folder / "a.db";
     Store store{file, Store::Mode::create};
 
@@ -366,5 +365,4 @@ TEST_F(StoreEnrol, AStopIsForgottenWhenTheRuleOrThePrefixChanges) {
     EXPECT_FALSE(stopped(12));
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::store_enrol_test

@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace grainsweep::tests {
-namespace {
+namespace grainsweep::tests::store_enrol_pieces_test {
 
 using campaign::Campaign;
 using campaign::Outcome;
@@ -32,7 +31,7 @@ std::string contents_of(const std::filesystem::path& file) {
 }
 
 struct PieceByPiece : testing::Test {
-    Folder folder;
+    Folder folder{in_memory()};
     Campaign campaign = [] {
         auto asked = small_campaign("c");
         asked.replicates = 2;
@@ -122,5 +121,4 @@ TEST_F(PieceByPiece, AFailedGroupLeavesTheRestToTheNextRun) {
     EXPECT_TRUE(store.verify().empty());
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::store_enrol_pieces_test

@@ -8,8 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace grainsweep::tests {
-namespace {
+namespace grainsweep::tests::store_expression_test {
 
 using testing::AllOf;
 using testing::HasSubstr;
@@ -222,5 +221,4 @@ TEST(StoreExpression, AFeatureOfAnUnknownCollationIsAWrongQuestion) {
     EXPECT_THROW((void)store::make_numbers(expressions, names, "$.model.features"), campaign::WrongQuestion);
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::store_expression_test

@@ -8,8 +8,7 @@
 
 #include <fstream>
 
-namespace grainsweep::tests {
-namespace {
+namespace grainsweep::tests::store_file_checksum_test {
 
 using campaign::Outcome;
 using store::BrokenWorld;
@@ -30,7 +29,7 @@ void flip_bit(const std::filesystem::path& file, std::int64_t byte) {
 }
 
 struct FileChecksum : testing::Test {
-    Folder folder;
+    Folder folder{in_memory()};
     std::filesystem::path file = folder / "a.db";
     campaign::Campaign asked = small_campaign("c");
     std::vector<campaign::PlacedCase> cases = small_design(asked, 12);
@@ -139,5 +138,4 @@ TEST_F(FileChecksum, APartOfACampaignIsNotRemembered) {
     EXPECT_EQ(only_cell(store, "SELECT count(*) FROM file_checksum"), "1");
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::store_file_checksum_test

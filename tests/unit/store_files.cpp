@@ -16,8 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace grainsweep::tests {
-namespace {
+namespace grainsweep::tests::store_files_test {
 
 using campaign::WrongQuestion;
 using store::BrokenWorld;
@@ -40,7 +39,7 @@ std::string sentence(const std::filesystem::path& file, Store::Mode mode) {
 }
 
 TEST(StoreFiles, WhatIsNotThereCannotBeRead) {
-    const Folder folder;
+    const Folder folder{in_memory()};
     EXPECT_THAT(sentence<WrongQuestion>(folder / "none.db", Store::Mode::read), HasSubstr("there is no database"));
     EXPECT_THAT(sentence<WrongQuestion>(folder.path(), Store::Mode::read), HasSubstr("is not a file"));
     EXPECT_FALSE(std::filesystem::exists(folder / "none.db")) << "reading makes no file";
@@ -50,7 +49,7 @@ TEST(StoreFiles, WhatIsNotThereCannotBeRead) {
 }
 
 TEST(StoreFiles, AStrangersFileIsLeftAlone) {
-    const Folder folder;
+    const Folder folder{in_memory()};
     const std::string config = "{\"campaign\": \"quickstart\", \"scene\": \"powder_spreading\"}";
     write(folder / "config.json", config);
     auto foreign = store::Connection(folder / "foreign.db", store::Connection::Access::write);
@@ -64,7 +63,7 @@ TEST(StoreFiles, AStrangersFileIsLeftAlone) {
 }
 
 TEST(StoreFiles, ANewerSchemaIsNotTouched) {
-    const Folder folder;
+    const Folder folder{in_memory()};
     { const Store store(folder / "a.db", Store::Mode::create); }
     {
         store::Connection db(folder / "a.db", store::Connection::Access::write);
@@ -76,7 +75,7 @@ TEST(StoreFiles, ANewerSchemaIsNotTouched) {
 }
 
 TEST(StoreFiles, AFolderThatIsMissingIsABrokenWorld) {
-    const Folder folder;
+    const Folder folder{in_memory()};
     EXPECT_THAT(sentence<BrokenWorld>(folder.path() / "no" / "a.db", Store::Mode::create), HasSubstr("No such file"));
 }
 
@@ -89,7 +88,7 @@ std::vector<std::string> names_in(const Folder& folder) {
 }
 
 TEST(StoreFiles, TheSecondWriterIsToldWhoTheFirstIs) {
-    const Folder folder;
+    const Folder folder{in_memory()};
     const auto link = folder / "link.db";
     const auto hard_link = folder / "hard.db";
     {
@@ -128,7 +127,7 @@ TEST(StoreFiles, ADatabaseThatIsNoLongerInItsPlaceEndsTheRun) {
     const auto cases = small_design(campaign, 3);
     for (const auto disk : {Store::Disk::local, Store::Disk::network}) {
         for (const std::string how : {"moved", "deleted", "replaced"}) {
-            const Folder folder;
+            const Folder folder{in_memory()};
             const auto file = folder / "a.db";
             {
                 Store store(file, Store::Mode::create, disk);
@@ -157,7 +156,7 @@ TEST(StoreFiles, ADatabaseThatIsNoLongerInItsPlaceEndsTheRun) {
 }
 
 TEST(StoreFiles, WriterAndReadersLeaveOneFile) {
-    const Folder folder;
+    const Folder folder{in_memory()};
     {
         Store writer(folder / "a.db", Store::Mode::create);
         const auto campaign = small_campaign("c");
@@ -170,7 +169,7 @@ TEST(StoreFiles, WriterAndReadersLeaveOneFile) {
 }
 
 TEST(StoreFiles, AReaderChangesNothing) {
-    const Folder folder;
+    const Folder folder{in_memory()};
     { const Store writer(folder / "a.db", Store::Mode::create); }
     store::Connection reader(folder / "a.db", store::Connection::Access::read);
     EXPECT_THROW(reader.execute("DELETE FROM campaign"), BrokenWorld);
@@ -178,7 +177,7 @@ TEST(StoreFiles, AReaderChangesNothing) {
 }
 
 TEST(StoreFiles, AnOlderSchemaIsReadAsItIsAndBroughtUpToDateByTheNextRun) {
-    const Folder folder;
+    const Folder folder{in_memory()};
     const auto file = folder / "a.db";
     const auto campaign = small_campaign("c");
     const auto cases = small_design(campaign, 3);
@@ -217,7 +216,7 @@ TEST(StoreFiles, TheJournalFitsTheFileSystem) {
 }
 
 TEST(StoreFiles, ADatabaseOnANetworkDiskIsRefusedWithWhatToDo) {
-    const tests::Folder folder;
+    const tests::Folder folder{in_memory()};
     EXPECT_NO_THROW(store::refuse_network(folder / "x.db", store::file_system_of(folder / "x.db")));
     EXPECT_NO_THROW(store::refuse_network(folder / "x.db", 0xEF53));
     try {
@@ -231,7 +230,7 @@ TEST(StoreFiles, ADatabaseOnANetworkDiskIsRefusedWithWhatToDo) {
 }
 
 TEST(StoreFiles, BothJournalsAreFullySynced) {
-    const Folder folder;
+    const Folder folder{in_memory()};
     store::Connection db(folder / "a.db", store::Connection::Access::write);
     const auto ask = [&](const char* sql) {
         auto statement = db.prepare(sql);
@@ -261,7 +260,7 @@ private:
 };
 
 TEST(StoreFiles, ADatabaseInAFolderThatCannotBeWrittenIsRead) {
-    const Folder folder;
+    const Folder folder{in_memory()};
     chmod(folder.path().c_str(), 0755);
     const auto closed = folder / "with space #%?";
     std::filesystem::create_directory(closed);
@@ -280,5 +279,4 @@ TEST(StoreFiles, ADatabaseInAFolderThatCannotBeWrittenIsRead) {
     chmod(closed.c_str(), 0755);
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::store_files_test

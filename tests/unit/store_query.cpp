@@ -8,15 +8,14 @@
 #include <algorithm>
 #include <cmath>
 
-namespace grainsweep::tests {
-namespace {
+namespace grainsweep::tests::store_query_test {
 
 using store::Store;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
 struct StoreQuery : testing::Test {
-    Folder folder;
+    Folder folder{in_memory()};
     std::filesystem::path file = folder / "a.db";
     campaign::Campaign asked = small_campaign("first");
     std::vector<campaign::PlacedCase> cases = small_design(asked, 8);
@@ -316,5 +315,4 @@ TEST_F(StoreQuery, AnUnknownNameGetsThoseThereAreAndTheNearest) {
     EXPECT_EQ(refusal("SELECT medain(y) FROM first"), "SQL: no such function: medain. Did you mean 'median'?");
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::store_query_test

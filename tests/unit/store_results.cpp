@@ -7,14 +7,13 @@
 #include <cmath>
 #include <limits>
 
-namespace grainsweep::tests {
-namespace {
+namespace grainsweep::tests::store_results_test {
 
 using campaign::Outcome;
 using store::Store;
 
 struct StoreResults : testing::Test {
-    Folder folder;
+    Folder folder{in_memory()};
     campaign::Campaign asked = small_campaign("first");
     std::vector<campaign::PlacedCase> cases = small_design(asked, 8);
     Store store{folder / "a.db", Store::Mode::create};
@@ -347,5 +346,4 @@ TEST_F(StoreResults, StatusCounts) {
     EXPECT_EQ(row["stopped_at"], "NULL");
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::store_results_test

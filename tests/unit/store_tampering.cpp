@@ -16,8 +16,7 @@
 #include <iterator>
 #include <optional>
 
-namespace grainsweep::tests {
-namespace {
+namespace grainsweep::tests::store_tampering_test {
 
 using campaign::Outcome;
 using store::BrokenWorld;
@@ -48,7 +47,7 @@ std::string refusal_of(Ask&& ask) {
 }
 
 struct StoreTampering : testing::Test {
-    Folder folder;
+    Folder folder{in_memory()};
     std::filesystem::path file = folder / "a.db";
     campaign::Campaign asked = small_campaign("c");
     std::vector<campaign::PlacedCase> cases = small_design(asked, 12);
@@ -367,5 +366,4 @@ TEST_F(StoreTampering, AViewNamedLikeAFunctionOfSqliteHidesNothing) {
     EXPECT_TRUE(again.verify().empty());
 }
 
-}  // namespace
-}  // namespace grainsweep::tests
+}  // namespace grainsweep::tests::store_tampering_test

@@ -7,15 +7,11 @@
 #include <numbers>
 #include <numeric>
 
-using namespace grainsweep::test;
-
-namespace {
+namespace grainsweep::tests::support_drum_picture_test {
 
 double sum(const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0);
 }
-
-}  // namespace
 
 TEST(DrumPictureMap, EachIntervalPaintsOneUnitAndTheLastItsDiscToo) {
     const DrumPicture picture(1, 50);  // pixels of 0.04
@@ -65,3 +61,5 @@ TEST(DrumPictureMap, ClosingFillsWhatIsNarrow) {
     EXPECT_EQ(picture.mask()[50 * 100 + 10], 0) << "0.79 of the radius";
     EXPECT_EQ(picture.mask()[50 * 100 + 13], 1);
 }
+
+}  // namespace grainsweep::tests::support_drum_picture_test

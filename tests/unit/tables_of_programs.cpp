@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <vector>
 
-using grainsweep::workers::ProgramTable;
+namespace grainsweep::tests::tables_of_programs_test {
 
-namespace {
+using workers::ProgramTable;
 
 using Values = std::vector<double>;
 
@@ -78,4 +78,4 @@ TEST(ProgramTables, ATableWithoutRowsHasItsNames) {
     EXPECT_EQ(refusal(ProgramTable("f", "#\n", "comma"), "v"), "f has no column 'v'; it has none");
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::tables_of_programs_test

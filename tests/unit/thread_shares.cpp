@@ -14,9 +14,7 @@
 #include "solver/threads/thread_pool.hpp"
 #include "stats/random.hpp"
 
-using namespace grainsweep;
-
-namespace {
+namespace grainsweep::tests::thread_shares_test {
 
 /// Rounds of a pool whose threads do `speed` of the work in a unit of time, within 2 % more or less each time.
 class Rounds {
@@ -49,8 +47,6 @@ double excess(const Shares& shares, const std::vector<double>& speed) {
         longest = std::max(longest, shares.of(static_cast<int>(part)) / speed[part]);
     return longest * std::accumulate(speed.begin(), speed.end(), 0.0) - 1;
 }
-
-}  // namespace
 
 TEST(ThreadShares, AreEqualAtFirstAndStaySoOnCoresThatAreAlike) {
     Shares shares(3);
@@ -116,3 +112,5 @@ TEST(ThreadPool, KnowsWhichPartsEndLate) {
     EXPECT_GT(late[1], 0.5);
     EXPECT_TRUE(pool.lateness(40).empty()) << "counted twice";
 }
+
+}  // namespace grainsweep::tests::thread_shares_test

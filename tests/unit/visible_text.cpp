@@ -8,8 +8,7 @@
 #include <sstream>
 #include <string>
 
-namespace grainsweep {
-namespace {
+namespace grainsweep::tests::visible_text_test {
 
 TEST(VisibleText, ShowsControlCharactersAndLeavesTheRest) {
     EXPECT_EQ(campaign::visible("plain \xC3\xA9 \xE2\x82\xAC\tand\n"), "plain \xC3\xA9 \xE2\x82\xAC\tand\n");
@@ -36,5 +35,4 @@ TEST(VisibleStream, StandsInFrontOfAStreamUntilItGoes) {
     EXPECT_TRUE(out.str().ends_with('\x1B'));
 }
 
-}  // namespace
-}  // namespace grainsweep
+}  // namespace grainsweep::tests::visible_text_test

@@ -16,7 +16,8 @@
 
 #include "solver/scenes/scene.hpp"
 
-using namespace grainsweep;
+namespace grainsweep::tests::workers_compute_test {
+
 using testing::HasSubstr;
 using testing::Not;
 
@@ -67,8 +68,6 @@ TEST(Compute, ARefusedCheckpointIsNamedAndCostsNoAnswer) {
     EXPECT_THAT(resumed.message, HasSubstr("its checkpoint was refused (checkpoint of another scene)"));
 }
 
-namespace {
-
 std::vector<double> moments_of(const char* scene, const Inputs& given, std::int64_t frames) {
     const SceneInfo& info = *find_scene(scene);
     campaign::Case question{"", info.name, info.revision, info.defaults(), 1};
@@ -81,8 +80,6 @@ std::vector<double> moments_of(const char* scene, const Inputs& given, std::int6
     EXPECT_EQ(found.value().outcome, campaign::Outcome::completed) << found.value().message;
     return moments;
 }
-
-}  // namespace
 
 TEST(Camera, TakesAFlowThatVibratesAlwaysAtTheSamePhase) {
     const double frequency = 23300, period = 2 * std::numbers::pi / frequency;
@@ -116,3 +113,5 @@ TEST(Camera, TakesMostPicturesOfTheSweepAndFewOfTheSettling) {
     for (std::size_t k = 1; k < 21; ++k)
         EXPECT_NEAR(moments[k] - moments[k - 1], k <= 5 ? 0.02 : 0.02 / 1.4 / 15, 1e-4) << k;
 }
+
+}  // namespace grainsweep::tests::workers_compute_test

@@ -11,12 +11,11 @@
 #include <utility>
 #include <vector>
 
-using namespace grainsweep;
-using namespace grainsweep::workers;
+namespace grainsweep::tests::workers_core_sharing_test {
+
+using namespace workers;
 using testing::ElementsAre;
 using testing::IsEmpty;
-
-namespace {
 
 TEST(SharedCores, ACaseHasOneWhileOthersWait) {
     EXPECT_THAT(shared_cores(4, 10, std::vector{5.0, 5.0, 5.0, 5.0}), ElementsAre(1, 1, 1, 1));
@@ -49,7 +48,7 @@ TEST(SharedCores, NeverMoreThanThereAreNorFewerThanOneEach) {
 }
 
 /// Keeps what is written to it.
-class WrittenTo final : public Process {
+class WrittenTo final : public workers::Process {
 public:
     explicit WrittenTo(std::size_t node) : node_(node) {}
     void listen(Listener) override {}
@@ -143,4 +142,4 @@ TEST_F(CoreSharingTest, AFixedNumberIsToldOnceAndKept) {
     EXPECT_THAT(told(0), IsEmpty());
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::workers_core_sharing_test

@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace grainsweep::workers::frames {
-namespace {
+namespace grainsweep::tests::workers_host_frame_test {
+
+using namespace workers::frames;
 
 std::string shown(const Frame& frame) {
     struct Show {
@@ -20,7 +21,7 @@ std::string shown(const Frame& frame) {
             return "signal " + std::to_string(f.worker) + " " + std::to_string(f.number);
         }
         std::string operator()(const Close& f) const { return "close " + std::to_string(f.worker); }
-        std::string operator()(const Ended& f) const {
+        std::string operator()(const workers::frames::Ended& f) const {
             return "ended " + std::to_string(f.worker) + " " + std::to_string(f.status) + " " + std::string(f.log);
         }
         std::string operator()(const Beat&) const { return "beat"; }
@@ -151,5 +152,4 @@ TEST(HostFrames, NothingGrowsWithoutBound) {
     EXPECT_EQ(read_in_pieces(Reader::Side::main_program, greetings, 4096).back(), "nonsense");
 }
 
-}  // namespace
-}  // namespace grainsweep::workers::frames
+}  // namespace grainsweep::tests::workers_host_frame_test

@@ -13,13 +13,14 @@
 #include <string>
 #include <thread>
 
-namespace grainsweep::workers {
-namespace {
+namespace grainsweep::tests::workers_job_cores_test {
+
+using namespace workers;
 
 namespace fs = std::filesystem;
 
 struct Root {
-    tests::Folder folder;
+    tests::Folder folder{in_memory()};
     void write(const std::string& name, const std::string& text) const {
         const auto file = folder.path() / name;
         fs::create_directories(file.parent_path());
@@ -126,5 +127,4 @@ TEST(JobCores, AProcessBoundToOneCoreHasOne) {
     EXPECT_EQ(bound, 1);
 }
 
-}  // namespace
-}  // namespace grainsweep::workers
+}  // namespace grainsweep::tests::workers_job_cores_test

@@ -7,10 +7,9 @@
 #include <filesystem>
 #include <fstream>
 
-using namespace grainsweep;
-namespace fs = std::filesystem;
+namespace grainsweep::tests::workers_memory_room_test {
 
-namespace {
+namespace fs = std::filesystem;
 
 class MemoryRoom : public testing::Test {
 protected:
@@ -25,8 +24,6 @@ protected:
 private:
     fs::path root_ = fs::path(testing::TempDir()) / "memory_room";
 };
-
-}  // namespace
 
 TEST_F(MemoryRoom, IsTheMachinesMemory) {
     EXPECT_TRUE(std::isinf(room())) << "nothing can be read";
@@ -51,3 +48,5 @@ TEST_F(MemoryRoom, ReadsGroupsOfTheFirstVersion) {
     put("sys/fs/cgroup/memory/memory.limit_in_bytes", "9223372036854771712\n");
     EXPECT_EQ(room(), 2e6);
 }
+
+}  // namespace grainsweep::tests::workers_memory_room_test

@@ -6,10 +6,9 @@
 #include <limits>
 #include <stdexcept>
 
-using namespace grainsweep;
-using namespace grainsweep::workers;
+namespace grainsweep::tests::workers_message_test {
 
-namespace {
+using namespace workers;
 
 TEST(Message, AQuestionSurvivesTheTrip) {
     workers::Run run;
@@ -151,4 +150,4 @@ TEST(Message, NonsenseIsRefused) {
     }
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::workers_message_test

@@ -10,13 +10,12 @@
 #include <string>
 #include <vector>
 
-using namespace grainsweep;
-using namespace grainsweep::workers;
+namespace grainsweep::tests::workers_state_test {
+
+using namespace workers;
 using campaign::Outcome;
 using Phase = WorkerState::Phase;
 using Overdue = WorkerState::Overdue;
-
-namespace {
 
 const campaign::Attempt first{"a", 1}, second{"b", 1};
 
@@ -243,4 +242,4 @@ TEST(AwakeClock, DoesNotCountWhatItSpentStopped) {
     EXPECT_DOUBLE_EQ(clock.at(moment += 125ms), 0.625);
 }
 
-}  // namespace
+}  // namespace grainsweep::tests::workers_state_test
