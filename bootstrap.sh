@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # From a fresh Debian machine to a running campaign or a green test run.
 #   ./bootstrap.sh run CONFIG [OPTIONS]   install what is missing, build, run the campaign, write its report
-#   ./bootstrap.sh test                   ... build everything, run the tests
-#   ./bootstrap.sh threads                ... build with the thread sanitizer, run what has threads
+#   ./bootstrap.sh test                   ... build program and tests, run the tests
+#   ./bootstrap.sh sanitize               ... build with the sanitizers, run what reads bytes, steps particles or has threads
 #   ./bootstrap.sh build                  ... build build/grainsweep (Release) and stop
 #   ./bootstrap.sh bench [NAME]...        ... run the benchmarks, all or those named (JSON lines)
 set -euo pipefail
@@ -26,8 +26,9 @@ program_packages=(
 )
 test_packages=(
     libgtest-dev=/usr/include/gtest/gtest.h libgmock-dev=/usr/include/gmock/gmock.h
-    sqlite3=/usr/bin/sqlite3 python3=/usr/bin/python3 chromium=/usr/bin/chromium g++-aarch64-linux-gnu=/usr/bin/aarch64-linux-gnu-g++
+    sqlite3=/usr/bin/sqlite3 python3=/usr/bin/python3 chromium=/usr/bin/chromium
 )
+sanitize_packages=(g++-aarch64-linux-gnu=/usr/bin/aarch64-linux-gnu-g++)
 
 present() {  # PACKAGE=FILE[:LIBRARY]
     local proof=${1#*=} library=''
@@ -71,7 +72,7 @@ quiet() {
 configure() {  # PRESET OPTIONS...
     local preset=$1
     shift
-    quiet "configuring" cmake -S "$here" --preset "$preset" -DGRAINSWEEP_ONCE=ON "$@"
+    quiet "configuring" cmake -S "$here" --preset "$preset" -DCMAKE_UNITY_BUILD=ON "$@"
 }
 
 build_program() {
@@ -102,53 +103,22 @@ test)
     install_missing "${program_packages[@]}" "${test_packages[@]}"
     (cd "$here" && configure release -DGRAINSWEEP_TESTS=ON)
     cmake --build "$here/build" -j "$jobs"
-    # The tests wait a lot, for signals and for limits of time: what they leave of the processor builds what the unit tests
-    # test once more, under the address and undefined-behaviour sanitizers, and the engine on several threads under the
-    # thread sanitizer.
-    (cd "$here" && configure sanitize -DGRAINSWEEP_TESTS=ON -DGRAINSWEEP_UNIT_TESTS_OF="$here/build" &&
-        configure thread -DGRAINSWEEP_TESTS=ON)
-    logs=$(mktemp -d)
-    nice -n 10 ninja -C "$here/build-sanitize" -j "$jobs" test_unit >"$logs/sanitize" 2>&1 &
-    building=($!)
-    nice -n 15 ninja -C "$here/build-thread" -j 1 test_fast_threads >"$logs/thread" 2>&1 &
-    building+=($!)
-    trap 'kill "${building[@]}" 2>/dev/null || true' EXIT
     (cd "$here" && ctest --preset release -j "$jobs" -LE slow)
-    for one in "${building[@]}"; do
-        if ! wait "$one"; then
-            cat "$logs"/* >&2
-            exit 1
-        fi
-    done
-    trap - EXIT
-    rm -rf "$logs"
-    # They run in parts that even out; those that fit models by the hundred or write large pages, up to a minute each
-    # there, walk paths that others walk, too.
-    long=ResponseModel.LearnsKnownFunctions:ResponseModel.ALearnedMapFindsTheDirectionThatMatters
-    long+=:ResponseModel.TheLogarithmIsLeftWhereItDoesNotHelp:ResponseModel.MoreCasesThanTheSearchTakesAreFollowed
-    long+=:ModelIndices.IshigamiFromFewerPointsThanADesignForIt
-    long+=:CalibrationWaves.ACurveOfManyPointsIsNoMoreCertainThanWhatItLeavesOut
-    long+=:CalibrationWaves.TargetsThatContradictEachOtherOrLieOutOfReachAreKnown
-    long+=:CalibrationWaves.ScatterOfRunsWidensThePosterior:CalibrationWaves.OfLinearResponsesHasTheGaussianPosterior
-    long+=:CalibrationWaves.KeepsAwayFromWhereCasesFail:CalibrationWaves.EveryTargetIsAskedUnderItsOwnCondition
-    long+=:Page.SaysWhereWhiskersComeFromAndWhatIsUnexplained:Page.HoldsEveryCaseAsItIsStored
-    long+=:Study.ScatterOfBinnedMeansIsNoBend:Study.MainEffectsOfASampleCoverTheTruthAsOftenAsTheySay
-    export GTEST_FILTER=-$long GTEST_TOTAL_SHARDS=$((8 * jobs))
-    seq 0 $((8 * jobs - 1)) | xargs -P "$jobs" -I '{}' \
-        env 'GTEST_SHARD_INDEX={}' "$here/build-sanitize/tests/test_unit" --gtest_brief=1
-    unset GTEST_FILTER GTEST_TOTAL_SHARDS
-    # All but every combination of laws, which `./bootstrap.sh threads` has, too.
-    TSAN_OPTIONS=halt_on_error=1 "$here/build-thread/tests/test_fast_threads" --gtest_brief=1 \
-        --gtest_filter=-FastThreads.TheirNumberChangesNoByteOfACheckpoint
     ;;
-threads)
-    # What has threads under the thread sanitizer: tests of the store, the loop, the workers and cases on
-    # several threads, and whole campaigns.
-    install_missing "${program_packages[@]}" "${test_packages[@]}"
-    (cd "$here" && configure thread -DGRAINSWEEP_TESTS=ON)
-    quiet "building" cmake --build "$here/build-thread" -j "$jobs" --target test_threads grainsweep
-    export TSAN_OPTIONS=halt_on_error=1
-    "$here/build-thread/tests/test_threads" --gtest_brief=1
+sanitize)
+    install_missing "${program_packages[@]}" "${test_packages[@]}" "${sanitize_packages[@]}"
+    (cd "$here" && configure release -DGRAINSWEEP_TESTS=ON && configure sanitize -DGRAINSWEEP_TESTS=ON &&
+        configure thread -DGRAINSWEEP_TESTS=ON)
+    # Code that no test runs must at least compile: the benchmarks, and the particle loops for AArch64.
+    cmake --build "$here/build" -j "$jobs" --target bench_compiles aarch64_compiles
+    cmake --build "$here/build-sanitize" -j "$jobs" --target test_sanitized
+    cmake --build "$here/build-thread" -j "$jobs" --target test_sanitized grainsweep
+    export GTEST_TOTAL_SHARDS=$((8 * jobs)) TSAN_OPTIONS=halt_on_error=1
+    for build in build-sanitize build-thread; do
+        seq 0 $((8 * jobs - 1)) | xargs -P "$jobs" -I '{}' \
+            env 'GTEST_SHARD_INDEX={}' "$here/$build/tests/test_sanitized" --gtest_brief=1
+    done
+    # Whole campaigns under the thread sanitizer: new and resumed, on emulated hosts, of a program.
     folder=$(mktemp -d)
     trap 'rm -rf "$folder"' EXIT
     sed 's/"points": 256/"points": 20000/' "$here/configs/rehearsal_small.json" >"$folder/many.json"
@@ -158,9 +128,8 @@ threads)
     sed 's/"campaign"/"execution": {"hosts": 2, "workers_per_host": 2}, "campaign"/; s/"points": 256/"points": 5000/' \
         "$here/configs/rehearsal_small.json" >"$folder/hosts.json"
     "$here/build-thread/grainsweep" run "$folder/hosts.json" --db "$folder/hosts.db" --quiet
-    ! command -v python3 >/dev/null ||
-        "$here/build-thread/grainsweep" run "$here/configs/program_python/heap.json" --db "$folder/heap.db" -j "$jobs" --quiet
-    echo "no data race"
+    "$here/build-thread/grainsweep" run "$here/configs/program_python/heap.json" --db "$folder/heap.db" -j "$jobs" --quiet
+    echo "the sanitizers found nothing"
     ;;
 bench)
     install_missing "${program_packages[@]}" "${test_packages[@]}"
