@@ -14,9 +14,14 @@
 
 #include "solver/particles/size_table.hpp"
 
+#include <numbers>
 #include <variant>
 
 namespace grainsweep::particles {
+
+[[nodiscard]] inline double sphere_volume(double diameter) {
+    return std::numbers::pi / 6 * diameter * diameter * diameter;
+}
 
 class SizeDistribution {
 public:

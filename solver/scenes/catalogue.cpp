@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <map>
+#include <mutex>
 #include <stdexcept>
 
 namespace grainsweep {
@@ -34,10 +36,34 @@ std::span<const SceneInfo> scene_catalogue() {
     return scenes;
 }
 
+namespace {
+
+struct Entered {
+    std::mutex mutex;
+    std::map<std::string, SceneInfo, std::less<>> scenes;
+};
+
+Entered& entered() {
+    static Entered all;
+    return all;
+}
+
+}  // namespace
+
+const SceneInfo& enter_scene(SceneInfo scene) {
+    auto& all = entered();
+    const std::lock_guard lock(all.mutex);
+    auto& known = all.scenes[scene.name];
+    return known = std::move(scene);
+}
+
 const SceneInfo* find_scene(std::string_view name) {
     const auto scenes = scene_catalogue();
-    const auto found = std::ranges::find(scenes, name, &SceneInfo::name);
-    return found == scenes.end() ? nullptr : &*found;
+    if (const auto own = std::ranges::find(scenes, name, &SceneInfo::name); own != scenes.end()) return &*own;
+    auto& all = entered();
+    const std::lock_guard lock(all.mutex);
+    const auto found = all.scenes.find(name);
+    return found == all.scenes.end() ? nullptr : &found->second;
 }
 
 namespace {

@@ -31,7 +31,7 @@ double staying(const hopper::Study& s) {
     const double a = s.opening / 2, r = s.half_width;
     const double volume = s.slot ? slope * (r - a) * (r - a) * s.slot_length
                                  : 2 * std::numbers::pi * slope * (r * r * r / 3 - a * r * r / 2 + a * a * a / 6);
-    const double one = kit::sphere_volume(s.diameter) * s.sizes.moment(3);
+    const double one = particles::sphere_volume(s.diameter) * s.sizes.moment(3);
     return std::min(static_cast<double>(s.particles), packed * volume / one);
 }
 
@@ -73,7 +73,6 @@ SceneInfo hopper_scene() {
     };
     info.estimate_cost = cost_of_discharge;
     info.warnings = hopper::warnings_of;
-    info.proven_answer = [](const Inputs&) -> std::optional<ProvenAnswer> { return std::nullopt; };
     return info;
 }
 

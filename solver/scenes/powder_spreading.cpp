@@ -41,7 +41,7 @@ CostEstimate cost_of_spreading(const Inputs& inputs, const Files& files) {
     const auto settle = static_cast<double>(s.settle_steps), sweep = static_cast<double>(s.sweep_steps);
     // Under each layer lie those before it, as dense as powder lies.
     const double layer = spreading::settled_fraction * s.gap * s.width * (s.end_of_platform() - s.start_of_platform()) /
-                         (spreading::sphere_volume(s.diameter) * s.sizes.moment(3));
+                         (particles::sphere_volume(s.diameter) * s.sizes.moment(3));
     const auto n = static_cast<double>(s.layers), supplied = static_cast<double>(s.particles);
     const double moved = n * (supplied + layer * (n - 1) / 2);
     auto estimate = kit::estimate(method, s.material, moved, settle + sweep);
@@ -82,7 +82,6 @@ SceneInfo powder_spreading_scene() {
     info.warnings = spreading::warnings_of;
     // No gap is proven to pass nothing over the whole range of stiffness, cohesion and speed: soft particles are
     // squeezed through gaps below their diameter.
-    info.proven_answer = [](const Inputs&) -> std::optional<ProvenAnswer> { return std::nullopt; };
     return info;
 }
 

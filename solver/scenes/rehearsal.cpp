@@ -180,7 +180,6 @@ SceneInfo rehearsal_scene() {
     info.estimate_cost = [](const Inputs& inputs, const Files&) {
         return CostEstimate{1e-5 + std::get<double>(inputs.at("wait_seconds")), 0, 0};
     };
-    info.proven_answer = [](const Inputs&) -> std::optional<ProvenAnswer> { return std::nullopt; };
     info.on_attempt = [](Inputs inputs, std::int64_t attempt) {
         const auto misbehaving = std::get<std::int64_t>(inputs.at("behave_attempts"));
         if (misbehaving > 0 && attempt > misbehaving) inputs["behaviour"] = std::string("normal");

@@ -37,7 +37,6 @@ SceneInfo rotating_drum_scene() {
                              static_cast<double>(s.last_step()));
     };
     info.warnings = drum::warnings_of;
-    info.proven_answer = [](const Inputs&) -> std::optional<ProvenAnswer> { return std::nullopt; };
     return info;
 }
 

@@ -98,7 +98,7 @@ struct SceneInfo {
     std::function<std::unique_ptr<Scene>(const Inputs&, std::uint64_t seed, Artefacts&, const Files&)> maker;
     /// Throws as maker does where the inputs are impossible together or a file is not given.
     std::function<CostEstimate(const Inputs&, const Files&)> estimate_cost;
-    /// The answer, where it is proven without simulation; otherwise empty.
+    /// The answer, where it is proven without simulation; may be empty.
     std::function<std::optional<ProvenAnswer>(const Inputs&)> proven_answer;
     /// What a user must know before asking this: at most one warning of a kind. Only for inputs that make() accepts;
     /// may be empty.
@@ -119,9 +119,11 @@ struct SceneInfo {
     [[nodiscard]] Inputs defaults() const;
 };
 
-/// Every scene that exists, in the order they are shown.
+/// The solver's own scenes, in the order they are shown.
 [[nodiscard]] std::span<const SceneInfo> scene_catalogue();
-/// nullptr when there is none of that name.
+/// Makes another scene known to this process, for its lifetime; takes the place of one of the same name.
+const SceneInfo& enter_scene(SceneInfo scene);
+/// One of both; nullptr when there is none of that name.
 [[nodiscard]] const SceneInfo* find_scene(std::string_view name);
 
 /// Instruction set of the solver's inner loops in this process: "x86-64-v2", "avx2", "avx512"; elsewhere "baseline".

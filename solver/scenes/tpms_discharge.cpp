@@ -359,7 +359,6 @@ SceneInfo tpms_discharge_scene() {
     };
     info.estimate_cost = cost_of_cell;
     info.warnings = tpms_discharge_warnings;
-    info.proven_answer = [](const Inputs&) -> std::optional<ProvenAnswer> { return std::nullopt; };
     return info;
 }
 

@@ -103,8 +103,6 @@ struct Program {
 const SceneInfo& enter_program(std::shared_ptr<const Program> program);
 /// nullptr where no such program was entered.
 [[nodiscard]] std::shared_ptr<const Program> known_program(std::string_view scene);
-/// A scene of the catalogue or of a program that was entered; nullptr where there is none.
-[[nodiscard]] const SceneInfo* known_scene(std::string_view name);
 /// Why a completed case of a scene can be without a value of a scalar; empty: not known.
 [[nodiscard]] std::string why_absent(std::string_view scene, std::string_view observable);
 /// The words that "scene" of a campaign file may be.

@@ -9,14 +9,9 @@
 namespace grainsweep::campaign {
 namespace {
 
-struct Entered {
-    std::shared_ptr<const Program> program;
-    SceneInfo scene;
-};
-
 struct Register {
     std::mutex mutex;
-    std::map<std::string, std::unique_ptr<Entered>, std::less<>> programs;
+    std::map<std::string, std::shared_ptr<const Program>, std::less<>> programs;
 };
 
 Register& entered() {
@@ -42,41 +37,28 @@ SceneInfo scene_of(const Program& program, std::string name) {
     scene.estimate_cost = [seconds = program.cost_seconds](const Inputs&, const Files&) {
         return CostEstimate{.seconds = seconds, .particle_steps = 0, .bytes = 0};
     };
-    scene.proven_answer = [](const Inputs&) -> std::optional<ProvenAnswer> { return std::nullopt; };
     return scene;
 }
 
 }  // namespace
 
 const SceneInfo& enter_program(std::shared_ptr<const Program> program) {
-    auto name = program_scene_name(*program);
+    auto scene = scene_of(*program, program_scene_name(*program));
     auto& all = entered();
     const std::lock_guard lock(all.mutex);
-    auto& known = all.programs[name];
-    // Units and settings may be others than before; what refers to the scene keeps it.
-    if (known == nullptr) known = std::make_unique<Entered>();
-    known->scene = scene_of(*program, std::move(name));
-    known->program = std::move(program);
-    return known->scene;
+    all.programs[scene.name] = std::move(program);
+    return enter_scene(std::move(scene));  // units and settings may be others than before
 }
 
 std::shared_ptr<const Program> known_program(std::string_view scene) {
     auto& all = entered();
     const std::lock_guard lock(all.mutex);
     const auto found = all.programs.find(scene);
-    return found == all.programs.end() ? nullptr : found->second->program;
-}
-
-const SceneInfo* known_scene(std::string_view name) {
-    if (!is_program(name)) return find_scene(name);
-    auto& all = entered();
-    const std::lock_guard lock(all.mutex);
-    const auto found = all.programs.find(name);
-    return found == all.programs.end() ? nullptr : &found->second->scene;
+    return found == all.programs.end() ? nullptr : found->second;
 }
 
 std::string why_absent(std::string_view scene, std::string_view observable) {
-    const SceneInfo* known = known_scene(scene);
+    const SceneInfo* known = find_scene(scene);
     const ObservableSpec* spec = known == nullptr ? nullptr : known->find_observable(observable);
     return spec == nullptr ? std::string() : spec->absent;
 }

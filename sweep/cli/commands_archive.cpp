@@ -204,7 +204,7 @@ int explain(const std::string& database, const std::string& id, Format format) {
     }
     std::cout << fmt::format("{}\nscene {} revision {}, seed {}\n", heading_of(archive, question.id), question.scene,
                              question.revision, question.seed);
-    const SceneInfo* scene = campaign::known_scene(question.scene);
+    const SceneInfo* scene = find_scene(question.scene);
     for (const auto& [name, value] : question.inputs) {
         const auto* parameter = scene == nullptr ? nullptr : scene->find_parameter(name);
         if (parameter != nullptr && parameter->default_value == value) continue;

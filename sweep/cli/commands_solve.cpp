@@ -130,7 +130,7 @@ Json sample_json(const Sample& sample) {
 std::vector<ObservableSpec> absent(const campaign::Case& question, const CaseResult& result) {
     std::vector<ObservableSpec> missing;
     if (result.outcome != Outcome::completed) return missing;
-    for (const auto& observable : campaign::known_scene(question.scene)->observables)
+    for (const auto& observable : find_scene(question.scene)->observables)
         if (observable.shape == Shape::scalar && !result.observations.scalars.contains(observable.name))
             missing.push_back(observable);
     return missing;
@@ -154,7 +154,7 @@ Json answer_json(const campaign::Case& question, const CaseResult& result) {
     object["message"] = result.message;
     object["scalars"] = Json::object();
     if (result.outcome == campaign::Outcome::completed || result.outcome == campaign::Outcome::skipped)
-        for (const auto& declared : campaign::known_scene(question.scene)->observables)  // null: undefined in this case
+        for (const auto& declared : find_scene(question.scene)->observables)  // null: undefined in this case
             if (declared.shape == Shape::scalar) object["scalars"][declared.name] = nullptr;
     for (const auto& [name, value] : result.observations.scalars)
         object["scalars"][name] = report::to_json(Cell{value});
@@ -200,7 +200,7 @@ store::Table table_of(const campaign::Case& question, const CaseResult& result) 
 }
 
 void show_answer(const campaign::Case& question, const CaseResult& result) {
-    const auto& scene = *campaign::known_scene(question.scene);
+    const auto& scene = *find_scene(question.scene);
     store::Table table{{"name", "value", "unit", "meaning"}, {}};
     for (const auto& parameter : scene.parameters) {
         const Value& value = question.inputs.at(parameter.name);

@@ -22,7 +22,7 @@ std::string heading_of(const store::Store& archive, const campaign::CaseId& id) 
 }
 
 std::string why_not_again(const campaign::Case& question) {
-    const SceneInfo* scene = campaign::known_scene(question.scene);
+    const SceneInfo* scene = find_scene(question.scene);
     if (scene == nullptr) return "needs a scene that this build does not have: " + question.scene;
     if (scene->revision == question.revision) return {};
     return fmt::format(
@@ -34,8 +34,7 @@ std::string why_not_again(const campaign::Case& question) {
 campaign::Case as_asked_today(campaign::Case question) {
     if (const auto why = why_not_again(question); !why.empty())
         throw campaign::wrong_question("CASE", question.id, why);
-    for (const auto& [name, value] : campaign::known_scene(question.scene)->defaults())
-        question.inputs.try_emplace(name, value);
+    for (const auto& [name, value] : find_scene(question.scene)->defaults()) question.inputs.try_emplace(name, value);
     return question;
 }
 

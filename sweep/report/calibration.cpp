@@ -213,7 +213,7 @@ std::optional<CalibrationReport> calibration_report(const store::Store& store, c
         for (auto& [observable, answers] : request.answers) answers.resize(std::min(answers.size(), followed));
         report.found = designs::calibration_of(request);
     }
-    const auto* scene = campaign::known_scene(record.scene);
+    const auto* scene = find_scene(record.scene);
     const auto stated = campaign::factors_of(record);
     if (report.found.posterior)
         for (std::size_t j = 0; j < report.found.factors.size(); ++j) {

@@ -269,7 +269,7 @@ void refuse_unknown_models(const Json& page, const PageModels& asked) {
 Json campaign_of(const store::Store& store, const store::CampaignRecord& record, std::string_view database,
                  const PageModels& models) {
     const auto responses = read_responses(store, record);
-    const SceneInfo* scene = campaign::known_scene(record.scene);
+    const SceneInfo* scene = find_scene(record.scene);
     Json value = {{"name", record.name},
                   {"database", database},
                   {"notes", campaign::remarks_in(record.text).notes},

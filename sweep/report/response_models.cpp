@@ -343,7 +343,7 @@ ObservableModel learn_or_refuse(const ModelCases& cases, const ResponseColumn& o
 
 std::function<bool(const Setting&)> admission(const store::Store& store, const ModelCases& cases) {
     const auto example = cases.case_id.empty() ? std::nullopt : store.find_case(cases.case_id);
-    const auto* scene = campaign::known_scene(cases.campaign.scene);
+    const auto* scene = find_scene(cases.campaign.scene);
     if (cases.campaign.condition.empty() || !example || scene == nullptr) return {};
     Inputs inputs = example->inputs;
     for (const auto& [name, value] : scene->defaults()) inputs.try_emplace(name, value);

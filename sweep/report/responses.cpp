@@ -288,7 +288,7 @@ Responses read_responses(const store::Store& store, const store::CampaignRecord&
     Responses responses;
     responses.campaign = record;
     responses.judged_checks = judged_checks(store, record);
-    const SceneInfo* scene = campaign::known_scene(record.scene);
+    const SceneInfo* scene = find_scene(record.scene);
     std::vector<FactorReader> factors;
     for (auto& stated : campaign::factors_of(record)) factors.emplace_back(std::move(stated), scene);
     const auto first_observable = first_factor + factors.size();

@@ -40,7 +40,7 @@ std::string as_text(const std::string& bytes) {
 }  // namespace
 
 Json about_case(const campaign::Case& question, const campaign::CaseResult& result) {
-    const SceneInfo* scene = campaign::known_scene(question.scene);
+    const SceneInfo* scene = find_scene(question.scene);
     std::string title = question.scene;
     std::ranges::replace(title, '_', ' ');
     Json about = {{"title", title},

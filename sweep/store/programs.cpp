@@ -52,7 +52,7 @@ bool has_programs(const Connection& db) {
 void enter_programs(const Connection& db) {
     if (!has_programs(db)) return;
     for (const auto& [scene, text] : definitions(db)) {
-        if (campaign::known_scene(scene) != nullptr) continue;
+        if (find_scene(scene) != nullptr) continue;
         std::string why;
         if (auto program = definition_in(text, scene, why))
             campaign::enter_program(std::make_shared<const campaign::Program>(std::move(*program)));

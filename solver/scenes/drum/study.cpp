@@ -48,7 +48,7 @@ void check_size(const Study& s) {
 }
 
 void count_particles(Study& s, const Inputs& inputs) {
-    const double one = kit::sphere_volume(s.diameter) * s.sizes.moment(3);
+    const double one = particles::sphere_volume(s.diameter) * s.sizes.moment(3);
     s.particles = question::particles(inputs);
     if (s.particles == 0) {
         const double wanted = std::round(question::fill(inputs) * packed_fraction * drum_volume(s) / one);

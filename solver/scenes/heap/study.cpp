@@ -35,7 +35,7 @@ constexpr double most_steps = 1e10, most_glued = 2e6;
 constexpr std::uint64_t glue_stream = 3;
 
 double solid_volume(const Study& s) {
-    return static_cast<double>(s.particles) * kit::sphere_volume(s.diameter) * s.sizes.moment(3);
+    return static_cast<double>(s.particles) * particles::sphere_volume(s.diameter) * s.sizes.moment(3);
 }
 
 double largest(const Study& s) {

@@ -101,7 +101,7 @@ void Experiment::observe_rate(Observations& into) const {
     if (!study_.slot && std::isfinite(bulk_fraction_))
         record::beverloo_rate.record(into,
                                      observables::beverloo_rate(study_.opening, d, bulk_fraction_, study_.gravity) *
-                                         kit::sphere_volume(d) * density);
+                                         particles::sphere_volume(d) * density);
     const auto found = observables::rate_between(outflow_, mass_, rate_from, rate_to);
     if (!std::isfinite(found.rate)) return;
     record::rate.record(into, found.rate);

@@ -74,7 +74,7 @@ double Study::section() const {
 }
 
 double Study::fill_height() const {
-    const double one = kit::sphere_volume(diameter) * sizes.moment(3);
+    const double one = particles::sphere_volume(diameter) * sizes.moment(3);
     const double inset = half_width - sizes.largest() * diameter / 2;
     const double section = slot ? 2 * inset * slot_length : std::numbers::pi * inset * inset;
     // In the cone about a third of a cylinder of its height has room.

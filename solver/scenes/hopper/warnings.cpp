@@ -39,7 +39,7 @@ std::vector<Warning> warnings_of(const Inputs& inputs, const Files& files) {
     if (static_cast<double>(s.particles) < fewest_particles)
         warnings.push_back({"few particles", sentence("%.0f particles are too few for a steady rate",
                                                       static_cast<double>(s.particles))});
-    const double solid = static_cast<double>(s.particles) * kit::sphere_volume(s.diameter) * s.sizes.moment(3);
+    const double solid = static_cast<double>(s.particles) * particles::sphere_volume(s.diameter) * s.sizes.moment(3);
     const double height = solid / (settled_fraction * s.section());
     if (height < lowest * s.opening)
         warnings.push_back(

@@ -40,10 +40,6 @@ std::vector<std::array<double, 2>> sites_within(double radius, double inner, int
 
 }  // namespace
 
-double sphere_volume(double diameter) {
-    return std::numbers::pi / 6 * diameter * diameter * diameter;
-}
-
 std::vector<dem::Sphere> loose_filling(const particles::SizeDistribution& sizes, double diameter, std::int64_t count,
                                        const particles::Room& room, std::uint64_t seed, std::string_view full) {
     const auto radii = radii_of(sizes, diameter, count, seed);

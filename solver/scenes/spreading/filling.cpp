@@ -37,7 +37,7 @@ double height_of_base(const Study& s) {
 /// Draws until the volume is as near to that of the layer as it gets.
 std::vector<double> radii_of(const Study& s, std::uint64_t seed) {
     const stats::Stream size(seed, size_stream);
-    const double wanted = s.layer_area * s.width / sphere_volume(s.diameter);
+    const double wanted = s.layer_area * s.width / particles::sphere_volume(s.diameter);
     std::vector<double> radii;
     double volume = 0;
     for (std::uint64_t k = 0;; ++k) {

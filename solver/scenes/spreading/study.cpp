@@ -30,7 +30,7 @@ double fastest_impact(const Study& s) {
 }
 
 void lay_out(Study& s) {
-    const double volume = sphere_volume(s.diameter) * s.sizes.moment(3);
+    const double volume = particles::sphere_volume(s.diameter) * s.sizes.moment(3);
     const double wanted = std::round(s.layer_area * s.width / volume);
     require(wanted >= 1,
             sentence("layer_area of %.4g m2 holds no particle of diameter %.4g m", s.layer_area, s.diameter));
@@ -136,10 +136,6 @@ std::string key_of_bed(const Inputs& inputs, const Study& s) {
 }
 
 }  // namespace
-
-double sphere_volume(double diameter) {
-    return std::numbers::pi / 6 * diameter * diameter * diameter;
-}
 
 double layer_length(const Study& s) {
     return s.travel + s.layer_beyond;

@@ -73,7 +73,6 @@ struct Study {
 /// Throws std::invalid_argument with one sentence where the inputs are impossible together or a file is not given.
 [[nodiscard]] Study study_of(const Inputs& inputs, const Files& files);
 
-[[nodiscard]] double sphere_volume(double diameter);
 /// The seed of the shared bed of that number.
 [[nodiscard]] std::uint64_t seed_of_bed(std::int64_t number);
 /// How far before the layer the tool starts over a shared bed, m: the case's own, less than one diameter.
