@@ -1,5 +1,7 @@
 #include "sweep/schedule/scheduler.hpp"
 
+#include "sweep/campaign/overloaded.hpp"
+
 #include <fmt/format.h>
 
 #include <chrono>
@@ -10,12 +12,8 @@ namespace grainsweep::schedule {
 namespace {
 
 using campaign::Outcome;
+using campaign::Overloaded;
 using namespace std::chrono_literals;
-
-template <class... Cases>
-struct Overloaded : Cases... {
-    using Cases::operator()...;
-};
 
 /// What the main program knows of an attempt that brought no answer: how long it took, not what it cost.
 campaign::CaseResult unanswered(const campaign::Attempt& attempt, Outcome outcome, std::string reason, double seconds) {

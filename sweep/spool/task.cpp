@@ -1,5 +1,6 @@
 #include "sweep/spool/task.hpp"
 
+#include "sweep/campaign/overloaded.hpp"
 #include "sweep/store/broken_world.hpp"
 
 #include <fmt/format.h>
@@ -26,10 +27,7 @@ double running_time() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-template <class... Cases>
-struct Overloaded : Cases... {
-    using Cases::operator()...;
-};
+using campaign::Overloaded;
 
 campaign::CaseResult without_answer(const campaign::Attempt& attempt, Outcome outcome, const std::string& reason,
                                     double seconds) {

@@ -1,5 +1,7 @@
 #include "sweep/store/recorder.hpp"
 
+#include "sweep/campaign/overloaded.hpp"
+
 #include <algorithm>
 #include <chrono>
 #include <utility>
@@ -20,10 +22,7 @@ constexpr std::size_t first_piece = 8192, largest_piece = 131'072;
 // Entries and samples that may wait, some 25 MB: more than a disk that works leaves behind.
 constexpr std::size_t most_waiting = 250'000;
 
-template <class... Cases>
-struct Overloaded : Cases... {
-    using Cases::operator()...;
-};
+using campaign::Overloaded;
 
 std::size_t weight_of(const Recorder::Entry& entry) {
     constexpr std::size_t of_an_entry = 8;

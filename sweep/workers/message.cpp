@@ -1,5 +1,6 @@
 #include "sweep/workers/message.hpp"
 
+#include "sweep/campaign/overloaded.hpp"
 #include "sweep/workers/message_form.hpp"
 
 #include <nlohmann/json.hpp>
@@ -13,10 +14,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-template <class... Cases>
-struct Overloaded : Cases... {
-    using Cases::operator()...;
-};
+using campaign::Overloaded;
 
 Inputs to_inputs(const Json& object) {
     Inputs inputs;
