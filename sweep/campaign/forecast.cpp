@@ -133,7 +133,8 @@ namespace {
 
 std::vector<std::string> calibration_warnings(const Campaign& campaign) {
     std::vector<std::string> warnings;
-    if (campaign.design != "calibration") return warnings;
+    const auto* design = designs::find_design(campaign.design);
+    if (design == nullptr || !design->calibrates) return warnings;
     for (const auto& target : designs::targets_in(campaign.request.word("targets")))
         if (target.discrepancy == 0)
             warnings.push_back(fmt::format(

@@ -346,11 +346,8 @@ Calibration calibration_of(const DesignRequest& request) {
 
 DesignInfo calibration_design() {
     const auto count = [](std::string name, std::int64_t standard, std::int64_t most, std::string meaning) {
-        return OptionSpec{.name = std::move(name),
-                          .meaning = std::move(meaning),
-                          .default_value = standard,
-                          .maximum = most,
-                          .words = {}};
+        return OptionSpec{
+            .name = std::move(name), .meaning = std::move(meaning), .default_value = standard, .maximum = most};
     };
     const auto points = [](const DesignRequest& request) {
         return request.grown ? *request.grown : calibration_of(request).points;
@@ -358,11 +355,7 @@ DesignInfo calibration_design() {
     return {
         .name = "calibration",
         .summary = "Waves of points that close in on the settings which reproduce what was measured: history matching.",
-        .options = {{.name = "targets",
-                     .meaning = "what was measured",
-                     .kind = OptionSpec::Kind::word,
-                     .default_value = std::nullopt,
-                     .words = {}},
+        .options = {{.name = "targets", .meaning = "what was measured", .kind = OptionSpec::Kind::word},
                     count("waves", 4, 100, "waves at most"),
                     count("points_per_wave", 40, 10'000, "settings of a wave; each is run under every condition"),
                     count("checks", 8, 1000, "settings drawn from the posterior that are run to check it"),
@@ -370,11 +363,9 @@ DesignInfo calibration_design() {
                      .meaning = "the waves end when one rules out less than this share of what was kept",
                      .kind = OptionSpec::Kind::number,
                      .default_value = 0.02,
-                     .words = {},
                      .bounds = {0, 1}}},
-        .extends = false,
-        .independent_sequences = false,
         .grows = true,
+        .calibrates = true,
         .rests_on =
             [](const DesignRequest& request) {
                 std::vector<std::string> names;

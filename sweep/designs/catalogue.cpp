@@ -68,14 +68,7 @@ std::uint64_t draw_key(std::uint64_t seed, DrawPurpose purpose, std::uint64_t a,
 }
 
 OptionSpec points_option(std::string meaning) {
-    return {.name = "points",
-            .meaning = std::move(meaning),
-            .kind = OptionSpec::Kind::count,
-            .default_value = std::nullopt,
-            .minimum = 1,
-            .maximum = 100'000'000,
-            .words = {},
-            .extent = true};
+    return {.name = "points", .meaning = std::move(meaning), .maximum = 100'000'000, .extent = true};
 }
 
 std::int64_t points_asked(const DesignRequest& request) {

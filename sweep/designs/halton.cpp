@@ -49,8 +49,7 @@ PointSet halton_points(const DesignRequest& request) {
                                     "' would give the same points in each");
     const std::size_t d = request.dimensions();
     const auto first = static_cast<std::uint64_t>(request.count("first"));
-    PointSet set{
-        .dimensions = d, .sequences = sequences, .coordinates = room_for(request.count("points"), d), .rows = {}};
+    PointSet set{.dimensions = d, .sequences = sequences, .coordinates = room_for(request.count("points"), d)};
     const Inverses inverses(request);
     for (std::size_t sequence = 0; sequence < sequences; ++sequence)
         for (std::size_t j = 0; j < d; ++j) {
@@ -79,21 +78,16 @@ DesignInfo halton_design() {
                                 "random: an independent permutation per digit, from the campaign's seed",
                      .kind = OptionSpec::Kind::word,
                      .default_value = std::string("random"),
-                     .minimum = 1,
                      .maximum = 1,
                      .words = {"none", "braaten_weller", "braaten_weller_vc2006", "random"}},
                     {.name = "sequences",
                      .meaning = "independently scrambled sequences that advance together ('random' only); the "
                                 "convergence rule 'replicates' needs at least 4, 8 are recommended",
-                     .kind = OptionSpec::Kind::count,
                      .default_value = std::int64_t{1},
-                     .minimum = 1,
-                     .maximum = 10'000,
-                     .words = {}},
+                     .maximum = 10'000},
                     {.name = "first",
                      .meaning = "index of the first point (unscrambled, index 0 is the corner where every factor is "
                                 "at its low end)",
-                     .kind = OptionSpec::Kind::count,
                      .default_value = std::int64_t{1},
                      .minimum = 0,
                      .maximum = 9'007'199'254'740'991,  // 2^53 - 1, the largest whole number of every JSON

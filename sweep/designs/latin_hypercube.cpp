@@ -12,7 +12,7 @@ namespace {
 PointSet latin_hypercube_points(const DesignRequest& request) {
     const std::int64_t points = request.count("points");
     const std::size_t d = request.dimensions();
-    PointSet set{.dimensions = d, .sequences = 1, .coordinates = room_for(points, d), .rows = {}};
+    PointSet set{.dimensions = d, .sequences = 1, .coordinates = room_for(points, d)};
     const double below_one = std::nextafter(1.0, 0.0);
     for (std::size_t j = 0; j < d; ++j) {
         const stats::Generator shuffler(draw_key(request.seed, DrawPurpose::latin_hypercube, j, 0));
@@ -35,8 +35,6 @@ DesignInfo latin_hypercube_design() {
                 "cannot be extended, and for statistics it is far behind halton (24000 points for 1 % on mean, sd, "
                 "kurtosis and g1 together, random halton 650).",
             .options = {points_option("number of points")},
-            .extends = false,
-            .independent_sequences = false,
             .size = points_asked,
             .sample = latin_hypercube_points};
 }

@@ -71,7 +71,7 @@ PointSet lattice_points(const DesignRequest& request) {
     const auto levels = levels_of(request);
     const std::int64_t points = product_of(levels);
     const bool endpoints = request.word("placement") == "endpoints";
-    PointSet set{.dimensions = d, .sequences = 1, .coordinates = room_for(points, d), .rows = {}};
+    PointSet set{.dimensions = d, .sequences = 1, .coordinates = room_for(points, d)};
     for (std::int64_t p = 0; p < points; ++p) {
         std::int64_t rest = p;
         for (std::size_t j = d; j-- > 0;) {
@@ -98,20 +98,15 @@ DesignInfo lattice_design() {
                                     "declares its levels",
                          .kind = OptionSpec::Kind::counts,
                          .default_value = std::vector<std::int64_t>{},
-                         .minimum = 1,
                          .maximum = 1'000'000,
-                         .words = {},
                          .extent = true},
                         {.name = "placement",
                          .meaning = "endpoints: i/(k-1), the ends of the range included; centred: (i + 1/2)/k, the "
                                     "middles of k equal cells",
                          .kind = OptionSpec::Kind::word,
                          .default_value = std::string("endpoints"),
-                         .minimum = 1,
                          .maximum = 1,
                          .words = {"endpoints", "centred"}}},
-            .extends = false,
-            .independent_sequences = false,
             .beginning = Beginning::corner,
             .size = lattice_size,
             .sample = lattice_points};

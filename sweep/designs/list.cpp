@@ -36,13 +36,9 @@ DesignInfo list_design() {
                          .meaning = "rows of values, one a factor in the order of 'factors'; or give \"file\": a CSV "
                                     "beside the campaign file",
                          .kind = OptionSpec::Kind::rows,
-                         .default_value = std::nullopt,
-                         .minimum = 1,
                          .maximum = 100'000'000,
-                         .words = {},
                          .extent = true}},
             .extends = true,
-            .independent_sequences = false,
             .beginning = Beginning::listed,
             .size = [](const DesignRequest& request) { return static_cast<std::int64_t>(rows_of(request).size()); },
             .sample = listed_points};

@@ -122,8 +122,7 @@ PointSet morris_points(const DesignRequest& request) {
     const std::size_t length = trajectory_length(d);
     PointSet set{.dimensions = d,
                  .sequences = length,
-                 .coordinates = room_for(trajectories * static_cast<std::int64_t>(length), d),
-                 .rows = {}};
+                 .coordinates = room_for(trajectories * static_cast<std::int64_t>(length), d)};
     std::vector<Axis> axes;
     for (std::size_t j = 0; j < d; ++j) axes.emplace_back(request, j);
     check_levels(request, axes);
@@ -144,21 +143,14 @@ DesignInfo morris_design() {
             "(mu*) and which act non-linearly or jointly (sigma). For shares of the variance use halton or saltelli.",
         .options = {{.name = "trajectories",
                      .meaning = "number of trajectories, 10 to 50 as a rule; each costs factors + 1 cases",
-                     .kind = OptionSpec::Kind::count,
-                     .default_value = std::nullopt,
-                     .minimum = 1,
                      .maximum = 1'000'000,
-                     .words = {},
                      .extent = true},
                     {.name = "grid",
                      .meaning = "places per continuous factor, even; a factor with levels has these for its grid",
-                     .kind = OptionSpec::Kind::count,
                      .default_value = std::int64_t{4},
                      .minimum = 2,
-                     .maximum = 1'000,
-                     .words = {}}},
+                     .maximum = 1'000}},
         .extends = true,
-        .independent_sequences = false,
         .purpose = Purpose::morris,
         .size = morris_size,
         .block = trajectory_length,

@@ -8,7 +8,7 @@ namespace {
 PointSet random_points(const DesignRequest& request) {
     const std::int64_t points = request.count("points");
     const std::size_t d = request.dimensions();
-    PointSet set{.dimensions = d, .sequences = 1, .coordinates = room_for(points, d), .rows = {}};
+    PointSet set{.dimensions = d, .sequences = 1, .coordinates = room_for(points, d)};
     for (std::size_t j = 0; j < d; ++j) {
         const stats::Stream stream(draw_key(request.seed, DrawPurpose::random, j), 0);
         for (std::size_t p = 0; p < static_cast<std::size_t>(points); ++p)
@@ -29,7 +29,6 @@ DesignInfo random_design() {
                 "even): 0.17.",
             .options = {points_option("number of points")},
             .extends = true,
-            .independent_sequences = false,
             .independent_points = true,
             .size = points_asked,
             .sample = random_points};

@@ -222,11 +222,7 @@ std::vector<Bracket> brackets(const DesignRequest& request) {
 
 DesignInfo refine_design() {
     const auto option = [](std::string name, OptionSpec::Kind kind, std::string meaning) {
-        return OptionSpec{.name = std::move(name),
-                          .meaning = std::move(meaning),
-                          .kind = kind,
-                          .default_value = std::nullopt,
-                          .words = {}};
+        return OptionSpec{.name = std::move(name), .meaning = std::move(meaning), .kind = kind};
     };
     using Kind = OptionSpec::Kind;
     auto width = option("width", Kind::number, "width of the bracket, in the unit of the factor, at which it is done");
@@ -247,11 +243,7 @@ DesignInfo refine_design() {
                                 "once and decides as it is",
                      .kind = Kind::count,
                      .default_value = std::int64_t{1},
-                     .minimum = 1,
-                     .maximum = most_repeats,
-                     .words = {}}},
-        .extends = false,
-        .independent_sequences = false,
+                     .maximum = most_repeats}},
         .grows = true,
         .rests_on = [](const DesignRequest& request) { return std::vector{request.word("observable")}; },
         .beginning = Beginning::corner,

@@ -26,10 +26,8 @@ PointSet saltelli_points(const DesignRequest& request) {
     const std::int64_t base_rows = request.count("base_points");
     const std::size_t d = request.dimensions();
     const std::size_t block = block_of(d);
-    PointSet set{.dimensions = d,
-                 .sequences = block,
-                 .coordinates = room_for(base_rows * static_cast<std::int64_t>(block), d),
-                 .rows = {}};
+    PointSet set{
+        .dimensions = d, .sequences = block, .coordinates = room_for(base_rows * static_cast<std::int64_t>(block), d)};
     const auto bases = primes(2 * d);
     for (std::size_t j = 0; j < d; ++j) {
         const auto a_column = RadicalInverse::random(bases[j], request.seed, 0, j);
@@ -56,14 +54,9 @@ DesignInfo saltelli_design() {
                 "equal cost.",
             .options = {{.name = "base_points",
                          .meaning = "number of base rows; each costs factors + 2 cases",
-                         .kind = OptionSpec::Kind::count,
-                         .default_value = std::nullopt,
-                         .minimum = 1,
                          .maximum = 10'000'000,
-                         .words = {},
                          .extent = true}},
             .extends = true,
-            .independent_sequences = false,
             .purpose = Purpose::saltelli,
             .size = saltelli_size,
             .block = block_of,

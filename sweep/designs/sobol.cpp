@@ -23,8 +23,7 @@ PointSet sobol_points(const DesignRequest& request) {
     if (d > most)
         throw std::invalid_argument("there are direction numbers for " + std::to_string(most) + " factors, not " +
                                     std::to_string(d));
-    PointSet set{
-        .dimensions = d, .sequences = sequences, .coordinates = room_for(request.count("points"), d), .rows = {}};
+    PointSet set{.dimensions = d, .sequences = sequences, .coordinates = room_for(request.count("points"), d)};
     if (d == 0) return set;
     std::vector<std::uint64_t> keys(sequences * d);
     for (std::size_t s = 0; s < sequences; ++s)
@@ -58,16 +57,12 @@ DesignInfo sobol_design() {
                                     "nested uniform scrambling from the campaign's seed",
                          .kind = OptionSpec::Kind::word,
                          .default_value = std::string("random"),
-                         .minimum = 1,
                          .maximum = 1,
                          .words = {"none", "random"}},
                         {.name = "sequences",
                          .meaning = "independently scrambled sequences that advance together ('random' only)",
-                         .kind = OptionSpec::Kind::count,
                          .default_value = std::int64_t{1},
-                         .minimum = 1,
-                         .maximum = 10'000,
-                         .words = {}}},
+                         .maximum = 10'000}},
             .extends = true,
             .independent_sequences = true,
             .size = points_asked,
