@@ -5,10 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
-#include <utility>
 
 namespace grainsweep::stats {
 namespace {
@@ -27,37 +28,6 @@ double spread(const Prediction& p, Judged judged) {
     return judged == Judged::mean ? p.mean_error : p.run_error();
 }
 
-/// Distribution function of a prediction in its standard errors: Student's, normal where freedom is infinite.
-double cdf(double u, double freedom) {
-    if (std::isinf(u)) return u > 0 ? 1 : 0;
-    return std::isfinite(freedom) ? student_probability(freedom, u) : normal_cdf(u);
-}
-
-/// P(low <= y <= high) of a prediction; a certain one is inside or it is not.
-double within(const Bounds& bounds, const Prediction& p, Judged judged) {
-    const double error = spread(p, judged);
-    if (!(error > 0)) return p.mean >= bounds.low && p.mean <= bounds.high ? 1 : 0;
-    // Differences of the nearer tail: no cancellation far out.
-    const double low = (bounds.low - p.mean) / error, high = (bounds.high - p.mean) / error;
-    return low > 0 ? cdf(-low, p.freedom) - cdf(-high, p.freedom) : cdf(high, p.freedom) - cdf(low, p.freedom);
-}
-
-std::vector<std::vector<Prediction>> predict_all(std::span<const ModelAt> models) {
-    std::vector<std::vector<Prediction>> predictions;
-    for (const ModelAt& m : models) {
-        if (m.points.size() != models.front().points.size())
-            throw std::invalid_argument("process window: models are asked at different numbers of points");
-        predictions.push_back(m.model.predict(m.points));
-    }
-    return predictions;
-}
-
-std::vector<double> freedom_of(std::span<const ModelAt> models) {
-    std::vector<double> freedom;
-    for (const ModelAt& m : models) freedom.push_back(m.model.freedom());
-    return freedom;
-}
-
 /// m* of the header; none where the condition is nowhere more likely than not.
 std::optional<double> effective_best(std::span<const Prediction> objective, std::span<const double> probability,
                                      double sign) {
@@ -72,47 +42,7 @@ std::optional<double> effective_best(std::span<const Prediction> objective, std:
     return best;
 }
 
-/// Cases chosen so far as fantasies: each says what was predicted, so that means stay and variances shrink,
-/// var(x) <- var(x) - c(x)^2/(var(x*) + scatter(x*)^2), c(x) = cov(x, x*) given the fantasies before.
-class Fantasies {
-public:
-    explicit Fantasies(std::span<const ModelAt> models) : models_(models), effects_(models.size()) {}
-
-    void add(std::vector<std::vector<Prediction>>& predictions, std::size_t chosen) {
-        for (std::size_t k = 0; k < models_.size(); ++k) {
-            auto& row = predictions[k];
-            auto c = models_[k].model.covariances_with(models_[k].points, models_[k].points.row(chosen));
-            for (const Effect& before : effects_[k])
-                for (std::size_t i = 0; i < c.size(); ++i) c[i] -= before.c[i] * before.c[chosen] / before.variance;
-            const double variance = std::pow(row[chosen].run_error(), 2);
-            if (!(variance > 0)) continue;  // known already, without any noise
-            for (std::size_t i = 0; i < c.size(); ++i)
-                row[i].mean_error = std::sqrt(std::max(std::pow(row[i].mean_error, 2) - c[i] * c[i] / variance, 0.0));
-            effects_[k].push_back({std::move(c), variance});
-        }
-    }
-
-private:
-    struct Effect {
-        std::vector<double> c;
-        double variance;
-    };
-    std::span<const ModelAt> models_;
-    std::vector<std::vector<Effect>> effects_;
-};
-
 }  // namespace
-
-std::vector<double> probability_within(std::span<const ModelAt> models, std::span<const Bounds> bounds, Judged judged) {
-    if (models.empty() || models.size() != bounds.size())
-        throw std::invalid_argument("process window: one pair of bounds is needed for each model");
-    const auto predictions = predict_all(models);
-    std::vector<double> probability(models.front().points.size(), 1);
-    for (std::size_t k = 0; k < models.size(); ++k)
-        for (std::size_t i = 0; i < probability.size(); ++i)
-            probability[i] *= within(bounds[k], predictions[k][i], judged);
-    return probability;
-}
 
 /// By Sobol points, cells centred.
 SampledErrors::SampledErrors(std::span<const double> freedom) : models_(freedom.size()) {
@@ -150,19 +80,6 @@ std::vector<double> probability_of(std::span<const std::vector<Prediction>> pred
     return probability;
 }
 
-std::vector<double> probability_of(std::span<const ModelAt> models, const Condition& condition, Judged judged) {
-    return probability_of(predict_all(models), condition, judged, SampledErrors(freedom_of(models)));
-}
-
-std::optional<std::size_t> best_setting(std::span<const Prediction> objective, std::span<const double> probability,
-                                        bool maximise, double risk) {
-    std::optional<std::size_t> best;
-    const double sign = maximise ? 1 : -1;
-    for (std::size_t i = 0; i < objective.size(); ++i)
-        if (probability[i] >= 1 - risk && (!best || sign * objective[i].mean > sign * objective[*best].mean)) best = i;
-    return best;
-}
-
 std::vector<double> expected_improvement(std::span<const Prediction> objective, std::span<const double> probability,
                                          bool maximise) {
     if (objective.size() != probability.size())
@@ -181,33 +98,6 @@ std::vector<double> expected_improvement(std::span<const Prediction> objective, 
         gain[i] *= improvement * learned;
     }
     return gain;
-}
-
-std::vector<std::size_t> next_cases(std::span<const ModelAt> candidates, const Condition& condition,
-                                    std::optional<Objective> objective, Judged judged, std::size_t count) {
-    if (candidates.empty() || (!condition && !objective))
-        throw std::invalid_argument("process window: next cases need a model and a condition or an objective");
-    if (objective && objective->model >= candidates.size())
-        throw std::invalid_argument("process window: the objective names a model that is not there");
-    auto predictions = predict_all(candidates);
-    const SampledErrors errors(freedom_of(candidates));
-    Fantasies fantasies(candidates);
-    std::vector<std::size_t> chosen;
-    while (chosen.size() < std::min(count, predictions.front().size())) {
-        std::vector<double> probability(predictions.front().size(), 1);
-        if (condition) probability = probability_of(predictions, condition, judged, errors);
-        std::vector<double> gain = probability;
-        if (objective)
-            gain = expected_improvement(predictions[objective->model], probability, objective->maximise);
-        else
-            for (double& p : gain) p = std::min(p, 1 - p);
-        for (const std::size_t i : chosen) gain[i] = 0;
-        const auto best = static_cast<std::size_t>(std::ranges::max_element(gain) - gain.begin());
-        if (!(gain[best] > 0)) break;
-        chosen.push_back(best);
-        fantasies.add(predictions, best);
-    }
-    return chosen;
 }
 
 std::vector<std::size_t> trade_off_front(std::span<const double> first, bool maximise_first,

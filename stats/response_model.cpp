@@ -173,11 +173,6 @@ double ResponseModel::State::deviation(double mean, double variance) const {
     return logarithm ? mean * std::sqrt(std::expm1(scale * scale * variance)) : scale * std::sqrt(variance);
 }
 
-double ResponseModel::State::covariance(double mean, double other, double covariance) const {
-    const double c = scale * scale * covariance;
-    return logarithm ? mean * other * std::expm1(c) : c;
-}
-
 double Prediction::run_error() const {
     return std::hypot(mean_error, scatter);
 }
@@ -206,7 +201,7 @@ std::vector<Prediction> ResponseModel::predict(Rows points) const {
     const State& s = *state_;
     const Eigen::MatrixXd x = s.in_box(points);
     const Eigen::MatrixXd at = response::mapped(s.kriging.h, x);
-    const auto p = response::predict(s.kriging, at, false);
+    const auto p = response::predict(s.kriging, at);
     const Eigen::VectorXd local = s.noise.factors(at);
     std::vector<Prediction> result;
     for (Eigen::Index i = 0; i < at.rows(); ++i) {
@@ -224,35 +219,6 @@ std::vector<double> ResponseModel::means(Rows points) const {
     std::vector<double> result;
     for (const double mean : z) result.push_back(s.mean_at(mean));
     return result;
-}
-
-JointPrediction ResponseModel::predict_jointly(Rows points) const {
-    const State& s = *state_;
-    const Eigen::MatrixXd at = response::mapped(s.kriging.h, s.in_box(points));
-    const auto p = response::predict(s.kriging, at, true);
-    const Eigen::VectorXd local = s.noise.factors(at).cwiseSqrt();
-    JointPrediction joint;
-    for (Eigen::Index i = 0; i < at.rows(); ++i) joint.mean.push_back(s.mean_at(p.mean(i)));
-    for (Eigen::Index i = 0; i < at.rows(); ++i)
-        for (Eigen::Index j = 0; j < at.rows(); ++j)
-            joint.covariance.push_back(s.covariance(joint.mean[static_cast<std::size_t>(i)],
-                                                    joint.mean[static_cast<std::size_t>(j)],
-                                                    local(i) * local(j) * p.covariance(i, j)));
-    return joint;
-}
-
-std::vector<double> ResponseModel::covariances_with(Rows points, std::span<const double> features) const {
-    const State& s = *state_;
-    const Eigen::MatrixXd at = response::mapped(s.kriging.h, s.in_box(points));
-    const Eigen::MatrixXd with = response::mapped(s.kriging.h, s.in_box({features, features.size()}));
-    const Eigen::ArrayXd local = (s.noise.factors(at).array() * s.noise.factors(with)(0)).sqrt();
-    const Eigen::VectorXd c = response::covariances_with(s.kriging, at, with);
-    const Eigen::VectorXd z = s.logarithm ? response::predict_means(s.kriging, at) : Eigen::VectorXd::Zero(c.size());
-    const double there = s.logarithm ? s.mean_at(response::predict_means(s.kriging, with)(0)) : 0;
-    std::vector<double> covariances;
-    for (Eigen::Index i = 0; i < c.size(); ++i)
-        covariances.push_back(s.covariance(s.mean_at(z(i)), there, local(i) * c(i)));
-    return covariances;
 }
 
 ResponseModel ResponseModel::with_cases(Rows points, std::span<const double> values) const {

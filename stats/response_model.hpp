@@ -113,12 +113,6 @@ struct Prediction {
     [[nodiscard]] double run_half_width() const;
 };
 
-/// At several points together.
-struct JointPrediction {
-    std::vector<double> mean;
-    std::vector<double> covariance;  ///< of the errors of the means, row-major
-};
-
 /// Cheap to copy.
 class ResponseModel {
 public:
@@ -130,9 +124,6 @@ public:
     [[nodiscard]] std::vector<Prediction> predict(Rows points) const;
     /// Means only: cost n per point.
     [[nodiscard]] std::vector<double> means(Rows points) const;
-    [[nodiscard]] JointPrediction predict_jointly(Rows points) const;
-    /// Covariance of the error of the mean at each point with that at one point. Cost n^2, and n per point.
-    [[nodiscard]] std::vector<double> covariances_with(Rows points, std::span<const double> features) const;
     /// The model with these cases added: hyperparameters, scale and local noise stay. Values may be fantasies.
     /// Throws std::invalid_argument where sizes differ or a number is not finite.
     [[nodiscard]] ResponseModel with_cases(Rows points, std::span<const double> values) const;

@@ -99,6 +99,26 @@ Likelihood likelihood_of(const Eigen::MatrixXd& points, const Eigen::VectorXd& v
     return {points(chosen, Eigen::all), values(chosen), map};
 }
 
+/// A place of the search and the value there.
+using Maximum = std::pair<double, Eigen::VectorXd>;
+
+/// The highest of what the best maxima lead to on more cases.
+Maximum best_followed(const std::vector<Maximum>& maxima, const Eigen::MatrixXd& points, const Eigen::VectorXd& values,
+                      std::size_t cases) {
+    const Likelihood large = likelihood_of(points, values, cases, false);
+    Maximum best{-std::numeric_limits<double>::infinity(), {}};
+    std::vector<Eigen::VectorXd> climbed;
+    for (const auto& [value, at] : maxima) {
+        // Maxima that are one are followed once.
+        const bool met = std::ranges::any_of(climbed, [&a = at](const auto& c) { return (a - c).norm() < 0.3; });
+        if (met || climbed.size() == followed || !std::isfinite(value)) continue;
+        climbed.push_back(at);
+        Search found = climb(large, at);
+        if (found.best_value > best.first) best = {found.best_value, std::move(found.best)};
+    }
+    return best;
+}
+
 }  // namespace
 
 std::vector<Eigen::Index> spread_choice(Eigen::Index n, std::size_t count) {
@@ -115,37 +135,22 @@ std::vector<Eigen::Index> spread_choice(Eigen::Index n, std::size_t count) {
 std::optional<Hyperparameters> fit_lengths(const Eigen::MatrixXd& points, const Eigen::VectorXd& values,
                                            const FitSettings& settings) {
     const Likelihood small = likelihood_of(points, values, std::min(settings.cases, cases_of_first_search), false);
-    std::vector<std::pair<double, Eigen::VectorXd>> starts;
+    std::vector<Maximum> starts;
     for (auto& at : starting_points(points.cols(), settings.starts * compared_per_start))
         starts.emplace_back(small.value(at), std::move(at));
     const auto better = [](const auto& a, const auto& b) { return a.first > b.first; };
     std::ranges::stable_sort(starts, better);
     starts.resize(std::max<std::size_t>(settings.starts, 1));
-    for (auto& [value, at] : starts) {
-        const Search found = climb(small, at);
-        value = found.best_value;
-        at = found.best;
+    for (auto& start : starts) {
+        const Search found = climb(small, start.second);
+        start = {found.best_value, found.best};
     }
     std::ranges::stable_sort(starts, better);
-    const auto done = [&](const Search& search) -> std::optional<Hyperparameters> {
-        if (!std::isfinite(search.best_value)) return std::nullopt;
-        return small.hyperparameters(search.best);
-    };
-    if (static_cast<std::size_t>(small.values().size()) ==
-        std::min(settings.cases, static_cast<std::size_t>(points.rows())))
-        return done({&small, starts.front().second, starts.front().first});
-    const Likelihood large = likelihood_of(points, values, settings.cases, false);
-    Search best{&large, {}};
-    std::vector<Eigen::VectorXd> climbed;
-    for (const auto& [value, at] : starts) {
-        // Starts that met on one maximum are followed once.
-        const bool met = std::ranges::any_of(climbed, [&a = at](const auto& c) { return (a - c).norm() < 0.3; });
-        if (met || climbed.size() == followed || !std::isfinite(value)) continue;
-        climbed.push_back(at);
-        const Search found = climb(large, at);
-        if (found.best_value > best.best_value) best = found;
-    }
-    return done(best);
+    const auto most = std::min(settings.cases, static_cast<std::size_t>(points.rows()));
+    const auto [value, at] =
+        most > cases_of_first_search ? best_followed(starts, points, values, settings.cases) : starts.front();
+    if (!std::isfinite(value)) return std::nullopt;
+    return small.hyperparameters(at);
 }
 
 std::optional<Hyperparameters> fit_map(const Eigen::MatrixXd& points, const Eigen::VectorXd& values,
@@ -159,14 +164,12 @@ std::optional<Hyperparameters> fit_map(const Eigen::MatrixXd& points, const Eige
 std::optional<Hyperparameters> find_hyperparameters(const Eigen::MatrixXd& points, const Eigen::VectorXd& values,
                                                     const FitSettings& settings) {
     const auto plain = fit_lengths(points, values, settings);
+    const bool always = settings.map == LearnedMap::always;
     const bool enough = static_cast<std::size_t>(values.size()) >= cases_for_map;
-    const bool wanted = settings.map == LearnedMap::always || (settings.map == LearnedMap::where_better && enough);
-    if (!plain || !wanted || points.cols() < 2) return plain;
-    const auto mapped = fit_map(points, values, *plain, settings);
-    if (!mapped) return plain;
-    if (settings.map == LearnedMap::always) return mapped;
+    const bool wanted = points.cols() >= 2 && (always || (settings.map == LearnedMap::where_better && enough));
+    const auto mapped = plain && wanted ? fit_map(points, values, *plain, settings) : std::nullopt;
     const auto error = [&](const Hyperparameters& h) { return leave_one_out_rms(h, points, values, settings.cases); };
-    return error(*mapped) < error(*plain) ? mapped : plain;
+    return mapped && (always || error(*mapped) < error(*plain)) ? mapped : plain;
 }
 
 Hyperparameters follow(const Hyperparameters& found, const Eigen::MatrixXd& points, const Eigen::VectorXd& values,

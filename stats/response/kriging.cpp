@@ -59,21 +59,10 @@ std::optional<Kriging> extend_kriging(const Kriging& old, const Eigen::MatrixXd&
     return k;
 }
 
-KrigingPrediction predict(const Kriging& model, const Eigen::MatrixXd& at, bool jointly) {
+KrigingPrediction predict(const Kriging& model, const Eigen::MatrixXd& at) {
     const Eigen::Index m = at.rows();
-    KrigingPrediction p{Eigen::VectorXd(m), Eigen::VectorXd(m), {}};
+    KrigingPrediction p{Eigen::VectorXd(m), Eigen::VectorXd(m)};
     const auto lower = model.factor.triangularView<Eigen::Lower>();
-    if (jointly) {
-        Eigen::MatrixXd k = cross_covariance(model.h, model.points, at);
-        p.mean = (k.transpose() * model.weights).array() + model.mean;
-        const Eigen::VectorXd rest = 1 - model.precision * (k.transpose() * model.mean_weights).array();
-        lower.solveInPlace(k);
-        p.covariance = cross_covariance(model.h, at, at);
-        p.covariance.noalias() -= k.transpose() * k;
-        p.covariance.noalias() += rest * rest.transpose() / model.precision;
-        p.variance = p.covariance.diagonal().cwiseMax(0);
-        return p;
-    }
     for (Eigen::Index first = 0; first < m; first += block) {
         const Eigen::Index count = std::min(block, m - first);
         Eigen::MatrixXd k = cross_covariance(model.h, model.points, at.middleRows(first, count));
@@ -95,21 +84,6 @@ Eigen::VectorXd predict_means(const Kriging& model, const Eigen::MatrixXd& at) {
             model.mean;
     }
     return mean;
-}
-
-Eigen::VectorXd covariances_with(const Kriging& model, const Eigen::MatrixXd& at, const Eigen::MatrixXd& with) {
-    const Eigen::VectorXd k = cross_covariance(model.h, model.points, with);
-    const Eigen::VectorXd weights = solved(model.factor, k);
-    const double rest = 1 - model.precision * model.mean_weights.dot(k);
-    Eigen::VectorXd result = cross_covariance(model.h, at, with);
-    for (Eigen::Index first = 0; first < at.rows(); first += block) {
-        const Eigen::Index count = std::min(block, at.rows() - first);
-        const Eigen::MatrixXd across = cross_covariance(model.h, model.points, at.middleRows(first, count));
-        const Eigen::ArrayXd rests = 1 - model.precision * (across.transpose() * model.mean_weights).array();
-        result.segment(first, count) -= across.transpose() * weights;
-        result.segment(first, count).array() += rests * rest / model.precision;
-    }
-    return result;
 }
 
 Eigen::MatrixXd FoldWeights::predict(const Kriging& model, const Eigen::MatrixXd& at) const {

@@ -43,17 +43,12 @@ struct Kriging {
 
 struct KrigingPrediction {
     Eigen::VectorXd mean;
-    Eigen::VectorXd variance;    ///< of the mean
-    Eigen::MatrixXd covariance;  ///< of the means, where asked for
+    Eigen::VectorXd variance;  ///< of the mean
 };
 
 /// At mapped points (m, d).
-[[nodiscard]] KrigingPrediction predict(const Kriging& model, const Eigen::MatrixXd& at, bool jointly);
+[[nodiscard]] KrigingPrediction predict(const Kriging& model, const Eigen::MatrixXd& at);
 [[nodiscard]] Eigen::VectorXd predict_means(const Kriging& model, const Eigen::MatrixXd& at);
-
-/// Covariances of the errors of the means at mapped points with that at one of them (1, d); n^2 + n m operations.
-[[nodiscard]] Eigen::VectorXd covariances_with(const Kriging& model, const Eigen::MatrixXd& at,
-                                               const Eigen::MatrixXd& with);
 
 struct LeftOut {
     Eigen::VectorXd residual;  ///< observed minus predicted

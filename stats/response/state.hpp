@@ -22,8 +22,6 @@ struct ResponseModel::State {
     [[nodiscard]] double mean_at(double z) const;
     /// Standard deviation about that mean where z has that variance: of a logarithm, mean sqrt(exp(scale^2 v) - 1).
     [[nodiscard]] double deviation(double mean, double variance) const;
-    /// Covariance of two responses of those means where their z have that covariance, likewise.
-    [[nodiscard]] double covariance(double mean, double other, double covariance) const;
     /// Features in [0, 1] of the box, (m, d).
     [[nodiscard]] Eigen::MatrixXd in_box(Rows points) const;
 };

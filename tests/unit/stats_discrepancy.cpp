@@ -1,5 +1,5 @@
-#include "stats/discrepancy.hpp"
 #include "tests/support/ask_design.hpp"
+#include "tests/support/discrepancy.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 
 namespace grainsweep::tests::stats_discrepancy_test {
 
-using namespace stats;
 
 TEST(Discrepancy, OnePointByHand) {
     // The star discrepancy of the single point (x, y) is max(1 - x y, x, y).

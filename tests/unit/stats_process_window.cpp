@@ -41,24 +41,30 @@ std::vector<double> grid(std::size_t n) {
     return points;
 }
 
-TEST(ProcessWindow, BoundsAndAnyConditionAgree) {
+TEST(ProcessWindow, AConditionHoldsWithItsProbability) {
     const auto first = model_of(hill, 60, 0.05);
     const auto second = model_of([](double x, double y) { return x + y; }, 60, 0.05);
     const auto points = grid(5);
-    const std::vector<ModelAt> models{{first, {points, 2}}, {second, {points, 2}}};
+    const std::vector<std::vector<Prediction>> predictions{first.predict({points, 2}), second.predict({points, 2})};
+    const SampledErrors errors(std::vector{first.freedom(), second.freedom()});
+    const auto probability = [&](const Prediction& p, double error, double low) {
+        return boost::math::cdf(boost::math::students_t(p.freedom), (p.mean - low) / error);
+    };
     for (const Judged judged : {Judged::mean, Judged::single_run}) {
-        const auto closed =
-            probability_within(models, std::vector<Bounds>{{.low = 0.85}, {.low = 0.5, .high = 1.2}}, judged);
         const auto integrated = probability_of(
-            models, [](auto y) { return y[0] >= 0.85 && y[1] >= 0.5 && y[1] <= 1.2; }, judged);
-        for (std::size_t i = 0; i < closed.size(); ++i) EXPECT_NEAR(integrated[i], closed[i], 0.01);
+            predictions, [](auto y) { return y[0] >= 0.85 && y[1] >= 0.5 && y[1] <= 1.2; }, judged, errors);
+        for (std::size_t i = 0; i < integrated.size(); ++i) {
+            const Prediction &a = predictions[0][i], &b = predictions[1][i];
+            const double of_a = judged == Judged::mean ? a.mean_error : a.run_error();
+            const double of_b = judged == Judged::mean ? b.mean_error : b.run_error();
+            EXPECT_NEAR(integrated[i],
+                        probability(a, of_a, 0.85) * (probability(b, of_b, 0.5) - probability(b, of_b, 1.2)), 0.01);
+        }
     }
-    // One bound, one model: the distribution function of the prediction.
-    const auto p = first.predict(std::vector{0.5, 0.5});
-    const std::vector<double> middle{0.5, 0.5};
-    const std::vector<ModelAt> alone{{first, {middle, 2}}};
-    EXPECT_NEAR(probability_within(alone, std::vector<Bounds>{{.low = 0.9}}, Judged::single_run)[0],
-                boost::math::cdf(boost::math::students_t(p.freedom), (p.mean - 0.9) / p.run_error()), 1e-12);
+    const std::vector<std::vector<Prediction>> one{predictions[0]};
+    EXPECT_THROW((void)probability_of(
+                     one, [](auto) { return true; }, Judged::mean, errors),
+                 std::invalid_argument);
 }
 
 TEST(ProcessWindow, ExpectedImprovementIsItsIntegral) {
@@ -78,48 +84,25 @@ TEST(ProcessWindow, ExpectedImprovementIsItsIntegral) {
     EXPECT_EQ(expected_improvement(negative, probability, false), gain);
 }
 
-TEST(ProcessWindow, BestSettingNeverTakesWhatIsNotAllowed) {
-    const std::vector<Prediction> objective{{1, 0.1, 0}, {3, 0.1, 0}, {2, 0.1, 0}};
-    EXPECT_EQ(best_setting(objective, std::vector{0.99, 0.5, 0.96}, true, 0.05), 2U);
-    EXPECT_EQ(best_setting(objective, std::vector{0.99, 0.5, 0.96}, false, 0.05), 0U);
-    EXPECT_FALSE(best_setting(objective, std::vector{0.1, 0.5, 0.9}, true, 0.05));
-}
-
-TEST(ProcessWindow, NextCasesGatherAtTheConstrainedOptimum) {
+TEST(ProcessWindow, CasesGatherAtTheConstrainedOptimum) {
     // The top of the hill is not allowed (x <= 0.5): what remains is best at its edge, x = 0.5, y = 0.3.
-    const auto objective = model_of(hill, 40, 0.01);
-    const auto limited = model_of([](double x, double) { return x; }, 40, 0.01);
+    auto objective = model_of(hill, 40, 0.01), limited = model_of([](double x, double) { return x; }, 40, 0.01);
     const auto points = grid(20);
-    const std::vector<ModelAt> models{{objective, {points, 2}}, {limited, {points, 2}}};
     const Condition allowed = [](auto y) { return y[1] <= 0.5; };
-    const auto chosen = next_cases(models, allowed, Objective{0, true}, Judged::mean, 4);
-    ASSERT_EQ(chosen.size(), 4U);
-    for (std::size_t a = 0; a < 4; ++a) {
-        EXPECT_NEAR(points[2 * chosen[a]], 0.5, 0.15);
-        EXPECT_NEAR(points[2 * chosen[a] + 1], 0.3, 0.25);
-        for (std::size_t b = 0; b < a; ++b) EXPECT_NE(chosen[a], chosen[b]);
-    }
-    // The same choice with the cases really added to the models.
-    auto grown = models;
     const SampledErrors errors(std::vector{objective.freedom(), limited.freedom()});
-    std::vector<std::size_t> added;
+    std::vector<std::size_t> chosen;
     for (std::size_t step = 0; step < 4; ++step) {
-        const std::vector<std::vector<Prediction>> now{grown[0].model.predict({points, 2}),
-                                                       grown[1].model.predict({points, 2})};
+        const std::vector<std::vector<Prediction>> now{objective.predict({points, 2}), limited.predict({points, 2})};
         auto gain = expected_improvement(now[0], probability_of(now, allowed, Judged::mean, errors), true);
-        for (const std::size_t i : added) gain[i] = 0;
-        added.push_back(static_cast<std::size_t>(std::ranges::max_element(gain) - gain.begin()));
-        for (std::size_t k = 0; k < 2; ++k)
-            grown[k].model = grown[k].model.with_cases({grown[k].points.row(added.back()), 2},
-                                                       std::span(&now[k][added.back()].mean, 1));
+        for (const std::size_t i : chosen) gain[i] = 0;
+        const auto best = static_cast<std::size_t>(std::ranges::max_element(gain) - gain.begin());
+        EXPECT_NEAR(points[2 * best], 0.5, 0.15);
+        EXPECT_NEAR(points[2 * best + 1], 0.3, 0.25);
+        const Rows there{std::span(points).subspan(2 * best, 2), 2};
+        objective = objective.with_cases(there, std::span(&now[0][best].mean, 1));
+        limited = limited.with_cases(there, std::span(&now[1][best].mean, 1));
+        chosen.push_back(best);
     }
-    EXPECT_EQ(chosen, added);
-    // Without an objective: along the boundary, spread over it.
-    const auto boundary = next_cases(models, allowed, std::nullopt, Judged::mean, 3);
-    for (const std::size_t i : boundary) EXPECT_NEAR(points[2 * i], 0.5, 0.05);
-    EXPECT_THROW((void)next_cases(models, {}, std::nullopt, Judged::mean, 3), std::invalid_argument);
-    const std::vector<std::vector<Prediction>> one{objective.predict({points, 2})};
-    EXPECT_THROW((void)probability_of(one, allowed, Judged::mean, errors), std::invalid_argument);
 }
 
 TEST(ProcessWindow, TradeOffFrontIsWhatNothingBeats) {

@@ -1,10 +1,10 @@
-#include "stats/discrepancy.hpp"
+#include "tests/support/discrepancy.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-namespace grainsweep::stats {
+namespace grainsweep::tests {
 namespace {
 
 /// whole - (factor/n) sum_i prod_j one(x_ij) + (1/n^2) sum_ik prod_j two(x_ij, x_kj): the shape that all
@@ -106,4 +106,4 @@ double worst_pair_star_discrepancy(std::span<const double> points, std::size_t d
     return worst;
 }
 
-}  // namespace grainsweep::stats
+}  // namespace grainsweep::tests

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <span>
 
-namespace grainsweep::stats {
+namespace grainsweep::tests {
 
 [[nodiscard]] double squared_l2_star_discrepancy(std::span<const double> points, std::size_t dimensions);
 [[nodiscard]] double squared_centred_discrepancy(std::span<const double> points, std::size_t dimensions);
@@ -23,4 +23,4 @@ namespace grainsweep::stats {
 /// The largest over all pairs of factors.
 [[nodiscard]] double worst_pair_star_discrepancy(std::span<const double> points, std::size_t dimensions);
 
-}  // namespace grainsweep::stats
+}  // namespace grainsweep::tests
