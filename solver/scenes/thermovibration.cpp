@@ -125,86 +125,51 @@ std::vector<ParameterSpec> parameters() {
     };
 }
 
+ObservableSpec scalar(std::string name, std::string unit, std::string meaning, std::string absent) {
+    return {std::move(name), std::move(unit), std::move(meaning), Shape::scalar, {}, std::move(absent)};
+}
+
+ObservableSpec over_time(std::string name, std::string meaning) {
+    return {std::move(name), "1", std::move(meaning), Shape::series, "time (L^2/alpha)"};
+}
+
 std::vector<ObservableSpec> thermovibration_observables() {
-    const std::string time = "time (L^2/alpha)";
+    const std::string too_few = "there are fewer than two particles";
+    const std::string flow_shared = "the particles cannot act on the flow, which was computed once for all such cases";
+    const std::string not_felt = "the particles do not act on the fluid at this coupling";
     return {
-        {"accumulation",
-         "1",
-         "K on sampling_cells^3 at the end; undefined for fewer than two particles",
-         Shape::scalar,
-         {},
-         "there are fewer than two particles"},
-        {"accumulation_excess",
-         "1",
-         "(K - K_random)/(1 - K_random): 0 random, 1 all in one cell",
-         Shape::scalar,
-         {},
-         "there are fewer than two particles"},
-        {"structures",
-         "1",
-         "connected groups of cells above twice the mean that hold at least 5 % of the particles; undefined for fewer "
-         "particles than half of the cells, where a cell with one is such a group",
-         Shape::scalar,
-         {},
-         "there are fewer particles than half of the cells"},
-        {"formation_time",
-         "L^2/alpha",
-         "from when K stays within a tenth of its rise, or three standard deviations of a random cloud's K, from its "
-         "last "
-         "value; undefined where that is only in the last tenth of the time: still rising",
-         Shape::scalar,
-         {},
-         "the accumulation still rises in the last tenth of the time, or there are fewer than two particles"},
-        {"gershuni",
-         "1",
-         "Gershuni number (Pr/2)(Ra/Omega)^2; undefined under a steady force",
-         Shape::scalar,
-         {},
-         "the force is steady"},
-        {"kinetic_energy",
-         "(alpha/L)^2",
-         "mean of |V|^2/2 over the volume and the last period",
-         Shape::scalar,
-         {},
-         "the particles cannot act on the flow, which was computed once for all such cases"},
-        {"nusselt",
-         "1",
-         "heat flux through the hot wall over that of conduction, mean of the last period",
-         Shape::scalar,
-         {},
-         "the particles cannot act on the flow, which was computed once for all such cases"},
-        {"packing_limited",
-         "1",
-         "share of the steps in which the packing limit moved particles (ddpm levels)",
-         Shape::scalar,
-         {},
-         "the coupling has no packing limit"},
-        {"peak_velocity",
-         "alpha/L",
-         "largest velocity component in the last period",
-         Shape::scalar,
-         {},
-         "the particles cannot act on the flow, which was computed once for all such cases"},
-        {"force_on_fluid",
-         "rho alpha^2",
-         "what all particles together give the fluid along the vibration, root mean square of the last period (levels "
-         "that act on the fluid)",
-         Shape::scalar,
-         {},
-         "the particles do not act on the fluid at this coupling"},
-        {"vibrational_force",
-         "rho alpha^2",
-         "vibrational buoyancy of all particles, root mean square of the last period; force_on_fluid differs from it "
-         "by "
-         "the inertia of the particles (likewise)",
-         Shape::scalar,
-         {},
-         "the particles do not act on the fluid at this coupling"},
-        {"accumulation_series", "1", "K on sampling_cells^3, always at the same phase", Shape::series, time},
-        {"accumulation_5", "1", "K on 5^3 cells", Shape::series, time},
-        {"accumulation_20", "1", "K on 20^3 cells", Shape::series, time},
-        {"accumulation_40", "1", "K on 40^3 cells", Shape::series, time},
-        {"accumulation_cells", "1", "K on as many cells as the flow grid has, all of one size", Shape::series, time},
+        scalar("accumulation", "1", "K on sampling_cells^3 at the end; undefined for fewer than two particles",
+               too_few),
+        scalar("accumulation_excess", "1", "(K - K_random)/(1 - K_random): 0 random, 1 all in one cell", too_few),
+        scalar("structures", "1",
+               "connected groups of cells above twice the mean that hold at least 5 % of the particles; undefined for "
+               "fewer particles than half of the cells, where a cell with one is such a group",
+               "there are fewer particles than half of the cells"),
+        scalar("formation_time", "L^2/alpha",
+               "from when K stays within a tenth of its rise, or three standard deviations of a random cloud's K, from "
+               "its last value; undefined where that is only in the last tenth of the time: still rising",
+               "the accumulation still rises in the last tenth of the time, or there are fewer than two particles"),
+        scalar("gershuni", "1", "Gershuni number (Pr/2)(Ra/Omega)^2; undefined under a steady force",
+               "the force is steady"),
+        scalar("kinetic_energy", "(alpha/L)^2", "mean of |V|^2/2 over the volume and the last period", flow_shared),
+        scalar("nusselt", "1", "heat flux through the hot wall over that of conduction, mean of the last period",
+               flow_shared),
+        scalar("packing_limited", "1", "share of the steps in which the packing limit moved particles (ddpm levels)",
+               "the coupling has no packing limit"),
+        scalar("peak_velocity", "alpha/L", "largest velocity component in the last period", flow_shared),
+        scalar("force_on_fluid", "rho alpha^2",
+               "what all particles together give the fluid along the vibration, root mean square of the last period "
+               "(levels that act on the fluid)",
+               not_felt),
+        scalar("vibrational_force", "rho alpha^2",
+               "vibrational buoyancy of all particles, root mean square of the last period; force_on_fluid differs "
+               "from it by the inertia of the particles (likewise)",
+               not_felt),
+        over_time("accumulation_series", "K on sampling_cells^3, always at the same phase"),
+        over_time("accumulation_5", "K on 5^3 cells"),
+        over_time("accumulation_20", "K on 20^3 cells"),
+        over_time("accumulation_40", "K on 40^3 cells"),
+        over_time("accumulation_cells", "K on as many cells as the flow grid has, all of one size"),
         {"density_y", "1", "particles per slab across y over the mean, at the end", Shape::profile, "y/L"},
         {"density_z", "1", "particles per slab across z over the mean, at the end", Shape::profile, "z/L"},
     };
