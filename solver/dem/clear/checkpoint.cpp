@@ -168,14 +168,12 @@ void ClearEngine::restore(std::span<const std::byte> from) {
     expect(static_cast<std::uint64_t>(spheres_at_start_));
     expect(time_step_);
     expect(shaking_);
-    const auto range = [](const auto& column) {
-        const auto [least, most] = std::ranges::minmax_element(column);
-        return column.empty() ? std::pair(0.0, 0.0) : std::pair(*least, *most);
-    };
-    const auto radii = range(p_.radius), inverse_masses = range(p_.inverse_mass);
     visit_state(*this, [&in](auto& value) { in.get(value); });
-    for (const double r : p_.radius) in.require(r >= radii.first && r <= radii.second);
-    for (const double m : p_.inverse_mass) in.require(m >= inverse_masses.first && m <= inverse_masses.second);
+    const auto within = [&in](const std::vector<double>& column, const std::pair<double, double>& range) {
+        for (const double x : column) in.require(x >= range.first && x <= range.second);
+    };
+    within(p_.radius, radii_at_start_);
+    within(p_.inverse_mass, inverse_masses_at_start_);
     list_.restore(in, p_.size());
     restore_walls(in);
     in.finish();

@@ -140,9 +140,8 @@ private:
     Vec3 body_;  // acceleration of a free particle at the present step: gravity and shaking
     double time_step_;
     bool equal_;
-    double mass_ = 0;  // of all particles, if equal_
-    double largest_radius_ = 0;
-    double density_;
+    double mass_ = 0;                                                     // of all particles, if equal_
+    std::pair<double, double> radii_at_start_, inverse_masses_at_start_;  // least and largest
     double swing_factor_;  // dt^2 2 E*: times sqrt(R* d)/m* it is the square of a contact's phase per step
     double skin_;
     double beyond_pair_ = 0, beyond_wall_ = 0;  // how far contacts may last beyond touch, m

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <unordered_set>
 
 namespace grainsweep::dem::clear {
@@ -20,6 +19,11 @@ constexpr double default_skin = 0.3;
 
 /// Steps between two checks of the energy: often enough to name the time, rare enough to cost nothing.
 constexpr std::int64_t energy_interval = 128;
+
+std::pair<double, double> range_of(const std::vector<double>& column) {
+    const auto [least, most] = std::ranges::minmax_element(column);
+    return column.empty() ? std::pair(0.0, 0.0) : std::pair(*least, *most);
+}
 
 /// Of a memory's components when its particles change places.
 std::vector<double> factors_of_exchange(const AnyContact& laws) {
@@ -46,15 +50,12 @@ ClearEngine::ClearEngine(const Setup& setup, const Method& method, std::unique_p
       body_(setup.gravity),
       time_step_(setup.time_step),
       equal_(equal),
-      density_(setup.material.density),
       swing_factor_(2 * effective_modulus(setup.material) * setup.time_step * setup.time_step),
       skin_(method.skin),
       spheres_at_start_(setup.spheres.size()),
       pairs_(factors_of_exchange(*laws_)) {
     const std::size_t n = setup.spheres.size();
     p_.resize(n);
-    double largest = 0;
-    double smallest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < n; ++i) {
         const Sphere& s = setup.spheres[i];
         p_.id[i] = static_cast<std::int32_t>(i);
@@ -62,17 +63,17 @@ ClearEngine::ClearEngine(const Setup& setup, const Method& method, std::unique_p
         p_.velocity[i] = s.velocity;
         p_.angular_velocity[i] = s.angular_velocity;
         p_.radius[i] = s.radius;
-        p_.inverse_mass[i] = s.mobile ? 1 / sphere_mass(s.radius, density_) : 0;
-        largest = std::max(largest, s.radius);
-        smallest = std::min(smallest, s.radius);
+        p_.inverse_mass[i] = s.mobile ? 1 / sphere_mass(s.radius, material_.density) : 0;
     }
-    largest_radius_ = largest;
+    radii_at_start_ = range_of(p_.radius);
+    inverse_masses_at_start_ = range_of(p_.inverse_mass);
+    const auto [smallest, largest] = radii_at_start_;
     for (const Material& m : materials_of(setup)) {
         const auto contact = laws_->of(m);
         beyond_pair_ = std::max(beyond_pair_, contact->beyond(largest / 2));
         beyond_wall_ = std::max(beyond_wall_, contact->beyond(largest));
     }
-    mass_ = sphere_mass(largest, density_);
+    mass_ = sphere_mass(largest, material_.density);
     if (skin_ <= 0 && n > 0) {
         skin_ = default_skin * 2 * smallest;
         // Two images of one particle must never reach the same partner.
@@ -215,9 +216,9 @@ std::vector<WallContacts> ClearEngine::make_walls(const std::vector<Wall>& walls
         if (!laws_->covers(m))
             throw std::invalid_argument("the surface of a wall has friction or cohesion that nothing at the start had");
         auto laws = laws_->of(m);
-        if (laws->beyond(largest_radius_) > beyond_wall_)
+        if (laws->beyond(radii_at_start_.second) > beyond_wall_)
             throw std::invalid_argument("the surface of a wall attracts from further than anything at the start did");
-        made.push_back({MovingWall(wall, domain_, largest_radius_), std::move(laws), {}, 0, {}, {}, {}, {}, {}});
+        made.push_back({MovingWall(wall, domain_, radii_at_start_.second), std::move(laws), {}, 0, {}, {}, {}, {}, {}});
     }
     return made;
 }
