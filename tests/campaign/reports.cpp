@@ -29,7 +29,7 @@ TEST(Report, ReplacesAPageOnlyByAWholePage) {
 
     const auto taken = run_program({"report", "c.db", "-o", "c.json"}, folder.path());
     EXPECT_EQ(taken.code, 2);
-    EXPECT_NE(taken.err.find("is no page"), std::string::npos) << taken.err;
+    EXPECT_NE(taken.err.find("is not a page"), std::string::npos) << taken.err;
     EXPECT_EQ(contents(folder.path() / "c.json"), config);
 
     // Not even an empty file, where it belongs to the database.

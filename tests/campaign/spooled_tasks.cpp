@@ -159,7 +159,7 @@ TEST(Spool, WhatIsAnsweredSoFarIsCollectedAndTheRestLater) {
     }
     const auto first = campaign.collect();
     EXPECT_EQ(first.code, 1);
-    EXPECT_THAT(first.out, HasSubstr("have no answer yet"));
+    EXPECT_THAT(first.out, HasSubstr("have no result yet"));
     EXPECT_EQ(campaign.work("1/1").code, 0);
     EXPECT_EQ(campaign.collect().code, 0);
     campaign.expect_the_rows_of_a_run();

@@ -131,7 +131,7 @@ TEST(Watch, IsRefusedBeforeAnythingIsComputed) {
         EXPECT_NE(ended.err.find(sentence), std::string::npos) << ended.err;
         EXPECT_TRUE(ended.out.empty());
     };
-    refused("c.json", "is no page");
+    refused("c.json", "is not a page");
     refused("nowhere/case.html", "no such folder");
     refused(".", "this is a folder");
     const auto lonely = run_program({"solve", "c.json", "--frames", "5"}, folder.path());
