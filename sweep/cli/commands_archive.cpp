@@ -330,7 +330,7 @@ std::vector<Command> archive_commands() {
              return [arguments, &format] { return explain(arguments->database, arguments->text, format); };
          },
          false},
-        {"replay", "computes a stored case again and compares the results",
+        {"replay", "computes a stored case again and compares; runs the stored command of a program",
          [](Parser& parser, const Format& format) -> Action {
              const auto request = std::make_shared<ReplayRequest>();
              parser.add_option("DB", request->database, "database")->required();

@@ -97,7 +97,7 @@ TEST(RefineCampaign, AnotherWidthUnderTheSameNameAndAskingAgainAreRefused) {
     ASSERT_EQ(refine(folder, "a.db", {"--quiet"}).code, 0);
     const auto again = refine(folder, "a.db", {"--again", "completed"});
     EXPECT_EQ(again.code, 2);
-    EXPECT_THAT(again.err, HasSubstr("rest on the answers there are"));
+    EXPECT_THAT(again.err, HasSubstr("depend on the stored results"));
     folder.write("c.json", config(R"("width": 0.05)"));
     const auto narrower = refine(folder, "a.db");
     EXPECT_EQ(narrower.code, 2);
