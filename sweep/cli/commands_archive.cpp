@@ -10,8 +10,8 @@
 #include "sweep/cli/status_text.hpp"
 #include "sweep/cli/stored_case.hpp"
 #include "sweep/cli/threads_option.hpp"
-#include "sweep/report/history.hpp"
 #include "sweep/store/store.hpp"
+#include "sweep/study/history.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -42,8 +42,8 @@ struct Convergence {
 Convergence convergence_of(const Store& archive, const store::CampaignRecord& record) {
     if (!record.convergence) return {};
     const auto& observable = record.convergence->observable;
-    const auto responses = report::read_response(archive, record, observable);
-    const auto history = report::history_of(responses, responses.observable(observable));
+    const auto responses = study::read_response(archive, record, observable);
+    const auto history = study::history_of(responses, responses.observable(observable));
     return {history.converged, history.verdict};
 }
 
@@ -69,7 +69,7 @@ int status(const std::string& database, Format format) {
         const auto& [converged, verdict] = standings[k];
         auto& row = table.rows[k];
         if (text) {
-            const auto note = report::extent_note(records[k]);
+            const auto note = study::extent_note(records[k]);
             row.push_back(converged ? Table::Cell{records[k].convergence->observable + ": " + verdict} : Table::Cell{});
             row.push_back(note.empty() ? Table::Cell{} : Table::Cell{note});
         } else {

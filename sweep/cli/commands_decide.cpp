@@ -5,11 +5,11 @@
 #include "sweep/cli/settings.hpp"
 #include "sweep/cli/window_run.hpp"
 #include "sweep/report/model_tables.hpp"
-#include "sweep/report/response_models.hpp"
 #include "sweep/report/window_page.hpp"
 #include "sweep/report/window_tables.hpp"
 #include "sweep/store/campaign_name.hpp"
 #include "sweep/store/store.hpp"
+#include "sweep/study/response_models.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -29,8 +29,8 @@ namespace grainsweep::cli {
 namespace {
 
 using report::Format;
-using report::Setting;
 using store::Store;
+using study::Setting;
 
 struct PredictRequest {
     std::string database, campaign, observable;
@@ -39,7 +39,7 @@ struct PredictRequest {
     bool extrapolate = false;
 };
 
-std::vector<Setting> settings_of(const PredictRequest& request, const report::ModelCases& cases) {
+std::vector<Setting> settings_of(const PredictRequest& request, const study::ModelCases& cases) {
     if (request.at.empty() == request.points.empty())
         throw campaign::wrong_question("predict", "",
                                        "give one setting by --at NAME=VALUE for every factor, or several "
@@ -49,15 +49,15 @@ std::vector<Setting> settings_of(const PredictRequest& request, const report::Mo
 }
 
 /// Outside of the box, and where the campaign's own condition leaves points out, there are no cases to learn from.
-void refuse_extrapolation(const Store& store, const report::ModelCases& cases, const std::vector<Setting>& settings) {
-    const auto admits = report::admission(store, cases);
+void refuse_extrapolation(const Store& store, const study::ModelCases& cases, const std::vector<Setting>& settings) {
+    const auto admits = study::admission(store, cases);
     for (const auto& setting : settings) {
-        const auto outside = report::outside_text(cases.factors, setting);
+        const auto outside = study::outside_text(cases.factors, setting);
         if (!outside.empty())
             throw campaign::wrong_question("", outside,
                                            "the model would extrapolate; --extrapolate predicts nevertheless");
         if (admits && !admits(setting))
-            throw campaign::wrong_question("", report::setting_text(cases.factors, setting),
+            throw campaign::wrong_question("", study::setting_text(cases.factors, setting),
                                            fmt::format("the campaign has no case where its condition is not met: {}; "
                                                        "--extrapolate predicts nevertheless",
                                                        cases.campaign.condition));
@@ -66,12 +66,12 @@ void refuse_extrapolation(const Store& store, const report::ModelCases& cases, c
 
 int predict(const PredictRequest& request, Format format) {
     const Store store(request.database, Store::Mode::read);
-    const auto cases = report::read_model_cases(store, request.campaign);
+    const auto cases = study::read_model_cases(store, request.campaign);
     const auto& observable = cases.observable(request.observable);
     auto settings = settings_of(request, cases);
     if (!request.extrapolate) refuse_extrapolation(store, cases, settings);
-    const auto model = report::learn_or_refuse(cases, observable);
-    const auto predicted = report::predict(cases, model, std::move(settings), request.extrapolate);
+    const auto model = study::learn_or_refuse(cases, observable);
+    const auto predicted = study::predict(cases, model, std::move(settings), request.extrapolate);
     if (format == Format::json) {
         report::write(std::cout, report::predictions_json(cases, model, predicted));
         return 0;
@@ -82,7 +82,7 @@ int predict(const PredictRequest& request, Format format) {
     }
     report::write(std::cout, report::predictions_table(cases, model, predicted), format);
     if (format == Format::text) {
-        const auto failures = report::failures_near(cases, predicted);
+        const auto failures = study::failures_near(cases, predicted);
         std::cout << '\n' << failures << (failures.empty() ? "" : "\n") << report::model_lines(model);
     }
     return 0;
@@ -126,20 +126,20 @@ struct WindowArguments {
     bool single = false, run = false;
     double width = 0;
     std::optional<std::int64_t> max_cases, workers;
-    report::WindowRequest request;
+    study::WindowRequest request;
 };
 
 /// The campaign file of the next cases, written where nothing is yet.
-std::string write_next(const Store& store, const report::ModelCases& cases, const report::Window& window,
+std::string write_next(const Store& store, const study::ModelCases& cases, const study::Window& window,
                        const std::string& file) {
     if (window.next.empty()) throw campaign::wrong_question("--next-file", file, "there is no case to run next");
     const auto [name, number] = name_of_next(store, cases.campaign.name);
     store::check_campaign_name(name);
-    write_page_file(file, report::next_campaign(cases, window, name, number));
+    write_page_file(file, study::next_campaign(cases, window, name, number));
     return name;
 }
 
-void check_run(const WindowArguments& arguments, const report::WindowRequest& request) {
+void check_run(const WindowArguments& arguments, const study::WindowRequest& request) {
     if (!arguments.run) {
         for (const auto& [given, option] : {std::pair{arguments.width != 0, "--width"},
                                             {arguments.max_cases.has_value(), "--max-cases"},
@@ -159,7 +159,7 @@ void check_run(const WindowArguments& arguments, const report::WindowRequest& re
 }
 
 /// Batches of next cases until the best setting is known; then the window is answered from all of them.
-std::optional<WindowRunEnd> run_first(const WindowArguments& arguments, const report::WindowRequest& request) {
+std::optional<WindowRunEnd> run_first(const WindowArguments& arguments, const study::WindowRequest& request) {
     if (!arguments.run) return std::nullopt;
     std::signal(SIGPIPE, SIG_IGN);  // as run does: a campaign outlives the reader of its output
     constexpr std::int64_t usual_batch = 8, usual_most = 100;
@@ -187,14 +187,14 @@ int window(const WindowArguments& arguments, Format format) {
     const auto end = run_first(arguments, request);
     request.next = arguments.run ? 0 : static_cast<std::size_t>(arguments.next);
     const Store store(arguments.database, Store::Mode::read);
-    const auto cases = report::read_model_cases(store, arguments.campaign);
-    const auto found = report::window_of(store, cases, request);
+    const auto cases = study::read_model_cases(store, arguments.campaign);
+    const auto found = study::window_of(store, cases, request);
     std::string written;
     if (!arguments.next_file.empty()) written = write_next(store, cases, found, arguments.next_file);
     if (!arguments.output.empty()) {
         std::ostringstream page;
         report::write_window_page(page,
-                                  report::window_page_data(cases, request, found, report::admission(store, cases)),
+                                  report::window_page_data(cases, request, found, study::admission(store, cases)),
                                   std::filesystem::path(arguments.database).filename().string());
         write_page_file(arguments.output, std::move(page).str());
     }

@@ -5,11 +5,11 @@
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/program_campaign.hpp"
 #include "sweep/cli/progress.hpp"
-#include "sweep/report/features.hpp"
-#include "sweep/report/history.hpp"
 #include "sweep/store/campaign_name.hpp"
 #include "sweep/store/expression.hpp"
 #include "sweep/store/store.hpp"
+#include "sweep/study/features.hpp"
+#include "sweep/study/history.hpp"
 #include "sweep/workers/memory_room.hpp"
 
 #include <fmt/format.h>
@@ -121,7 +121,7 @@ struct Outlook {
 /// they do in a run.
 Outlook outlook_of(Campaign& campaign, const store::Store* archive) {
     store::check_campaign_name(campaign.name);
-    report::check_features(campaign);
+    study::check_features(campaign);
     if (archive != nullptr) campaign::reorder_factors(campaign, archive->factor_order(campaign.name));
     Outlook outlook;
     outlook.cases = campaign::unfold(campaign, store::make_filter(campaign.where, campaign::filter_names(campaign)));
@@ -233,7 +233,7 @@ void show_plan(const Campaign& campaign, const Outlook& outlook) {
     if (!outlook.database.empty())
         std::cout << fmt::format("finished   {} of {} in {}\n", outlook.finished, cost.places, outlook.database);
     if (outlook.stored) {
-        if (const auto note = report::extent_note(*outlook.stored); !note.empty())
+        if (const auto note = study::extent_note(*outlook.stored); !note.empty())
             std::cout << fmt::format("stored     {}\n", note);
     }
     for (const auto& warning : outlook.warnings) std::cout << fmt::format("warning    {}\n", warning);

@@ -10,8 +10,8 @@
 #include "sweep/cli/program_campaign.hpp"
 #include "sweep/cli/program_case.hpp"
 #include "sweep/cli/threads_option.hpp"
-#include "sweep/report/features.hpp"
 #include "sweep/store/expression.hpp"
+#include "sweep/study/features.hpp"
 #include "sweep/workers/compute.hpp"
 
 #include <fmt/format.h>
@@ -97,7 +97,7 @@ struct Asked {
 Asked question_of(const SolveRequest& request) {
     Campaign campaign = read_with_program(request.config);
     campaign::asked_in(request.config, [&] { campaign::check_design(campaign); });
-    campaign::asked_in(request.config, [&] { report::check_features(campaign); });
+    campaign::asked_in(request.config, [&] { study::check_features(campaign); });
     apply(request.settings, campaign, std::filesystem::path(request.config).parent_path());
     const Inputs inputs = middle_of(campaign.space);
     const auto filter = campaign::asked_in(

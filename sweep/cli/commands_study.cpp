@@ -2,15 +2,12 @@
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/page_file.hpp"
 #include "sweep/cli/report_films.hpp"
-#include "sweep/report/brackets.hpp"
-#include "sweep/report/calibration.hpp"
-#include "sweep/report/estimators.hpp"
+#include "sweep/report/bracket_tables.hpp"
+#include "sweep/report/calibration_tables.hpp"
+#include "sweep/report/convergence_tables.hpp"
 #include "sweep/report/file_size.hpp"
-#include "sweep/report/history.hpp"
-#include "sweep/report/influence.hpp"
-#include "sweep/report/model_influence.hpp"
+#include "sweep/report/influence_tables.hpp"
 #include "sweep/report/page.hpp"
-#include "sweep/report/study_tables.hpp"
 #include "sweep/report/summary.hpp"
 
 #include <fmt/format.h>
@@ -32,8 +29,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using report::Format;
-using report::Responses;
 using store::Store;
+using study::Responses;
 
 /// Which campaign and which observable of a database.
 struct Subject {
@@ -46,13 +43,13 @@ void append(store::Table& all, store::Table more) {
     for (auto& row : more.rows) all.rows.push_back(std::move(row));
 }
 
-void print_heading(const Responses& responses, const report::ResponseColumn& response) {
+void print_heading(const Responses& responses, const study::ResponseColumn& response) {
     const auto& record = responses.campaign;
     const std::string unit = response.unit.empty() || response.unit == "1" ? "" : fmt::format(" ({})", response.unit);
     std::cout << fmt::format(
         "{}: {}{} over {} points of a {} design{}; {}\n\n", record.name, response.name, unit,
         responses.counted_points(), record.design,
-        record.sequences > 1 && report::repeats(responses) ? fmt::format(" of {} sequences", record.sequences) : "",
+        record.sequences > 1 && study::repeats(responses) ? fmt::format(" of {} sequences", record.sequences) : "",
         report::outcome_line(responses));
 }
 
@@ -60,10 +57,10 @@ void print_notes(const std::vector<std::string>& notes) {
     for (const auto& note : notes) std::cout << "note: " << note << '\n';
 }
 
-void print_history(const Responses& responses, const report::ResponseColumn& response, const report::History& history,
-                   const std::vector<report::LatticeStep>& lattices) {
+void print_history(const Responses& responses, const study::ResponseColumn& response, const study::History& history,
+                   const std::vector<study::LatticeStep>& lattices) {
     print_heading(responses, response);
-    if (!responses.campaign.condition.empty()) std::cout << "where: " << report::points_line(responses) << "\n\n";
+    if (!responses.campaign.condition.empty()) std::cout << "where: " << study::points_line(responses) << "\n\n";
     if (history.all.count > 0 || !history.provisional) {
         report::write(std::cout, report::statistics_table(history), Format::text);
         std::cout << '\n';
@@ -90,7 +87,7 @@ void print_history(const Responses& responses, const report::ResponseColumn& res
 }
 
 /// Both estimates of the moments, where the design allows the second one.
-void print_estimators(const report::Estimators& estimators) {
+void print_estimators(const study::Estimators& estimators) {
     std::cout << '\n';
     if (estimators.assisted) {
         std::cout << "moments with a response model beside the plain ones\n";
@@ -99,7 +96,7 @@ void print_estimators(const report::Estimators& estimators) {
     for (const auto& line : report::estimator_lines(estimators)) std::cout << line << '\n';
 }
 
-void print_model_influence(const report::ModelInfluence& influence) {
+void print_model_influence(const study::ModelInfluence& influence) {
     if (influence.indices) {
         std::cout << "\nby a response model:\n";
         report::write(std::cout, report::model_influence_table(influence), Format::text);
@@ -112,10 +109,10 @@ void print_model_influence(const report::ModelInfluence& influence) {
 /// no campaign is named. `whole` answers for a campaign before its observable is looked for; true: it has answered.
 template <class Whole, class With>
 void for_each_campaign(const Store& store, const Subject& subject, Whole whole, With with) {
-    const auto records = report::find_campaigns(store, subject.campaign);
+    const auto records = study::find_campaigns(store, subject.campaign);
     std::size_t found = 0;
     for (std::size_t i = 0; i < records.size(); ++i) {
-        const auto responses = report::read_responses(store, records[i]);
+        const auto responses = study::read_responses(store, records[i]);
         const bool last_chance = i + 1 == records.size() && found == 0;
         const bool measures = responses.measures(subject.observable);
         if ((measures || subject.observable.empty()) && whole(responses, found == 0)) {
@@ -130,7 +127,7 @@ void for_each_campaign(const Store& store, const Subject& subject, Whole whole, 
 /// What a design that brackets a passage has found, in place of moments; false: the campaign has another design.
 bool show_brackets(const Store& store, const Responses& responses, Format format, bool first, Json& all,
                    store::Table& rows) {
-    const auto brackets = report::brackets_of(store, responses.campaign);
+    const auto brackets = study::brackets_of(store, responses.campaign);
     if (!brackets) return false;
     if (format == Format::json) {
         all.push_back({{"campaign", responses.campaign.name}});
@@ -149,7 +146,7 @@ bool show_brackets(const Store& store, const Responses& responses, Format format
 /// The same of a calibration.
 bool show_calibration(const Store& store, const Responses& responses, Format format, bool first, Json& all,
                       store::Table& rows, bool& converged) {
-    const auto calibration = report::calibration_report(store, responses.campaign);
+    const auto calibration = study::calibration_report(store, responses.campaign);
     if (!calibration) return false;
     converged = converged && calibration->found.waves_end && calibration->found.posterior;
     if (format == Format::json) {
@@ -175,14 +172,14 @@ int converge(const Subject& subject, Format format) {
                show_calibration(store, responses, format, first, all, rows, converged);
     };
     for_each_campaign(store, subject, whole,
-                      [&](const Responses& responses, const report::ResponseColumn& response, bool first) {
-                          const auto history = report::history_of(responses, response);
+                      [&](const Responses& responses, const study::ResponseColumn& response, bool first) {
+                          const auto history = study::history_of(responses, response);
                           converged = converged && history.converged.value_or(false);
-                          const auto lattices = report::lattice_family(store, responses, response);
+                          const auto lattices = study::lattice_family(store, responses, response);
                           if (format == Format::json) {
                               all.push_back(report::to_json(responses, response, history, lattices));
                               all.back()["estimators"] =
-                                  report::estimators_json(history, report::estimators_of(store, responses, response));
+                                  report::estimators_json(history, study::estimators_of(store, responses, response));
                           } else if (format == Format::csv) {
                               const bool other = !rows.columns.empty() && rows.columns.front() != "campaign";
                               if (other || (!rows.columns.empty() && rows.columns.back() == "state")) return;
@@ -191,8 +188,8 @@ int converge(const Subject& subject, Format format) {
                           } else {
                               if (!first) std::cout << '\n';
                               print_history(responses, response, history, lattices);
-                              if (report::repeats(responses))
-                                  print_estimators(report::estimators_of(store, responses, response));
+                              if (study::repeats(responses))
+                                  print_estimators(study::estimators_of(store, responses, response));
                           }
                       });
     if (format == Format::json) report::write(std::cout, all);
@@ -206,11 +203,11 @@ int sensitivity(const Subject& subject, Format format) {
     store::Table rows;
     const auto nothing = [](const Responses&, bool) { return false; };
     for_each_campaign(
-        store, subject, nothing, [&](const Responses& responses, const report::ResponseColumn& response, bool first) {
-            const auto influence = report::influence_of(responses, response);
+        store, subject, nothing, [&](const Responses& responses, const study::ResponseColumn& response, bool first) {
+            const auto influence = study::influence_of(responses, response);
             if (format == Format::json) {
                 all.push_back(report::to_json(responses, response, influence));
-                all.back()["model"] = report::model_influence_json(report::model_influence_of(responses, response));
+                all.back()["model"] = report::model_influence_json(study::model_influence_of(responses, response));
             } else if (format == Format::csv) {
                 append(rows, report::influence_rows(responses, response, influence));
             } else {
@@ -218,9 +215,9 @@ int sensitivity(const Subject& subject, Format format) {
                 print_heading(responses, response);
                 report::write(std::cout, report::influence_table(influence), Format::text);
                 std::cout << '\n';
-                if (const auto text = report::unexplained_text(influence); !text.empty()) std::cout << text << '\n';
+                if (const auto text = study::unexplained_text(influence); !text.empty()) std::cout << text << '\n';
                 print_notes(influence.notes);
-                print_model_influence(report::model_influence_of(responses, response));
+                print_model_influence(study::model_influence_of(responses, response));
             }
         });
     if (format == Format::json) report::write(std::cout, all);

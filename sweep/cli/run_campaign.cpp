@@ -9,9 +9,6 @@
 #include "sweep/cli/program_campaign.hpp"
 #include "sweep/cli/progress.hpp"
 #include "sweep/cli/walltime.hpp"
-#include "sweep/report/features.hpp"
-#include "sweep/report/history.hpp"
-#include "sweep/report/model_view.hpp"
 #include "sweep/schedule/growth.hpp"
 #include "sweep/schedule/judge.hpp"
 #include "sweep/schedule/plan.hpp"
@@ -21,6 +18,9 @@
 #include "sweep/store/expression.hpp"
 #include "sweep/store/recorder.hpp"
 #include "sweep/store/store.hpp"
+#include "sweep/study/features.hpp"
+#include "sweep/study/history.hpp"
+#include "sweep/study/model_view.hpp"
 #include "sweep/workers/memory_room.hpp"
 #include "sweep/workers/pool.hpp"
 #include "sweep/workers/worker.hpp"
@@ -159,8 +159,8 @@ std::unique_ptr<schedule::Judge> make_judge(const campaign::Campaign& campaign, 
     const auto sequences = designs::independent_sequences(campaign.design, campaign.request);
     std::optional<schedule::ModelView> view;
     if (campaign.convergence->rule == "assisted")
-        view = report::model_view(campaign, placement.candidates,
-                                  store::make_filter(campaign.where, campaign::filter_names(campaign)));
+        view = study::model_view(campaign, placement.candidates,
+                                 store::make_filter(campaign.where, campaign::filter_names(campaign)));
     return std::make_unique<schedule::Judge>(*campaign.convergence, placed, static_cast<std::size_t>(sequences),
                                              std::move(known), placement.candidates, std::move(view));
 }
@@ -231,7 +231,7 @@ void sweep(const store::ArtefactFolder& folder, const store::Store& store) {
 void say_first(ProgressLine& line, const campaign::Campaign& campaign, const campaign::Forecast& forecast,
                const store::CampaignRecord& record) {
     for (const auto& warning : campaign::warnings_of(campaign, forecast)) line.note("warning: " + warning);
-    if (const auto note = report::extent_note(record); !note.empty()) line.note("note: " + note);
+    if (const auto note = study::extent_note(record); !note.empty()) line.note("note: " + note);
 }
 
 void refuse_what_cannot_start(const campaign::Campaign& campaign, const RunRequest& request, const fs::path& database) {
@@ -298,7 +298,7 @@ private:
     void unfold() {
         placed_ = campaign::asked_in(request_.config, [&] {
             store::check_campaign_name(campaign_.name);
-            report::check_features(campaign_);
+            study::check_features(campaign_);
             const auto filter = store::make_filter(campaign_.where, campaign::filter_names(campaign_));
             auto cases = campaign::unfold(campaign_, filter);
             // Refuses impossible cases before anything is made.

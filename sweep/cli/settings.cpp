@@ -15,8 +15,8 @@
 namespace grainsweep::cli {
 namespace {
 
-using report::ModelFactor;
-using report::Setting;
+using study::ModelFactor;
+using study::Setting;
 
 std::vector<std::string> names_of(std::span<const ModelFactor> factors) {
     std::vector<std::string> names;

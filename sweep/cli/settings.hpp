@@ -1,7 +1,7 @@
 // Settings that a command is given: one by NAME=VALUE for every factor, or a CSV file of them.
 #pragma once
 
-#include "sweep/report/features.hpp"
+#include "sweep/study/features.hpp"
 
 #include <filesystem>
 #include <span>
@@ -12,11 +12,11 @@ namespace grainsweep::cli {
 
 /// Every factor once. Throws WrongQuestion naming the factors that are missing, the nearest name of one there is not,
 /// or a value that is no number or no level of its factor.
-[[nodiscard]] report::Setting read_setting(std::span<const report::ModelFactor> factors,
-                                           std::span<const std::string> assignments);
+[[nodiscard]] study::Setting read_setting(std::span<const study::ModelFactor> factors,
+                                          std::span<const std::string> assignments);
 
 /// A header that names every factor, in any order, then one setting a line.
-[[nodiscard]] std::vector<report::Setting> read_settings_file(const std::filesystem::path& file,
-                                                              std::span<const report::ModelFactor> factors);
+[[nodiscard]] std::vector<study::Setting> read_settings_file(const std::filesystem::path& file,
+                                                             std::span<const study::ModelFactor> factors);
 
 }  // namespace grainsweep::cli

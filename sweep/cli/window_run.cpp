@@ -62,7 +62,7 @@ struct Batch {
 std::optional<Batch> unfinished_batch(const Store& store, const std::string& campaign) {
     for (const auto& record : store.campaigns()) {
         if (!record.name.starts_with(campaign + "_next")) continue;
-        const auto responses = report::read_responses(store, record);
+        const auto responses = study::read_responses(store, record);
         const auto open = responses.rows() - responses.finished();
         if (open > 0) return Batch{record.name, record.text, static_cast<std::int64_t>(open)};
     }
@@ -78,11 +78,11 @@ struct Standing {
     std::optional<Batch> next;
 };
 
-Standing standing_of(const WindowRun& run, report::WindowRequest request, std::int64_t most) {
+Standing standing_of(const WindowRun& run, study::WindowRequest request, std::int64_t most) {
     const Store store(run.database, Store::Mode::read);
-    const auto cases = report::read_model_cases(store, run.campaign);
+    const auto cases = study::read_model_cases(store, run.campaign);
     request.next = static_cast<std::size_t>(std::max<std::int64_t>(0, std::min(run.batch, most)));
-    const auto window = report::window_of(store, cases, request);
+    const auto window = study::window_of(store, cases, request);
     if (window.objective_is_factor)
         throw campaign::wrong_question(
             "--run", request.objective,
@@ -99,13 +99,13 @@ Standing standing_of(const WindowRun& run, report::WindowRequest request, std::i
     } else if (!window.next.empty()) {
         const auto [name, number] = name_of_next(store, cases.campaign.name);
         store::check_campaign_name(name);
-        standing.next = Batch{name, report::next_campaign(cases, window, name, number),
+        standing.next = Batch{name, study::next_campaign(cases, window, name, number),
                               static_cast<std::int64_t>(window.next.size())};
     }
     return standing;
 }
 
-std::string standing_text(const Standing& standing, const report::WindowRequest& request, double width) {
+std::string standing_text(const Standing& standing, const study::WindowRequest& request, double width) {
     if (!std::isfinite(standing.half_width))
         return fmt::format("no setting meets the condition with probability {} yet", 1 - request.risk);
     return fmt::format("best {} {:.6g} +- {:.3g} (95 %), wanted +- {:.3g}", request.objective, standing.mean,
@@ -122,7 +122,7 @@ BatchName name_of_next(const Store& store, const std::string& campaign) {
     }
 }
 
-WindowRunEnd run_towards_window(const WindowRun& run, const report::WindowRequest& request) {
+WindowRunEnd run_towards_window(const WindowRun& run, const study::WindowRequest& request) {
     WindowRunEnd end;
     while (true) {
         const auto left = run.max_cases - end.cases;

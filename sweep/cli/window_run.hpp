@@ -6,9 +6,9 @@
 // interrupted are finished first, and their cases come into the models.
 #pragma once
 
-#include "sweep/report/process_window.hpp"
-#include "sweep/report/response_models.hpp"
 #include "sweep/store/store.hpp"
+#include "sweep/study/process_window.hpp"
+#include "sweep/study/response_models.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -43,6 +43,6 @@ struct WindowRunEnd {
 };
 
 /// Throws as window_of and run_campaign do. The database must not be open for writing.
-[[nodiscard]] WindowRunEnd run_towards_window(const WindowRun& run, const report::WindowRequest& request);
+[[nodiscard]] WindowRunEnd run_towards_window(const WindowRun& run, const study::WindowRequest& request);
 
 }  // namespace grainsweep::cli

@@ -8,10 +8,10 @@
 #include "sweep/cli/progress.hpp"
 #include "sweep/cli/walltime.hpp"
 #include "sweep/designs/design.hpp"
-#include "sweep/report/features.hpp"
 #include "sweep/spool/task.hpp"
 #include "sweep/store/artefacts.hpp"
 #include "sweep/store/expression.hpp"
+#include "sweep/study/features.hpp"
 #include "sweep/workers/memory_room.hpp"
 #include "sweep/workers/pool.hpp"
 #include "sweep/workers/worker.hpp"
@@ -114,7 +114,7 @@ WorkReport work_on(const WorkRequest& request) {
     refuse_launcher_that_is_not_there(campaign, request.config);
     campaign::Forecast forecast;
     const auto cases = campaign::asked_in(request.config, [&] {
-        report::check_features(campaign);
+        study::check_features(campaign);
         auto unfolded =
             campaign::unfold(campaign, store::make_filter(campaign.where, campaign::filter_names(campaign)));
         forecast = campaign::forecast(campaign.scene(), unfolded, workers::memory_room());

@@ -1,6 +1,6 @@
 #include "sweep/report/film_choice.hpp"
 
-#include "sweep/report/responses.hpp"
+#include "sweep/study/responses.hpp"
 
 #include <fmt/format.h>
 
@@ -8,6 +8,9 @@
 #include <cmath>
 
 namespace grainsweep::report {
+
+using namespace study;
+
 namespace {
 
 std::string says(const ResponseColumn& response, double value, double quantile) {

@@ -1,10 +1,10 @@
 #include "sweep/report/model_page.hpp"
 
-#include "sweep/report/box_search.hpp"
-#include "sweep/report/cases_near.hpp"
-#include "sweep/report/factor_axis.hpp"
 #include "sweep/report/model_tables.hpp"
 #include "sweep/report/table.hpp"
+#include "sweep/study/box_search.hpp"
+#include "sweep/study/cases_near.hpp"
+#include "sweep/study/factor_axis.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -14,6 +14,9 @@
 #include <numeric>
 
 namespace grainsweep::report {
+
+using namespace study;
+
 namespace {
 
 using Json = nlohmann::ordered_json;

@@ -12,7 +12,7 @@
 // factor matters by the range of its averaged curve.
 #pragma once
 
-#include "sweep/report/response_models.hpp"
+#include "sweep/study/response_models.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -22,7 +22,8 @@ namespace grainsweep::report {
 /// "texts"}, "failed": settings and outcomes of failed cases, "curves": one per factor {"at", "averaged", "mean",
 /// "mean_half_width", "run_half_width"}, "map": of the first two of `order` or null {"across", "up", "across_edges",
 /// "up_edges", "columns", "rows", "averaged", "slice"}}. `admits`: settings that are left out are empty.
-[[nodiscard]] nlohmann::ordered_json model_page_data(const ModelCases& cases, const ObservableModel& model,
-                                                     const std::function<bool(const Setting&)>& admits);
+[[nodiscard]] nlohmann::ordered_json model_page_data(const study::ModelCases& cases,
+                                                     const study::ObservableModel& model,
+                                                     const std::function<bool(const study::Setting&)>& admits);
 
 }  // namespace grainsweep::report

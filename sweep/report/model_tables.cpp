@@ -1,7 +1,6 @@
 #include "sweep/report/model_tables.hpp"
 
 #include "sweep/campaign/wrong_question.hpp"
-#include "sweep/report/cases_near.hpp"
 #include "sweep/report/table.hpp"
 
 #include <fmt/format.h>
@@ -14,7 +13,11 @@
 
 namespace grainsweep::report {
 
+using namespace study;
+
 using Json = nlohmann::ordered_json;
+
+constexpr std::size_t most_drawn = 2000;
 
 std::string model_lines(const ObservableModel& model) {
     const auto& quality = model.model.quality();
@@ -57,39 +60,6 @@ Json inputs_json(std::span<const ModelFactor> factors, const Setting& setting) {
     return inputs;
 }
 
-namespace {
-
-/// A prediction rests on numbers: of a feature that has none there is no sense in one.
-void refuse_undefined(const ModelCases& cases, const ObservableModel& model, std::span<const Setting> settings) {
-    for (const auto& setting : settings) {
-        const auto row = model.features.of(setting);
-        const auto bad = std::ranges::find_if_not(row, [](double x) { return std::isfinite(x); });
-        if (bad != row.end())
-            throw campaign::wrong_question(
-                "", setting_text(cases.factors, setting),
-                fmt::format("the feature '{}' of the model has no number there",
-                            model.features.names[static_cast<std::size_t>(bad - row.begin())]));
-    }
-}
-
-}  // namespace
-
-Predicted predict(const ModelCases& cases, const ObservableModel& model, std::vector<Setting> settings,
-                  bool extrapolate) {
-    refuse_undefined(cases, model, settings);
-    Predicted predicted{std::move(settings), {}, {}, {}};
-    predicted.predictions = model.predict(predicted.settings);
-    predicted.defined = model.defined(predicted.settings);
-    const CasesNear near(cases);
-    for (std::size_t i = 0; i < predicted.settings.size(); ++i) {
-        predicted.near.push_back(near.at(predicted.settings[i]));
-        constexpr double none = std::numeric_limits<double>::quiet_NaN();
-        if (!predicted.near[i].answers && !extrapolate)
-            predicted.predictions[i] = {.mean = none, .mean_error = none, .scatter = none};
-    }
-    return predicted;
-}
-
 store::Table predictions_table(const ModelCases& cases, const ObservableModel& model, const Predicted& predicted) {
     store::Table table;
     table.columns = cases.factor_names();
@@ -111,17 +81,6 @@ store::Table predictions_table(const ModelCases& cases, const ObservableModel& m
     return table;
 }
 
-std::string failures_near(const ModelCases& cases, const Predicted& predicted) {
-    const auto without = std::ranges::find_if_not(predicted.near, &Near::answers);
-    if (without == predicted.near.end()) return {};
-    const auto place = static_cast<std::size_t>(without - predicted.near.begin());
-    const auto n = std::ranges::count_if(predicted.near, [](const Near& near) { return !near.answers; });
-    std::string text = fmt::format("no case near {} has an answer: {}\n",
-                                   setting_text(cases.factors, predicted.settings[place]), near_text(cases, *without));
-    if (n > 1) text += fmt::format("{} of {} settings have no answered case near\n", n, predicted.near.size());
-    return text;
-}
-
 Json predictions_json(const ModelCases& cases, const ObservableModel& model, const Predicted& predicted) {
     Json points = Json::array();
     for (std::size_t i = 0; i < predicted.settings.size(); ++i) {
@@ -140,6 +99,33 @@ Json predictions_json(const ModelCases& cases, const ObservableModel& model, con
             {"observable", model.observable},
             {"points", points},
             {"model", model_json(model)}};
+}
+
+nlohmann::ordered_json axes_json(std::span<const ModelFactor> factors) {
+    auto list = nlohmann::ordered_json::array();
+    for (const auto& factor : factors) {
+        auto levels = nlohmann::ordered_json::array();
+        for (const auto& word : factor.words) levels.push_back(word);
+        for (const double x : factor.numbers) levels.push_back(factor.text(x));
+        list.push_back({{"name", factor.name},
+                        {"unit", factor.unit},
+                        {"levels", levels},
+                        {"numbers", factor.numbers},
+                        {"low", factor.low},
+                        {"high", factor.high},
+                        {"log", factor.log}});
+    }
+    return list;
+}
+
+nlohmann::ordered_json failed_json(const ModelCases& cases) {
+    std::vector<std::size_t> all(cases.failed.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    auto list = nlohmann::ordered_json::array();
+    for (const auto i : study::random_rows(std::move(all), most_drawn))
+        list.push_back(
+            {{"setting", cases.failed[i].setting}, {"outcome", campaign::to_string(cases.failed[i].outcome)}});
+    return list;
 }
 
 }  // namespace grainsweep::report

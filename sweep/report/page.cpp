@@ -6,20 +6,21 @@
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/stored_text.hpp"
 #include "sweep/campaign/wrong_question.hpp"
-#include "sweep/report/brackets.hpp"
-#include "sweep/report/calibration.hpp"
-#include "sweep/report/curves.hpp"
-#include "sweep/report/effects.hpp"
-#include "sweep/report/history.hpp"
-#include "sweep/report/influence.hpp"
+#include "sweep/report/bracket_tables.hpp"
+#include "sweep/report/calibration_tables.hpp"
 #include "sweep/report/model_page.hpp"
 #include "sweep/report/packed_column.hpp"
 #include "sweep/report/page_files.hpp"
 #include "sweep/report/page_template.hpp"
-#include "sweep/report/response_models.hpp"
 #include "sweep/report/summary.hpp"
 #include "sweep/report/table.hpp"
 #include "sweep/report/watch_page.hpp"
+#include "sweep/study/curves.hpp"
+#include "sweep/study/effects.hpp"
+#include "sweep/study/error_text.hpp"
+#include "sweep/study/history.hpp"
+#include "sweep/study/influence.hpp"
+#include "sweep/study/response_models.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -30,6 +31,9 @@
 #include <utility>
 
 namespace grainsweep::report {
+
+using namespace study;
+
 namespace {
 
 using Json = nlohmann::ordered_json;

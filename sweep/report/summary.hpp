@@ -2,8 +2,8 @@
 #pragma once
 
 #include "stats/sensitivity.hpp"
-#include "sweep/report/history.hpp"
-#include "sweep/report/responses.hpp"
+#include "sweep/study/history.hpp"
+#include "sweep/study/responses.hpp"
 
 #include <cstddef>
 #include <filesystem>
@@ -11,26 +11,19 @@
 
 namespace grainsweep::report {
 
-/// "0.2702 ± 0.0011": the error to two digits, the value to the same place. No error: the value to 5 digits.
-/// An error of rounding only (below 1e-12 of the value) is 0. NaN: "-".
-[[nodiscard]] std::string with_error(double value, double error);
-
-/// An index and its error; below 1e-9 rounding is all there is, and it is shown as 0.
-[[nodiscard]] std::string index_text(const stats::SensitivityIndex& index);
-
 /// The provisional figures in one line, marked so; empty where there are none.
-[[nodiscard]] std::string provisional_line(const History& history);
+[[nodiscard]] std::string provisional_line(const study::History& history);
 
 /// "640 completed, 12 unstable": outcomes that occur.
-[[nodiscard]] std::string outcome_line(const Responses& responses);
+[[nodiscard]] std::string outcome_line(const study::Responses& responses);
 
 /// One row per scalar observable, the main one first: moments with their 95 % errors over the settled beginning; while
 /// finished cases lie behind one that is not, the provisional ones over all of them.
-[[nodiscard]] store::Table moments_table(const Responses& responses);
+[[nodiscard]] store::Table moments_table(const study::Responses& responses);
 
 /// The rows with the `count` largest and the `count` smallest values of a response: point, factors, value. Where there
 /// are no more than twice as many, all of them.
-[[nodiscard]] store::Table extremes_table(const Responses& responses, const ResponseColumn& response,
+[[nodiscard]] store::Table extremes_table(const study::Responses& responses, const study::ResponseColumn& response,
                                           std::size_t count);
 
 /// The text `run` ends with. `campaign` must be in the store.

@@ -1,11 +1,11 @@
 #include "sweep/report/window_page.hpp"
 
-#include "sweep/report/factor_axis.hpp"
 #include "sweep/report/model_tables.hpp"
 #include "sweep/report/page.hpp"
 #include "sweep/report/page_files.hpp"
 #include "sweep/report/page_template.hpp"
 #include "sweep/report/table.hpp"
+#include "sweep/study/factor_axis.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -15,6 +15,9 @@
 #include <ostream>
 
 namespace grainsweep::report {
+
+using namespace study;
+
 namespace {
 
 using Json = nlohmann::ordered_json;

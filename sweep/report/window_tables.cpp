@@ -10,6 +10,9 @@
 #include <ostream>
 
 namespace grainsweep::report {
+
+using namespace study;
+
 namespace {
 
 using Json = nlohmann::ordered_json;

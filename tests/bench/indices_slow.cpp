@@ -72,7 +72,7 @@ struct Campaign {
     std::vector<std::size_t> groups;
 };
 
-/// Halton points in so many random sequences; parts as in sweep/report/sample_parts.hpp.
+/// Halton points in so many random sequences; parts as in sweep/study/sample_parts.hpp.
 Campaign ask(const KnownIndices& known, std::int64_t n, std::int64_t sequences, std::uint64_t seed) {
     const auto set = ask_design("halton", known.dimensions, {{"points", n}, {"sequences", sequences}}, seed);
     Campaign campaign{set.coordinates, {}, {}};

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "stats/random.hpp"
-#include "sweep/report/history.hpp"
+#include "sweep/study/history.hpp"
 #include "tests/support/answered.hpp"
 
 #include <gtest/gtest.h>
@@ -45,8 +45,8 @@ struct Study : testing::Test {
     Folder folder;
     store::Store store{folder / "a.db", store::Store::Mode::create};
 
-    report::Responses ask(const std::string& name) {
-        return report::read_responses(store, report::find_campaigns(store, name).front());
+    study::Responses ask(const std::string& name) {
+        return study::read_responses(store, study::find_campaigns(store, name).front());
     }
 };
 

@@ -1,8 +1,8 @@
 // Which curves the page draws, and how they are thinned.
 #include "sweep/campaign/reader.hpp"
-#include "sweep/report/curves.hpp"
 #include "sweep/report/page.hpp"
 #include "sweep/store/expression.hpp"
+#include "sweep/study/curves.hpp"
 #include "tests/support/archive.hpp"
 
 #include <gmock/gmock.h>
@@ -49,8 +49,8 @@ struct ReportCurves : testing::Test {
             }
         });
     }
-    [[nodiscard]] report::Curves curves(const report::CurveChoice& choice = {}) const {
-        return report::read_curves(store, report::read_responses(store, store.campaigns().front()), choice);
+    [[nodiscard]] study::Curves curves(const study::CurveChoice& choice = {}) const {
+        return study::read_curves(store, study::read_responses(store, store.campaigns().front()), choice);
     }
 };
 

@@ -1,5 +1,5 @@
 // Main effects and histograms: equal bins, and whiskers that are what they say.
-#include "sweep/report/effects.hpp"
+#include "sweep/study/effects.hpp"
 #include "tests/support/study.hpp"
 
 #include <gmock/gmock.h>
@@ -10,32 +10,32 @@
 
 namespace grainsweep::tests::report_effects_test {
 
-using namespace report;
+using namespace study;
 
 using testing::ElementsAre;
 using testing::HasSubstr;
 
 TEST(Effects, HistogramHoldsEveryFiniteValue) {
     std::vector<double> values = {none, 1, 2, 2, 3, 5, std::numeric_limits<double>::infinity()};
-    const auto histogram = report::histogram_of(values);
+    const auto histogram = study::histogram_of(values);
     EXPECT_EQ(histogram.low, 1);
     EXPECT_EQ(histogram.high, 5);
     EXPECT_EQ(std::accumulate(histogram.counts.begin(), histogram.counts.end(), std::int64_t{0}), 5);
     EXPECT_EQ(histogram.counts.back(), 1);
-    EXPECT_THAT(report::histogram_of(std::vector<double>(4, 7.0)).counts, ElementsAre(4));
-    EXPECT_TRUE(report::histogram_of(std::vector<double>{none}).counts.empty());
+    EXPECT_THAT(study::histogram_of(std::vector<double>(4, 7.0)).counts, ElementsAre(4));
+    EXPECT_TRUE(study::histogram_of(std::vector<double>{none}).counts.empty());
 }
 
 TEST(Effects, BinsHoldEqualCountsAndLevelsAreBins) {
-    report::FactorColumn factor;
+    study::FactorColumn factor;
     std::vector<double> response;
     for (int i = 0; i < 320; ++i) {
         factor.values.push_back(i / 320.0);
         response.push_back(3 * i / 320.0);
     }
     response[7] = none;
-    report::EffectErrors errors;
-    errors.source = report::EffectErrors::Source::parts;
+    study::EffectErrors errors;
+    errors.source = study::EffectErrors::Source::parts;
     for (int i = 0; i < 320; ++i) errors.parts.push_back(static_cast<std::size_t>(i % 8));
     const auto effect = main_effect(factor, response, errors);
     ASSERT_EQ(effect.size(), 16u);
@@ -63,7 +63,7 @@ TEST_F(Study, MainEffectsOfALatticeOfSingleRunsHaveNoWhiskers) {
     const auto responses = ask("c");
     const auto& y = responses.observable("y");
     const auto errors = effect_errors(responses, y);
-    EXPECT_EQ(errors.source, report::EffectErrors::Source::none);
+    EXPECT_EQ(errors.source, study::EffectErrors::Source::none);
     EXPECT_THAT(errors.says, HasSubstr("a lattice of single runs gives no error; replicates would"));
     for (const auto& bin : main_effect(responses.factors[0], responses.judged(y), errors)) {
         EXPECT_DOUBLE_EQ(bin.mean, 0.5);

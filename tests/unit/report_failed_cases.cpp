@@ -1,11 +1,11 @@
 // Where cases failed nothing is recommended, counted, drawn or predicted: windows, predictions, pages.
 #include "sweep/campaign/wrong_question.hpp"
-#include "sweep/report/cases_near.hpp"
 #include "sweep/report/model_page.hpp"
 #include "sweep/report/model_tables.hpp"
-#include "sweep/report/process_window.hpp"
 #include "sweep/report/window_page.hpp"
 #include "sweep/report/window_tables.hpp"
+#include "sweep/study/cases_near.hpp"
+#include "sweep/study/process_window.hpp"
 #include "tests/support/answered.hpp"
 
 #include <gmock/gmock.h>
@@ -17,6 +17,7 @@
 namespace grainsweep::tests::report_failed_cases_test {
 
 using namespace report;
+using namespace study;
 
 using testing::AnyOf;
 using testing::Contains;
@@ -118,7 +119,7 @@ TEST_F(FailedCases, APredictionAmongThemSaysThatNoCaseNearHasAnAnswer) {
     const auto known = cases(jams);
     const auto model = learn_or_refuse(known, known.observable("y"));
     const std::vector<Setting> settings = {{0.05, 0.5}, {0.7, 0.5}};
-    const auto predicted = report::predict(known, model, settings, false);
+    const auto predicted = study::predict(known, model, settings, false);
     EXPECT_TRUE(std::isnan(predicted.predictions[0].mean));
     EXPECT_TRUE(std::isnan(predicted.predictions[0].mean_error));
     EXPECT_NEAR(predicted.predictions[1].mean, 0.3, 0.02);
@@ -136,7 +137,7 @@ TEST_F(FailedCases, APredictionAmongThemSaysThatNoCaseNearHasAnAnswer) {
     EXPECT_THAT(table.columns, testing::ElementsAre("x1", "x2", "mean", "mean_error", "scatter", "inside",
                                                     "answers_near", "near_cases", "near_failed"));
     EXPECT_EQ(table.rows[0][2], store::Table::Cell{});
-    const auto extrapolated = report::predict(known, model, settings, true);
+    const auto extrapolated = study::predict(known, model, settings, true);
     EXPECT_NEAR(extrapolated.predictions[0].mean, 0.95, 0.1) << "what the model says, where it is asked to say it";
     EXPECT_THAT(failures_near(known, extrapolated), HasSubstr("no case near"));
 }

@@ -1,7 +1,7 @@
 // Influences: indices of designs of every kind, what they leave unexplained, and which way a response goes.
-#include "sweep/report/effects.hpp"
-#include "sweep/report/influence.hpp"
-#include "sweep/report/study_tables.hpp"
+#include "sweep/report/influence_tables.hpp"
+#include "sweep/study/effects.hpp"
+#include "sweep/study/influence.hpp"
 #include "tests/support/study.hpp"
 
 #include <gmock/gmock.h>
@@ -11,6 +11,7 @@
 namespace grainsweep::tests::report_influence_test {
 
 using namespace report;
+using namespace study;
 
 using testing::Contains;
 using testing::ElementsAre;
@@ -21,7 +22,7 @@ TEST_F(Study, SharesOfTheVarianceFromAnyDesign) {
     answer_by(store, halton("c", 1600), [](const Inputs& inputs) { return linear(inputs); });
     const auto responses = ask("c");
     const auto influence = influence_of(responses, responses.observable("y"));
-    EXPECT_EQ(influence.method, report::Influence::Method::given_data);
+    EXPECT_EQ(influence.method, study::Influence::Method::given_data);
     EXPECT_EQ(influence.factors[0].bins, 16u);
     EXPECT_EQ(influence.used, 1600);
     EXPECT_NEAR(influence.factors[0].first.value, 0.8, 0.01);
@@ -52,7 +53,7 @@ TEST_F(Study, TotalIndicesFromSaltelliAndElementaryEffectsFromMorris) {
               [](const Inputs& inputs) { return input(inputs, "x1") * input(inputs, "x2"); });
     auto responses = ask("s");
     const auto saltelli = influence_of(responses, responses.observable("y"));
-    EXPECT_EQ(saltelli.method, report::Influence::Method::saltelli);
+    EXPECT_EQ(saltelli.method, study::Influence::Method::saltelli);
     EXPECT_EQ(saltelli.used, 512);
     // y = u1 u2 / 2: both first-order indices 3/7, both total indices 4/7.
     for (const auto& factor : saltelli.factors) {
@@ -67,7 +68,7 @@ TEST_F(Study, TotalIndicesFromSaltelliAndElementaryEffectsFromMorris) {
               [](const Inputs& inputs) { return linear(inputs); });
     responses = ask("m");
     const auto morris = influence_of(responses, responses.observable("y"));
-    EXPECT_EQ(morris.method, report::Influence::Method::morris);
+    EXPECT_EQ(morris.method, study::Influence::Method::morris);
     ASSERT_TRUE(morris.factors[0].effects && morris.factors[1].effects);
     EXPECT_EQ(morris.used, 12);
     EXPECT_NEAR(morris.factors[0].effects->mu_star, 2, 1e-12);  // per unit of the range
@@ -208,7 +209,7 @@ TEST_F(Study, AListedCampaignHasItsVarianceExplained) {
     const auto influence = influence_of(responses, y);
     EXPECT_NEAR(influence.split.main_effects.value, 1, 1e-6);
     EXPECT_EQ(influence.split.pure.variance, 0);
-    EXPECT_EQ(effect_errors(responses, y).source, report::EffectErrors::Source::pure_error);
+    EXPECT_EQ(effect_errors(responses, y).source, study::EffectErrors::Source::pure_error);
 }
 
 // A weak straight effect under much scatter has binned means that go up and down: no bend.
@@ -219,7 +220,7 @@ TEST_F(Study, ScatterOfBinnedMeansIsNoBend) {
         const auto name = "c" + std::to_string(k);
         answer_by(store, halton(name, 640, R"(, "seed": )" + std::to_string(k + 1)), straight);
         const auto responses = ask(name);
-        EXPECT_EQ(influence_of(responses, responses.observable("y")).factors[0].trend, report::Trend::rises) << name;
+        EXPECT_EQ(influence_of(responses, responses.observable("y")).factors[0].trend, study::Trend::rises) << name;
     }
 }
 
@@ -238,7 +239,7 @@ TEST_F(Study, AReplicatedLatticeHasErrorsOfItsIndices) {
     EXPECT_LT(x1.half_width, 0.1);
     EXPECT_LT(x2.half_width, 0.05);
     EXPECT_THAT(influence.notes, Contains(HasSubstr("pure error, 108 degrees of freedom")));
-    EXPECT_EQ(influence.factors[0].trend, report::Trend::rises);
+    EXPECT_EQ(influence.factors[0].trend, study::Trend::rises);
     EXPECT_THAT(unexplained_text(influence), HasSubstr("interactions indistinguishable from zero"));
 }
 

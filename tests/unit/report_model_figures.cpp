@@ -1,9 +1,11 @@
 // Figures by a response model beside the plain ones: moments with the model as control variate, total indices.
 #include "stats/random.hpp"
-#include "sweep/report/estimators.hpp"
-#include "sweep/report/history.hpp"
-#include "sweep/report/model_influence.hpp"
-#include "sweep/report/responses.hpp"
+#include "sweep/report/convergence_tables.hpp"
+#include "sweep/report/influence_tables.hpp"
+#include "sweep/study/estimators.hpp"
+#include "sweep/study/history.hpp"
+#include "sweep/study/model_influence.hpp"
+#include "sweep/study/responses.hpp"
 #include "tests/support/answered.hpp"
 
 #include <gmock/gmock.h>
@@ -15,6 +17,7 @@
 namespace grainsweep::tests::report_model_figures_test {
 
 using namespace report;
+using namespace study;
 
 using store::Store;
 using testing::Contains;

@@ -14,6 +14,7 @@
 namespace grainsweep::tests::report_model_page_test {
 
 using namespace report;
+using namespace study;
 
 using testing::HasSubstr;
 using Json = nlohmann::ordered_json;

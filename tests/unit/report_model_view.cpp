@@ -1,8 +1,8 @@
 // What the models of the rule `assisted` see of a campaign's points.
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/wrong_question.hpp"
-#include "sweep/report/model_view.hpp"
 #include "sweep/store/expression.hpp"
+#include "sweep/study/model_view.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 
 namespace grainsweep::tests::report_model_view_test {
 
-using namespace report;
+using namespace study;
 
 using testing::ElementsAre;
 using testing::HasSubstr;

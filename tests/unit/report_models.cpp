@@ -3,11 +3,11 @@
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/stored_text.hpp"
 #include "sweep/campaign/wrong_question.hpp"
-#include "sweep/report/box_search.hpp"
-#include "sweep/report/condition.hpp"
 #include "sweep/report/model_tables.hpp"
-#include "sweep/report/process_window.hpp"
-#include "sweep/report/response_models.hpp"
+#include "sweep/study/box_search.hpp"
+#include "sweep/study/condition.hpp"
+#include "sweep/study/process_window.hpp"
+#include "sweep/study/response_models.hpp"
 #include "tests/support/answered.hpp"
 
 #include <gmock/gmock.h>
@@ -19,6 +19,7 @@
 namespace grainsweep::tests::report_models_test {
 
 using namespace report;
+using namespace study;
 
 using store::Store;
 using testing::DoubleNear;
@@ -142,7 +143,7 @@ TEST(ModelFeatures, WithoutANumberThereIsNoPredictionAndNoRecommendation) {
     const auto cases = read_model_cases(store, "c");
     const auto model = learn_or_refuse(cases, cases.observable("y"));
     const auto said = [&](double x1, double x2) {
-        return refusal([&] { return report::predict(cases, model, {{0.1, 0.5}, {x1, x2}}, true); });
+        return refusal([&] { return study::predict(cases, model, {{0.1, 0.5}, {x1, x2}}, true); });
     };
     EXPECT_EQ(said(0.2, 0.5), "accepted");
     EXPECT_THAT(said(0.5, 0.5), HasSubstr("x1 = 0.5, x2 = 0.5; the feature '1/(x1 - 0.5)' of the model has no number"));

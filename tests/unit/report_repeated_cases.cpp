@@ -1,6 +1,6 @@
 // Cases that stand at several points of a design: each is one run, and counts once.
-#include "sweep/report/history.hpp"
-#include "sweep/report/influence.hpp"
+#include "sweep/study/history.hpp"
+#include "sweep/study/influence.hpp"
 #include "tests/support/study.hpp"
 
 #include <gmock/gmock.h>
@@ -28,22 +28,22 @@ TEST_F(Study, ACaseThatStandsAtManyPointsCountsOnce) {
     EXPECT_EQ(responses.settled_points, 4800);
     double mean = 0;
     for (std::uint64_t k = 0; k < 6; ++k) mean += *disturbed(1, 0.5, 7, k) / 6;
-    const auto history = report::history_of(responses, responses.observable("y"));
+    const auto history = study::history_of(responses, responses.observable("y"));
     EXPECT_NEAR(history.all.of(stats::Statistic::mean).value, mean, 1e-12);
     EXPECT_EQ(history.all.count, 6);
     EXPECT_TRUE(std::isnan(history.all.of(stats::Statistic::mean).error));
     ASSERT_TRUE(history.converged);
     EXPECT_FALSE(*history.converged);
     EXPECT_THAT(history.warnings, Contains(HasSubstr("4794 of 4800 places repeat an earlier case")));
-    EXPECT_THAT(report::points_line(responses), HasSubstr("6 cases asked, 6 finished, 4794 places repeat one of them"));
+    EXPECT_THAT(study::points_line(responses), HasSubstr("6 cases asked, 6 finished, 4794 places repeat one of them"));
 
-    const auto influence = report::influence_of(responses, responses.observable("y"));
+    const auto influence = study::influence_of(responses, responses.observable("y"));
     EXPECT_EQ(influence.used, 6);
     for (const auto& factor : influence.factors)
         EXPECT_FALSE(factor.first.half_width < 0.2) << factor.factor << factor.first.half_width;
-    const auto alone = report::read_response(store, store.campaigns().front(), "y");
+    const auto alone = study::read_response(store, store.campaigns().front(), "y");
     EXPECT_EQ(alone.rows(), 6U);
-    EXPECT_EQ(report::history_of(alone, alone.observables.front()).verdict, history.verdict);
+    EXPECT_EQ(study::history_of(alone, alone.observables.front()).verdict, history.verdict);
 }
 
 TEST_F(Study, RowsOfAListThatRepeatCountOnce) {
@@ -52,7 +52,7 @@ TEST_F(Study, RowsOfAListThatRepeatCountOnce) {
               [](const Inputs& inputs) { return input(inputs, "x1"); });
     const auto responses = ask("rows");
     EXPECT_EQ(responses.rows(), 4U);
-    const auto history = report::history_of(responses, responses.observable("y"));
+    const auto history = study::history_of(responses, responses.observable("y"));
     EXPECT_NEAR(history.all.of(stats::Statistic::mean).value, (0.1 + 0.5 + 0.9 + 0.2) / 4, 1e-12);
     EXPECT_EQ(history.all.count, 4);
 }

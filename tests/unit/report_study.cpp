@@ -1,10 +1,12 @@
 // The study: moments, verdicts and influences recomputed from stored answers, and what is said about them.
 #include "sweep/campaign/wrong_question.hpp"
-#include "sweep/report/history.hpp"
-#include "sweep/report/influence.hpp"
+#include "sweep/report/convergence_tables.hpp"
+#include "sweep/report/influence_tables.hpp"
 #include "sweep/report/page.hpp"
-#include "sweep/report/study_tables.hpp"
 #include "sweep/report/summary.hpp"
+#include "sweep/study/error_text.hpp"
+#include "sweep/study/history.hpp"
+#include "sweep/study/influence.hpp"
 #include "tests/support/study.hpp"
 
 #include <gmock/gmock.h>
@@ -17,8 +19,8 @@
 namespace grainsweep::tests::report_study_test {
 
 using namespace report;
+using namespace study;
 
-using report::Responses;
 using store::Store;
 using testing::Contains;
 using testing::ElementsAre;
@@ -123,7 +125,7 @@ TEST_F(Study, WhatTheConditionLeavesOutIsCounted) {
 TEST_F(Study, OneObservableAloneGivesTheSameVerdict) {
     answer_by(store, halton("c", 640, R"(, "convergence": {"observable": "y", "tolerance": 0.05})"), linear, 500);
     const auto whole = ask("c");
-    const auto alone = report::read_response(store, store.campaigns()[0], "y");
+    const auto alone = study::read_response(store, store.campaigns()[0], "y");
     const auto expected = history_of(whole, whole.observable("y")), found = history_of(alone, alone.observable("y"));
     EXPECT_EQ(found.verdict, expected.verdict);
     EXPECT_EQ(found.converged, expected.converged);
@@ -302,7 +304,7 @@ TEST_F(Study, LatticesAreComparedWithTheirSiblings) {
 TEST_F(Study, UnknownNamesGetTheNearestRightWord) {
     answer_by(store, halton("spread", 16), [](const Inputs& inputs) { return linear(inputs); });
     try {
-        (void)report::find_campaigns(store, "sprad");
+        (void)study::find_campaigns(store, "sprad");
         FAIL();
     } catch (const campaign::WrongQuestion& error) {
         EXPECT_THAT(error.what(), HasSubstr("Did you mean 'spread'?"));
@@ -315,7 +317,7 @@ TEST_F(Study, UnknownNamesGetTheNearestRightWord) {
         EXPECT_THAT(error.what(), HasSubstr("Did you mean 'y'?"));
     }
     Store empty(folder / "empty.db", Store::Mode::create);
-    EXPECT_THROW((void)report::find_campaigns(empty, ""), campaign::WrongQuestion);
+    EXPECT_THROW((void)study::find_campaigns(empty, ""), campaign::WrongQuestion);
 }
 
 TEST_F(Study, ExtremesHaveUnits) {
@@ -352,14 +354,14 @@ TEST_F(Study, TheRunEndsWithCountsMomentsExtremesAndThePlace) {
 }
 
 TEST(Figures, ErrorsHaveTwoDigitsAndValuesTheirPlace) {
-    EXPECT_EQ(report::with_error(0.270150, 0.00112), "0.2702 ± 0.0011");
-    EXPECT_EQ(report::with_error(-12.34, 3.21), "-12.3 ± 3.2");
-    EXPECT_EQ(report::with_error(12345.6, 321), "12346 ± 321");
-    EXPECT_EQ(report::with_error(3.21e-7, 4.4e-9), "(3.210 ± 0.044)e-7");
-    EXPECT_EQ(report::with_error(0, 0.5), "0.00 ± 0.50");
-    EXPECT_EQ(report::with_error(1.5, none), "1.5");
-    EXPECT_EQ(report::with_error(1.5, 0), "1.5 ± 0");
-    EXPECT_EQ(report::with_error(none, 1), "-");
+    EXPECT_EQ(study::with_error(0.270150, 0.00112), "0.2702 ± 0.0011");
+    EXPECT_EQ(study::with_error(-12.34, 3.21), "-12.3 ± 3.2");
+    EXPECT_EQ(study::with_error(12345.6, 321), "12346 ± 321");
+    EXPECT_EQ(study::with_error(3.21e-7, 4.4e-9), "(3.210 ± 0.044)e-7");
+    EXPECT_EQ(study::with_error(0, 0.5), "0.00 ± 0.50");
+    EXPECT_EQ(study::with_error(1.5, none), "1.5");
+    EXPECT_EQ(study::with_error(1.5, 0), "1.5 ± 0");
+    EXPECT_EQ(study::with_error(none, 1), "-");
 }
 
 }  // namespace grainsweep::tests::report_study_test

@@ -1,8 +1,8 @@
 // What the page of a process window holds, and that nothing in it asks a network.
-#include "sweep/report/process_window.hpp"
-#include "sweep/report/response_models.hpp"
 #include "sweep/report/window_page.hpp"
 #include "sweep/report/window_tables.hpp"
+#include "sweep/study/process_window.hpp"
+#include "sweep/study/response_models.hpp"
 #include "tests/support/answered.hpp"
 
 #include <gmock/gmock.h>
@@ -15,6 +15,7 @@
 namespace grainsweep::tests::report_window_page_test {
 
 using namespace report;
+using namespace study;
 
 using testing::HasSubstr;
 using testing::Not;

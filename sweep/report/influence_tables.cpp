@@ -1,0 +1,223 @@
+#include "sweep/report/influence_tables.hpp"
+
+#include "sweep/report/model_tables.hpp"
+#include "sweep/report/table.hpp"
+#include "sweep/study/error_text.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace grainsweep::report {
+
+using namespace study;
+
+namespace {
+
+using Cell = store::Table::Cell;
+using Json = nlohmann::ordered_json;
+
+std::string_view method_name(Influence::Method method) {
+    switch (method) {
+        case Influence::Method::given_data:
+            return "given_data";
+        case Influence::Method::saltelli:
+            return "saltelli";
+        case Influence::Method::morris:
+            return "morris";
+    }
+    return "";
+}
+
+/// What factors are ordered by: the most telling figure the method gives.
+double weight(const FactorInfluence& factor) {
+    const double value = factor.effects                      ? factor.effects->mu_star
+                         : std::isfinite(factor.total.value) ? factor.total.value
+                                                             : factor.first.value;
+    return std::isfinite(value) ? value : -1;
+}
+
+Cell trend_cell(const FactorInfluence& factor) {
+    return factor.trend == Trend::unknown ? Cell{} : Cell{std::string(to_string(factor.trend))};
+}
+
+Json json_of(const stats::SensitivityIndex& index) {
+    return {{"value", json_number(index.value)}, {"error", json_number(index.half_width)}};
+}
+
+/// Calls with (j, k, index) of every pair.
+template <class With>
+void for_each_pair(const ModelInfluence& influence, With with) {
+    std::size_t place = 0;
+    for (std::size_t j = 0; j < influence.factors.size(); ++j)
+        for (std::size_t k = j + 1; k < influence.factors.size(); ++k) with(j, k, influence.indices->pairs[place++]);
+}
+
+}  // namespace
+
+store::Table influence_table(const Influence& influence) {
+    std::vector<const FactorInfluence*> order;
+    for (const auto& factor : influence.factors) order.push_back(&factor);
+    std::ranges::stable_sort(order, std::ranges::greater{}, [](const auto* factor) { return weight(*factor); });
+    store::Table table{{"factor"}, {}};
+    const bool morris = influence.method == Influence::Method::morris;
+    if (morris) {
+        table.columns.insert(table.columns.end(), {"trend", "mu*", "mu", "sigma", "effects"});
+    } else {
+        table.columns.emplace_back("first order");
+        if (influence.method == Influence::Method::saltelli) table.columns.emplace_back("total");
+        table.columns.insert(table.columns.end(), {"trend", "rank correlation"});
+    }
+    for (const auto* factor : order) {
+        std::vector<Cell> row = {factor->factor};
+        if (morris) row.push_back(trend_cell(*factor));
+        if (morris && factor->effects) {
+            row.emplace_back(with_error(factor->effects->mu_star, factor->effects->mu_star_half_width));
+            row.push_back(to_cell(factor->effects->mu));
+            row.push_back(to_cell(factor->effects->sigma));
+            row.emplace_back(factor->effects->count);
+        } else if (!morris) {
+            row.emplace_back(index_text(factor->first));
+            if (influence.method == Influence::Method::saltelli) row.emplace_back(index_text(factor->total));
+            row.push_back(trend_cell(*factor));
+            row.emplace_back(with_error(factor->rank_correlation.value, factor->rank_correlation.half_width));
+        }
+        row.resize(table.columns.size());
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+store::Table influence_rows(const Responses& responses, const ResponseColumn& response, const Influence& influence) {
+    store::Table table{{"campaign", "observable", "method", "factor", "first", "first_error", "first_saltelli",
+                        "first_saltelli_error", "total", "total_error", "mu", "mu_star", "mu_star_error", "sigma",
+                        "used", "excluded", "trend", "rank_correlation", "rank_correlation_error"},
+                       {}};
+    for (const auto& factor : influence.factors) {
+        std::vector<Cell> row = {responses.campaign.name, response.name, std::string(method_name(influence.method)),
+                                 factor.factor};
+        for (const auto& index : {factor.first, factor.first_saltelli, factor.total}) {
+            row.push_back(to_cell(index.value));
+            row.push_back(to_cell(index.half_width));
+        }
+        const auto effects = factor.effects.value_or(stats::ElementaryEffects{});
+        for (const double x : {effects.mu, effects.mu_star, effects.mu_star_half_width, effects.sigma})
+            row.push_back(to_cell(x));
+        row.emplace_back(influence.used);
+        row.emplace_back(influence.excluded);
+        row.push_back(trend_cell(factor));
+        row.push_back(to_cell(factor.rank_correlation.value));
+        row.push_back(to_cell(factor.rank_correlation.half_width));
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+Json to_json(const Responses& responses, const ResponseColumn& response, const Influence& influence) {
+    Json value = {{"campaign", responses.campaign.name},
+                  {"observable", response.name},
+                  {"method", method_name(influence.method)},
+                  {"used", influence.used},
+                  {"excluded", influence.excluded}};
+    value["factors"] = Json::array();
+    for (const auto& factor : influence.factors) {
+        Json one = {{"name", factor.factor}};
+        const auto put = [&](const char* name, const stats::SensitivityIndex& index) { one[name] = json_of(index); };
+        if (influence.method != Influence::Method::morris) {
+            one["bins"] = factor.bins;
+            put("first", factor.first);
+        }
+        if (influence.method == Influence::Method::saltelli) {
+            put("first_saltelli", factor.first_saltelli);
+            put("total", factor.total);
+        }
+        if (factor.effects) {
+            one["mu_star"] = {{"value", json_number(factor.effects->mu_star)},
+                              {"error", json_number(factor.effects->mu_star_half_width)}};
+            one["mu"] = json_number(factor.effects->mu);
+            one["sigma"] = json_number(factor.effects->sigma);
+        }
+        one["trend"] = to_json(trend_cell(factor));
+        put("rank_correlation", factor.rank_correlation);
+        value["factors"].push_back(std::move(one));
+    }
+    const auto& split = influence.split;
+    value["variance"] = {
+        {"main_effects", json_of(split.main_effects)},    {"unexplained", json_of(split.unexplained)},
+        {"interactions", json_of(split.interactions)},    {"scatter", json_of(split.scatter)},
+        {"interactions_of_two", json_of(split.pairs)},    {"scatter_and_higher", json_of(split.remainder)},
+        {"pure_error", json_number(split.pure.variance)}, {"pure_error_freedom", split.pure.freedom}};
+    value["notes"] = influence.notes;
+    return value;
+}
+
+store::Table model_influence_table(const ModelInfluence& influence) {
+    store::Table table{{"factor", "first order", "total", "interactions"}, {}};
+    if (!influence.indices) return table;
+    const auto& indices = *influence.indices;
+    std::vector<std::size_t> order(influence.factors.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t j) { return indices.total[j].value; });
+    for (const auto j : order)
+        table.rows.push_back({influence.factors[j], index_text(indices.first[j]), index_text(indices.total[j]),
+                              index_text(indices.interactions[j])});
+    return table;
+}
+
+std::vector<std::string> model_influence_lines(const ModelInfluence& influence) {
+    if (!influence.indices) return {fmt::format("no indices from a response model: {}", influence.refused)};
+    std::vector<std::pair<double, std::string>> pairs;
+    for_each_pair(influence, [&](std::size_t j, std::size_t k, const stats::SensitivityIndex& index) {
+        if (index.value > index.half_width)
+            pairs.emplace_back(-index.value, fmt::format("{} with {} {}", influence.factors[j], influence.factors[k],
+                                                         index_text(index)));
+    });
+    std::ranges::sort(pairs);
+    std::vector<std::string> lines;
+    std::string text;
+    for (const auto& [size, pair] : pairs) text += (text.empty() ? "interactions of pairs: " : ", ") + pair;
+    if (!text.empty()) lines.push_back(text);
+    const auto& quality = influence.model->model.quality();
+    lines.push_back(fmt::format(
+        "shares of the variance of the mean response, by a model of {} cases with a leave-one-out error of {:.3f} "
+        "standard deviations; {:.1f} % of the variance of single runs is scatter",
+        quality.rests_on, quality.leave_one_out_error, 100 * quality.noise_share));
+    if (influence.without_value > 0)
+        lines.push_back(
+            fmt::format("{} of {} cases have no value: the shares by the model are of the whole box, extrapolated into "
+                        "the settings that failed",
+                        influence.without_value, influence.without_value + quality.cases));
+    for (const auto& note : influence.model->notes) lines.push_back(note);
+    return lines;
+}
+
+Json model_influence_json(const ModelInfluence& influence) {
+    Json value = {{"factors", Json::array()},     {"pairs", Json::array()},    {"scatter_share", nullptr},
+                  {"unexplained_share", nullptr}, {"response_model", nullptr}, {"refused", nullptr}};
+    if (!influence.indices) {
+        value["refused"] = influence.refused;
+        return value;
+    }
+    const auto& indices = *influence.indices;
+    for (std::size_t j = 0; j < influence.factors.size(); ++j)
+        value["factors"].push_back({{"name", influence.factors[j]},
+                                    {"first", json_of(indices.first[j])},
+                                    {"total", json_of(indices.total[j])},
+                                    {"interactions", json_of(indices.interactions[j])}});
+    for_each_pair(influence, [&](std::size_t j, std::size_t k, const stats::SensitivityIndex& index) {
+        Json pair = {{"factors", {influence.factors[j], influence.factors[k]}}};
+        pair.update(json_of(index));
+        value["pairs"].push_back(std::move(pair));
+    });
+    const auto& quality = influence.model->model.quality();
+    value["scatter_share"] = json_number(quality.noise_share);
+    value["unexplained_share"] = json_number(std::pow(quality.leave_one_out_error, 2));
+    value["response_model"] = model_json(*influence.model);
+    return value;
+}
+
+}  // namespace grainsweep::report

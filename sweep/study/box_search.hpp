@@ -1,0 +1,36 @@
+// Settings of a campaign's box: spread over all of it, or about one of them.
+#pragma once
+
+#include "sweep/study/features.hpp"
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace grainsweep::study {
+
+/// A setting and where it stands in the unit cube.
+struct BoxPoint {
+    std::vector<double> u;
+    Setting setting;
+};
+
+/// Empty: every setting passes.
+using Admits = std::function<bool(const Setting&)>;
+
+/// `count` Sobol points of the box, less those that are not admitted.
+[[nodiscard]] std::vector<BoxPoint> spread_points(std::span<const ModelFactor> factors, const Admits& admits,
+                                                  std::size_t count);
+/// Sobol points of the box of half-width `reach` (in ranges) about a point, cut at the walls; factors with levels stay.
+[[nodiscard]] std::vector<BoxPoint> points_about(const BoxPoint& centre, double reach,
+                                                 std::span<const ModelFactor> factors, const Admits& admits,
+                                                 std::size_t count);
+
+/// The setting at a point of the unit cube, rounded to a thousandth of the range's order of magnitude (of the value's,
+/// where the range is logarithmic), within the range.
+[[nodiscard]] Setting rounded_setting(std::span<const ModelFactor> factors, std::span<const double> u);
+/// The same without rounding, as a design asks it.
+[[nodiscard]] Setting exact_setting(std::span<const ModelFactor> factors, std::span<const double> u);
+
+}  // namespace grainsweep::study

@@ -1,0 +1,40 @@
+#include "sweep/study/brackets.hpp"
+
+#include "solver/scenes/scene.hpp"
+#include "sweep/campaign/program.hpp"
+#include "sweep/campaign/stored_request.hpp"
+#include "sweep/schedule/growth.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace grainsweep::study {
+
+std::optional<Brackets> brackets_of(const store::Store& store, const store::CampaignRecord& record) {
+    if (record.design != "refine") return std::nullopt;
+    auto request = campaign::request_of(record);
+    Brackets brackets;
+    brackets.factor = request.word("factor");
+    brackets.observable = request.word("observable");
+    brackets.threshold = request.number("threshold");
+    brackets.width = request.number("width");
+    if (const auto* scene = find_scene(record.scene)) {
+        if (const auto* parameter = scene->find_parameter(brackets.factor)) brackets.factor_unit = parameter->unit;
+        if (const auto* measured = scene->find_observable(brackets.observable))
+            brackets.observable_unit = measured->unit;
+    }
+    request.answers = schedule::known_answers(store, record, std::span(&brackets.observable, 1));
+    brackets.found = designs::brackets(request);
+    const auto factors = campaign::factors_of(record);
+    for (const auto& factor : factors)
+        if (!factor.between) brackets.others.push_back(factor.name);
+    for (const auto& bracket : brackets.found) {
+        auto& levels = brackets.levels.emplace_back();
+        std::size_t other = 0;
+        for (const auto& factor : factors)
+            if (!factor.between) levels.push_back(factor.levels[bracket.levels[other++]]);
+    }
+    return brackets;
+}
+
+}  // namespace grainsweep::study

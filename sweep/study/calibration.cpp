@@ -1,0 +1,236 @@
+#include "sweep/study/calibration.hpp"
+
+#include "solver/scenes/scene.hpp"
+#include "stats/calibration.hpp"
+#include "sweep/campaign/program.hpp"
+#include "sweep/campaign/stored_request.hpp"
+#include "sweep/designs/calibration_layout.hpp"
+#include "sweep/schedule/growth.hpp"
+#include "sweep/study/responses.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace grainsweep::study {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr double uniform_sd = 0.28867513459481287;  // of the uniform distribution over [0, 1]
+constexpr double not_determined = 0.8;              // share of the prior's sd
+constexpr double strongly_coupled = 0.8;            // correlation
+constexpr double out_of_reach = 3;                  // standard deviations beyond every case
+constexpr double settled_chains = 1.05;
+
+double mean_of(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double sd_of(const std::vector<double>& values) {
+    if (values.size() < 2) return none;
+    const double mean = mean_of(values);
+    double squares = 0;
+    for (const double x : values) squares += (x - mean) * (x - mean);
+    return std::sqrt(squares / static_cast<double>(values.size() - 1));
+}
+
+double quantile(std::vector<double> values, double share) {
+    std::ranges::sort(values);
+    const double at = share * static_cast<double>(values.size() - 1);
+    const auto below = static_cast<std::size_t>(at);
+    const auto above = std::min(below + 1, values.size() - 1);
+    return std::lerp(values[below], values[above], at - static_cast<double>(below));
+}
+
+FactorPosterior posterior_of(const designs::Calibration& found, std::size_t j) {
+    const auto rows = found.posterior->rows();
+    std::vector<double> values;
+    for (std::size_t i = 0; i < rows.size(); ++i) values.push_back(found.ranges[j].value_at(rows.row(i)[j]));
+    return {found.factors[j],
+            "",
+            mean_of(values),
+            sd_of(values),
+            quantile(values, 0.05),
+            quantile(values, 0.95),
+            found.shape->sd[j] / uniform_sd};
+}
+
+std::string condition_text(const designs::MeasuredTarget& target, const std::vector<campaign::StatedFactor>& factors) {
+    std::string text;
+    for (const auto& [name, level] : target.level) {
+        const auto stated = std::ranges::find(factors, name, &campaign::StatedFactor::name);
+        const std::string value = stated == factors.end() ? "?" : stated->levels.at(level);
+        text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", name, value);
+    }
+    return text;
+}
+
+TargetCheck check_of(const designs::Calibration& found, std::size_t t) {
+    const auto& target = found.targets[t];
+    TargetCheck check{
+        target.observable, "", "", target.value, target.error, target.discrepancy, none, none, none, none, 0, 0, {}};
+    if (!found.waves.empty()) {
+        check.refusal = found.waves.back().refusals[t];
+        check.beyond = found.beyond[t];
+    }
+    if (found.posterior && found.models[t]) {
+        const auto means = found.models[t]->means(found.posterior->rows());
+        check.predicted = mean_of(means);
+        check.predicted_error = sd_of(means);
+    }
+    if (t < found.check.size()) {
+        std::vector<double> answers;
+        std::ranges::copy_if(found.check[t], std::back_inserter(answers), [](double x) { return std::isfinite(x); });
+        check.runs = answers.size();
+        if (!answers.empty()) check.checked = mean_of(answers);
+        check.checked_sd = sd_of(answers);
+    }
+    return check;
+}
+
+/// The places that the curves of a target cover under its condition; none where it is a scalar, or there is no curve.
+std::optional<std::pair<double, double>> covered_by(const store::Store& store, const std::string& campaign,
+                                                    const designs::CalibrationLayout& layout, std::size_t t,
+                                                    const designs::CurvePlace& place) {
+    if (!place.at) return std::nullopt;
+    std::optional<std::pair<double, double>> covered;
+    for (const auto& curve : store.curve_extents(campaign, place.observable)) {
+        if (static_cast<std::size_t>(curve.point) % layout.conditions.size() != layout.condition_of[t]) continue;
+        if (!covered) covered = {curve.first, curve.last};
+        covered = {std::min(covered->first, curve.first), std::max(covered->second, curve.last)};
+    }
+    return covered;
+}
+
+/// How many of the points that follow from the answers are, from the first on, the settings that were run: all of them,
+/// unless another version of the program chose them.
+std::size_t followed_points(const designs::Calibration& found, const Responses& run) {
+    constexpr double rounding = 1e-9;  // of the range
+    const std::size_t d = found.points.dimensions;
+    std::size_t followed = found.points.size();
+    for (std::size_t row = 0; row < run.rows(); ++row) {
+        const auto point = static_cast<std::size_t>(run.points[row]);
+        if (point >= followed) continue;
+        for (std::size_t j = 0, k = 0; j < d && k < found.factors.size(); ++j) {
+            if (run.factors[j].name != found.factors[k]) continue;
+            const auto& range = found.ranges[k++];
+            const double value = range.value_at(found.points.point(point)[j]);
+            const double width = std::abs(range.value_at(1) - range.value_at(0));
+            if (std::abs(run.factors[j].values[row] - value) > rounding * width) followed = point;
+        }
+    }
+    return followed;
+}
+
+/// What a user must know before quoting the posterior.
+std::vector<std::string> notes_of(const CalibrationReport& report) {
+    std::vector<std::string> notes;
+    const auto& found = report.found;
+    for (const auto& target : report.targets) {
+        if (!target.refusal.empty() && !std::isinf(target.beyond))
+            notes.push_back(
+                fmt::format("{} has no response model and decides nothing: {}", target.name(), target.refusal));
+        if (std::isinf(target.beyond))
+            notes.push_back(fmt::format("{}: no case has an answer to it{}", target.name(),
+                                        target.covered ? fmt::format("; its curves cover {:.6g} to {:.6g}",
+                                                                     target.covered->first, target.covered->second)
+                                                       : ""));
+        else if (target.beyond > out_of_reach)
+            notes.push_back(
+                fmt::format("{}: no case came near the measured {:.5g}; it lies {:.1f} standard deviations beyond "
+                            "all of them: the ranges, or the model, do not reach what was measured",
+                            target.name(), target.value, target.beyond));
+    }
+    if (!found.waves.empty()) {
+        const auto& last = found.waves.back();
+        if (last.failed > 0)
+            notes.push_back(fmt::format("{} settings have no answer to some target and are left out", last.failed));
+        if (last.kept == 0 && found.least_implausibility > 3)
+            notes.push_back(
+                fmt::format("the targets contradict each other: no setting is within 3 standard deviations of all "
+                            "of them, the nearest is {:.1f} off. A larger discrepancy, or another model, is needed",
+                            found.least_implausibility));
+    }
+    if (!found.posterior) return notes;
+    for (const auto& factor : report.factors)
+        if (factor.share_of_range > not_determined)
+            notes.push_back(
+                fmt::format("{} is not determined by these targets: its posterior is {:.0f} % as wide as its range",
+                            factor.name, 100 * factor.share_of_range));
+    const std::size_t d = report.factors.size();
+    for (std::size_t i = 0; i < d; ++i)
+        for (std::size_t j = i + 1; j < d; ++j) {
+            const double r = found.shape->correlation[i * d + j];
+            if (std::abs(r) < strongly_coupled) continue;
+            notes.push_back(
+                fmt::format("{} and {} are determined together, not each: along a ridge of equal fit one {} as the "
+                            "other rises (correlation {:.2f})",
+                            report.factors[i].name, report.factors[j].name, r < 0 ? "falls" : "rises", r));
+        }
+    if (!(found.posterior->scale_reduction < settled_chains))
+        notes.push_back(
+            fmt::format("the chains of the posterior have not settled (scale reduction {:.2f}): its widths are rough",
+                        found.posterior->scale_reduction));
+    for (const auto& target : report.targets)
+        if (std::abs(target.z()) > 2)
+            notes.push_back(
+                fmt::format("{}: fresh runs at settings drawn from the posterior miss the measurement by {:.1f} "
+                            "standard deviations",
+                            target.name(), std::abs(target.z())));
+    return notes;
+}
+
+}  // namespace
+
+std::string TargetCheck::name() const {
+    return condition.empty() ? observable : fmt::format("{} at {}", observable, condition);
+}
+
+double TargetCheck::z() const {
+    if (runs < 2) return none;
+    const double scatter = std::isfinite(checked_sd) ? checked_sd : 0;
+    return (checked - value) / std::sqrt(error * error + discrepancy * discrepancy + scatter * scatter);
+}
+
+std::optional<CalibrationReport> calibration_report(const store::Store& store, const store::CampaignRecord& record) {
+    if (record.design != "calibration") return std::nullopt;
+    auto request = campaign::request_of(record);
+    const auto& design = designs::design_named(record.design);
+    request.answers = schedule::known_answers(store, record, design.rests_on(request));
+    CalibrationReport report{designs::calibration_of(request), {}, {}, {}};
+    const auto followed = followed_points(report.found, read_responses(store, record));
+    const bool by_another_program = followed < report.found.points.size();
+    if (by_another_program) {  // answers of other points say nothing of these
+        for (auto& [observable, answers] : request.answers) answers.resize(std::min(answers.size(), followed));
+        report.found = designs::calibration_of(request);
+    }
+    const auto* scene = find_scene(record.scene);
+    const auto stated = campaign::factors_of(record);
+    if (report.found.posterior)
+        for (std::size_t j = 0; j < report.found.factors.size(); ++j) {
+            report.factors.push_back(posterior_of(report.found, j));
+            const auto* parameter = scene == nullptr ? nullptr : scene->find_parameter(report.found.factors[j]);
+            if (parameter != nullptr) report.factors.back().unit = parameter->unit;
+        }
+    const auto layout = designs::calibration_layout(request, report.found.targets);
+    for (std::size_t t = 0; t < report.found.targets.size(); ++t) {
+        auto& check = report.targets.emplace_back(check_of(report.found, t));
+        check.condition = condition_text(report.found.targets[t], stated);
+        const auto place = designs::place_on_curve(check.observable);
+        if (std::isinf(check.beyond)) check.covered = covered_by(store, record.name, layout, t, place);
+        const auto* measured = scene == nullptr ? nullptr : scene->find_observable(place.observable);
+        if (measured != nullptr) check.unit = measured->unit;
+    }
+    report.notes = notes_of(report);
+    if (by_another_program)
+        report.notes.push_back(fmt::format(
+            "from point {} on its settings were chosen by another version of grainsweep, and this one would choose "
+            "others: only the waves before are shown. Under another name it is calibrated anew, with what is finished",
+            followed));
+    return report;
+}
+
+}  // namespace grainsweep::study

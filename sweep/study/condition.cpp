@@ -1,0 +1,245 @@
+#include "sweep/study/condition.hpp"
+
+#include "sweep/campaign/wrong_question.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+
+namespace grainsweep::study {
+
+/// Recursive descent over the text; `nodes_` of the condition grow as parts are understood.
+class ConditionReader {
+public:
+    ConditionReader(std::string_view text, std::span<const std::string> names) : text_(text), names_(names) {}
+
+    Condition read() {
+        any();
+        skip();
+        if (at_ != text_.size()) refuse("and, or, or the end is expected");
+        return std::move(condition_);
+    }
+
+private:
+    using Kind = Condition::Kind;
+    using Node = Condition::Node;
+    static constexpr int deepest = 200, most_comparisons = 100;
+
+    [[noreturn]] void refuse(std::string_view expected, std::string_view suggestion = {}) const {
+        const auto rest = text_.substr(at_, 30);
+        throw campaign::wrong_question(
+            "--where", text_,
+            fmt::format("{} at {}; a condition compares observables and factors with numbers by <, <=, >, >= or "
+                        "between, joined by and, or, not and brackets",
+                        expected, rest.empty() ? "its end" : fmt::format("'{}'", rest)),
+            suggestion);
+    }
+
+    std::size_t add(Node node) {
+        condition_.nodes_.push_back(node);
+        return condition_.nodes_.size() - 1;
+    }
+
+    void skip() {
+        while (at_ < text_.size() && std::isspace(static_cast<unsigned char>(text_[at_])) != 0) ++at_;
+    }
+
+    [[nodiscard]] std::string_view word_ahead() {
+        skip();
+        std::size_t end = at_;
+        const auto part_of_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+        if (end < text_.size() && std::isdigit(static_cast<unsigned char>(text_[end])) != 0) return {};
+        while (end < text_.size() && part_of_word(text_[end])) ++end;
+        return text_.substr(at_, end - at_);
+    }
+
+    bool take(std::string_view keyword) {
+        const auto word = word_ahead();
+        const bool same = std::ranges::equal(
+            word, keyword, [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
+        if (same) at_ += word.size();
+        return same;
+    }
+
+    bool take_sign(char sign) {
+        skip();
+        if (at_ >= text_.size() || text_[at_] != sign) return false;
+        ++at_;
+        return true;
+    }
+
+    std::size_t any() {
+        auto node = all();
+        while (take("or")) node = add({.kind = Kind::any, .first = node, .second = all()});
+        return node;
+    }
+
+    std::size_t all() {
+        auto node = single();
+        while (take("and")) node = add({.kind = Kind::all, .first = node, .second = single()});
+        return node;
+    }
+
+    std::size_t single() {
+        if (++depth_ > deepest) refuse("fewer brackets are expected");
+        std::size_t node = 0;
+        if (take("not")) {
+            const auto inner = single();
+            node = add({.kind = Kind::none, .first = inner});
+        } else if (take_sign('(')) {
+            node = any();
+            if (!take_sign(')')) refuse("a closing bracket is expected");
+        } else {
+            node = comparison();
+        }
+        --depth_;
+        return node;
+    }
+
+    std::size_t comparison() {
+        const auto node = one_comparison();
+        skip();
+        if (at_ < text_.size() && std::string_view("<>=!").find(text_[at_]) != std::string_view::npos)
+            refuse("and with another comparison (0.2 < x and x < 0.5) is expected");
+        return node;
+    }
+
+    std::size_t one_comparison() {
+        if (++comparisons_ > most_comparisons) refuse(fmt::format("no more than {} comparisons", most_comparisons));
+        if (const auto number_first = number()) {
+            const auto kind = sign();
+            return add({.kind = mirrored(kind), .name = name(), .number = *number_first});
+        }
+        const auto compared = name();
+        if (take("between")) {
+            const double low = wanted_number();
+            if (!take("and")) refuse("and is expected");
+            const auto lower = add({.kind = Kind::at_least, .name = compared, .number = low});
+            const auto upper = add({.kind = Kind::at_most, .name = compared, .number = wanted_number()});
+            return add({.kind = Kind::all, .first = lower, .second = upper});
+        }
+        const auto kind = sign();
+        return add({.kind = kind, .name = compared, .number = wanted_number()});
+    }
+
+    Kind sign() {
+        if (take_sign('<')) return take_sign('=') ? Kind::at_most : Kind::below;
+        if (take_sign('>')) return take_sign('=') ? Kind::at_least : Kind::above;
+        refuse("<, <=, > or >= is expected");
+    }
+
+    static Kind mirrored(Kind kind) {
+        switch (kind) {
+            case Kind::below:
+                return Kind::above;
+            case Kind::at_most:
+                return Kind::at_least;
+            case Kind::above:
+                return Kind::below;
+            default:
+                return Kind::at_most;
+        }
+    }
+
+    std::size_t name() {
+        const auto word = word_ahead();
+        if (word.empty()) refuse("the name of an observable or a factor is expected");
+        const auto found = std::ranges::find(names_, word);
+        if (found == names_.end())
+            refuse(fmt::format("'{}' is neither observable nor factor of the campaign", word),
+                   campaign::nearest_word(word, names_));
+        at_ += word.size();
+        return static_cast<std::size_t>(found - names_.begin());
+    }
+
+    std::optional<double> number() {
+        skip();
+        const auto rest = text_.substr(at_);
+        const std::size_t plus = rest.starts_with('+') ? 1 : 0;
+        double value = 0;
+        const auto [end, error] = std::from_chars(rest.data() + plus, rest.data() + rest.size(), value);
+        const bool begins = !rest.empty() && std::isalpha(static_cast<unsigned char>(rest.front())) == 0;
+        if (!begins || error != std::errc() || !std::isfinite(value)) return std::nullopt;
+        at_ += static_cast<std::size_t>(end - rest.data());
+        return value;
+    }
+
+    double wanted_number() {
+        if (const auto value = number()) return *value;
+        refuse("a number is expected");
+    }
+
+    std::string_view text_;
+    std::span<const std::string> names_;
+    std::size_t at_ = 0;
+    int depth_ = 0, comparisons_ = 0;
+    Condition condition_;
+};
+
+Condition Condition::read(std::string_view text, std::span<const std::string> names) {
+    return ConditionReader(text, names).read();
+}
+
+std::optional<bool> Condition::decide(std::size_t index, std::span<const double> values) const {
+    const auto& node = nodes_[index];
+    switch (node.kind) {
+        case Kind::none: {
+            const auto inner = decide(node.first, values);
+            return inner ? std::optional(!*inner) : std::nullopt;
+        }
+        case Kind::all:
+        case Kind::any: {
+            const bool decisive = node.kind == Kind::any;
+            const auto first = decide(node.first, values);
+            if (first == decisive) return decisive;
+            const auto second = decide(node.second, values);
+            if (second == decisive) return decisive;
+            return first && second ? std::optional(!decisive) : std::nullopt;
+        }
+        default:
+            break;
+    }
+    const double value = values[node.name];
+    if (std::isnan(value)) return std::nullopt;
+    if (node.kind == Kind::below) return value < node.number;
+    if (node.kind == Kind::at_most) return value <= node.number;
+    if (node.kind == Kind::above) return value > node.number;
+    return value >= node.number;
+}
+
+bool Condition::holds(std::span<const double> values) const {
+    return decide(nodes_.size() - 1, values).value_or(false);
+}
+
+std::vector<std::size_t> Condition::compared() const {
+    std::vector<std::size_t> names;
+    for (const auto& node : nodes_) {
+        const bool comparison = node.kind != Kind::all && node.kind != Kind::any && node.kind != Kind::none;
+        if (comparison && std::ranges::find(names, node.name) == names.end()) names.push_back(node.name);
+    }
+    return names;
+}
+
+void Condition::collect(std::size_t index, bool negated, std::size_t name, bool& from_below, bool& from_above) const {
+    const auto& node = nodes_[index];
+    if (node.kind == Kind::none) return collect(node.first, !negated, name, from_below, from_above);
+    if (node.kind == Kind::all || node.kind == Kind::any) {
+        collect(node.first, negated, name, from_below, from_above);
+        collect(node.second, negated, name, from_below, from_above);
+        return;
+    }
+    if (node.name != name) return;
+    const bool lower_bound = node.kind == Kind::above || node.kind == Kind::at_least;
+    (lower_bound != negated ? from_below : from_above) = true;
+}
+
+int Condition::direction(std::size_t name) const {
+    bool from_below = false, from_above = false;
+    collect(nodes_.size() - 1, false, name, from_below, from_above);
+    return static_cast<int>(from_below) - static_cast<int>(from_above);
+}
+
+}  // namespace grainsweep::study

@@ -1,0 +1,47 @@
+// The condition of a process window: comparisons of observables and factors with numbers, joined by and, or, not.
+//
+//   condition  = every { "or" every },   every = single { "and" single }
+//   single     = "not" single | "(" condition ")" | comparison
+//   comparison = NAME op NUMBER | NUMBER op NAME | NAME "between" NUMBER "and" NUMBER,   op: < <= > >=
+//
+// Undefined values make a comparison neither true nor false, as NULL does in SQL; only what is true holds.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace grainsweep::study {
+
+class Condition {
+public:
+    /// Over the given names. Throws WrongQuestion at --where with what was expected and the nearest name.
+    [[nodiscard]] static Condition read(std::string_view text, std::span<const std::string> names);
+
+    /// One value per name, NaN: undefined.
+    [[nodiscard]] bool holds(std::span<const double> values) const;
+    /// Indices of the names it compares, in the order of their first mention.
+    [[nodiscard]] std::vector<std::size_t> compared() const;
+    /// Which way the name must go for the condition: +1 where it is only bounded from below, -1 only from above, 0
+    /// both.
+    [[nodiscard]] int direction(std::size_t name) const;
+
+private:
+    enum class Kind { below, at_most, above, at_least, all, any, none };
+    struct Node {
+        Kind kind = Kind::all;
+        std::size_t name = 0;
+        double number = 0;
+        std::size_t first = 0, second = 0;  ///< of all, any; none: first
+    };
+    friend class ConditionReader;
+    [[nodiscard]] std::optional<bool> decide(std::size_t node, std::span<const double> values) const;
+    void collect(std::size_t node, bool negated, std::size_t name, bool& from_below, bool& from_above) const;
+
+    std::vector<Node> nodes_;  ///< the last is the root
+};
+
+}  // namespace grainsweep::study

@@ -1,0 +1,50 @@
+#include "sweep/study/factor_axis.hpp"
+
+#include "sweep/study/box_search.hpp"
+
+namespace grainsweep::study {
+namespace {
+
+std::size_t levels_of(const ModelFactor& factor) {
+    return factor.is_word() ? factor.words.size() : factor.numbers.size();
+}
+
+std::size_t places_of(const ModelFactor& factor, std::size_t count) {
+    const auto levels = levels_of(factor);
+    return levels > 0 ? levels : factor.high > factor.low ? count : 1;
+}
+
+/// The number of a factor at share u of its range.
+double at_share(const ModelFactor& factor, double u) {
+    return exact_setting(std::span(&factor, 1), std::span(&u, 1)).front();
+}
+
+}  // namespace
+
+std::vector<double> points_along(const ModelFactor& factor, std::size_t count) {
+    const auto places = places_of(factor, count);
+    if (levels_of(factor) > 0 || places == 1) return cells_along(factor, count);
+    std::vector<double> numbers;
+    for (std::size_t k = 0; k < places; ++k)
+        numbers.push_back(at_share(factor, static_cast<double>(k) / static_cast<double>(places - 1)));
+    return numbers;
+}
+
+std::vector<double> cells_along(const ModelFactor& factor, std::size_t count) {
+    const auto places = places_of(factor, count);
+    std::vector<double> numbers;
+    for (std::size_t k = 0; k < places; ++k)
+        numbers.push_back(at_share(factor, (static_cast<double>(k) + 0.5) / static_cast<double>(places)));
+    return numbers;
+}
+
+std::vector<double> cell_edges(const ModelFactor& factor, std::size_t count) {
+    std::vector<double> edges;
+    if (levels_of(factor) > 0) return edges;
+    const auto places = places_of(factor, count);
+    for (std::size_t k = 0; k <= places; ++k)
+        edges.push_back(at_share(factor, static_cast<double>(k) / static_cast<double>(places)));
+    return edges;
+}
+
+}  // namespace grainsweep::study

@@ -1,0 +1,19 @@
+// Where along a factor a response model is asked for pictures: curves at points that include the ends of the range,
+// maps at the middles of cells; logarithmic ranges evenly over their logarithms, a factor with levels once for each.
+#pragma once
+
+#include "sweep/study/features.hpp"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace grainsweep::study {
+
+/// Numbers of a factor along its range.
+[[nodiscard]] std::vector<double> points_along(const ModelFactor& factor, std::size_t count);
+[[nodiscard]] std::vector<double> cells_along(const ModelFactor& factor, std::size_t count);
+/// Where the cells begin and end, one more than there are; of levels none.
+[[nodiscard]] std::vector<double> cell_edges(const ModelFactor& factor, std::size_t count);
+
+}  // namespace grainsweep::study

@@ -1,0 +1,71 @@
+// What a response model sees of a setting: numbers made of the campaign's factors.
+//
+//   by default   every continuous factor, its logarithm where high/low >= 2.5 and low > 0; of a factor with levels that
+//                are numbers the same; of one with words a column for each but the first, 1 where it has that word
+//   as written   "model": {"features": ["friction", "log(diameter)", "gap/diameter"]} in the campaign file: SQL
+//                expressions over factors
+#pragma once
+
+#include "sweep/campaign/campaign.hpp"
+#include "sweep/study/responses.hpp"
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace grainsweep::study {
+
+/// A factor as a model takes it. A setting gives each factor one number: its value in its unit or, for words, the index
+/// of the word.
+struct ModelFactor {
+    std::string name, unit;
+    double low = 0, high = 0;        ///< of numbers: the range, or the smallest and largest level
+    bool log = false;                ///< the range is divided logarithmically
+    std::vector<double> numbers;     ///< levels that are numbers, growing; empty: a range, or words
+    std::vector<std::string> words;  ///< levels that are words; empty: numbers
+
+    [[nodiscard]] bool is_word() const { return !words.empty(); }
+    /// The value as the campaign file has it.
+    [[nodiscard]] Value value(double number) const;
+    /// The same as text, to be read again: the shortest that is the same number.
+    [[nodiscard]] std::string text(double number) const;
+};
+
+/// One number per factor, in the campaign's order.
+using Setting = std::vector<double>;
+
+/// The factors of a campaign, and their columns turned into settings (one per row).
+[[nodiscard]] std::vector<ModelFactor> model_factors(const Responses& responses);
+[[nodiscard]] std::vector<Setting> settings_of(const Responses& responses, std::span<const ModelFactor> factors);
+
+struct Features {
+    std::vector<std::string> names;  ///< as a reader would write them: "log(diameter)"
+    std::function<std::vector<double>(std::span<const double> setting)> of;  ///< one number per name; NaN: undefined
+};
+
+/// Features of every setting, one row after the other.
+[[nodiscard]] std::vector<double> rows_of(const Features& features, std::span<const Setting> settings);
+/// Smallest and largest of each feature: the box that lengths are measured in. Of one that is the same everywhere the
+/// box is one unit wide, and without rows it is the unit box.
+struct FeatureBox {
+    std::vector<double> low, high;
+};
+[[nodiscard]] FeatureBox box_of(std::span<const double> rows, std::size_t width);
+
+/// log(a/b) takes the place of feature a.
+struct Ratio {
+    std::size_t over = 0, under = 0;  ///< indices of factors
+};
+
+[[nodiscard]] Features default_features(std::span<const ModelFactor> factors, std::span<const Ratio> ratios = {});
+/// Throws WrongQuestion at $.model.features[k] for what SQLite cannot evaluate over the factors.
+[[nodiscard]] Features written_features(std::span<const ModelFactor> factors, std::span<const std::string> expressions);
+/// Ratios worth a trial: of two factors of one unit that is not 1, both positive and varied.
+[[nodiscard]] std::vector<Ratio> candidate_ratios(std::span<const ModelFactor> factors);
+
+/// Throws WrongQuestion where a feature of the campaign file cannot be evaluated.
+void check_features(const campaign::Campaign& campaign);
+
+}  // namespace grainsweep::study

@@ -1,0 +1,284 @@
+#include "sweep/study/history.hpp"
+
+#include "sweep/campaign/identity.hpp"
+#include "sweep/campaign/program.hpp"
+#include "sweep/schedule/judge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace grainsweep::study {
+namespace {
+
+using stats::ConvergenceRule;
+using stats::Statistic;
+
+/// Where no rule was given: blocks to look at, the campaign in about eight where it is small.
+stats::ConvergenceSettings settings_for_looking(const Responses& responses) {
+    stats::ConvergenceSettings settings;
+    settings.sequences = static_cast<std::int64_t>(schedule::independent_sequences(
+        responses.campaign.design, static_cast<std::size_t>(responses.campaign.sequences)));
+    if (settings.sequences < 4) settings.rule = ConvergenceRule::all_change;
+    settings.block = campaign::default_block(responses.candidates, settings.sequences, settings.sequences);
+    return settings;
+}
+
+stats::ConvergenceSettings settings_for(const Responses& responses, const ResponseColumn& response) {
+    const auto& record = responses.campaign;
+    if (!record.convergence) return settings_for_looking(responses);
+    auto settings = schedule::settings_of(
+        *record.convergence,
+        schedule::independent_sequences(record.design, static_cast<std::size_t>(record.sequences)));
+    // Other observables than the judged one have no model: their plain errors are shown.
+    if (settings.rule == ConvergenceRule::assisted && response.name != record.convergence->observable)
+        settings.rule = ConvergenceRule::replicates;
+    return settings;
+}
+
+/// What a rule with models is shown with beside them.
+stats::ConvergenceSettings plain(stats::ConvergenceSettings settings) {
+    if (settings.rule == ConvergenceRule::assisted) settings.rule = ConvergenceRule::replicates;
+    return settings;
+}
+
+/// The checks of a run under the rule `assisted`, from what it stored of them.
+std::vector<stats::Checkpoint> judged_in_the_run(const Responses& responses,
+                                                 const stats::ConvergenceSettings& settings) {
+    std::vector<stats::Checkpoint> checks;
+    for (const auto& row : responses.judged_checks) {
+        if (row.points > responses.settled_points) break;
+        stats::Checkpoint check;
+        check.points = row.points;
+        check.excluded = row.excluded;
+        check.zero_share = row.zero_share;
+        const std::array values = {row.mean, row.sd, row.skewness, row.g1, row.kurtosis};
+        const std::array errors = {row.mean_error, row.sd_error, row.skewness_error, row.g1_error, row.kurtosis_error};
+        for (std::size_t s = 0; s < stats::statistics.size(); ++s)
+            check.estimates[s] = {values[s], errors[s], stats::measure_of(stats::statistics[s], errors[s], values[s])};
+        stats::compare_with_tolerance(check, settings);
+        check.converged = row.converged;
+        checks.push_back(std::move(check));
+    }
+    return checks;
+}
+
+std::span<const std::int64_t> judged_points(const Responses& responses) {
+    return std::span(responses.points).first(responses.settled);
+}
+
+/// Moments of all settled values, with errors where the design is a sample.
+stats::Checkpoint check_of_all(const Responses& responses, const ResponseColumn& response,
+                               stats::ConvergenceSettings settings) {
+    settings = plain(std::move(settings));
+    settings.block = std::max<std::int64_t>(1, responses.settled_points);
+    const auto checks = stats::judge_convergence(settings, judged_points(responses), responses.judged(response),
+                                                 responses.settled_points);
+    if (checks.empty()) return {};
+    stats::Checkpoint all = checks.front();
+    all.points = responses.counted_points();
+    if (!responses.ordered_sample()) {
+        for (auto& estimate : all.estimates)
+            estimate.error = estimate.measure = std::numeric_limits<double>::quiet_NaN();
+    }
+    return all;
+}
+
+/// Moments of all finished values, where the settled beginning has not all of them.
+std::optional<stats::Checkpoint> check_of_finished(const Responses& responses, const ResponseColumn& response,
+                                                   stats::ConvergenceSettings settings) {
+    if (responses.campaign.stopped_at || responses.finished() <= responses.settled) return std::nullopt;
+    std::vector<std::int64_t> points;
+    std::vector<double> values;
+    for (std::size_t row = 0; row < responses.rows(); ++row) {
+        if (!has_final_outcome(responses.outcomes[row])) continue;
+        points.push_back(responses.points[row]);
+        values.push_back(response.values[row]);
+    }
+    settings = plain(std::move(settings));
+    settings.block = points.back() + 1;
+    auto found = stats::judge_convergence(settings, points, values, settings.block);
+    if (found.empty()) return std::nullopt;
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    found.front().points = static_cast<std::int64_t>(points.size());
+    return found.front();
+}
+
+void warn(History& history, const Responses& responses, const ResponseColumn& response) {
+    const auto& record = responses.campaign;
+    if (history.has_rule && history.settings.rule == ConvergenceRule::any_change) {
+        history.warnings.emplace_back(
+            "the rule any_change stops too early in about half of all sweeps: quote the errors, not the verdict");
+    }
+    if (history.has_rule && history.settings.rule == ConvergenceRule::assisted) {
+        history.warnings.emplace_back(
+            "the checks, and the measures, are of estimates with a model of the response, as the run judged them; "
+            "value "
+            "and error over all points are plain");
+        if (history.all.excluded > 0)
+            history.warnings.push_back(fmt::format(
+                "the estimates with a model are of the whole box, extrapolated into the settings of the {} cases "
+                "without a value; plain ones are of the cases that answer",
+                history.all.excluded));
+    }
+    if (record.convergence && record.convergence->observable != response.name) {
+        history.warnings.push_back(
+            fmt::format("the campaign was judged on {}, not on {}", record.convergence->observable, response.name));
+    }
+    const auto& design = responses.design();
+    if (design.grows) {
+        history.warnings.push_back(fmt::format(
+            "the points of a {} gather where its answers say so: their moments describe no range", record.design));
+    } else if (design.beginning == designs::Beginning::corner) {
+        history.warnings.push_back(fmt::format(
+            "a {} has no errors and cannot be judged from inside: compare campaigns of growing levels", record.design));
+    }
+    if (design.beginning == designs::Beginning::listed)
+        history.warnings.emplace_back("listed points are no sample: their moments have no errors");
+    if (design.block(responses.factors.size()) > 1) {
+        history.warnings.push_back(
+            fmt::format("points of a {} design depend on each other: errors of moments are rough", record.design));
+    }
+    if (stats::median_is_unsound(history.all.zero_share)) {
+        history.warnings.push_back(
+            fmt::format("{:.0f} % of the values are zero: the median jumps between zero and the rest, Pearson's "
+                        "skewness is ill-defined",
+                        100 * history.all.zero_share));
+    }
+    if (!responses.repeated.empty()) {
+        history.warnings.push_back(
+            fmt::format("{} of {} places repeat an earlier case: each of the {} cases counts once",
+                        responses.repeated.size(), responses.repeated.size() + responses.rows(), responses.rows()));
+    }
+    if (history.all.excluded > 0) {
+        const std::string why = campaign::why_absent(record.scene, response.name);
+        history.warnings.push_back(fmt::format("{} of {} cases have no value and are left out{}{}",
+                                               history.all.excluded, history.all.excluded + history.all.count,
+                                               why.empty() ? "" : ": a completed case has none where ", why));
+    }
+    const auto finished = responses.finished();
+    if (!record.stopped_at && finished < responses.rows()) {
+        history.warnings.push_back(
+            fmt::format("{} of {} cases are not settled", responses.rows() - finished, responses.rows()));
+    }
+    if (history.provisional) {
+        history.warnings.push_back(
+            fmt::format("{} finished cases lie behind one that is not: they count in the provisional figures only",
+                        finished - responses.settled));
+    }
+    if (auto note = extent_note(record); !note.empty()) history.warnings.push_back(std::move(note));
+}
+
+std::int64_t first_check(const stats::ConvergenceSettings& settings) {
+    if (settings.rule != ConvergenceRule::assisted) return settings.block;
+    return (campaign::fewest_assisted_points + settings.block - 1) / settings.block * settings.block;
+}
+
+std::string verdict_of(const History& history, const Responses& responses) {
+    if (!responses.ordered_sample()) return "not judged: no sample of growing size";
+    if (!history.has_rule && responses.design().purpose != designs::Purpose::statistics)
+        return fmt::format("not judged: no rule was given, and a {} design is made for sensitivity",
+                           responses.campaign.design);
+    if (history.checks.empty())
+        return fmt::format("{}first check at {} points, {} are settled", history.has_rule ? "not converged: " : "",
+                           first_check(history.settings), responses.settled_points);
+    // The first converged check is where the campaign might have stopped; without one, the last says what is missing.
+    const auto converged = std::ranges::find(history.checks, true, &stats::Checkpoint::converged);
+    const auto& check = converged == history.checks.end() ? history.checks.back() : *converged;
+    const auto line = schedule::verdict_of(check, history.settings, responses.candidates);
+    if (!history.has_rule)
+        return fmt::format("no rule was given; by '{}' it would say: {}", stats::to_string(history.settings.rule),
+                           line);
+    return check.converged ? fmt::format("converged at {} points: {}", check.points, line) : "not converged: " + line;
+}
+
+double change(Statistic statistic, double now, double before) {
+    const double moved = std::abs(now - before);
+    if (statistic == Statistic::skewness) return moved / 3;
+    return moved / (statistic == Statistic::g1 ? std::max(1.0, std::abs(now)) : std::abs(now));
+}
+
+}  // namespace
+
+std::string extent_note(const store::CampaignRecord& campaign) {
+    if (!campaign.shrunk()) return {};
+    const auto text = [](const store::Extent& extent) {
+        return fmt::format("{} points x {}", extent.candidates, extent.replicates);
+    };
+    return fmt::format("asked now: {}; stored: {}: view and statistics are over what is stored", text(campaign.asked),
+                       text(campaign.stored));
+}
+
+std::string points_line(const Responses& responses) {
+    const auto line = fmt::format("{} candidates, {} left out by where, {} cases asked, {} finished",
+                                  responses.candidates, responses.dropped(), responses.rows(), responses.finished());
+    if (responses.repeated.empty()) return line;
+    return fmt::format("{}, {} places repeat one of them", line, responses.repeated.size());
+}
+
+History figures_of(const Responses& responses, const ResponseColumn& response) {
+    History history;
+    history.settings = settings_for(responses, response);
+    history.has_rule = responses.campaign.convergence.has_value();
+    history.all = check_of_all(responses, response, history.settings);
+    history.provisional = check_of_finished(responses, response, history.settings);
+    warn(history, responses, response);
+    return history;
+}
+
+History history_of(const Responses& responses, const ResponseColumn& response) {
+    History history = figures_of(responses, response);
+    if (history.settings.rule == ConvergenceRule::assisted) {
+        history.checks = judged_in_the_run(responses, history.settings);
+    } else if (responses.ordered_sample()) {
+        history.checks = stats::judge_convergence(history.settings, judged_points(responses),
+                                                  responses.judged(response), responses.settled_points);
+    }
+    history.verdict = verdict_of(history, responses);
+    if (history.has_rule) history.converged = std::ranges::any_of(history.checks, &stats::Checkpoint::converged);
+    return history;
+}
+
+std::vector<const stats::Checkpoint*> checks_to_show(const History& history, std::size_t most) {
+    std::vector<const stats::Checkpoint*> shown;
+    const std::size_t step = history.checks.size() / most + 1;
+    const auto converged = std::ranges::find(history.checks, true, &stats::Checkpoint::converged);
+    for (auto check = history.checks.begin(); check != history.checks.end(); ++check) {
+        const auto left = static_cast<std::size_t>(history.checks.end() - check) - 1;
+        if (left % step == 0 || check == converged) shown.push_back(&*check);
+    }
+    if (history.all.points > 0 && (shown.empty() || shown.back()->points != history.all.points))
+        shown.push_back(&history.all);
+    return shown;
+}
+
+std::vector<LatticeStep> lattice_family(const store::Store& store, const Responses& responses,
+                                        const ResponseColumn& response) {
+    if (responses.design().beginning != designs::Beginning::corner) return {};
+    const auto family = campaign::family_of(responses.campaign);
+    std::vector<LatticeStep> steps;
+    for (const auto& record : store.campaigns()) {
+        if (campaign::family_of(record) != family) continue;
+        const auto sibling = read_responses(store, record);
+        if (sibling.settled < sibling.rows()) continue;  // half a lattice is no lattice
+        LatticeStep step;
+        step.campaign = record.name;
+        step.points = sibling.counted_points();
+        step.summary = stats::summarise(sibling.judged(sibling.observable(response.name)));
+        steps.push_back(std::move(step));
+    }
+    std::ranges::stable_sort(steps, {}, &LatticeStep::points);
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        for (const auto statistic : stats::statistics) {
+            steps[i].changes.push_back(
+                i == 0 ? std::numeric_limits<double>::quiet_NaN()
+                       : change(statistic, steps[i].summary.of(statistic), steps[i - 1].summary.of(statistic)));
+        }
+    }
+    return steps.size() < 2 ? std::vector<LatticeStep>{} : steps;
+}
+
+}  // namespace grainsweep::study

@@ -1,0 +1,385 @@
+#include "sweep/study/influence.hpp"
+
+#include "solver/plain_text.hpp"
+#include "stats/confidence.hpp"
+#include "stats/trend.hpp"
+#include "sweep/study/effects.hpp"
+#include "sweep/study/error_text.hpp"
+#include "sweep/study/sample_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <set>
+#include <stdexcept>
+
+namespace grainsweep::study {
+namespace {
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double monotone_share = 0.9;
+constexpr std::size_t most_pieces = 15, most_coefficients = 160;
+
+/// One row per design point from 0 on: coordinates and the mean over its repeats; NaN where the point was filtered
+/// out, failed or is not there. What designs made of blocks need.
+struct Grid {
+    std::vector<double> coordinates, values;
+};
+
+/// Places in the settled beginning that repeat an earlier case.
+std::vector<RepeatedPlace> repeated_places(const Responses& responses) {
+    std::vector<RepeatedPlace> places;
+    for (const auto& place : responses.repeated)
+        if (place.row < responses.settled && place.point < responses.settled_points) places.push_back(place);
+    return places;
+}
+
+Grid grid_of(const Responses& responses, const ResponseColumn& response) {
+    const std::size_t d = responses.factors.size();
+    const auto repeated = repeated_places(responses);
+    auto points = responses.settled == 0 ? 0 : static_cast<std::size_t>(responses.points[responses.settled - 1] + 1);
+    for (const auto& place : repeated) points = std::max(points, static_cast<std::size_t>(place.point) + 1);
+    Grid grid{std::vector<double>(points * d, not_a_number), std::vector<double>(points, not_a_number)};
+    std::vector<double> sums(points), counts(points);
+    const auto place_row = [&](std::size_t point, std::size_t row) {
+        for (std::size_t j = 0; j < d; ++j) grid.coordinates[point * d + j] = responses.factors[j].coordinate(row);
+        if (!std::isfinite(response.values[row])) return;
+        sums[point] += response.values[row];
+        counts[point] += 1;
+    };
+    for (std::size_t row = 0; row < responses.settled; ++row)
+        place_row(static_cast<std::size_t>(responses.points[row]), row);
+    for (const auto& place : repeated) place_row(static_cast<std::size_t>(place.point), place.row);
+    for (std::size_t p = 0; p < points; ++p)
+        if (counts[p] > 0) grid.values[p] = sums[p] / counts[p];
+    return grid;
+}
+
+/// A level is a bin of its own, and so is a coordinate of a lattice; else so many bins that each has 16 points.
+std::size_t bins_for(const FactorColumn& factor, bool lattice, std::size_t settled, std::int64_t points) {
+    if (lattice || !factor.continuous()) {
+        const auto judged = std::span(factor.values).first(settled);
+        return std::max<std::size_t>(2, std::set<double>(judged.begin(), judged.end()).size());
+    }
+    return std::clamp<std::size_t>(static_cast<std::size_t>(points) / 16, 4, 16);
+}
+
+/// The binned index of a lattice with replicates without the part that scatter gives to the means, and the half-width
+/// of normal scatter: a sum of squares S of f degrees of freedom has E[S] = S0 + f sigma^2 and, as a (noncentral)
+/// chi-squared variable, V[S] = 2 f sigma^4 + 4 sigma^2 S0; the index is one such sum over that and the rest.
+void take_out_scatter(FactorInfluence& factor, const stats::VarianceSplit& split, std::span<const double> values) {
+    double n = 0, mean = 0, squares = 0;
+    for (const double value : values) {
+        if (!std::isfinite(value)) continue;
+        n += 1;
+        const double before = value - mean;
+        mean += before / n;
+        squares += before * (value - mean);
+    }
+    const double variance = split.pure.variance, freedom = static_cast<double>(factor.bins) - 1;
+    double& share = factor.first.value;
+    share -= freedom * variance / squares;
+    const auto variance_of = [&](double degrees, double sum) {
+        return 2 * degrees * variance * variance + 4 * variance * std::max(0.0, sum);
+    };
+    const double own = variance_of(freedom, share * squares);
+    const double rest = variance_of(n - 1 - freedom, (1 - share) * squares - (n - 1) * variance);
+    const double subtracted = 2 * std::pow(freedom * variance, 2) / static_cast<double>(split.pure.freedom);
+    const double total = std::pow(1 - share, 2) * own + share * share * rest + subtracted;
+    factor.first.half_width = stats::student_factor(split.pure.freedom) * std::sqrt(total) / squares;
+}
+
+/// Levels as numbers in their order, or nothing where they are words.
+std::vector<double> numbers_of(const std::vector<std::string>& levels) {
+    std::vector<double> numbers;
+    for (const auto& level : levels) {
+        const auto x = any_number_in(level);
+        if (!x) return {};
+        numbers.push_back(*x);
+    }
+    return numbers;
+}
+
+/// Variance of a value about the mean of its bin, for want of a better one; of a lattice the scatter of single runs.
+double variance_in_bins(const Responses& responses, const stats::PureError& pure, std::span<const EffectBin> bins,
+                        std::span<const double> values) {
+    if (responses.design().beginning == designs::Beginning::corner) return pure.freedom > 0 ? pure.variance : 0;
+    double squares = 0, n = 0;
+    for (const double value : values) {
+        if (!std::isfinite(value)) continue;
+        squares += value * value;
+        n += 1;
+    }
+    for (const auto& bin : bins) squares -= static_cast<double>(bin.count) * bin.mean * bin.mean;
+    const double freedom = n - static_cast<double>(bins.size());
+    return freedom > 0 ? std::max(0.0, squares / freedom) : not_a_number;
+}
+
+/// The response bends where its binned means leave the best rising and the best falling curve by more than scatter
+/// explains: a sum of squares beyond three standard deviations of a chi-squared variable.
+Trend trend_of(const FactorColumn& factor, const std::vector<double>& levels, const Responses& responses,
+               const stats::PureError& pure, std::span<const double> response) {
+    double centre = 0, count = 0;
+    for (const double value : response)
+        if (std::isfinite(value)) centre += (value - centre) / ++count;
+    std::vector<double> values(response.begin(), response.end());
+    for (double& value : values) value -= centre;
+    auto bins = main_effect(factor, values, {});
+    if (bins.size() < 2) return Trend::unknown;
+    if (!levels.empty())
+        std::ranges::sort(bins, {}, [&](const auto& bin) { return levels[static_cast<std::size_t>(bin.at)]; });
+    std::vector<double> means, negated, weights;
+    double between = 0;
+    for (const auto& bin : bins) {
+        means.push_back(bin.mean);
+        negated.push_back(-bin.mean);
+        weights.push_back(static_cast<double>(bin.count));
+        between += static_cast<double>(bin.count) * bin.mean * bin.mean;
+    }
+    const double rising = stats::rising_share(means, weights), falling = stats::rising_share(negated, weights);
+    const double scatter = variance_in_bins(responses, pure, bins, values);
+    if (std::isnan(rising) || std::isnan(scatter)) return Trend::unknown;
+    const double freedom = static_cast<double>(bins.size() - 1);
+    const double best = std::max(rising, falling);
+    if (best < monotone_share && between * (1 - best) > scatter * (freedom + 3 * std::sqrt(2 * freedom)))
+        return Trend::bends;
+    return rising > falling ? Trend::rises : Trend::falls;
+}
+
+/// Rank correlations, and trends where the factor has an influence that can be told from none.
+void add_trends(Influence& influence, const Responses& responses, const ResponseColumn& response) {
+    const auto values = responses.judged(response);
+    const auto labels = sample_parts(responses).labels;
+    for (std::size_t j = 0; j < responses.factors.size(); ++j) {
+        const auto& factor = responses.factors[j];
+        auto& found = influence.factors[j];
+        const auto levels = numbers_of(factor.levels);
+        if (!factor.continuous() && levels.empty()) continue;
+        std::vector<double> x(factor.values.begin(),
+                              factor.values.begin() + static_cast<std::ptrdiff_t>(responses.settled));
+        if (!factor.continuous())
+            for (double& level : x) level = levels[static_cast<std::size_t>(level)];
+        auto& rank = found.rank_correlation;
+        rank = stats::rank_correlation(x, values, labels);
+        if (!responses.ordered_sample()) rank.half_width = not_a_number;
+        if (found.effects) {
+            const double size = found.effects->mu_star;
+            if (size > 0)
+                found.trend = std::abs(found.effects->mu) < monotone_share * size ? Trend::bends
+                              : found.effects->mu > 0                             ? Trend::rises
+                                                                                  : Trend::falls;
+            continue;
+        }
+        // What the scatter of independent points gives the bins of a sample; a lattice has its errors from replicates.
+        const auto points = static_cast<double>(std::max<std::int64_t>(1, influence.split.points));
+        const double in_bins = responses.design().beginning == designs::Beginning::corner
+                                   ? 0
+                                   : static_cast<double>(found.bins - 1) / points;
+        const double noise =
+            std::max({in_bins, std::isfinite(found.first.half_width) ? found.first.half_width : 0, 1e-9});
+        const bool seen = found.first.value > noise || std::abs(rank.value) > rank.half_width;
+        if (seen) found.trend = trend_of(factor, levels, responses, influence.split.pure, values);
+    }
+}
+
+stats::VarianceSplit split_of(const Responses& responses, const ResponseColumn& response) {
+    const auto points = std::span(responses.points).first(responses.settled);
+    const auto values = responses.judged(response);
+    const bool lattice = responses.design().beginning == designs::Beginning::corner;
+    const std::size_t count = std::set<std::int64_t>(points.begin(), points.end()).size();
+    const std::size_t d = responses.factors.size();
+    std::vector<std::vector<double>> coordinates(d);
+    std::vector<stats::SplitFactor> factors;
+    for (std::size_t j = 0; j < d; ++j) {
+        const auto& factor = responses.factors[j];
+        for (std::size_t row = 0; row < responses.settled; ++row) coordinates[j].push_back(factor.coordinate(row));
+        const bool levels = lattice || !factor.continuous();
+        factors.push_back(
+            {coordinates[j], factor.continuous() || !numbers_of(factor.levels).empty(),
+             levels ? 0 : std::clamp<std::size_t>(count / (5 * d), 2, std::min(most_pieces, most_coefficients / d))});
+    }
+    return stats::split_variance(points, factors, values, sample_parts(responses).labels, lattice);
+}
+
+void add_given_data(Influence& influence, const Responses& responses, const ResponseColumn& response) {
+    const bool lattice = responses.design().beginning == designs::Beginning::corner;
+    const auto values = responses.judged(response);
+    const std::int64_t points = influence.split.points;  // replicates add nothing to how well a sample covers the range
+    const auto labels = sample_parts(responses).labels;
+    std::size_t bins_at_most = 0;
+    for (std::size_t j = 0; j < responses.factors.size(); ++j) {
+        const auto& factor = responses.factors[j];
+        auto& found = influence.factors[j];
+        found.bins = bins_for(factor, lattice, responses.settled, points);
+        const auto coordinates = std::span(factor.values).first(responses.settled);
+        const auto indices = stats::first_order_indices(coordinates, 1, values, labels, found.bins);
+        found.first = indices.first[0];
+        // Lines of a lattice are no sample of it: leaving some out says nothing about the error.
+        if (lattice) found.first.half_width = not_a_number;
+        if (lattice && influence.split.pure.freedom > 0) take_out_scatter(found, influence.split, values);
+        influence.used = indices.count;
+        influence.excluded = indices.excluded;
+        bins_at_most = std::max(bins_at_most, found.bins);
+    }
+    if (lattice && influence.split.pure.freedom > 0) {
+        influence.notes.push_back(fmt::format(
+            "errors are those of the scatter of single runs (pure error, {} degrees of freedom), not of the "
+            "lattice's steps: compare campaigns of growing levels",
+            influence.split.pure.freedom));
+    } else if (lattice) {
+        influence.notes.emplace_back(
+            "a lattice of single runs gives its indices without errors: compare campaigns of growing levels");
+    } else if (influence.used > 0) {
+        const double floor = static_cast<double>(bins_at_most - 1) / static_cast<double>(points);
+        influence.notes.push_back(
+            fmt::format("with {} points in {} bins an index below about {:.2g} is indistinguishable from zero", points,
+                        bins_at_most, floor));
+    }
+}
+
+void add_saltelli(Influence& influence, const Responses& responses, const ResponseColumn& response) {
+    const auto grid = grid_of(responses, response);
+    const auto indices = stats::saltelli_indices(grid.values, responses.factors.size());
+    for (std::size_t j = 0; j < responses.factors.size(); ++j) {
+        influence.factors[j].first_saltelli = indices.first[j];
+        influence.factors[j].total = indices.total[j];
+    }
+    influence.used = indices.count;
+    influence.excluded = indices.excluded;
+    influence.notes.push_back(fmt::format("total indices from {} base rows; {} left out for want of a value",
+                                          indices.count, indices.excluded));
+    const auto least = std::ranges::min_element(indices.total, {}, &stats::SensitivityIndex::value);
+    if (influence.split.pure.freedom == 0 && least != indices.total.end() && std::isfinite(least->value))
+        influence.notes.push_back(
+            fmt::format("every total index holds the scatter of single runs: its share is at most the smallest, {}",
+                        index_text(*least)));
+}
+
+void add_morris(Influence& influence, const Responses& responses, const ResponseColumn& response) {
+    const std::size_t d = responses.factors.size();
+    const std::size_t length = d + 1;
+    const auto grid = grid_of(responses, response);
+    Grid whole;  // trajectories all of whose points exist: `where` may have filtered some out
+    std::int64_t broken = 0;
+    for (std::size_t t = 0; (t + 1) * length <= grid.values.size(); ++t) {
+        const auto first = grid.coordinates.begin() + static_cast<std::ptrdiff_t>(t * length * d);
+        const auto last = first + static_cast<std::ptrdiff_t>(length * d);
+        if (std::any_of(first, last, [](double x) { return std::isnan(x); })) {
+            ++broken;
+            continue;
+        }
+        whole.coordinates.insert(whole.coordinates.end(), first, last);
+        const auto y = grid.values.begin() + static_cast<std::ptrdiff_t>(t * length);
+        whole.values.insert(whole.values.end(), y, y + static_cast<std::ptrdiff_t>(length));
+    }
+    if (broken > 0) influence.notes.push_back(fmt::format("{} trajectories are incomplete and left out", broken));
+    try {
+        const auto effects = stats::elementary_effects(whole.coordinates, d, whole.values);
+        for (std::size_t j = 0; j < d; ++j) influence.factors[j].effects = effects[j];
+        const auto fewest = std::ranges::min_element(effects, {}, &stats::ElementaryEffects::count);
+        if (fewest != effects.end()) {
+            influence.used = fewest->count;
+            influence.excluded = fewest->excluded;
+        }
+    } catch (const std::invalid_argument& error) {  // two grid levels of a factor with levels may be the same level
+        influence.notes.push_back(fmt::format("no elementary effects: {}", error.what()));
+    }
+}
+
+/// Withdraws the errors of figures from blocks of points where most places repeat an earlier case: the blocks share
+/// their runs, and say of the scatter between them less than their number promises.
+void withdraw_errors_of_repeated_cases(Influence& influence, const Responses& responses) {
+    const auto repeated = repeated_places(responses).size();
+    if (repeated <= responses.settled) return;
+    for (auto& factor : influence.factors) {
+        factor.first_saltelli.half_width = factor.total.half_width = not_a_number;
+        if (factor.effects) factor.effects->mu_star_half_width = not_a_number;
+    }
+    influence.notes.push_back(fmt::format("the {} places of the design are {} different cases: errors are unknown",
+                                          repeated + responses.settled, responses.settled));
+}
+
+}  // namespace
+
+std::string_view to_string(Trend trend) {
+    switch (trend) {
+        case Trend::unknown:
+            return "";
+        case Trend::rises:
+            return "rises";
+        case Trend::falls:
+            return "falls";
+        case Trend::bends:
+            return "bends";
+    }
+    return "";
+}
+
+namespace {
+
+std::string share_text(const stats::SensitivityIndex& share) {
+    const bool told = !(share.value <= share.half_width) && share.value > 0;
+    return told ? index_text(share) : fmt::format("indistinguishable from zero ({})", index_text(share));
+}
+
+}  // namespace
+
+std::string unexplained_text(const Influence& influence) {
+    const auto& split = influence.split;
+    if (!std::isfinite(split.unexplained.value)) {
+        return std::isfinite(split.pure.variance)
+                   ? fmt::format(
+                         "single runs scatter with a standard deviation of {:.3g} (pure error, {} degrees of freedom)",
+                         std::sqrt(split.pure.variance), split.pure.freedom)
+                   : "";
+    }
+    if (split.unexplained.value < 1e-9 && !(split.scatter.value > 0))
+        return "main effects together explain all of the variance of single runs";
+    const auto text = fmt::format("main effects together explain {} of the variance of single runs; unexplained {}",
+                                  index_text(split.main_effects), index_text(split.unexplained));
+    if (std::isfinite(split.scatter.value)) {
+        return fmt::format(
+            "{}: interactions {}, scatter of single runs {} (standard deviation {:.3g}, pure error of {} degrees of "
+            "freedom)",
+            text, share_text(split.interactions), share_text(split.scatter), std::sqrt(split.pure.variance),
+            split.pure.freedom);
+    }
+    if (std::isfinite(split.pairs.value)) {
+        return fmt::format(
+            "{}: interactions of two factors {}, scatter of single runs and higher interactions {}; replicates would "
+            "tell these apart",
+            text, share_text(split.pairs), share_text(split.remainder));
+    }
+    return text + ": interactions and scatter of single runs, which replicates would tell apart";
+}
+
+Influence influence_of(const Responses& responses, const ResponseColumn& response) {
+    Influence influence;
+    const auto& design = responses.design();
+    for (const auto& factor : responses.factors) influence.factors.emplace_back().factor = factor.name;
+    if (design.purpose == designs::Purpose::morris) {
+        influence.method = Influence::Method::morris;
+        influence.split.pure =
+            stats::pure_error(std::span(responses.points).first(responses.settled), responses.judged(response));
+        add_morris(influence, responses, response);
+        withdraw_errors_of_repeated_cases(influence, responses);
+        add_trends(influence, responses, response);
+        return influence;
+    }
+    influence.split = split_of(responses, response);
+    add_given_data(influence, responses, response);
+    add_trends(influence, responses, response);
+    if (design.purpose == designs::Purpose::saltelli) {
+        influence.method = Influence::Method::saltelli;
+        add_saltelli(influence, responses, response);
+        withdraw_errors_of_repeated_cases(influence, responses);
+    }
+    if (influence.excluded > 0 && design.purpose != designs::Purpose::saltelli)
+        influence.notes.push_back(fmt::format("{} cases without a value are left out", influence.excluded));
+    return influence;
+}
+
+}  // namespace grainsweep::study

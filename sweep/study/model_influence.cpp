@@ -1,0 +1,70 @@
+#include "sweep/study/model_influence.hpp"
+
+#include "sweep/study/box_search.hpp"
+#include "sweep/study/sample_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+#include <utility>
+
+namespace grainsweep::study {
+namespace {
+
+bool varies(const ModelFactor& factor) {
+    return factor.is_word() ? factor.words.size() > 1 : factor.high > factor.low;
+}
+
+/// The parts that errors come from, of the cases at `rows`; empty where they are fewer than two.
+std::vector<std::size_t> groups_of(const Responses& responses, std::span<const std::size_t> rows) {
+    const auto labels = sample_parts(responses).labels;
+    std::vector<std::size_t> groups;
+    for (const auto row : rows) groups.push_back(labels[row]);
+    return std::set(groups.begin(), groups.end()).size() < 2 ? std::vector<std::size_t>{} : groups;
+}
+
+/// Features of points of the cube of the factors that vary; the others stay where they are.
+stats::FeatureMap model_map(const ObservableModel& model, const std::vector<ModelFactor>& factors,
+                            const std::vector<std::size_t>& varied) {
+    return [&model, &factors, &varied](stats::Rows points) {
+        std::vector<double> rows;
+        std::vector<double> u(factors.size(), 0);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            for (std::size_t j = 0; j < varied.size(); ++j) u[varied[j]] = points.row(i)[j];
+            const auto row = model.features.of(exact_setting(factors, u));
+            rows.insert(rows.end(), row.begin(), row.end());
+        }
+        return rows;
+    };
+}
+
+}  // namespace
+
+ModelInfluence model_influence_of(const Responses& responses, const ResponseColumn& response) {
+    ModelInfluence found;
+    if (responses.dropped() > 0) {
+        found.refused = "the campaign's `where` leaves a part of the box out, and a model has no cases there";
+        return found;
+    }
+    std::vector<std::size_t> rows;
+    const auto cases = settled_cases(responses, &rows);
+    std::vector<std::size_t> varied;
+    for (std::size_t j = 0; j < cases.factors.size(); ++j)
+        if (varies(cases.factors[j])) varied.push_back(j);
+    for (const auto j : varied) found.factors.push_back(cases.factors[j].name);
+    auto learned = learn(cases, cases.observable(response.name));
+    if (auto* refused = std::get_if<stats::Refusal>(&learned)) {
+        found.refused = std::move(refused->sentence);
+        return found;
+    }
+    found.model = std::get<ObservableModel>(std::move(learned));
+    found.without_value = responses.without_value(response);
+    found.indices = stats::model_indices(found.model->model, varied.size(), groups_of(responses, rows),
+                                         model_map(*found.model, cases.factors, varied));
+    return found;
+}
+
+}  // namespace grainsweep::study

@@ -1,0 +1,32 @@
+// Which factors move the mean response, alone and together, by a response model of the campaign's settled cases: total
+// indices and interactions from any design (stats/model_indices.hpp), beside those that come from the cases directly.
+//
+// Refused where the model is (stats/response_model.hpp), and where the campaign's `where` leaves a part of the box out:
+// indices are over all of it, and there are no cases in that part. Errors come from leaving out independent sequences,
+// or eight stretches of the cases.
+#pragma once
+
+#include "stats/model_indices.hpp"
+#include "sweep/store/store.hpp"
+#include "sweep/study/response_models.hpp"
+#include "sweep/study/responses.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace grainsweep::study {
+
+struct ModelInfluence {
+    std::vector<std::string> factors;            ///< that vary, in the campaign's order
+    std::optional<stats::ModelIndices> indices;  ///< none: refused
+    std::optional<ObservableModel> model;
+    std::size_t without_value = 0;  ///< settled cases
+    std::string refused;            ///< why: one sentence without a full stop
+};
+
+/// Throws WrongQuestion where a feature of the campaign file cannot be evaluated.
+[[nodiscard]] ModelInfluence model_influence_of(const Responses& responses, const ResponseColumn& response);
+
+}  // namespace grainsweep::study

@@ -1,0 +1,57 @@
+#include "sweep/study/predicted.hpp"
+
+#include "sweep/campaign/wrong_question.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace grainsweep::study {
+namespace {
+
+/// A prediction rests on numbers: of a feature that has none there is no sense in one.
+void refuse_undefined(const ModelCases& cases, const ObservableModel& model, std::span<const Setting> settings) {
+    for (const auto& setting : settings) {
+        const auto row = model.features.of(setting);
+        const auto bad = std::ranges::find_if_not(row, [](double x) { return std::isfinite(x); });
+        if (bad != row.end())
+            throw campaign::wrong_question(
+                "", setting_text(cases.factors, setting),
+                fmt::format("the feature '{}' of the model has no number there",
+                            model.features.names[static_cast<std::size_t>(bad - row.begin())]));
+    }
+}
+
+}  // namespace
+
+Predicted predict(const ModelCases& cases, const ObservableModel& model, std::vector<Setting> settings,
+                  bool extrapolate) {
+    refuse_undefined(cases, model, settings);
+    Predicted predicted{std::move(settings), {}, {}, {}};
+    predicted.predictions = model.predict(predicted.settings);
+    predicted.defined = model.defined(predicted.settings);
+    const CasesNear near(cases);
+    for (std::size_t i = 0; i < predicted.settings.size(); ++i) {
+        predicted.near.push_back(near.at(predicted.settings[i]));
+        constexpr double none = std::numeric_limits<double>::quiet_NaN();
+        if (!predicted.near[i].answers && !extrapolate)
+            predicted.predictions[i] = {.mean = none, .mean_error = none, .scatter = none};
+    }
+    return predicted;
+}
+
+std::string failures_near(const ModelCases& cases, const Predicted& predicted) {
+    const auto without = std::ranges::find_if_not(predicted.near, &Near::answers);
+    if (without == predicted.near.end()) return {};
+    const auto place = static_cast<std::size_t>(without - predicted.near.begin());
+    const auto n = std::ranges::count_if(predicted.near, [](const Near& near) { return !near.answers; });
+    std::string text = fmt::format("no case near {} has an answer: {}\n",
+                                   setting_text(cases.factors, predicted.settings[place]), near_text(cases, *without));
+    if (n > 1) text += fmt::format("{} of {} settings have no answered case near\n", n, predicted.near.size());
+    return text;
+}
+
+}  // namespace grainsweep::study

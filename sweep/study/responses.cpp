@@ -1,0 +1,400 @@
+#include "sweep/study/responses.hpp"
+
+#include "solver/plain_text.hpp"
+#include "solver/scenes/scene.hpp"
+#include "stats/random.hpp"
+#include "sweep/campaign/identity.hpp"
+#include "sweep/campaign/program.hpp"
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/schedule/judge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <set>
+#include <unordered_map>
+#include <utility>
+
+namespace grainsweep::study {
+namespace {
+
+using Cell = store::Table::Cell;
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
+
+// Columns of a campaign's view before its factors: point, sequence, replicate, case_id, seed, outcome, attempts,
+// wall_seconds.
+constexpr std::size_t point_column = 0, replicate_column = 2, case_column = 3, outcome_column = 5, first_factor = 8;
+
+std::int64_t integer(const Cell& cell) {
+    const auto* value = std::get_if<std::int64_t>(&cell);
+    return value == nullptr ? 0 : *value;
+}
+
+double number(const Cell& cell) {
+    if (const auto* real = std::get_if<double>(&cell)) return *real;
+    if (const auto* whole = std::get_if<std::int64_t>(&cell)) return static_cast<double>(*whole);
+    return no_value;
+}
+
+/// A level as it is shown; a file by its name.
+std::string column_level(const Cell& cell) {
+    if (const auto* word = std::get_if<std::string>(&cell)) {
+        const auto file = file_word(*word);
+        return file ? std::filesystem::path(file->path).filename().string() : *word;
+    }
+    return fmt::format("{:.6g}", number(cell));
+}
+
+/// What makes two levels the same, whichever type a view or an identity gives them: numbers by value, files by
+/// contents.
+std::string key_of_level(std::string_view word) {
+    const auto number = any_number_in(word);
+    return number ? campaign::shortest(*number) : std::string(word);
+}
+
+std::string key_of_cell(const Cell& cell) {
+    const auto* word = std::get_if<std::string>(&cell);
+    return word == nullptr ? campaign::shortest(number(cell)) : key_of_level(campaign::identity_text(*word));
+}
+
+/// Levels that occur, in the order of the campaign file, and their places among all.
+void read_levels(FactorColumn& factor, const std::vector<Cell>& cells, const std::vector<std::string>& listed) {
+    std::map<std::string, std::string> texts;
+    std::vector<std::string> keys;
+    keys.reserve(cells.size());
+    for (const auto& cell : cells) {
+        keys.push_back(key_of_cell(cell));
+        texts.try_emplace(keys.back(), column_level(cell));
+    }
+    std::map<std::string, std::size_t> index, place_of;
+    for (const auto& level : listed) {
+        const auto key = key_of_level(level);
+        place_of.try_emplace(key, place_of.size());
+        if (texts.contains(key)) index.try_emplace(key, index.size());
+    }
+    for (const auto& key : keys) {
+        index.try_emplace(key, index.size());
+        place_of.try_emplace(key, place_of.size());
+    }
+    factor.levels.resize(index.size());
+    factor.places.resize(index.size());
+    const auto last = static_cast<double>(std::max<std::size_t>(place_of.size(), 2) - 1);
+    for (const auto& [key, place] : index) {
+        factor.levels[place] = texts.at(key);
+        factor.places[place] = static_cast<double>(place_of.at(key)) / last;
+    }
+    for (const auto& key : keys) factor.values.push_back(static_cast<double>(index.at(key)));
+}
+
+/// A factor as its rows come by: numbers where it has a range, else cells until all are known.
+class FactorReader {
+public:
+    FactorReader(campaign::StatedFactor stated, const SceneInfo* scene) : stated_(std::move(stated)) {
+        factor_.name = stated_.name;
+        if (const auto* parameter = scene == nullptr ? nullptr : scene->find_parameter(factor_.name)) {
+            factor_.unit = parameter->unit;
+            factor_.meaning = parameter->meaning;
+        }
+        if (!stated_.between) return;
+        factor_.log = stated_.between->scale == campaign::Scale::log;
+        factor_.low = stated_.between->low;
+        factor_.high = stated_.between->high;
+    }
+    void add(const Cell& cell) {
+        if (stated_.between)
+            factor_.values.push_back(number(cell));
+        else
+            cells_.push_back(cell);
+    }
+    [[nodiscard]] FactorColumn take() {
+        if (!stated_.between) read_levels(factor_, cells_, stated_.levels);
+        return std::move(factor_);
+    }
+
+private:
+    campaign::StatedFactor stated_;
+    FactorColumn factor_;
+    std::vector<Cell> cells_;
+};
+
+/// A view calls an observable that bears the name of a factor "NAME_observed".
+std::string observable_name(const std::string& column, const SceneInfo* scene) {
+    constexpr std::string_view suffix = "_observed";
+    if (scene == nullptr || scene->find_observable(column) != nullptr || !column.ends_with(suffix)) return column;
+    return column.substr(0, column.size() - suffix.size());
+}
+
+std::optional<campaign::Outcome> outcome_of(const std::vector<Cell>& row) {
+    const auto* outcome = std::get_if<std::string>(&row[outcome_column]);
+    return outcome == nullptr ? std::nullopt : campaign::outcome_named(*outcome);
+}
+
+template <class T>
+void reorder(std::vector<T>& column, std::span<const std::size_t> rows) {
+    std::vector<T> moved;
+    moved.reserve(column.size());
+    for (const std::size_t row : rows) moved.push_back(std::move(column[row]));
+    column = std::move(moved);
+}
+
+/// Rows with a final outcome before the others, each part in its old order.
+void bring_settled_forward(Responses& responses) {
+    std::vector<std::size_t> rows(responses.rows());
+    std::iota(rows.begin(), rows.end(), std::size_t{0});
+    std::ranges::stable_partition(rows, [&](std::size_t row) { return has_final_outcome(responses.outcomes[row]); });
+    reorder(responses.points, rows);
+    reorder(responses.replicates, rows);
+    if (!responses.case_ids.empty()) reorder(responses.case_ids, rows);
+    reorder(responses.outcomes, rows);
+    for (auto& factor : responses.factors) reorder(factor.values, rows);
+    for (auto& response : responses.observables) reorder(response.values, rows);
+    std::vector<std::size_t> places(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) places[rows[i]] = i;
+    for (auto& place : responses.repeated) place.row = places[place.row];
+}
+
+/// Rows of cases, by key. A place whose case was read before becomes one of the repeated places.
+template <class Key>
+class FirstPlaces {
+public:
+    bool is_first(const Key& key, std::int64_t point, Responses& responses) {
+        const auto [known, fresh] = rows_.try_emplace(key, responses.rows());
+        if (!fresh) responses.repeated.push_back({point, known->second});
+        return fresh;
+    }
+
+private:
+    std::unordered_map<Key, std::size_t> rows_;
+};
+
+void find_settled(Responses& responses) {
+    const auto& record = responses.campaign;
+    if (record.stopped_at) {
+        responses.settled_points = *record.stopped_at;
+        const auto end = std::ranges::lower_bound(responses.points, *record.stopped_at);
+        responses.settled = static_cast<std::size_t>(end - responses.points.begin());
+        return;
+    }
+    const auto open = std::ranges::find_if_not(responses.outcomes, has_final_outcome);
+    responses.settled = static_cast<std::size_t>(open - responses.outcomes.begin());
+    if (!responses.ordered_sample()) {
+        responses.settled_points = responses.settled == 0 ? 0 : responses.points[responses.settled - 1] + 1;
+        return;
+    }
+    responses.settled_points =
+        open == responses.outcomes.end() ? responses.candidates : responses.points[responses.settled];
+    // A point counts when all its repeats are there.
+    while (responses.settled > 0 && responses.points[responses.settled - 1] >= responses.settled_points)
+        --responses.settled;
+}
+
+}  // namespace
+
+bool has_final_outcome(const std::optional<campaign::Outcome>& outcome) {
+    return outcome && *outcome != campaign::Outcome::abandoned;
+}
+
+double FactorColumn::coordinate(std::size_t row) const {
+    const double value = values[row];
+    if (!continuous()) return places[static_cast<std::size_t>(value)];
+    return log ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
+}
+
+std::size_t Responses::without_value(const ResponseColumn& response) const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(judged(response), [](double x) { return !std::isfinite(x); }));
+}
+
+std::int64_t Responses::counted_points() const {
+    if (ordered_sample()) return settled_points;
+    const auto judged = std::span(points).first(settled);
+    return static_cast<std::int64_t>(std::set<std::int64_t>(judged.begin(), judged.end()).size());
+}
+
+const ResponseColumn* Responses::main_observable() const {
+    if (campaign.convergence) {
+        const auto named = std::ranges::find(observables, campaign.convergence->observable, &ResponseColumn::name);
+        if (named != observables.end()) return &*named;
+    }
+    const auto measured = std::ranges::find_if(observables, [](const ResponseColumn& response) {
+        return std::ranges::any_of(response.values, [](double x) { return std::isfinite(x); });
+    });
+    if (measured != observables.end()) return &*measured;
+    return observables.empty() ? nullptr : &observables.front();
+}
+
+const ResponseColumn& Responses::observable(std::string_view name) const {
+    if (name.empty()) {
+        if (const auto* main = main_observable()) return *main;
+        throw campaign::wrong_question("campaign " + campaign.name, "", "its scene measures no scalar");
+    }
+    const auto found = std::ranges::find(observables, name, &ResponseColumn::name);
+    if (found != observables.end()) return *found;
+    std::vector<std::string> names;
+    for (const auto& response : observables) names.push_back(response.name);
+    throw campaign::wrong_question(
+        "--observable", fmt::format("'{}'", name),
+        fmt::format("scene '{}' measures no such scalar; it measures {}", campaign.scene, campaign::listed(names)),
+        campaign::nearest_word(name, names));
+}
+
+bool Responses::measures(std::string_view name) const {
+    return name.empty() ? !observables.empty()
+                        : std::ranges::find(observables, name, &ResponseColumn::name) != observables.end();
+}
+
+bool Responses::ordered_sample() const {
+    const auto beginning = design().beginning;
+    return beginning == designs::Beginning::sample ||
+           (beginning == designs::Beginning::listed && campaign.convergence.has_value());
+}
+
+const designs::DesignInfo& Responses::design() const {
+    static const designs::DesignInfo unknown;  // of an archive that a newer program wrote
+    const auto* found = designs::find_design(campaign.design);
+    return found == nullptr ? unknown : *found;
+}
+
+std::size_t Responses::finished() const {
+    return static_cast<std::size_t>(std::ranges::count_if(outcomes, has_final_outcome));
+}
+
+std::int64_t Responses::dropped() const {
+    std::set<std::int64_t> kept(points.begin(), points.end());
+    for (const auto& place : repeated) kept.insert(place.point);
+    return candidates - static_cast<std::int64_t>(kept.size());
+}
+
+bool repeats(const Responses& responses) {
+    const auto sequences = static_cast<std::size_t>(responses.campaign.sequences);
+    return schedule::independent_sequences(responses.campaign.design, sequences) > 1;
+}
+
+namespace {
+
+std::vector<store::ConvergenceRow> judged_checks(const store::Store& store, const store::CampaignRecord& record) {
+    if (!record.convergence || record.convergence->rule != "assisted") return {};
+    return store.convergence(record.name, record.convergence->observable);
+}
+
+}  // namespace
+
+Responses read_responses(const store::Store& store, const store::CampaignRecord& record) {
+    Responses responses;
+    responses.campaign = record;
+    responses.judged_checks = judged_checks(store, record);
+    const SceneInfo* scene = find_scene(record.scene);
+    std::vector<FactorReader> factors;
+    for (auto& stated : campaign::factors_of(record)) factors.emplace_back(std::move(stated), scene);
+    const auto first_observable = first_factor + factors.size();
+    const auto declare = [&](const std::vector<std::string>& columns) {
+        for (std::size_t column = first_observable; column < columns.size(); ++column) {
+            ResponseColumn response;
+            response.name = observable_name(columns[column], scene);
+            if (const auto* spec = scene == nullptr ? nullptr : scene->find_observable(response.name)) {
+                response.unit = spec->unit;
+                response.meaning = spec->meaning;
+            }
+            responses.observables.push_back(std::move(response));
+        }
+    };
+    FirstPlaces<std::string> places;
+    const auto add = [&](const std::vector<Cell>& row) {
+        if (!places.is_first(std::get<std::string>(row[case_column]), integer(row[point_column]), responses)) return;
+        responses.points.push_back(integer(row[point_column]));
+        responses.replicates.push_back(integer(row[replicate_column]));
+        responses.case_ids.push_back(std::get<std::string>(row[case_column]));
+        responses.outcomes.push_back(outcome_of(row));
+        for (std::size_t j = 0; j < factors.size(); ++j) factors[j].add(row[first_factor + j]);
+        for (std::size_t k = first_observable; k < row.size(); ++k)
+            responses.observables[k - first_observable].values.push_back(number(row[k]));
+    };
+    // The campaign's view is the archive's public face; its columns are promised to users, too.
+    store.query(fmt::format("SELECT * FROM \"{}\" ORDER BY point, replicate", record.name), {}, declare, add);
+    for (auto& factor : factors) responses.factors.push_back(factor.take());
+
+    responses.candidates = std::max(record.stored.candidates, campaign::points_of(record).value_or(0));
+    if (!responses.ordered_sample() && !record.stopped_at) bring_settled_forward(responses);
+    find_settled(responses);
+    return responses;
+}
+
+Responses read_response(const store::Store& store, const store::CampaignRecord& record, const std::string& observable) {
+    Responses responses;
+    responses.campaign = record;
+    responses.judged_checks = judged_checks(store, record);
+    responses.candidates = record.stored.candidates;
+    ResponseColumn response;
+    response.name = observable;
+    FirstPlaces<std::int64_t> places;
+    for (const auto& placed : store.values(record.name, observable)) {
+        if (!places.is_first(placed.case_key, placed.point, responses)) continue;
+        responses.points.push_back(placed.point);
+        responses.replicates.push_back(placed.replicate);
+        responses.outcomes.push_back(placed.outcome);
+        response.values.push_back(placed.value);
+    }
+    responses.observables.push_back(std::move(response));
+    if (!responses.ordered_sample() && !record.stopped_at) bring_settled_forward(responses);
+    find_settled(responses);
+    return responses;
+}
+
+std::vector<store::CampaignRecord> find_campaigns(const store::Store& store, std::string_view name) {
+    auto records = store.campaigns();
+    if (records.empty()) throw campaign::wrong_question("", "", "the database holds no campaign yet");
+    if (name.empty()) return records;
+    std::vector<std::string> names;
+    for (const auto& record : records) names.push_back(record.name);
+    std::erase_if(records, [&](const auto& record) { return record.name != name; });
+    if (!records.empty()) return records;
+    throw campaign::wrong_question("--campaign", fmt::format("'{}'", name),
+                                   fmt::format("the database holds {}", campaign::listed(names)),
+                                   campaign::nearest_word(name, names));
+}
+
+std::vector<std::pair<std::string, std::int64_t>> count_outcomes(const Responses& responses) {
+    std::vector<std::pair<std::string, std::int64_t>> counts;
+    for (const auto outcome : campaign::outcomes) {
+        counts.emplace_back(campaign::to_string(outcome),
+                            std::ranges::count(responses.outcomes, std::optional(outcome)));
+    }
+    counts.emplace_back("not yet", std::ranges::count(responses.outcomes, std::optional<campaign::Outcome>{}));
+    return counts;
+}
+
+std::vector<std::size_t> extreme_rows(std::span<const double> values, std::size_t count, bool largest) {
+    std::vector<std::size_t> rows;
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (std::isfinite(values[i])) rows.push_back(i);
+    const auto before = [&](std::size_t a, std::size_t b) {
+        if (values[a] != values[b]) return largest ? values[a] > values[b] : values[a] < values[b];
+        return a < b;
+    };
+    const auto kept = std::min(count, rows.size());
+    std::ranges::partial_sort(rows, rows.begin() + static_cast<std::ptrdiff_t>(kept), before);
+    rows.resize(kept);
+    return rows;
+}
+
+std::vector<std::size_t> random_rows(std::vector<std::size_t> rows, std::size_t most) {
+    if (rows.size() <= most) return rows;
+    const auto draw = [](std::size_t row) { return stats::bits_at(0, 0, row); };
+    std::ranges::nth_element(rows, rows.begin() + static_cast<std::ptrdiff_t>(most), {}, draw);
+    rows.resize(most);
+    std::ranges::sort(rows);
+    return rows;
+}
+
+std::string factor_text(const FactorColumn& factor, std::size_t row) {
+    const double value = factor.values[row];
+    if (factor.continuous()) return std::isnan(value) ? "" : fmt::format("{:.6g}", value);
+    return factor.levels[static_cast<std::size_t>(value)];
+}
+
+}  // namespace grainsweep::study
