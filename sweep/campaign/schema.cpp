@@ -228,7 +228,7 @@ std::string pattern_of_reserved_names() {
 
 }  // namespace
 
-std::string campaign_schema() {
+std::string campaign_schema(int indentation) {
     OrderedJson schema = {
         {"$schema", "https://json-schema.org/draft/2020-12/schema"},
         {"title", "grainsweep campaign"},
@@ -262,7 +262,7 @@ std::string campaign_schema() {
     scenes.push_back(program_word);
     schema["allOf"].push_back(program_rule());
     properties["scene"]["enum"] = scenes;
-    return schema.dump(2);
+    return schema.dump(indentation);
 }
 
 }  // namespace grainsweep::campaign

@@ -14,7 +14,6 @@
 #include "sweep/study/history.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -28,6 +27,7 @@ namespace {
 
 using campaign::Outcome;
 using report::Format;
+using report::Json;
 using store::Store;
 using store::Table;
 
@@ -54,10 +54,12 @@ int status(const std::string& database, Format format) {
     std::vector<Convergence> standings;
     for (const auto& record : records) standings.push_back(convergence_of(archive, record));
     if (format == Format::json) {
-        auto rows = report::to_json(table);
+        Json rows = Json::array();
         for (std::size_t k = 0; k < standings.size(); ++k) {
-            rows[k]["converged"] = report::to_json(standings[k].converged);
-            rows[k]["verdict"] = standings[k].converged ? nlohmann::ordered_json(standings[k].verdict) : nullptr;
+            const auto& [converged, verdict] = standings[k];
+            rows.push_back(report::to_json(table, k)
+                               .add("converged", converged)
+                               .add("verdict", converged ? Json(verdict) : Json()));
         }
         report::write(std::cout, rows);
         return 0;
@@ -189,17 +191,14 @@ int explain(const std::string& database, const std::string& id, Format format) {
         report::write(std::cout, table, format);
         return 0;
     }
-    nlohmann::ordered_json inputs = nlohmann::ordered_json::object();
-    for (const auto& [name, value] : question.inputs) inputs[name] = report::to_json(report::to_cell(value));
     if (format == Format::json) {
-        report::write(std::cout, nlohmann::ordered_json{
-                                     {"case_id", question.id},
-                                     {"scene", question.scene},
-                                     {"revision", question.revision},
-                                     {"seed", report::to_json(Table::Cell{static_cast<std::int64_t>(question.seed)})},
-                                     {"inputs", inputs},
-                                     {"attempts", report::to_json(table)},
-                                     {"why", reason}});
+        report::write(std::cout, Json{{"case_id", question.id},
+                                      {"scene", question.scene},
+                                      {"revision", question.revision},
+                                      {"seed", report::to_json(Table::Cell{static_cast<std::int64_t>(question.seed)})},
+                                      {"inputs", report::to_json(question.inputs)},
+                                      {"attempts", report::to_json(table)},
+                                      {"why", reason}});
         return 0;
     }
     std::cout << fmt::format("{}\nscene {} revision {}, seed {}\n", heading_of(archive, question.id), question.scene,

@@ -11,7 +11,6 @@
 #include "solver/scenes/scene.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <iostream>
@@ -21,8 +20,8 @@ namespace grainsweep::cli {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
 using report::Format;
+using report::Json;
 using Cell = store::Table::Cell;
 
 Cell text_or_none(const std::string& text) {
@@ -117,52 +116,43 @@ store::Table observables_of(const SceneInfo& scene) {
     return table;
 }
 
-Json json_of(const Value& value) {
-    return report::to_json(report::to_cell(value));
-}
-
-Json json_of(const Inputs& inputs) {
-    Json object = Json::object();
-    for (const auto& [name, value] : inputs) object[name] = json_of(value);
-    return object;
-}
-
 Json json_of(const ParameterSpec& parameter) {
-    Json object = {{"name", parameter.name}, {"unit", parameter.unit}, {"meaning", parameter.meaning}};
-    object["type"] = parameter.default_value.index() == 0   ? "number"
-                     : parameter.default_value.index() == 1 ? "integer"
-                                                            : "word";
-    object["default"] = json_of(parameter.default_value);
+    const auto type = parameter.default_value.index();
+    Json object = {{"name", parameter.name},
+                   {"unit", parameter.unit},
+                   {"meaning", parameter.meaning},
+                   {"type", type == 0   ? "number"
+                            : type == 1 ? "integer"
+                                        : "word"},
+                   {"default", report::to_json(report::to_cell(parameter.default_value))}};
     if (const auto* words = std::get_if<Words>(&parameter.bounds)) {
-        object["words"] = words->allowed;
-        object["file_allowed"] = words->file_allowed;
+        object.add({{"words", words->allowed}, {"file_allowed", words->file_allowed}});
     } else {
         const auto& bounds = std::get<Interval>(parameter.bounds);
-        object["low"] = report::to_json(Cell{bounds.low});
-        object["high"] = report::to_json(Cell{bounds.high});
-        object["low_open"] = bounds.low_open;
-        object["high_open"] = bounds.high_open;
+        object.add({{"low", bounds.low},
+                    {"high", bounds.high},
+                    {"low_open", bounds.low_open},
+                    {"high_open", bounds.high_open}});
     }
-    object["matters_if"] = Json::array();
-    for (const auto& condition : parameter.relevant_if) object["matters_if"].push_back(condition_text(condition));
-    return object;
+    return object.add("matters_if", Json::list(parameter.relevant_if, condition_text));
 }
 
 Json json_of(const SceneInfo& scene) {
-    Json object = {{"name", scene.name}, {"summary", scene.summary}, {"revision", scene.revision}};
-    object["parameters"] = Json::array();
-    for (const auto& parameter : scene.parameters) object["parameters"].push_back(json_of(parameter));
-    object["observables"] = Json::array();
-    for (const auto& observable : scene.observables) {
-        object["observables"].push_back({{"name", observable.name},
-                                         {"unit", observable.unit},
-                                         {"meaning", observable.meaning},
-                                         {"shape", word_of(observable.shape)},
-                                         {"over", observable.over}});
-    }
-    object["accuracy"] = Json::object();
-    for (const auto& [name, inputs] : scene.accuracy) object["accuracy"][name] = json_of(inputs);
-    return object;
+    const auto json_of_observable = [](const ObservableSpec& observable) {
+        return Json{{"name", observable.name},
+                    {"unit", observable.unit},
+                    {"meaning", observable.meaning},
+                    {"shape", word_of(observable.shape)},
+                    {"over", observable.over}};
+    };
+    Json accuracy = Json::object();
+    for (const auto& [name, inputs] : scene.accuracy) accuracy.add(name, report::to_json(inputs));
+    return {{"name", scene.name},
+            {"summary", scene.summary},
+            {"revision", scene.revision},
+            {"parameters", Json::list(scene.parameters, [](const auto& parameter) { return json_of(parameter); })},
+            {"observables", Json::list(scene.observables, json_of_observable)},
+            {"accuracy", accuracy}};
 }
 
 void show_scene(const SceneInfo& scene, Format format) {
@@ -202,11 +192,13 @@ void show_program(Format format) {
     const store::Table table = program_table();
     if (format == Format::csv) return report::write(std::cout, table, format);
     if (format == Format::json) {
-        Json object = {{"name", campaign::program_word}, {"summary", campaign::program_summary()}, {"revision", 1}};
-        object["parameters"] = object["observables"] = Json::array();  // the campaign file's own
-        object["accuracy"] = Json::object();
-        object["section"] = report::to_json(table);
-        return report::write(std::cout, object);
+        return report::write(std::cout, {{"name", campaign::program_word},
+                                         {"summary", campaign::program_summary()},
+                                         {"revision", 1},
+                                         {"parameters", Json::array()},  // the campaign file's own
+                                         {"observables", Json::array()},
+                                         {"accuracy", Json::object()},
+                                         {"section", report::to_json(table)}});
     }
     std::cout << fmt::format("{}: {}\n\n", campaign::program_word, campaign::program_summary());
     report::write(std::cout, table, format);
@@ -286,9 +278,10 @@ int list_designs(const std::string& name, Format format) {
                                        campaign::nearest_word(name, known));
     }
     if (format == Format::json) {
-        Json object = {{"name", design->name}, {"summary", design->summary}, {"extends", design->extends}};
-        object["options"] = report::to_json(options_of(*design));
-        report::write(std::cout, object);
+        report::write(std::cout, Json{{"name", design->name},
+                                      {"summary", design->summary},
+                                      {"extends", design->extends},
+                                      {"options", report::to_json(options_of(*design))}});
         return 0;
     }
     if (format == Format::text) std::cout << fmt::format("{}: {}\n\n", design->name, design->summary);
@@ -297,15 +290,10 @@ int list_designs(const std::string& name, Format format) {
 }
 
 int print_schema(Format format) {
-    if (format == Format::csv) {
+    if (format == Format::csv)
         report::write(std::cout, store::Table{{"schema"}, {{campaign::campaign_schema()}}}, format);
-        return 0;
-    }
-    if (format == Format::json) {
-        report::write(std::cout, Json::parse(campaign::campaign_schema()));
-    } else {
-        std::cout << campaign::campaign_schema() << '\n';
-    }
+    else
+        std::cout << campaign::campaign_schema(format == Format::json ? campaign::on_one_line : 2) << '\n';
     return 0;
 }
 

@@ -12,7 +12,6 @@
 #include "sweep/study/response_models.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -72,19 +71,7 @@ int predict(const PredictRequest& request, Format format) {
     if (!request.extrapolate) refuse_extrapolation(store, cases, settings);
     const auto model = study::learn_or_refuse(cases, observable);
     const auto predicted = study::predict(cases, model, std::move(settings), request.extrapolate);
-    if (format == Format::json) {
-        report::write(std::cout, report::predictions_json(cases, model, predicted));
-        return 0;
-    }
-    if (format == Format::text) {
-        const std::string unit = model.unit.empty() || model.unit == "1" ? "" : fmt::format(" ({})", model.unit);
-        std::cout << fmt::format("{}: {}{}\n\n", cases.campaign.name, model.observable, unit);
-    }
-    report::write(std::cout, report::predictions_table(cases, model, predicted), format);
-    if (format == Format::text) {
-        const auto failures = study::failures_near(cases, predicted);
-        std::cout << '\n' << failures << (failures.empty() ? "" : "\n") << report::model_lines(model);
-    }
+    report::write(std::cout, report::predictions_document(cases, model, predicted), format);
     return 0;
 }
 
@@ -193,29 +180,21 @@ int window(const WindowArguments& arguments, Format format) {
     if (!arguments.next_file.empty()) written = write_next(store, cases, found, arguments.next_file);
     if (!arguments.output.empty()) {
         std::ostringstream page;
-        report::write_window_page(page,
-                                  report::window_page_data(cases, request, found, study::admission(store, cases)),
+        report::write_window_page(page, report::window_page_data(cases, request, found, study::admission(store, cases)),
                                   std::filesystem::path(arguments.database).filename().string());
         write_page_file(arguments.output, std::move(page).str());
     }
-    if (format == Format::json) {
-        auto json = report::window_json(cases, request, found);
-        if (end)
-            json["run"] = {
-                {"cases", end->cases}, {"batches", end->batches}, {"reached", end->reached}, {"says", end->says}};
-        report::write(std::cout, json);
+    auto shown = report::window_document(cases, request, found);
+    if (!written.empty())
+        shown.say(fmt::format("{}: campaign {}; grainsweep run {} --db {} computes its cases for the same model",
+                              arguments.next_file, written, arguments.next_file, arguments.database));
+    if (!arguments.output.empty()) shown.say(fmt::format("{}: open it in a browser, or print it", arguments.output));
+    if (end) {
+        shown.say(fmt::format("{} cases run in {} batches: {}", end->cases, end->batches, end->says));
+        shown.value.add(
+            "run", {{"cases", end->cases}, {"batches", end->batches}, {"reached", end->reached}, {"says", end->says}});
     }
-    if (format == Format::csv) report::write(std::cout, report::window_rows(cases, found), format);
-    if (format == Format::text) {
-        report::write_window(std::cout, cases, request, found);
-        if (!written.empty())
-            std::cout << fmt::format(
-                "{}: campaign {}; grainsweep run {} --db {} computes its cases for the same model\n",
-                arguments.next_file, written, arguments.next_file, arguments.database);
-        if (!arguments.output.empty())
-            std::cout << fmt::format("{}: open it in a browser, or print it\n", arguments.output);
-        if (end) std::cout << fmt::format("{} cases run in {} batches: {}\n", end->cases, end->batches, end->says);
-    }
+    report::write(std::cout, shown, format);
     return end ? end->exit_code : 0;
 }
 

@@ -13,7 +13,6 @@
 #include "sweep/workers/memory_room.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -28,21 +27,16 @@ namespace {
 using campaign::Campaign;
 using campaign::Cases;
 using report::Format;
+using report::Json;
 using Cell = store::Table::Cell;
-using Json = nlohmann::ordered_json;
 
 constexpr std::size_t points_shown = 8;
 
 Json option_json(const designs::OptionValue& value) {
-    if (const auto* rows = std::get_if<designs::Rows>(&value)) {
-        Json list = Json::array();
-        for (const auto& row : *rows) {
-            Json cells = Json::array();
-            for (const auto& cell : row) cells.push_back(report::to_json(report::to_cell(cell)));
-            list.push_back(std::move(cells));
-        }
-        return list;
-    }
+    if (const auto* rows = std::get_if<designs::Rows>(&value))
+        return Json::list(*rows, [](const auto& row) {
+            return Json::list(row, [](const Value& cell) { return report::to_json(report::to_cell(cell)); });
+        });
     if (const auto* count = std::get_if<std::int64_t>(&value)) return *count;
     if (const auto* word = std::get_if<std::string>(&value)) return *word;
     if (const auto* number = std::get_if<double>(&value)) return *number;
@@ -52,7 +46,7 @@ Json option_json(const designs::OptionValue& value) {
 std::string option_text(const designs::OptionValue& value) {
     if (const auto* rows = std::get_if<designs::Rows>(&value)) return fmt::format("({} of them)", rows->size());
     if (const auto* word = std::get_if<std::string>(&value)) return *word;
-    return option_json(value).dump();
+    return option_json(value).text();
 }
 
 store::Table factors_of(const Campaign& campaign) {
@@ -137,42 +131,43 @@ Outlook outlook_of(Campaign& campaign, const store::Store* archive) {
 
 Json plan_json(const Campaign& campaign, const Outlook& outlook) {
     const auto& [cases, cost, candidates, warnings, database, stored, finished] = outlook;
-    Json object = {
-        {"campaign", campaign.name}, {"scene", campaign.scene().name}, {"revision", campaign.scene().revision}};
-    object["design"] = {{"kind", campaign.design}};
-    for (const auto& [name, value] : campaign.request.options) object["design"][name] = option_json(value);
-    object["seed"] = report::to_json(Cell{static_cast<std::int64_t>(campaign.seed)});
-    object["replicates"] = campaign.replicates;
-    object["candidates"] = candidates;
-    object["dropped"] = candidates - points_kept(cases);
-    object["points"] = points_kept(cases);
-    object["cases"] = cost.places;
-    object["finished"] = finished;
-    object["stored"] = nullptr;
-    if (stored) {
-        object["stored"] = {{"database", database},
-                            {"candidates", stored->stored.candidates},
-                            {"replicates", stored->stored.replicates}};
-    }
-    object["warnings"] = warnings;
-    object["questions"] = cost.questions;
-    object["proven"] = cost.proven;
-    object["impossible"] = cost.impossible;
-    object["predicted_seconds"] = cost.total_seconds;
-    object["longest_seconds"] = cost.longest_seconds;
-    object["largest_bytes"] = cost.largest_bytes;
-    object["threads"] = campaign.execution.threads == 0 ? Json("auto") : Json(campaign.execution.threads);
-    if (campaign::is_program(campaign.scene().name)) object["threads"] = nullptr;
-    object["factors"] = report::to_json(factors_of(campaign));
-    object["fixed"] = Json::object();
-    for (const auto& [name, value] : campaign.space.fixed)
-        object["fixed"][name] = report::to_json(report::to_cell(value));
-    return object;
+    Json design = {{"kind", campaign.design}}, already;
+    for (const auto& [name, value] : campaign.request.options) design.add(name, option_json(value));
+    if (stored)
+        already = {{"database", database},
+                   {"candidates", stored->stored.candidates},
+                   {"replicates", stored->stored.replicates}};
+    const auto threads = campaign.execution.threads;
+    const auto points = points_kept(cases);
+    return {{"campaign", campaign.name},
+            {"scene", campaign.scene().name},
+            {"revision", campaign.scene().revision},
+            {"design", design},
+            {"seed", report::to_json(Cell{static_cast<std::int64_t>(campaign.seed)})},
+            {"replicates", campaign.replicates},
+            {"candidates", candidates},
+            {"dropped", candidates - points},
+            {"points", points},
+            {"cases", cost.places},
+            {"finished", finished},
+            {"stored", already},
+            {"warnings", warnings},
+            {"questions", cost.questions},
+            {"proven", cost.proven},
+            {"impossible", cost.impossible},
+            {"predicted_seconds", cost.total_seconds},
+            {"longest_seconds", cost.longest_seconds},
+            {"largest_bytes", cost.largest_bytes},
+            {"threads", campaign::is_program(campaign.scene().name) ? Json()
+                        : threads == 0                              ? Json("auto")
+                                                                    : threads},
+            {"factors", report::to_json(factors_of(campaign))},
+            {"fixed", report::to_json(campaign.space.fixed)}};
 }
 
 /// The object, with all rows of the design at its end.
 void write_json(const Campaign& campaign, const Outlook& outlook) {
-    std::string text = report::json_text(plan_json(campaign, outlook));
+    std::string text = report::harmless_json(plan_json(campaign, outlook));
     text.pop_back();  // the closing brace
     std::cout << text << ",\"rows\":";
     report::RowWriter rows(std::cout, Format::json);

@@ -4,7 +4,7 @@
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/path_option.hpp"
 #include "sweep/cli/run_campaign.hpp"
-#include "sweep/report/summary.hpp"
+#include "sweep/cli/run_summary.hpp"
 #include "sweep/workers/host.hpp"
 #include "sweep/workers/worker.hpp"
 
@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
-#include <nlohmann/json.hpp>
 
 #include <cerrno>
 #include <csignal>
@@ -157,31 +156,6 @@ Command host_command() {
 }
 
 }  // namespace
-
-void show_run(const RunReport& report, Format format) {
-    if (format == Format::text) {
-        const store::Store archive(report.database, store::Store::Mode::read);
-        std::cout << report::closing_summary(archive, report.campaign, report.database) << '\n'
-                  << report.ending << '\n';
-        return;
-    }
-    std::error_code none;
-    const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(report.database, none));
-    if (format == Format::json) {
-        report::write(std::cout, nlohmann::ordered_json{{"campaign", report.campaign},
-                                                        {"database", report.database.string()},
-                                                        {"bytes", bytes},
-                                                        {"ending", report.ending},
-                                                        {"converged", report::to_json(report.converged)},
-                                                        {"exit_code", report.exit_code}});
-        return;
-    }
-    report::write(std::cout,
-                  {{"campaign", "database", "bytes", "ending", "exit_code", "converged"},
-                   {{report.campaign, report.database.string(), bytes, report.ending, std::int64_t{report.exit_code},
-                     report.converged ? store::Table::Cell{std::int64_t{*report.converged}} : store::Table::Cell{}}}},
-                  format);
-}
 
 std::vector<Command> run_commands() {
     return {running("run", "runs the cases of a campaign; run it again to resume", false),

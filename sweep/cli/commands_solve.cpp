@@ -16,7 +16,6 @@
 
 #include <fmt/format.h>
 #include <unistd.h>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <filesystem>
@@ -32,8 +31,8 @@ using campaign::Campaign;
 using campaign::CaseResult;
 using campaign::Outcome;
 using report::Format;
+using report::Json;
 using Cell = store::Table::Cell;
-using Json = nlohmann::ordered_json;
 
 struct SolveRequest {
     std::string config;
@@ -120,10 +119,9 @@ CaseResult answer_of(const Asked& asked, const SolveRequest& request, Pictures& 
 
 Json sample_json(const Sample& sample) {
     Json object = Json::object();
-    if (!std::isnan(sample.time)) object["time"] = sample.time;
-    if (!std::isnan(sample.bin)) object["bin"] = sample.bin;
-    object["value"] = report::to_json(Cell{sample.value});
-    return object;
+    if (!std::isnan(sample.time)) object.add("time", sample.time);
+    if (!std::isnan(sample.bin)) object.add("bin", sample.bin);
+    return object.add("value", sample.value);
 }
 
 /// Scalars that the scene declares and a finished case has no value of.
@@ -136,42 +134,50 @@ std::vector<ObservableSpec> absent(const campaign::Case& question, const CaseRes
     return missing;
 }
 
+/// Those the scene declares, then others; null: undefined in this case.
+Json scalars_of(const campaign::Case& question, const CaseResult& result) {
+    const auto& measured = result.observations.scalars;
+    Json scalars = Json::object();
+    std::set<std::string> declared;
+    if (result.outcome == Outcome::completed || result.outcome == Outcome::skipped)
+        for (const auto& observable : find_scene(question.scene)->observables) {
+            if (observable.shape != Shape::scalar) continue;
+            const auto found = measured.find(observable.name);
+            scalars.add(observable.name, found == measured.end() ? Json() : Json(found->second));
+            declared.insert(observable.name);
+        }
+    for (const auto& [name, value] : measured)
+        if (!declared.contains(name)) scalars.add(name, value);
+    return scalars;
+}
+
 Json answer_json(const campaign::Case& question, const CaseResult& result) {
+    Json missing = Json::object(), series = Json::object(), phases = Json::object();
+    for (const auto& observable : absent(question, result)) missing.add(observable.name, observable.absent);
+    for (const auto& [name, samples] : result.observations.series) series.add(name, Json::list(samples, sample_json));
+    for (const auto& [name, seconds] : result.cost.phases) phases.add(name, seconds);
     Json object = {{"scene", question.scene},
                    {"revision", question.revision},
                    {"case_id", question.id},
                    {"seed", report::to_json(Cell{static_cast<std::int64_t>(question.seed)})}};
-    if (result.program) {
-        object["program"] = {{"version", result.program->version},
-                             {"peak_memory", report::to_json(Cell{result.program->peak_memory})},
-                             {"exit_status", report::to_json(report::to_cell(result.program->exit_status))}};
-    } else {
-        object["instruction_path"] = instruction_path();
-    }
-    object["inputs"] = Json::object();
-    for (const auto& [name, value] : question.inputs) object["inputs"][name] = report::to_json(report::to_cell(value));
-    object["outcome"] = campaign::to_string(result.outcome);
-    object["message"] = result.message;
-    object["scalars"] = Json::object();
-    if (result.outcome == campaign::Outcome::completed || result.outcome == campaign::Outcome::skipped)
-        for (const auto& declared : find_scene(question.scene)->observables)  // null: undefined in this case
-            if (declared.shape == Shape::scalar) object["scalars"][declared.name] = nullptr;
-    for (const auto& [name, value] : result.observations.scalars)
-        object["scalars"][name] = report::to_json(Cell{value});
-    object["absent"] = Json::object();
-    for (const auto& observable : absent(question, result)) object["absent"][observable.name] = observable.absent;
-    object["series"] = Json::object();
-    for (const auto& [name, samples] : result.observations.series) {
-        auto& list = object["series"][name] = Json::array();
-        for (const auto& sample : samples) list.push_back(sample_json(sample));
-    }
-    object["cost"] = {{"wall_seconds", result.cost.wall_seconds},
-                      {"cpu_seconds", result.cost.cpu_seconds},
-                      {"particle_steps", result.cost.particle_steps},
-                      {"threads", report::to_json(report::to_cell(result.cost.threads))}};
-    object["cost"]["phases"] = Json::object();
-    for (const auto& [name, seconds] : result.cost.phases) object["cost"]["phases"][name] = seconds;
-    return object;
+    if (result.program)
+        object.add("program", {{"version", result.program->version},
+                               {"peak_memory", result.program->peak_memory},
+                               {"exit_status", result.program->exit_status}});
+    else
+        object.add("instruction_path", instruction_path());
+    return object.add({{"inputs", report::to_json(question.inputs)},
+                       {"outcome", campaign::to_string(result.outcome)},
+                       {"message", result.message},
+                       {"scalars", scalars_of(question, result)},
+                       {"absent", missing},
+                       {"series", series},
+                       {"cost",
+                        {{"wall_seconds", result.cost.wall_seconds},
+                         {"cpu_seconds", result.cost.cpu_seconds},
+                         {"particle_steps", result.cost.particle_steps},
+                         {"threads", result.cost.threads},
+                         {"phases", phases}}}});
 }
 
 /// Everything in one table: what it is (input, outcome, scalar, series, cost), its name, its place, its value.

@@ -3,10 +3,11 @@
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/path_option.hpp"
 #include "sweep/cli/run_campaign.hpp"
+#include "sweep/cli/run_summary.hpp"
 #include "sweep/cli/work_task.hpp"
+#include "sweep/report/document.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <csignal>
 #include <iostream>
@@ -18,26 +19,15 @@ namespace {
 
 using report::Format;
 
-void show_work(const WorkReport& report, Format format) {
+report::Document document_of(const WorkReport& report) {
     const std::string share = fmt::format("{}/{}", report.part, report.of);
-    if (format == Format::text) {
-        std::cout << fmt::format("{}, share {}: {} of {} cases have a result, {} of them from this task\n{}\n",
-                                 report.campaign, share, report.answered, report.cases, report.computed, report.ending);
-    } else if (format == Format::json) {
-        report::write(std::cout, nlohmann::ordered_json{{"campaign", report.campaign},
-                                                        {"share", share},
-                                                        {"cases", report.cases},
-                                                        {"answered", report.answered},
-                                                        {"computed", report.computed},
-                                                        {"ending", report.ending},
-                                                        {"exit_code", report.exit_code}});
-    } else {
-        report::write(std::cout,
-                      {{"campaign", "share", "cases", "answered", "computed", "ending", "exit_code"},
-                       {{report.campaign, share, report.cases, report.answered, report.computed, report.ending,
-                         std::int64_t{report.exit_code}}}},
-                      format);
-    }
+    report::Document shown{.rows = {{"campaign", "share", "cases", "answered", "computed", "ending", "exit_code"},
+                                    {{report.campaign, share, report.cases, report.answered, report.computed,
+                                      report.ending, std::int64_t{report.exit_code}}}}};
+    shown.value = report::to_json(shown.rows, 0);
+    return shown.say(fmt::format("{}, share {}: {} of {} cases have a result, {} of them from this task\n{}",
+                                 report.campaign, share, report.answered, report.cases, report.computed,
+                                 report.ending));
 }
 
 Command work_command() {
@@ -72,7 +62,7 @@ Command work_command() {
                 std::signal(SIGHUP, SIG_IGN);
                 std::signal(SIGPIPE, SIG_IGN);
                 const auto report = work_on(*request);
-                if (!request->quiet || format != Format::text) show_work(report, format);
+                if (!request->quiet || format != Format::text) report::write(std::cout, document_of(report), format);
                 return report.exit_code;
             };
         }};

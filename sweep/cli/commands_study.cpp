@@ -2,16 +2,13 @@
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/page_file.hpp"
 #include "sweep/cli/report_films.hpp"
-#include "sweep/report/bracket_tables.hpp"
-#include "sweep/report/calibration_tables.hpp"
 #include "sweep/report/convergence_tables.hpp"
 #include "sweep/report/file_size.hpp"
+#include "sweep/report/findings.hpp"
 #include "sweep/report/influence_tables.hpp"
 #include "sweep/report/page.hpp"
-#include "sweep/report/summary.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -19,6 +16,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -27,7 +25,7 @@ namespace grainsweep::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using report::Document;
 using report::Format;
 using store::Store;
 using study::Responses;
@@ -38,190 +36,43 @@ struct Subject {
     bool check = false;  ///< of `converge`: the exit code says whether everything shown has converged
 };
 
-void append(store::Table& all, store::Table more) {
-    if (all.columns.empty()) all.columns = std::move(more.columns);
-    for (auto& row : more.rows) all.rows.push_back(std::move(row));
-}
-
-void print_heading(const Responses& responses, const study::ResponseColumn& response) {
-    const auto& record = responses.campaign;
-    const std::string unit = response.unit.empty() || response.unit == "1" ? "" : fmt::format(" ({})", response.unit);
-    std::cout << fmt::format(
-        "{}: {}{} over {} points of a {} design{}; {}\n\n", record.name, response.name, unit,
-        responses.counted_points(), record.design,
-        record.sequences > 1 && study::repeats(responses) ? fmt::format(" of {} sequences", record.sequences) : "",
-        report::outcome_line(responses));
-}
-
-void print_notes(const std::vector<std::string>& notes) {
-    for (const auto& note : notes) std::cout << "note: " << note << '\n';
-}
-
-void print_history(const Responses& responses, const study::ResponseColumn& response, const study::History& history,
-                   const std::vector<study::LatticeStep>& lattices) {
-    print_heading(responses, response);
-    if (!responses.campaign.condition.empty()) std::cout << "where: " << study::points_line(responses) << "\n\n";
-    if (history.all.count > 0 || !history.provisional) {
-        report::write(std::cout, report::statistics_table(history), Format::text);
-        std::cout << '\n';
-    }
-    if (history.provisional) {
-        std::cout << fmt::format("provisional: all {} finished cases, also behind gaps in the design; not judged\n",
-                                 responses.finished());
-        report::write(std::cout, report::provisional_table(history), Format::text);
-        std::cout << '\n';
-    }
-    if (!history.checks.empty()) {
-        const auto checks = report::checks_table(history);
-        report::write(std::cout, checks, Format::text);
-        if (checks.rows.size() < history.checks.size())
-            std::cout << fmt::format("({} checks; --format csv has them all)\n", history.checks.size());
-        std::cout << '\n';
-    }
-    if (!lattices.empty()) {
-        report::write(std::cout, report::lattice_lines(lattices), Format::text);
-        std::cout << '\n';
-    }
-    std::cout << history.verdict << '\n';
-    print_notes(history.warnings);
-}
-
-/// Both estimates of the moments, where the design allows the second one.
-void print_estimators(const study::Estimators& estimators) {
-    std::cout << '\n';
-    if (estimators.assisted) {
-        std::cout << "moments with a response model beside the plain ones\n";
-        report::write(std::cout, report::estimators_table(estimators), Format::text);
-    }
-    for (const auto& line : report::estimator_lines(estimators)) std::cout << line << '\n';
-}
-
-void print_model_influence(const study::ModelInfluence& influence) {
-    if (influence.indices) {
-        std::cout << "\nby a response model:\n";
-        report::write(std::cout, report::model_influence_table(influence), Format::text);
-        std::cout << '\n';
-    }
-    for (const auto& line : report::model_influence_lines(influence)) std::cout << line << '\n';
-}
-
-/// Calls `with` for every campaign the subject names; those whose scene has not the observable are passed over where
-/// no campaign is named. `whole` answers for a campaign before its observable is looked for; true: it has answered.
-template <class Whole, class With>
-void for_each_campaign(const Store& store, const Subject& subject, Whole whole, With with) {
+/// Of every campaign the subject names; those whose scene has not the observable are passed over where no campaign is
+/// named. `found_by` answers for a campaign whose design finds something of its own, before its observable is looked
+/// for.
+template <class FoundBy, class Study>
+std::vector<Document> study_each(const Store& store, const Subject& subject, FoundBy found_by, Study answer) {
+    std::vector<Document> documents;
     const auto records = study::find_campaigns(store, subject.campaign);
-    std::size_t found = 0;
     for (std::size_t i = 0; i < records.size(); ++i) {
         const auto responses = study::read_responses(store, records[i]);
-        const bool last_chance = i + 1 == records.size() && found == 0;
         const bool measures = responses.measures(subject.observable);
-        if ((measures || subject.observable.empty()) && whole(responses, found == 0)) {
-            ++found;
-            continue;
-        }
-        if (!last_chance && !measures) continue;
-        with(responses, responses.observable(subject.observable), found++ == 0);
+        if (auto found = measures || subject.observable.empty() ? found_by(responses) : std::nullopt)
+            documents.push_back(std::move(*found));
+        else if (measures || (i + 1 == records.size() && documents.empty()))
+            documents.push_back(answer(responses, responses.observable(subject.observable)));
     }
-}
-
-/// What a design that brackets a passage has found, in place of moments; false: the campaign has another design.
-bool show_brackets(const Store& store, const Responses& responses, Format format, bool first, Json& all,
-                   store::Table& rows) {
-    const auto brackets = study::brackets_of(store, responses.campaign);
-    if (!brackets) return false;
-    if (format == Format::json) {
-        all.push_back({{"campaign", responses.campaign.name}});
-        all.back().update(report::to_json(*brackets));
-    } else if (format == Format::csv) {
-        if (first) rows = report::brackets_rows(*brackets, responses.campaign.name);
-    } else {
-        if (!first) std::cout << '\n';
-        std::cout << fmt::format("{}: {}; {}\n\n", responses.campaign.name, report::brackets_line(*brackets),
-                                 report::outcome_line(responses));
-        report::write(std::cout, report::brackets_table(*brackets), Format::text);
-    }
-    return true;
-}
-
-/// The same of a calibration.
-bool show_calibration(const Store& store, const Responses& responses, Format format, bool first, Json& all,
-                      store::Table& rows, bool& converged) {
-    const auto calibration = study::calibration_report(store, responses.campaign);
-    if (!calibration) return false;
-    converged = converged && calibration->found.waves_end && calibration->found.posterior;
-    if (format == Format::json) {
-        all.push_back({{"campaign", responses.campaign.name}});
-        all.back().update(report::to_json(*calibration));
-    } else if (format == Format::csv) {
-        if (first) rows = report::posterior_table(*calibration);
-    } else {
-        if (!first) std::cout << '\n';
-        std::cout << responses.campaign.name << ": " << report::outcome_line(responses) << '\n'
-                  << report::calibration_text(*calibration);
-    }
-    return true;
+    return documents;
 }
 
 int converge(const Subject& subject, Format format) {
     const Store store(subject.database, Store::Mode::read);
-    Json all = Json::array();
-    store::Table rows;
-    bool converged = true;
-    const auto whole = [&](const Responses& responses, bool first) {
-        return show_brackets(store, responses, format, first, all, rows) ||
-               show_calibration(store, responses, format, first, all, rows, converged);
-    };
-    for_each_campaign(store, subject, whole,
-                      [&](const Responses& responses, const study::ResponseColumn& response, bool first) {
-                          const auto history = study::history_of(responses, response);
-                          converged = converged && history.converged.value_or(false);
-                          const auto lattices = study::lattice_family(store, responses, response);
-                          if (format == Format::json) {
-                              all.push_back(report::to_json(responses, response, history, lattices));
-                              all.back()["estimators"] =
-                                  report::estimators_json(history, study::estimators_of(store, responses, response));
-                          } else if (format == Format::csv) {
-                              const bool other = !rows.columns.empty() && rows.columns.front() != "campaign";
-                              if (other || (!rows.columns.empty() && rows.columns.back() == "state")) return;
-                              append(rows, report::checks_rows(responses, response, history));
-                              append(rows, report::provisional_rows(responses, response, history));
-                          } else {
-                              if (!first) std::cout << '\n';
-                              print_history(responses, response, history, lattices);
-                              if (study::repeats(responses))
-                                  print_estimators(study::estimators_of(store, responses, response));
-                          }
-                      });
-    if (format == Format::json) report::write(std::cout, all);
-    if (format == Format::csv) report::write(std::cout, rows, format);
-    return subject.check && !converged ? 1 : 0;
+    const auto found_by = [&](const Responses& responses) { return report::findings_document(store, responses); };
+    const auto documents =
+        study_each(store, subject, found_by, [&](const Responses& responses, const study::ResponseColumn& response) {
+            return report::convergence_document(store, responses, response, format);
+        });
+    report::write(std::cout, documents, format);
+    return subject.check && !std::ranges::all_of(documents, &Document::converged) ? 1 : 0;
 }
 
 int sensitivity(const Subject& subject, Format format) {
     const Store store(subject.database, Store::Mode::read);
-    Json all = Json::array();
-    store::Table rows;
-    const auto nothing = [](const Responses&, bool) { return false; };
-    for_each_campaign(
-        store, subject, nothing, [&](const Responses& responses, const study::ResponseColumn& response, bool first) {
-            const auto influence = study::influence_of(responses, response);
-            if (format == Format::json) {
-                all.push_back(report::to_json(responses, response, influence));
-                all.back()["model"] = report::model_influence_json(study::model_influence_of(responses, response));
-            } else if (format == Format::csv) {
-                append(rows, report::influence_rows(responses, response, influence));
-            } else {
-                if (!first) std::cout << '\n';
-                print_heading(responses, response);
-                report::write(std::cout, report::influence_table(influence), Format::text);
-                std::cout << '\n';
-                if (const auto text = study::unexplained_text(influence); !text.empty()) std::cout << text << '\n';
-                print_notes(influence.notes);
-                print_model_influence(study::model_influence_of(responses, response));
-            }
+    const auto nothing = [](const Responses&) { return std::optional<Document>(); };
+    const auto documents =
+        study_each(store, subject, nothing, [&](const Responses& responses, const study::ResponseColumn& response) {
+            return report::influence_document(responses, response, format);
         });
-    if (format == Format::json) report::write(std::cout, all);
-    if (format == Format::csv) report::write(std::cout, rows, format);
+    report::write(std::cout, documents, format);
     return 0;
 }
 
@@ -253,19 +104,15 @@ int write_report(const std::vector<std::string>& databases, std::string output, 
     const std::string page = std::move(stream).str();
     write_page_file(output, page);
     const auto size = static_cast<std::int64_t>(page.size());
-    if (format == Format::text) {
-        std::cout << fmt::format("{} ({}): open it in a browser\n", output,
-                                 report::size_text(static_cast<std::uintmax_t>(size)));
-    } else if (format == Format::json) {
-        report::write(std::cout, Json{{"report", output}, {"bytes", size}});
-    } else {
-        report::write(std::cout, store::Table{{"report", "bytes"}, {{output, size}}}, format);
-    }
+    Document shown{.rows = {{"report", "bytes"}, {{output, size}}}};
+    shown.value = report::to_json(shown.rows, 0);
+    shown.say(fmt::format("{} ({}): open it in a browser", output, report::size_text(page.size())));
+    report::write(std::cout, shown, format);
     return 0;
 }
 
 /// A command about one observable of one campaign, or of all.
-Command study(std::string command, std::string summary, int (*answer)(const Subject&, Format)) {
+Command about_an_observable(std::string command, std::string summary, int (*answer)(const Subject&, Format)) {
     return {
         std::move(command), std::move(summary),
         [answer](Parser& parser, const Format& format) -> Action {
@@ -289,8 +136,9 @@ Command study(std::string command, std::string summary, int (*answer)(const Subj
 
 std::vector<Command> study_commands() {
     return {
-        study("converge", "shows moments with their errors, check by check, and the verdict", converge),
-        study("sensitivity", "shows which factor moves the response: indices with their errors", sensitivity),
+        about_an_observable("converge", "shows moments with their errors, check by check, and the verdict", converge),
+        about_an_observable("sensitivity", "shows which factor moves the response: indices with their errors",
+                            sensitivity),
         {"report", "writes one self-contained HTML page with tables and figures",
          [](Parser& parser, const Format& format) -> Action {
              struct Request {

@@ -49,12 +49,6 @@ private:
     }
 };
 
-template <typename T>
-Option* declared(CLI::App& app, std::deque<Option>& options, const std::string& names, T& into,
-                 const std::string& help) {
-    return &options.emplace_back(app.add_option(names, into, help));
-}
-
 /// The commands as subcommands of `app`. The chosen one's action is in `chosen` after parsing.
 void declare(CLI::App& app, const std::vector<Command>& commands, std::deque<Parser>& parsers, Action& chosen) {
     for (const auto& command : commands) {
@@ -164,33 +158,17 @@ Option* Option::capture_default_str() {
     return this;
 }
 
-Option* Parser::add_option(const std::string& names, std::string& into, const std::string& help) {
-    return declared(*app_, options_, names, into, help);
+template <class T>
+Option* Parser::add_option(const std::string& names, T& into, const std::string& help) {
+    return &options_.emplace_back(app_->add_option(names, into, help));
 }
-
-Option* Parser::add_option(const std::string& names, std::filesystem::path& into, const std::string& help) {
-    return declared(*app_, options_, names, into, help);
-}
-
-Option* Parser::add_option(const std::string& names, std::vector<std::string>& into, const std::string& help) {
-    return declared(*app_, options_, names, into, help);
-}
-
-Option* Parser::add_option(const std::string& names, double& into, const std::string& help) {
-    return declared(*app_, options_, names, into, help);
-}
-
-Option* Parser::add_option(const std::string& names, std::int64_t& into, const std::string& help) {
-    return declared(*app_, options_, names, into, help);
-}
-
-Option* Parser::add_option(const std::string& names, std::optional<std::int64_t>& into, const std::string& help) {
-    return declared(*app_, options_, names, into, help);
-}
-
-Option* Parser::add_option(const std::string& names, std::optional<std::uint64_t>& into, const std::string& help) {
-    return declared(*app_, options_, names, into, help);
-}
+template Option* Parser::add_option(const std::string&, std::string&, const std::string&);
+template Option* Parser::add_option(const std::string&, std::filesystem::path&, const std::string&);
+template Option* Parser::add_option(const std::string&, std::vector<std::string>&, const std::string&);
+template Option* Parser::add_option(const std::string&, double&, const std::string&);
+template Option* Parser::add_option(const std::string&, std::int64_t&, const std::string&);
+template Option* Parser::add_option(const std::string&, std::optional<std::int64_t>&, const std::string&);
+template Option* Parser::add_option(const std::string&, std::optional<std::uint64_t>&, const std::string&);
 
 Option* Parser::add_flag(const std::string& names, bool& into, const std::string& help) {
     return &options_.emplace_back(app_->add_flag(names, into, help));

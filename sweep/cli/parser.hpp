@@ -52,13 +52,9 @@ private:
 class Parser {
 public:
     explicit Parser(CLI::App& app) : app_(&app) {}
-    Option* add_option(const std::string& names, std::string& into, const std::string& help);
-    Option* add_option(const std::string& names, std::filesystem::path& into, const std::string& help);
-    Option* add_option(const std::string& names, std::vector<std::string>& into, const std::string& help);
-    Option* add_option(const std::string& names, double& into, const std::string& help);
-    Option* add_option(const std::string& names, std::int64_t& into, const std::string& help);
-    Option* add_option(const std::string& names, std::optional<std::int64_t>& into, const std::string& help);
-    Option* add_option(const std::string& names, std::optional<std::uint64_t>& into, const std::string& help);
+    /// Of a text, a path, a list of texts, a number, or a whole number that may be absent.
+    template <class T>
+    Option* add_option(const std::string& names, T& into, const std::string& help);
     Option* add_flag(const std::string& names, bool& into, const std::string& help);
 
 private:

@@ -9,7 +9,6 @@
 #include "sweep/report/watch_page.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <iostream>

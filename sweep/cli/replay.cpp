@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -163,11 +162,11 @@ int replay(const ReplayRequest& request, Format format) {
     pictures.finish(now);
     const auto [table, agrees, verdict] = compared(*stored, now, expectation_of(request, program.get(), same_path));
     if (format == Format::json) {
-        report::write(std::cout, nlohmann::ordered_json{{"case_id", question.id},
-                                                        {"same_path", same_path},
-                                                        {"agrees", agrees},
-                                                        {"verdict", verdict},
-                                                        {"scalars", report::to_json(table)}});
+        report::write(std::cout, report::Json{{"case_id", question.id},
+                                              {"same_path", same_path},
+                                              {"agrees", agrees},
+                                              {"verdict", verdict},
+                                              {"scalars", report::to_json(table)}});
     } else {
         if (format == Format::text) std::cout << heading_of(archive, question.id) << "\n\n";
         if (!table.rows.empty()) report::write(std::cout, table, format);

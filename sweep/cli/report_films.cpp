@@ -8,7 +8,6 @@
 #include "sweep/workers/compute.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cstddef>
 #include <iostream>

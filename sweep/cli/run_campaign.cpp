@@ -173,32 +173,30 @@ std::string standing(const schedule::Judge* judge) {
 }
 
 std::string summary_of(Ending ending, const schedule::Plan::Tally& tally, const schedule::Judge* judge) {
+    const auto left = [&](std::string_view how, std::string_view then = "; run again to resume") {
+        return fmt::format("{} with {} cases left{}{}", how, tally.questions - tally.decided, then, standing(judge));
+    };
     switch (ending) {
         case Ending::finished:
-            return tally.failed == 0
-                       ? "all cases are settled" + standing(judge)
-                       : fmt::format("all cases are finished, {} of them failed{}", tally.failed, standing(judge));
+            return (tally.failed == 0 ? "all cases are settled"
+                                      : fmt::format("all cases are finished, {} of them failed", tally.failed)) +
+                   standing(judge);
         case Ending::converged:
             return fmt::format("converged after {} points: {}", *judge->converged_at(), judge->verdict());
         case Ending::limited:
-            return fmt::format("stopped with {} cases left; run again to resume{}", tally.questions - tally.decided,
-                               standing(judge));
+            return left("stopped");
         case Ending::too_many_failures:
             return fmt::format("stopped after {} failed cases{}", tally.failed_now, standing(judge));
         case Ending::out_of_time:
-            return fmt::format("out of time with {} cases left; run again to resume{}", tally.questions - tally.decided,
-                               standing(judge));
+            return left("out of time");
         case Ending::asked_to_end:
-            return fmt::format("ended by a signal with {} cases left; run again to resume{}",
-                               tally.questions - tally.decided, standing(judge));
+            return left("ended by a signal");
         case Ending::too_long:
-            return fmt::format(
-                "stopped with {} cases left, each predicted to exceed the time limit; extend it "
-                "(execution.walltime, or the job's time limit){}",
-                tally.questions - tally.decided, standing(judge));
+            return left("stopped",
+                        ", each predicted to exceed the time limit; extend it (execution.walltime, or the job's time "
+                        "limit)");
         case Ending::interrupted:
-            return fmt::format("interrupted with {} cases left; run again to resume{}", tally.questions - tally.decided,
-                               standing(judge));
+            return left("interrupted");
     }
     return {};
 }

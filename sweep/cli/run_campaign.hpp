@@ -2,7 +2,6 @@
 #pragma once
 
 #include "sweep/campaign/case.hpp"
-#include "sweep/report/table.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -38,7 +37,5 @@ struct RunReport {
 };
 
 [[nodiscard]] RunReport run_campaign(const RunRequest& request);
-/// What a program wants to know of a finished run, to standard output; the science is in the database.
-void show_run(const RunReport& report, report::Format format);
 
 }  // namespace grainsweep::cli

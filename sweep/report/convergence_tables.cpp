@@ -2,11 +2,9 @@
 
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/report/summary.hpp"
-#include "sweep/report/table.hpp"
 #include "sweep/study/error_text.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +16,6 @@ using namespace study;
 namespace {
 
 using Cell = store::Table::Cell;
-using Json = nlohmann::ordered_json;
 constexpr std::size_t most_shown_checks = 20;
 
 bool is_gate(const History& history, stats::Statistic statistic) {
@@ -38,11 +35,6 @@ const stats::Checkpoint& judged_check(const History& history) {
 std::string gate_text(const History& history, stats::Statistic statistic) {
     if (!history.has_rule || !is_gate(history, statistic) || history.checks.empty()) return "";
     return judged_check(history).of(statistic).measure < history.settings.tolerance ? "within" : "not within";
-}
-
-Cell needed_cell(const History& history) {
-    const auto& check = judged_check(history);
-    return check.points_needed ? Cell{*check.points_needed} : Cell{};
 }
 
 store::Table no_checks() {
@@ -67,19 +59,18 @@ void add_check(store::Table& table, const Responses& responses, const ResponseCo
     table.rows.push_back(std::move(row));
 }
 
+Json json_of(double value, double error) {
+    return {{"value", value}, {"error", error}};
+}
+
 Json provisional_of(const History& history) {
     if (!history.provisional) return nullptr;
     const auto& known = *history.provisional;
-    Json value = {{"points", known.points}, {"values", known.count}, {"excluded", known.excluded}};
-    for (const auto statistic : stats::statistics) {
-        value["statistics"][std::string(stats::to_string(statistic))] = {
-            {"value", json_number(known.of(statistic).value)}, {"error", json_number(known.of(statistic).error)}};
-    }
-    return value;
-}
-
-Json with_error_json(double value, double error) {
-    return {{"value", json_number(value)}, {"error", json_number(error)}};
+    Json statistics = Json::object();
+    for (const auto statistic : stats::statistics)
+        statistics.add(to_string(statistic), json_of(known.of(statistic).value, known.of(statistic).error));
+    return {
+        {"points", known.points}, {"values", known.count}, {"excluded", known.excluded}, {"statistics", statistics}};
 }
 
 /// An estimate with a model, marked where it is withdrawn.
@@ -99,8 +90,8 @@ std::string population_line(const Estimators& estimators) {
         estimators.without_value, estimators.without_value + estimators.assisted->cases);
 }
 
-}  // namespace
-
+/// All settled points: value, 95 % error, what the rule compares with the tolerance, and whether it is a gate that
+/// holds the campaign back.
 store::Table statistics_table(const History& history) {
     store::Table table{{"statistic", "value", "error", "measure", "gate"}, {}};
     for (const auto statistic : stats::statistics) {
@@ -122,6 +113,7 @@ store::Table provisional_table(const History& history) {
     return table;
 }
 
+/// Some 20 of the checks where there are more.
 store::Table checks_table(const History& history) {
     store::Table table{{"points", "mean", "sd", "skewness", "g1", "kurtosis", "excluded", "zeros", ""}, {}};
     const auto add = [&](const stats::Checkpoint& check, const std::string& remark) {
@@ -138,21 +130,7 @@ store::Table checks_table(const History& history) {
     return table;
 }
 
-store::Table checks_rows(const Responses& responses, const ResponseColumn& response, const History& history) {
-    store::Table table = no_checks();
-    for (const auto& check : history.checks)
-        add_check(table, responses, response, check, {.converged = check.converged});
-    if (history.all.points > 0 && (history.checks.empty() || history.checks.back().points != history.all.points))
-        add_check(table, responses, response, history.all, {});
-    return table;
-}
-
-store::Table provisional_rows(const Responses& responses, const ResponseColumn& response, const History& history) {
-    store::Table table = no_checks();
-    if (history.provisional) add_check(table, responses, response, *history.provisional, {.provisional = true});
-    return table;
-}
-
+/// Lattices of one family: moments and how far they moved since the coarser one, as a share of what a rule compares.
 store::Table lattice_table(std::span<const LatticeStep> steps) {
     store::Table table{{"campaign", "points", "values"}, {}};
     for (const auto statistic : stats::statistics) {
@@ -170,6 +148,7 @@ store::Table lattice_table(std::span<const LatticeStep> steps) {
     return table;
 }
 
+/// The same for people: "2.679 (30 %)".
 store::Table lattice_lines(std::span<const LatticeStep> steps) {
     store::Table table{{"lattice", "points", "values"}, {}};
     for (const auto statistic : stats::statistics)
@@ -186,8 +165,67 @@ store::Table lattice_lines(std::span<const LatticeStep> steps) {
     return table;
 }
 
+void say_history(Document& shown, const Responses& responses, const History& history,
+                 std::span<const LatticeStep> lattices) {
+    if (!responses.campaign.condition.empty()) shown.say("where: " + points_line(responses)).say();
+    if (history.all.count > 0 || !history.provisional) shown.show(statistics_table(history)).say();
+    if (history.provisional)
+        shown
+            .say(fmt::format("provisional: all {} finished cases, also behind gaps in the design; not judged",
+                             responses.finished()))
+            .show(provisional_table(history))
+            .say();
+    if (!history.checks.empty()) {
+        const auto checks = checks_table(history);
+        shown.show(checks);
+        if (checks.rows.size() < history.checks.size())
+            shown.say(fmt::format("({} checks; --format csv has them all)", history.checks.size()));
+        shown.say();
+    }
+    if (!lattices.empty()) shown.show(lattice_lines(lattices)).say();
+    shown.say(history.verdict).say_notes(history.warnings);
+}
+
+/// Both estimates of the moments, where the design allows the second one.
+void say_estimators(Document& shown, const Estimators& estimators) {
+    shown.say();
+    if (estimators.assisted)
+        shown.say("moments with a response model beside the plain ones").show(estimators_table(estimators));
+    for (const auto& line : estimator_lines(estimators)) shown.say(line);
+}
+
+}  // namespace
+
+store::Table checks_rows(const Responses& responses, const ResponseColumn& response, const History& history) {
+    store::Table table = no_checks();
+    for (const auto& check : history.checks)
+        add_check(table, responses, response, check, {.converged = check.converged});
+    if (history.all.points > 0 && (history.checks.empty() || history.checks.back().points != history.all.points))
+        add_check(table, responses, response, history.all, {});
+    return table;
+}
+
+store::Table provisional_rows(const Responses& responses, const ResponseColumn& response, const History& history) {
+    store::Table table = no_checks();
+    if (history.provisional) add_check(table, responses, response, *history.provisional, {.provisional = true});
+    return table;
+}
+
 Json to_json(const Responses& responses, const ResponseColumn& response, const History& history,
              std::span<const LatticeStep> lattices) {
+    const bool rule = history.has_rule;
+    const auto converged = std::ranges::find(history.checks, true, &stats::Checkpoint::converged);
+    const bool judged = rule && converged != history.checks.end();
+    const auto& held_back = judged_check(history).held_back;
+    Json gates = Json::array(), statistics = Json::object();
+    if (rule)
+        for (const auto gate : history.settings.gates) gates.push_back(stats::to_string(gate));
+    for (const auto statistic : stats::statistics) {
+        const auto& all = history.all.of(statistic);
+        statistics.add(
+            stats::to_string(statistic),
+            {{"value", all.value}, {"error", all.error}, {"measure", judged_check(history).of(statistic).measure}});
+    }
     Json value = {{"campaign", responses.campaign.name},
                   {"observable", response.name},
                   {"unit", response.unit},
@@ -195,35 +233,24 @@ Json to_json(const Responses& responses, const ResponseColumn& response, const H
                   {"points", history.all.points},
                   {"values", history.all.count},
                   {"excluded", history.all.excluded},
-                  {"zero_share", json_number(history.all.zero_share)},
+                  {"zero_share", history.all.zero_share},
                   {"candidates", responses.candidates},
                   {"dropped", responses.dropped()},
                   {"asked", responses.rows()},
-                  {"finished", responses.finished()}};
-    value["provisional"] = provisional_of(history);
-    value["rule"] = history.has_rule ? Json(stats::to_string(history.settings.rule)) : Json(nullptr);
-    value["tolerance"] = history.has_rule ? Json(history.settings.tolerance) : Json(nullptr);
-    value["gates"] = Json::array();
-    if (history.has_rule)
-        for (const auto gate : history.settings.gates) value["gates"].push_back(stats::to_string(gate));
-    for (const auto statistic : stats::statistics) {
-        const auto& all = history.all.of(statistic);
-        value["statistics"][std::string(stats::to_string(statistic))] = {
-            {"value", json_number(all.value)},
-            {"error", json_number(all.error)},
-            {"measure", json_number(judged_check(history).of(statistic).measure)}};
-    }
-    const auto converged = std::ranges::find(history.checks, true, &stats::Checkpoint::converged);
-    const bool judged = history.has_rule && converged != history.checks.end();
-    value["converged"] = judged;
-    value["converged_at"] = judged ? Json(converged->points) : Json(nullptr);
-    const auto& held_back = judged_check(history).held_back;
-    value["held_back_by"] = !judged && held_back ? Json(stats::to_string(*held_back)) : Json(nullptr);
-    value["points_needed"] = to_json(needed_cell(history));
-    value["verdict"] = history.verdict;
-    value["notes"] = history.warnings;
-    value["checks"] = to_json(checks_rows(responses, response, history));
-    if (!lattices.empty()) value["lattices"] = to_json(lattice_table(lattices));
+                  {"finished", responses.finished()},
+                  {"provisional", provisional_of(history)},
+                  {"rule", rule ? Json(stats::to_string(history.settings.rule)) : Json()},
+                  {"tolerance", rule ? Json(history.settings.tolerance) : Json()},
+                  {"gates", gates},
+                  {"statistics", statistics},
+                  {"converged", judged},
+                  {"converged_at", judged ? Json(converged->points) : Json()},
+                  {"held_back_by", !judged && held_back ? Json(stats::to_string(*held_back)) : Json()},
+                  {"points_needed", judged_check(history).points_needed},
+                  {"verdict", history.verdict},
+                  {"notes", history.warnings},
+                  {"checks", to_json(checks_rows(responses, response, history))}};
+    if (!lattices.empty()) value.add("lattices", to_json(lattice_table(lattices)));
     return value;
 }
 
@@ -258,40 +285,53 @@ std::vector<std::string> estimator_lines(const Estimators& estimators) {
 }
 
 Json estimators_json(const History& history, const Estimators& estimators) {
-    Json plain = Json::object();
+    Json plain = Json::object(), with_model, without_scatter, shares;
     for (const auto statistic : stats::statistics)
-        plain[key(statistic)] = with_error_json(history.all.of(statistic).value, history.all.of(statistic).error);
-    Json value = {{"plain", plain}, {"model_assisted", nullptr}, {"without_scatter", nullptr}};
-    value["model_error"] = nullptr;
-    value["features"] = estimators.features;
-    value["scatter_from"] = nullptr;
-    value["scatter_share"] = nullptr;
-    value["note"] = estimators.refused;
-    value["population"] = "";
-    if (!estimators.assisted) return value;
-    const auto& assisted = *estimators.assisted;
-    const bool scatter_known = !estimators.scatter_from.empty();
-    for (const auto statistic : stats::assisted_statistics) {
-        const auto& one = assisted.of(statistic);
-        value["model_assisted"][key(statistic)] = with_error_json(one.assisted.value, one.assisted.half_width);
-        value["model_assisted"][key(statistic)]["taken"] = one.takes_assisted;
-        value["model_assisted"][key(statistic)]["withdrawn"] = one.withdrawn;
-        if (!scatter_known) continue;
-        value["without_scatter"][key(statistic)] =
-            with_error_json(one.without_scatter.value, one.without_scatter.half_width);
-        value["without_scatter"][key(statistic)]["withdrawn"] = one.withdrawn;
+        plain.add(key(statistic), json_of(history.all.of(statistic).value, history.all.of(statistic).error));
+    const bool known = estimators.assisted.has_value();
+    const bool scatter_known = known && !estimators.scatter_from.empty();
+    if (known)
+        for (const auto statistic : stats::assisted_statistics) {
+            const auto& one = estimators.assisted->of(statistic);
+            const auto json_with = [](const stats::AssistedEstimate& estimate) {
+                return json_of(estimate.value, estimate.half_width);
+            };
+            with_model.add(key(statistic),
+                           json_with(one.assisted).add("taken", one.takes_assisted).add("withdrawn", one.withdrawn));
+            if (scatter_known)
+                without_scatter.add(key(statistic), json_with(one.without_scatter).add("withdrawn", one.withdrawn));
+        }
+    if (scatter_known)
+        for (std::size_t p = 0; const char* moment : {"variance", "third_moment", "fourth_moment"}) {
+            const auto& budget = estimators.assisted->budget[p++];
+            shares.add(moment, budget.scatter / (budget.response + budget.scatter));
+        }
+    return {{"plain", plain},
+            {"model_assisted", with_model},
+            {"without_scatter", without_scatter},
+            {"model_error", known ? Json(estimators.assisted->model_error) : Json()},
+            {"features", estimators.features},
+            {"scatter_from", scatter_known ? Json(estimators.scatter_from) : Json()},
+            {"scatter_share", shares},
+            {"note", known ? estimators.assisted->remark : estimators.refused},
+            {"population", known && estimators.without_value > 0 ? population_line(estimators) : ""}};
+}
+
+Document convergence_document(const store::Store& store, const Responses& responses, const ResponseColumn& response,
+                              Format format) {
+    const auto history = history_of(responses, response);
+    const auto lattices = lattice_family(store, responses, response);
+    Document shown{.rows = checks_rows(responses, response, history), .converged = history.converged.value_or(false)};
+    for (auto& row : provisional_rows(responses, response, history).rows) shown.rows.rows.push_back(std::move(row));
+    if (format == Format::json)
+        shown.value = to_json(responses, response, history, lattices)
+                          .add("estimators", estimators_json(history, estimators_of(store, responses, response)));
+    if (format == Format::text) {
+        shown.say(study_heading(responses, response)).say();
+        say_history(shown, responses, history, lattices);
+        if (repeats(responses)) say_estimators(shown, estimators_of(store, responses, response));
     }
-    value["model_error"] = json_number(assisted.model_error);
-    value["note"] = assisted.remark;
-    if (estimators.without_value > 0) value["population"] = population_line(estimators);
-    if (!scatter_known) return value;
-    value["scatter_from"] = estimators.scatter_from;
-    const auto share = [&](std::size_t p) {
-        const auto& budget = assisted.budget[p];
-        return json_number(budget.scatter / (budget.response + budget.scatter));
-    };
-    value["scatter_share"] = {{"variance", share(0)}, {"third_moment", share(1)}, {"fourth_moment", share(2)}};
-    return value;
+    return shown;
 }
 
 }  // namespace grainsweep::report

@@ -7,8 +7,7 @@
 #pragma once
 
 #include "solver/scenes/values.hpp"
-
-#include <nlohmann/json_fwd.hpp>
+#include "sweep/report/table.hpp"
 
 #include <array>
 #include <cstddef>
@@ -41,7 +40,7 @@ public:
 
     /// The film as the player reads it: "GSF1", the length of the header (32 bits, little endian), the header (JSON,
     /// UTF-8) and the blocks it names by offset and length. `about` is what the player says of the case.
-    [[nodiscard]] std::string bytes(const nlohmann::ordered_json& about) const;
+    [[nodiscard]] std::string bytes(const Json& about) const;
 
 private:
     struct Sphere {

@@ -2,9 +2,8 @@
 #include "sweep/report/film.hpp"
 #include "sweep/report/film_codec.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -13,8 +12,6 @@
 
 namespace grainsweep::report {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr double finest = 65535;
 constexpr double colours = 254;           // levels of a colour that is defined
@@ -59,15 +56,15 @@ std::uint16_t colour_of(double x, const ValueRange& range) {
 /// Puts the blocks one after the other and writes down where they are.
 class FilmWriter {
 public:
-    FilmWriter(const Film& film, const Json& about) : film_(film), header_(Json::object()) {
-        header_["about"] = about;
-        header_["time_unit"] = film.time_unit_;
-        header_["length_unit"] = film.length_unit_;
-        header_["times"] = film.times_;
-        header_["periods"] = film.periods_;
-        header_["spheres"] = film.spheres_.size();
-        header_["particles"] = film.most_present_;  // more than spheres: thinned
-    }
+    FilmWriter(const Film& film, const Json& about)
+        : film_(film),
+          header_{{"about", about},
+                  {"time_unit", film.time_unit_},
+                  {"length_unit", film.length_unit_},
+                  {"times", film.times_},
+                  {"periods", film.periods_},
+                  {"spheres", film.spheres_.size()},
+                  {"particles", film.most_present_}} {}  // more than spheres: thinned
 
     std::string write() {
         if (!film_.spheres_.empty()) {
@@ -77,7 +74,7 @@ public:
         write_walls();
         write_slices();
         write_columns();
-        const std::string header = header_.dump(-1, ' ', false, Json::error_handler_t::replace);
+        const std::string& header = header_.text();
         std::string bytes = "GSF1";
         for (unsigned shift = 0; shift < 32; shift += 8)
             bytes.push_back(static_cast<char>(header.size() >> shift & 0xFFU));
@@ -90,7 +87,7 @@ private:
     /// [offset, length] of the packed column.
     Json block(const Numbers& values, std::size_t items) { return block(pack_film_column(values, items)); }
     Json block(const std::string& bytes) {
-        Json place = {blocks_.size(), bytes.size()};
+        const Json place = std::array{blocks_.size(), bytes.size()};
         blocks_ += bytes;
         return place;
     }
@@ -129,8 +126,8 @@ private:
                 }
             }
         }
-        header_["positions"] = {{"low", low}, {"step", step}, {"block", block(places, 3 * n)}};
-        if (!all_present) header_["present"] = block(present, n);
+        header_.add("positions", {{"low", low}, {"step", step}, {"block", block(places, 3 * n)}});
+        if (!all_present) header_.add("present", block(present, n));
     }
 
     /// Diameters as 16-bit numbers over their largest (0: the scene names none); which spheres are mobile.
@@ -149,8 +146,9 @@ private:
             equal = equal && diameters.back() == diameters.front();
             mobile.push_back(sphere.mobile ? 1 : 0);
         }
-        header_["diameter"] = {{"largest", largest}, {"equal", equal}, {"block", block(diameters, diameters.size())}};
-        if (!all_mobile) header_["mobile"] = block(mobile, mobile.size());
+        header_.add("diameter",
+                    {{"largest", largest}, {"equal", equal}, {"block", block(diameters, diameters.size())}});
+        if (!all_mobile) header_.add("mobile", block(mobile, mobile.size()));
     }
 
     /// Colours of mobile spheres; what frozen ones bear would hide how the powder fares. Velocity comes first, then
@@ -161,23 +159,25 @@ private:
         const double most = std::max(static_cast<double>(film_.limits_.bytes),
                                      bytes_per_sphere * static_cast<double>(n * film_.frames_.size())) /
                             text;
-        std::vector<std::pair<std::string, Json>> columns;  // packed, and described
+        struct Column {
+            std::string name, bytes;
+            ValueRange range;
+        };
+        std::vector<Column> columns;
         for (const auto& name : column_names()) {
             const ValueRange range = range_of(sample_of(name));
-            columns.emplace_back(pack_film_column(shades_of(name, range), n), coloured(name, range));
+            columns.push_back({name, pack_film_column(shades_of(name, range), n), range});
         }
         std::stable_sort(columns.begin() + (columns.empty() ? 0 : 1), columns.end(),
-                         [](const auto& a, const auto& b) { return a.first.size() < b.first.size(); });
-        header_["columns"] = Json::array();
-        header_["left_out"] = Json::array();
-        for (auto& [bytes, column] : columns) {
-            if (static_cast<double>(blocks_.size() + bytes.size()) + header_room > most) {
-                header_["left_out"].push_back(column["name"]);
-                continue;
-            }
-            column["block"] = block(bytes);
-            header_["columns"].push_back(std::move(column));
+                         [](const auto& a, const auto& b) { return a.bytes.size() < b.bytes.size(); });
+        Json kept = Json::array(), left_out = Json::array();
+        for (const auto& [name, bytes, range] : columns) {
+            if (static_cast<double>(blocks_.size() + bytes.size()) + header_room > most)
+                left_out.push_back(name);
+            else
+                kept.push_back(coloured(name, range).add("block", block(bytes)));
         }
+        header_.add("columns", kept).add("left_out", left_out);
     }
 
     [[nodiscard]] Numbers shades_of(const std::string& name, const ValueRange& range) const {
@@ -228,11 +228,11 @@ private:
     /// Corners as 16-bit numbers in the wall's own box: one frame where it stands still, else those from `first` on,
     /// `frames` in number; shown that long.
     void write_walls() {
-        header_["walls"] = Json::array();
+        Json walls = Json::array(), left_out = Json::array();
         for (const auto& wall : film_.walls_) {
             const std::size_t n = wall.shape.corners.size();
             if (n > static_cast<std::size_t>(finest)) {
-                header_["walls_left_out"].push_back(wall.shape.name);
+                left_out.push_back(wall.shape.name);
                 continue;
             }
             std::array<double, 3> low = wall.shape.corners.front(), high = low, step{};
@@ -250,17 +250,19 @@ private:
                         places.push_back(step[a] > 0
                                              ? static_cast<std::uint16_t>(std::lround((x[a] - low[a]) / step[a]))
                                              : std::uint16_t{0});
-            header_["walls"].push_back({{"name", wall.shape.name},
-                                        {"first", wall.first},
-                                        {"frames", wall.corners.size()},
-                                        {"moves", wall.moves},
-                                        {"corners", n},
-                                        {"low", low},
-                                        {"step", step},
-                                        {"places", block(places, 3 * n)},
-                                        {"triangles", list_of(wall.shape.triangles)},
-                                        {"edges", list_of(wall.shape.edges)}});
+            walls.push_back({{"name", wall.shape.name},
+                             {"first", wall.first},
+                             {"frames", wall.corners.size()},
+                             {"moves", wall.moves},
+                             {"corners", n},
+                             {"low", low},
+                             {"step", step},
+                             {"places", block(places, 3 * n)},
+                             {"triangles", list_of(wall.shape.triangles)},
+                             {"edges", list_of(wall.shape.edges)}});
         }
+        header_.add("walls", walls);
+        if (!left_out.empty()) header_.add("walls_left_out", left_out);
     }
 
     /// Indices, all first corners, then all second ones, ...
@@ -274,24 +276,25 @@ private:
 
     /// planes[a]: across axis a; the other two axes in their order, the first of them fastest.
     void write_slices() {
-        header_["slices"] = Json::array();
+        Json slices = Json::array();
         for (const auto& slice : film_.slices_) {
             if (slice.frames < film_.times_.size()) continue;
             std::vector<float> all;
             for (const auto& plane : slice.planes) all.insert(all.end(), plane.begin(), plane.end());
-            Json one = coloured(slice.quantity, range_of(std::move(all)));
-            const ValueRange range{one["low"].get<double>(), one["high"].get<double>(), false};
-            one["component"] = slice.component;
-            one["field"] = slice.field;
-            one["faces"] = slice.faces;
-            one["planes"] = Json::array();
+            const ValueRange range = range_of(std::move(all));
+            Json planes = Json::array();
             for (const auto& plane : slice.planes) {
                 Numbers values;
                 for (const float x : plane) values.push_back(colour_of(x, range));
-                one["planes"].push_back(block(values, plane.size() / slice.frames));
+                planes.push_back(block(values, plane.size() / slice.frames));
             }
-            header_["slices"].push_back(std::move(one));
+            slices.push_back(coloured(slice.quantity, range)
+                                 .add({{"component", slice.component},
+                                       {"field", slice.field},
+                                       {"faces", slice.faces},
+                                       {"planes", planes}}));
         }
+        header_.add("slices", slices);
     }
 
     static constexpr double header_room = 20'000;  // bytes
@@ -301,7 +304,7 @@ private:
     std::string blocks_;
 };
 
-std::string Film::bytes(const nlohmann::ordered_json& about) const {
+std::string Film::bytes(const Json& about) const {
     return FilmWriter(*this, about).write();
 }
 

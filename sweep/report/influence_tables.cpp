@@ -1,11 +1,11 @@
 #include "sweep/report/influence_tables.hpp"
 
 #include "sweep/report/model_tables.hpp"
-#include "sweep/report/table.hpp"
+#include "sweep/report/summary.hpp"
 #include "sweep/study/error_text.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <array>
 
 #include <algorithm>
 #include <cmath>
@@ -15,11 +15,6 @@
 namespace grainsweep::report {
 
 using namespace study;
-
-namespace {
-
-using Cell = store::Table::Cell;
-using Json = nlohmann::ordered_json;
 
 std::string_view method_name(Influence::Method method) {
     switch (method) {
@@ -32,6 +27,10 @@ std::string_view method_name(Influence::Method method) {
     }
     return "";
 }
+
+namespace {
+
+using Cell = store::Table::Cell;
 
 /// What factors are ordered by: the most telling figure the method gives.
 double weight(const FactorInfluence& factor) {
@@ -46,7 +45,7 @@ Cell trend_cell(const FactorInfluence& factor) {
 }
 
 Json json_of(const stats::SensitivityIndex& index) {
-    return {{"value", json_number(index.value)}, {"error", json_number(index.half_width)}};
+    return {{"value", index.value}, {"error", index.half_width}};
 }
 
 /// Calls with (j, k, index) of every pair.
@@ -55,6 +54,32 @@ void for_each_pair(const ModelInfluence& influence, With with) {
     std::size_t place = 0;
     for (std::size_t j = 0; j < influence.factors.size(); ++j)
         for (std::size_t k = j + 1; k < influence.factors.size(); ++k) with(j, k, influence.indices->pairs[place++]);
+}
+
+/// For programs: one row per factor in the campaign's order; what the method does not give is absent.
+store::Table influence_rows(const Responses& responses, const ResponseColumn& response, const Influence& influence) {
+    store::Table table{{"campaign", "observable", "method", "factor", "first", "first_error", "first_saltelli",
+                        "first_saltelli_error", "total", "total_error", "mu", "mu_star", "mu_star_error", "sigma",
+                        "used", "excluded", "trend", "rank_correlation", "rank_correlation_error"},
+                       {}};
+    for (const auto& factor : influence.factors) {
+        std::vector<Cell> row = {responses.campaign.name, response.name, std::string(method_name(influence.method)),
+                                 factor.factor};
+        for (const auto& index : {factor.first, factor.first_saltelli, factor.total}) {
+            row.push_back(to_cell(index.value));
+            row.push_back(to_cell(index.half_width));
+        }
+        const auto effects = factor.effects.value_or(stats::ElementaryEffects{});
+        for (const double x : {effects.mu, effects.mu_star, effects.mu_star_half_width, effects.sigma})
+            row.push_back(to_cell(x));
+        row.emplace_back(influence.used);
+        row.emplace_back(influence.excluded);
+        row.push_back(trend_cell(factor));
+        row.push_back(to_cell(factor.rank_correlation.value));
+        row.push_back(to_cell(factor.rank_correlation.half_width));
+        table.rows.push_back(std::move(row));
+    }
+    return table;
 }
 
 }  // namespace
@@ -92,67 +117,37 @@ store::Table influence_table(const Influence& influence) {
     return table;
 }
 
-store::Table influence_rows(const Responses& responses, const ResponseColumn& response, const Influence& influence) {
-    store::Table table{{"campaign", "observable", "method", "factor", "first", "first_error", "first_saltelli",
-                        "first_saltelli_error", "total", "total_error", "mu", "mu_star", "mu_star_error", "sigma",
-                        "used", "excluded", "trend", "rank_correlation", "rank_correlation_error"},
-                       {}};
-    for (const auto& factor : influence.factors) {
-        std::vector<Cell> row = {responses.campaign.name, response.name, std::string(method_name(influence.method)),
-                                 factor.factor};
-        for (const auto& index : {factor.first, factor.first_saltelli, factor.total}) {
-            row.push_back(to_cell(index.value));
-            row.push_back(to_cell(index.half_width));
-        }
-        const auto effects = factor.effects.value_or(stats::ElementaryEffects{});
-        for (const double x : {effects.mu, effects.mu_star, effects.mu_star_half_width, effects.sigma})
-            row.push_back(to_cell(x));
-        row.emplace_back(influence.used);
-        row.emplace_back(influence.excluded);
-        row.push_back(trend_cell(factor));
-        row.push_back(to_cell(factor.rank_correlation.value));
-        row.push_back(to_cell(factor.rank_correlation.half_width));
-        table.rows.push_back(std::move(row));
-    }
-    return table;
-}
-
 Json to_json(const Responses& responses, const ResponseColumn& response, const Influence& influence) {
-    Json value = {{"campaign", responses.campaign.name},
-                  {"observable", response.name},
-                  {"method", method_name(influence.method)},
-                  {"used", influence.used},
-                  {"excluded", influence.excluded}};
-    value["factors"] = Json::array();
-    for (const auto& factor : influence.factors) {
+    const auto json_of_factor = [&](const FactorInfluence& factor) {
         Json one = {{"name", factor.factor}};
-        const auto put = [&](const char* name, const stats::SensitivityIndex& index) { one[name] = json_of(index); };
-        if (influence.method != Influence::Method::morris) {
-            one["bins"] = factor.bins;
-            put("first", factor.first);
-        }
-        if (influence.method == Influence::Method::saltelli) {
-            put("first_saltelli", factor.first_saltelli);
-            put("total", factor.total);
-        }
-        if (factor.effects) {
-            one["mu_star"] = {{"value", json_number(factor.effects->mu_star)},
-                              {"error", json_number(factor.effects->mu_star_half_width)}};
-            one["mu"] = json_number(factor.effects->mu);
-            one["sigma"] = json_number(factor.effects->sigma);
-        }
-        one["trend"] = to_json(trend_cell(factor));
-        put("rank_correlation", factor.rank_correlation);
-        value["factors"].push_back(std::move(one));
-    }
+        if (influence.method != Influence::Method::morris)
+            one.add("bins", factor.bins).add("first", json_of(factor.first));
+        if (influence.method == Influence::Method::saltelli)
+            one.add("first_saltelli", json_of(factor.first_saltelli)).add("total", json_of(factor.total));
+        if (factor.effects)
+            one.add("mu_star", {{"value", factor.effects->mu_star}, {"error", factor.effects->mu_star_half_width}})
+                .add("mu", factor.effects->mu)
+                .add("sigma", factor.effects->sigma);
+        one.add("trend", to_json(trend_cell(factor)));
+        return one.add("rank_correlation", json_of(factor.rank_correlation));
+    };
     const auto& split = influence.split;
-    value["variance"] = {
-        {"main_effects", json_of(split.main_effects)},    {"unexplained", json_of(split.unexplained)},
-        {"interactions", json_of(split.interactions)},    {"scatter", json_of(split.scatter)},
-        {"interactions_of_two", json_of(split.pairs)},    {"scatter_and_higher", json_of(split.remainder)},
-        {"pure_error", json_number(split.pure.variance)}, {"pure_error_freedom", split.pure.freedom}};
-    value["notes"] = influence.notes;
-    return value;
+    return {{"campaign", responses.campaign.name},
+            {"observable", response.name},
+            {"method", method_name(influence.method)},
+            {"used", influence.used},
+            {"excluded", influence.excluded},
+            {"factors", Json::list(influence.factors, json_of_factor)},
+            {"variance",
+             {{"main_effects", json_of(split.main_effects)},
+              {"unexplained", json_of(split.unexplained)},
+              {"interactions", json_of(split.interactions)},
+              {"scatter", json_of(split.scatter)},
+              {"interactions_of_two", json_of(split.pairs)},
+              {"scatter_and_higher", json_of(split.remainder)},
+              {"pure_error", split.pure.variance},
+              {"pure_error_freedom", split.pure.freedom}}},
+            {"notes", influence.notes}};
 }
 
 store::Table model_influence_table(const ModelInfluence& influence) {
@@ -196,28 +191,40 @@ std::vector<std::string> model_influence_lines(const ModelInfluence& influence) 
 }
 
 Json model_influence_json(const ModelInfluence& influence) {
-    Json value = {{"factors", Json::array()},     {"pairs", Json::array()},    {"scatter_share", nullptr},
-                  {"unexplained_share", nullptr}, {"response_model", nullptr}, {"refused", nullptr}};
-    if (!influence.indices) {
-        value["refused"] = influence.refused;
-        return value;
+    Json factors = Json::array(), pairs = Json::array(), scatter, unexplained, model;
+    if (influence.indices) {
+        const auto& indices = *influence.indices;
+        for (std::size_t j = 0; j < influence.factors.size(); ++j)
+            factors.push_back({{"name", influence.factors[j]},
+                               {"first", json_of(indices.first[j])},
+                               {"total", json_of(indices.total[j])},
+                               {"interactions", json_of(indices.interactions[j])}});
+        for_each_pair(influence, [&](std::size_t j, std::size_t k, const stats::SensitivityIndex& index) {
+            pairs.push_back(
+                Json{{"factors", std::array{influence.factors[j], influence.factors[k]}}}.add(json_of(index)));
+        });
+        const auto& quality = influence.model->model.quality();
+        scatter = quality.noise_share;
+        unexplained = std::pow(quality.leave_one_out_error, 2);
+        model = model_json(*influence.model);
     }
-    const auto& indices = *influence.indices;
-    for (std::size_t j = 0; j < influence.factors.size(); ++j)
-        value["factors"].push_back({{"name", influence.factors[j]},
-                                    {"first", json_of(indices.first[j])},
-                                    {"total", json_of(indices.total[j])},
-                                    {"interactions", json_of(indices.interactions[j])}});
-    for_each_pair(influence, [&](std::size_t j, std::size_t k, const stats::SensitivityIndex& index) {
-        Json pair = {{"factors", {influence.factors[j], influence.factors[k]}}};
-        pair.update(json_of(index));
-        value["pairs"].push_back(std::move(pair));
-    });
-    const auto& quality = influence.model->model.quality();
-    value["scatter_share"] = json_number(quality.noise_share);
-    value["unexplained_share"] = json_number(std::pow(quality.leave_one_out_error, 2));
-    value["response_model"] = model_json(*influence.model);
-    return value;
+    return {{"factors", factors},       {"pairs", pairs},
+            {"scatter_share", scatter}, {"unexplained_share", unexplained},
+            {"response_model", model},  {"refused", influence.indices ? Json() : Json(influence.refused)}};
+}
+
+Document influence_document(const Responses& responses, const ResponseColumn& response, Format format) {
+    const auto influence = influence_of(responses, response);
+    Document shown{.rows = influence_rows(responses, response, influence)};
+    if (format == Format::csv) return shown;
+    const auto modelled = model_influence_of(responses, response);
+    shown.value = to_json(responses, response, influence).add("model", model_influence_json(modelled));
+    shown.say(study_heading(responses, response)).say().show(influence_table(influence)).say();
+    if (const auto text = unexplained_text(influence); !text.empty()) shown.say(text);
+    shown.say_notes(influence.notes);
+    if (modelled.indices) shown.say("\nby a response model:").show(model_influence_table(modelled)).say();
+    for (const auto& line : model_influence_lines(modelled)) shown.say(line);
+    return shown;
 }
 
 }  // namespace grainsweep::report

@@ -1,24 +1,22 @@
 // What `sensitivity` shows of one campaign: rows for people, rows and JSON for programs.
 #pragma once
 
-#include "sweep/store/store.hpp"
+#include "sweep/report/document.hpp"
 #include "sweep/study/influence.hpp"
 #include "sweep/study/model_influence.hpp"
 
-#include <nlohmann/json_fwd.hpp>
-
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace grainsweep::report {
 
+/// "given_data", "saltelli" or "morris".
+[[nodiscard]] std::string_view method_name(study::Influence::Method method);
 /// One row per factor for people, the most influential first.
 [[nodiscard]] store::Table influence_table(const study::Influence& influence);
-/// One row per factor for programs, in the campaign's order; what the method does not give is absent.
-[[nodiscard]] store::Table influence_rows(const study::Responses& responses, const study::ResponseColumn& response,
-                                          const study::Influence& influence);
-[[nodiscard]] nlohmann::ordered_json to_json(const study::Responses& responses, const study::ResponseColumn& response,
-                                             const study::Influence& influence);
+[[nodiscard]] Json to_json(const study::Responses& responses, const study::ResponseColumn& response,
+                           const study::Influence& influence);
 
 /// One row per factor, the most influential first: first order, total, interactions.
 [[nodiscard]] store::Table model_influence_table(const study::ModelInfluence& influence);
@@ -26,6 +24,10 @@ namespace grainsweep::report {
 [[nodiscard]] std::vector<std::string> model_influence_lines(const study::ModelInfluence& influence);
 /// {"factors": [{"name", "first", "total", "interactions"}], "pairs": [{"factors", "value", "error"}], "scatter_share",
 /// "unexplained_share", "response_model", "refused"}; indices {"value", "error"}, shares of the variance of single runs
-[[nodiscard]] nlohmann::ordered_json model_influence_json(const study::ModelInfluence& influence);
+[[nodiscard]] Json model_influence_json(const study::ModelInfluence& influence);
+
+/// What `sensitivity` shows of a campaign, with no more computed than `format` takes.
+[[nodiscard]] Document influence_document(const study::Responses& responses, const study::ResponseColumn& response,
+                                          Format format);
 
 }  // namespace grainsweep::report

@@ -1,14 +1,12 @@
 #include "sweep/report/model_page.hpp"
 
 #include "sweep/report/model_tables.hpp"
-#include "sweep/report/table.hpp"
 #include "sweep/study/box_search.hpp"
 #include "sweep/study/cases_near.hpp"
 #include "sweep/study/factor_axis.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -18,8 +16,6 @@ namespace grainsweep::report {
 using namespace study;
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::size_t points_of_slice = 31, cells_of_map = 21;
 constexpr std::size_t points_averaged = 128, points_needed = 4;
@@ -90,45 +86,31 @@ SliceCurve curve_of(const Pictured& pictured, std::size_t factor) {
 }
 
 Json json_of(const Pictured& pictured, const SliceCurve& curve) {
-    Json value = {{"at", curve.at}};
-    for (const char* name : {"averaged", "mean", "mean_half_width", "run_half_width"}) value[name] = Json::array();
+    Json mean = Json::array(), mean_half_width = Json::array(), run_half_width = Json::array();
     const auto predictions = pictured.model.predict(curve.slice);
     for (std::size_t i = 0; i < curve.at.size(); ++i) {
         const bool there = pictured.has(curve.slice[i]);
-        const auto shown = [&](double x) { return there ? json_number(x) : Json(nullptr); };
-        value["averaged"].push_back(json_number(curve.averaged[i]));
-        value["mean"].push_back(shown(predictions[i].mean));
-        value["mean_half_width"].push_back(shown(predictions[i].mean_half_width()));
-        value["run_half_width"].push_back(shown(predictions[i].run_half_width()));
+        const auto shown = [&](double x) { return there ? Json(x) : Json(); };
+        mean.push_back(shown(predictions[i].mean));
+        mean_half_width.push_back(shown(predictions[i].mean_half_width()));
+        run_half_width.push_back(shown(predictions[i].run_half_width()));
     }
-    return value;
+    return {{"at", curve.at},
+            {"averaged", curve.averaged},
+            {"mean", mean},
+            {"mean_half_width", mean_half_width},
+            {"run_half_width", run_half_width}};
 }
 
 Json map_over(const Pictured& pictured, std::size_t a, std::size_t b) {
-    const auto& factors = pictured.cases.factors;
-    const auto across = cells_along(factors[a], cells_of_map), up = cells_along(factors[b], cells_of_map);
-    std::vector<Setting> values, slice;
-    for (const double y : up)
-        for (const double x : across) {
-            values.push_back({x, y});
-            slice.push_back(pictured.middle);
-            slice.back()[a] = x;
-            slice.back()[b] = y;
-        }
-    Json value = {{"across", a},
-                  {"up", b},
-                  {"across_edges", cell_edges(factors[a], cells_of_map)},
-                  {"up_edges", cell_edges(factors[b], cells_of_map)},
-                  {"columns", across.size()},
-                  {"rows", up.size()},
-                  {"averaged", Json::array()},
-                  {"slice", Json::array()}};
-    const std::size_t held[] = {a, b};
-    for (const double x : pictured.averaged(held, values)) value["averaged"].push_back(json_number(x));
+    const auto slice = settings_of_map(pictured.cases.factors, pictured.middle, a, b, cells_of_map);
+    std::vector<Setting> held;
+    for (const auto& setting : slice) held.push_back({setting[a], setting[b]});
+    Json through = Json::array();
     const auto means = pictured.model.model.means({pictured.model.rows(slice), pictured.model.features.names.size()});
-    for (std::size_t i = 0; i < slice.size(); ++i)
-        value["slice"].push_back(pictured.has(slice[i]) ? json_number(means[i]) : Json(nullptr));
-    return value;
+    for (std::size_t i = 0; i < slice.size(); ++i) through.push_back(pictured.has(slice[i]) ? Json(means[i]) : Json());
+    return map_json(pictured.cases.factors, a, b, cells_of_map)
+        .add({{"averaged", pictured.averaged(std::array{a, b}, held)}, {"slice", through}});
 }
 
 }  // namespace
@@ -142,16 +124,18 @@ Json model_page_data(const ModelCases& cases, const ObservableModel& model,
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t j) { return curves[j].range(); });
 
-    Json middle = {{"setting", pictured.middle}, {"texts", Json::array()}};
-    for (std::size_t j = 0; j < cases.factors.size(); ++j)
-        middle["texts"].push_back(cases.factors[j].text(pictured.middle[j]));
-    Json value = {{"observable", model.observable},      {"unit", model.unit}, {"says", model_lines(model)},
-                  {"factors", axes_json(cases.factors)}, {"order", order},     {"middle", middle},
-                  {"failed", failed_json(cases)}};
-    value["curves"] = Json::array();
-    for (const auto& curve : curves) value["curves"].push_back(json_of(pictured, curve));
-    value["map"] = order.size() < 2 ? Json(nullptr) : map_over(pictured, order[0], order[1]);
-    return value;
+    Json texts = Json::array();
+    for (std::size_t j = 0; j < cases.factors.size(); ++j) texts.push_back(cases.factors[j].text(pictured.middle[j]));
+    const auto drawn = [&](const SliceCurve& curve) { return json_of(pictured, curve); };
+    return {{"observable", model.observable},
+            {"unit", model.unit},
+            {"says", model_lines(model)},
+            {"factors", axes_json(cases.factors)},
+            {"order", order},
+            {"middle", {{"setting", pictured.middle}, {"texts", texts}}},
+            {"failed", failed_json(cases)},
+            {"curves", Json::list(curves, drawn)},
+            {"map", order.size() < 2 ? Json() : map_over(pictured, order[0], order[1])}};
 }
 
 }  // namespace grainsweep::report

@@ -12,9 +12,8 @@
 // factor matters by the range of its averaged curve.
 #pragma once
 
+#include "sweep/report/table.hpp"
 #include "sweep/study/response_models.hpp"
-
-#include <nlohmann/json_fwd.hpp>
 
 namespace grainsweep::report {
 
@@ -22,8 +21,7 @@ namespace grainsweep::report {
 /// "texts"}, "failed": settings and outcomes of failed cases, "curves": one per factor {"at", "averaged", "mean",
 /// "mean_half_width", "run_half_width"}, "map": of the first two of `order` or null {"across", "up", "across_edges",
 /// "up_edges", "columns", "rows", "averaged", "slice"}}. `admits`: settings that are left out are empty.
-[[nodiscard]] nlohmann::ordered_json model_page_data(const study::ModelCases& cases,
-                                                     const study::ObservableModel& model,
-                                                     const std::function<bool(const study::Setting&)>& admits);
+[[nodiscard]] Json model_page_data(const study::ModelCases& cases, const study::ObservableModel& model,
+                                   const std::function<bool(const study::Setting&)>& admits);
 
 }  // namespace grainsweep::report

@@ -1,10 +1,11 @@
 #include "sweep/report/model_tables.hpp"
 
 #include "sweep/campaign/wrong_question.hpp"
-#include "sweep/report/table.hpp"
+#include "sweep/study/error_text.hpp"
+#include "sweep/study/factor_axis.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <numeric>
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +15,6 @@
 namespace grainsweep::report {
 
 using namespace study;
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::size_t most_drawn = 2000;
 
@@ -38,10 +37,10 @@ Json model_json(const ObservableModel& model) {
             {"cases", quality.cases},
             {"rests_on", quality.rests_on},
             {"undefined", model.undefined},
-            {"leave_one_out_error", json_number(quality.leave_one_out_error)},
-            {"coverage_50", json_number(quality.coverage_50)},
-            {"coverage_95", json_number(quality.coverage_95)},
-            {"noise_share", json_number(quality.noise_share)},
+            {"leave_one_out_error", quality.leave_one_out_error},
+            {"coverage_50", quality.coverage_50},
+            {"coverage_95", quality.coverage_95},
+            {"noise_share", quality.noise_share},
             {"features", model.features.names},
             {"learned_map", quality.learned_map},
             {"notes", model.notes}};
@@ -55,8 +54,8 @@ std::vector<store::Table::Cell> input_cells(std::span<const ModelFactor> factors
 
 Json inputs_json(std::span<const ModelFactor> factors, const Setting& setting) {
     Json inputs = Json::object();
-    const auto cells = input_cells(factors, setting);
-    for (std::size_t j = 0; j < factors.size(); ++j) inputs[factors[j].name] = to_json(cells[j]);
+    for (std::size_t j = 0; j < factors.size(); ++j)
+        inputs.add(factors[j].name, to_json(to_cell(factors[j].value(setting[j]))));
     return inputs;
 }
 
@@ -86,11 +85,11 @@ Json predictions_json(const ModelCases& cases, const ObservableModel& model, con
     for (std::size_t i = 0; i < predicted.settings.size(); ++i) {
         const auto& p = predicted.predictions[i];
         points.push_back({{"inputs", inputs_json(cases.factors, predicted.settings[i])},
-                          {"mean", json_number(p.mean)},
-                          {"mean_error", json_number(p.mean_error)},
-                          {"scatter", json_number(p.scatter)},
+                          {"mean", p.mean},
+                          {"mean_error", p.mean_error},
+                          {"scatter", p.scatter},
                           {"inside", outside_text(cases.factors, predicted.settings[i]).empty()},
-                          {"defined", json_number(predicted.defined[i])},
+                          {"defined", predicted.defined[i]},
                           {"answers_near", predicted.near[i].answers},
                           {"near_cases", predicted.near[i].cases},
                           {"near_failed", predicted.near[i].failed.size()}});
@@ -101,31 +100,39 @@ Json predictions_json(const ModelCases& cases, const ObservableModel& model, con
             {"model", model_json(model)}};
 }
 
-nlohmann::ordered_json axes_json(std::span<const ModelFactor> factors) {
-    auto list = nlohmann::ordered_json::array();
-    for (const auto& factor : factors) {
-        auto levels = nlohmann::ordered_json::array();
-        for (const auto& word : factor.words) levels.push_back(word);
-        for (const double x : factor.numbers) levels.push_back(factor.text(x));
-        list.push_back({{"name", factor.name},
-                        {"unit", factor.unit},
-                        {"levels", levels},
-                        {"numbers", factor.numbers},
-                        {"low", factor.low},
-                        {"high", factor.high},
-                        {"log", factor.log}});
-    }
-    return list;
+Document predictions_document(const ModelCases& cases, const ObservableModel& model, const Predicted& predicted) {
+    Document shown{.rows = predictions_table(cases, model, predicted),
+                   .value = predictions_json(cases, model, predicted)};
+    shown.say(fmt::format("{}: {}", cases.campaign.name, with_unit(model.observable, model.unit))).say();
+    shown.show(shown.rows).say();
+    if (const auto failures = failures_near(cases, predicted); !failures.empty()) shown.say(failures).say();
+    return shown.say(model_lines(model));
 }
 
-nlohmann::ordered_json failed_json(const ModelCases& cases) {
+Json axes_json(std::span<const ModelFactor> factors) {
+    return Json::list(factors, [](const ModelFactor& factor) {
+        Json levels = factor.words;
+        for (const double x : factor.numbers) levels.push_back(factor.text(x));
+        return Json{{"name", factor.name}, {"unit", factor.unit}, {"levels", levels}, {"numbers", factor.numbers},
+                    {"low", factor.low},   {"high", factor.high}, {"log", factor.log}};
+    });
+}
+
+Json map_json(std::span<const ModelFactor> factors, std::size_t a, std::size_t b, std::size_t count) {
+    return {{"across", a},
+            {"up", b},
+            {"across_edges", cell_edges(factors[a], count)},
+            {"up_edges", cell_edges(factors[b], count)},
+            {"columns", cells_along(factors[a], count).size()},
+            {"rows", cells_along(factors[b], count).size()}};
+}
+
+Json failed_json(const ModelCases& cases) {
     std::vector<std::size_t> all(cases.failed.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
-    auto list = nlohmann::ordered_json::array();
-    for (const auto i : study::random_rows(std::move(all), most_drawn))
-        list.push_back(
-            {{"setting", cases.failed[i].setting}, {"outcome", campaign::to_string(cases.failed[i].outcome)}});
-    return list;
+    return Json::list(study::random_rows(std::move(all), most_drawn), [&](std::size_t i) {
+        return Json{{"setting", cases.failed[i].setting}, {"outcome", campaign::to_string(cases.failed[i].outcome)}};
+    });
 }
 
 }  // namespace grainsweep::report

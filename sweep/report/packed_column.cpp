@@ -1,7 +1,5 @@
 #include "sweep/report/packed_column.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <bit>
 #include <charconv>
@@ -16,7 +14,6 @@
 namespace grainsweep::report {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::size_t most_different = 256;
@@ -63,11 +60,7 @@ Json packed(std::span<const double> values) {
     // NaN is not equal to itself: in the dictionary it is an infinity, which no column holds.
     std::vector<double> keys;
     for (const double x : values) keys.push_back(std::isfinite(x) ? x : HUGE_VAL);
-    if (const auto found = dictionary<double>(keys)) {
-        Json of = Json::array();
-        for (const double x : found->first) of.push_back(std::isfinite(x) ? Json(x) : Json(nullptr));
-        return {{"of", std::move(of)}, {"u8", base64(found->second)}};
-    }
+    if (const auto found = dictionary<double>(keys)) return {{"of", found->first}, {"u8", base64(found->second)}};
     const bool wide = std::ranges::any_of(values, [](double x) {
         const double size = std::abs(x);
         return (size > exact_in_float && x == std::floor(x)) ||

@@ -1,7 +1,7 @@
 // Columns of numbers as the page carries them: ten thousand cases in a few bytes each.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include "sweep/report/table.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -19,10 +19,10 @@ namespace grainsweep::report {
 ///   {"of": [values], "u8": indices}   at most 256 different values, exact; NaN among them is null
 ///   {"f32": numbers}                  others, to seven digits
 ///   {"f64": numbers}                  whole numbers that seven digits do not hold, numbers beyond the range of float
-[[nodiscard]] nlohmann::ordered_json packed(std::span<const double> values);
-[[nodiscard]] nlohmann::ordered_json packed(std::span<const std::int64_t> values);
+[[nodiscard]] Json packed(std::span<const double> values);
+[[nodiscard]] Json packed(std::span<const std::int64_t> values);
 /// Words: {"of": [words], "u8": indices}; throws std::length_error for more than 256 different ones.
-[[nodiscard]] nlohmann::ordered_json packed(std::span<const std::string> words);
+[[nodiscard]] Json packed(std::span<const std::string> words);
 /// 32 hexadecimal digits each, as 16 bytes each in base64. Throws std::invalid_argument for another text.
 [[nodiscard]] std::string packed_ids(std::span<const std::string> ids);
 

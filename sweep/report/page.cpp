@@ -6,24 +6,22 @@
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/stored_text.hpp"
 #include "sweep/campaign/wrong_question.hpp"
-#include "sweep/report/bracket_tables.hpp"
-#include "sweep/report/calibration_tables.hpp"
+#include "sweep/report/findings.hpp"
+#include "sweep/report/influence_tables.hpp"
 #include "sweep/report/model_page.hpp"
 #include "sweep/report/packed_column.hpp"
 #include "sweep/report/page_files.hpp"
 #include "sweep/report/page_template.hpp"
 #include "sweep/report/summary.hpp"
-#include "sweep/report/table.hpp"
 #include "sweep/report/watch_page.hpp"
 #include "sweep/study/curves.hpp"
 #include "sweep/study/effects.hpp"
 #include "sweep/study/error_text.hpp"
 #include "sweep/study/history.hpp"
-#include "sweep/study/influence.hpp"
 #include "sweep/study/response_models.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <array>
 
 #include <algorithm>
 #include <cmath>
@@ -36,65 +34,56 @@ using namespace study;
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::size_t extremes_on_page = 8;
 constexpr std::size_t most_drawn_checks = 150;
 
 /// Six digits are more than a picture shows, and half the bytes.
 Json drawn(double x) {
-    return std::isfinite(x) ? Json(number_in(fmt::format("{:.6g}", x)).value_or(x)) : Json(nullptr);
+    return std::isfinite(x) ? number_in(fmt::format("{:.6g}", x)).value_or(x) : x;
 }
 
 Json drawn(const std::vector<double>& values) {
-    Json list = Json::array();
-    for (const double x : values) list.push_back(drawn(x));
-    return list;
+    return Json::list(values, [](double x) { return drawn(x); });
 }
 
 Json json_of(const History& history) {
-    Json value = {{"verdict", history.verdict}, {"judged", history.has_rule}, {"notes", history.warnings}};
     const auto converged = std::ranges::find(history.checks, true, &stats::Checkpoint::converged);
-    value["converged_at"] =
-        history.has_rule && converged != history.checks.end() ? Json(converged->points) : Json(nullptr);
     const auto checks = checks_to_show(history, most_drawn_checks);
-    value["points"] = Json::array();
-    for (const auto* check : checks) value["points"].push_back(check->points);
+    Json statistics = Json::object(), known_statistics = Json::object(), known;
     for (const auto statistic : stats::statistics) {
-        Json& one = value["statistics"][std::string(stats::to_string(statistic))];
         const auto& all = history.all.of(statistic);
-        one["text"] = with_error(all.value, all.error);
-        one["values"] = Json::array();
-        one["errors"] = Json::array();
-        for (const auto* check : checks) {
-            one["values"].push_back(drawn(check->of(statistic).value));
-            one["errors"].push_back(drawn(check->of(statistic).error));
-        }
+        const auto value = [&](const auto* check) { return drawn(check->of(statistic).value); };
+        const auto error = [&](const auto* check) { return drawn(check->of(statistic).error); };
+        statistics.add(stats::to_string(statistic), {{"text", with_error(all.value, all.error)},
+                                                     {"values", Json::list(checks, value)},
+                                                     {"errors", Json::list(checks, error)}});
     }
-    value["provisional"] = nullptr;
+    auto notes = history.warnings;
     if (history.provisional) {
-        value["notes"].push_back(provisional_line(history));
-        Json& known =
-            value["provisional"] = {{"points", history.provisional->points}, {"count", history.provisional->count}};
+        notes.push_back(provisional_line(history));
         for (const auto statistic : stats::statistics) {
             const auto& one = history.provisional->of(statistic);
-            known["statistics"][std::string(stats::to_string(statistic))] = with_error(one.value, one.error);
+            known_statistics.add(stats::to_string(statistic), with_error(one.value, one.error));
         }
+        known = {{"points", history.provisional->points},
+                 {"count", history.provisional->count},
+                 {"statistics", known_statistics}};
     }
-    value["converged"] = to_json(history.converged);
-    value["count"] = history.all.count;
-    value["excluded"] = history.all.excluded;
-    value["zero_share"] = drawn(history.all.zero_share);
-    return value;
+    return {{"verdict", history.verdict},
+            {"judged", history.has_rule},
+            {"notes", notes},
+            {"converged_at", history.has_rule && converged != history.checks.end() ? Json(converged->points) : Json()},
+            {"points", Json::list(checks, [](const auto* check) { return check->points; })},
+            {"statistics", statistics},
+            {"provisional", known},
+            {"converged", history.converged},
+            {"count", history.all.count},
+            {"excluded", history.all.excluded},
+            {"zero_share", drawn(history.all.zero_share)}};
 }
 
 Json json_of(const Influence& influence) {
-    Json value = {{"method", influence.method == Influence::Method::morris     ? "morris"
-                             : influence.method == Influence::Method::saltelli ? "saltelli"
-                                                                               : "given_data"},
-                  {"notes", influence.notes}};
-    value["factors"] = Json::array();
-    for (const auto& factor : influence.factors) {
+    const auto json_of_factor = [](const FactorInfluence& factor) {
         Json one = {{"name", factor.factor},
                     {"first_text", index_text(factor.first)},
                     {"total_text", index_text(factor.total)},
@@ -104,94 +93,86 @@ Json json_of(const Influence& influence) {
                     {"total_error", drawn(factor.total.half_width)},
                     {"trend", to_string(factor.trend)},
                     {"rank_text", with_error(factor.rank_correlation.value, factor.rank_correlation.half_width)}};
-        if (factor.effects) {
-            one["mu_star_text"] = with_error(factor.effects->mu_star, factor.effects->mu_star_half_width);
-            one["mu_star"] = drawn(factor.effects->mu_star);
-            one["mu_star_error"] = drawn(factor.effects->mu_star_half_width);
-            one["sigma"] = drawn(factor.effects->sigma);
-        }
-        value["factors"].push_back(std::move(one));
-    }
+        if (factor.effects)
+            one.add({{"mu_star_text", with_error(factor.effects->mu_star, factor.effects->mu_star_half_width)},
+                     {"mu_star", drawn(factor.effects->mu_star)},
+                     {"mu_star_error", drawn(factor.effects->mu_star_half_width)},
+                     {"sigma", drawn(factor.effects->sigma)}});
+        return one;
+    };
     const auto& split = influence.split;
-    value["variance"] = {{"main_effects", drawn(split.main_effects.value)},
-                         {"unexplained", drawn(split.unexplained.value)},
-                         {"interactions", drawn(split.interactions.value)},
-                         {"scatter", drawn(split.scatter.value)},
-                         {"pairs", drawn(split.pairs.value)},
-                         {"remainder", drawn(split.remainder.value)}};
-    value["unexplained"] = unexplained_text(influence);
-    return value;
+    return {{"method", method_name(influence.method)},
+            {"notes", influence.notes},
+            {"factors", Json::list(influence.factors, json_of_factor)},
+            {"variance",
+             {{"main_effects", drawn(split.main_effects.value)},
+              {"unexplained", drawn(split.unexplained.value)},
+              {"interactions", drawn(split.interactions.value)},
+              {"scatter", drawn(split.scatter.value)},
+              {"pairs", drawn(split.pairs.value)},
+              {"remainder", drawn(split.remainder.value)}}},
+            {"unexplained", unexplained_text(influence)}};
 }
 
 Json json_of(const std::vector<EffectBin>& effect) {
-    Json bins = Json::array();
-    for (const auto& bin : effect)
-        bins.push_back({drawn(bin.at), drawn(bin.mean), drawn(bin.error), bin.count, drawn(bin.pure_error)});
-    return bins;
+    return Json::list(effect, [](const EffectBin& bin) {
+        return Json(
+            std::array<Json, 5>{drawn(bin.at), drawn(bin.mean), drawn(bin.error), bin.count, drawn(bin.pure_error)});
+    });
 }
 
 Json case_of(const Responses& responses, std::size_t row) {
-    Json value = {
-        {"point", responses.points[row]}, {"replicate", responses.replicates[row]}, {"case", responses.case_ids[row]}};
-    value["factors"] = Json::array();
-    for (const auto& factor : responses.factors) value["factors"].push_back(factor_text(factor, row));
-    return value;
+    return {{"point", responses.points[row]},
+            {"replicate", responses.replicates[row]},
+            {"case", responses.case_ids[row]},
+            {"factors", Json::list(responses.factors, [&](const auto& factor) { return factor_text(factor, row); })}};
 }
 
 Json extremes_of(const Responses& responses, const ResponseColumn& response, bool largest) {
-    Json list = Json::array();
-    for (const auto row : extreme_rows(responses.judged(response), extremes_on_page, largest)) {
-        Json one = case_of(responses, row);
-        one["value"] = drawn(response.values[row]);
-        list.push_back(std::move(one));
-    }
-    return list;
+    return Json::list(extreme_rows(responses.judged(response), extremes_on_page, largest), [&](std::size_t row) {
+        return case_of(responses, row).add("value", drawn(response.values[row]));
+    });
 }
 
 Json json_of(const Responses& responses, const ResponseColumn& response) {
-    Json value = {{"name", response.name}, {"unit", response.unit}, {"meaning", response.meaning}};
     const auto judged = responses.judged(response);
-    value["history"] = json_of(history_of(responses, response));
     const auto histogram = histogram_of(judged);
-    value["histogram"] = {{"low", drawn(histogram.low)}, {"high", drawn(histogram.high)}, {"counts", histogram.counts}};
-    value["effects"] = Json::array();
     const auto errors = effect_errors(responses, response);
-    value["whiskers"] = errors.says;
-    value["pure_error"] = drawn(errors.pure.variance);
-    value["pure_error_freedom"] = errors.pure.freedom;
-    for (const auto& factor : responses.factors)
-        value["effects"].push_back(json_of(main_effect(factor, judged, errors)));
-    value["influence"] = json_of(influence_of(responses, response));
-    value["values"] = packed(response.values);
-    value["largest"] = extremes_of(responses, response, true);
-    value["smallest"] = extremes_of(responses, response, false);
-    return value;
+    const auto effect = [&](const FactorColumn& factor) { return json_of(main_effect(factor, judged, errors)); };
+    return {
+        {"name", response.name},
+        {"unit", response.unit},
+        {"meaning", response.meaning},
+        {"history", json_of(history_of(responses, response))},
+        {"histogram", {{"low", drawn(histogram.low)}, {"high", drawn(histogram.high)}, {"counts", histogram.counts}}},
+        {"effects", Json::list(responses.factors, effect)},
+        {"whiskers", errors.says},
+        {"pure_error", drawn(errors.pure.variance)},
+        {"pure_error_freedom", errors.pure.freedom},
+        {"influence", json_of(influence_of(responses, response))},
+        {"values", packed(response.values)},
+        {"largest", extremes_of(responses, response, true)},
+        {"smallest", extremes_of(responses, response, false)}};
 }
 
 Json factors_of(const Responses& responses) {
-    Json list = Json::array();
-    for (const auto& factor : responses.factors) {
-        list.push_back({{"name", factor.name},
-                        {"unit", factor.unit},
-                        {"meaning", factor.meaning},
-                        {"levels", factor.levels},
-                        {"low", drawn(factor.low)},
-                        {"high", drawn(factor.high)},
-                        {"log", factor.log},
-                        {"values", packed(factor.values)}});
-    }
-    return list;
+    return Json::list(responses.factors, [](const FactorColumn& factor) {
+        return Json{{"name", factor.name},       {"unit", factor.unit},
+                    {"meaning", factor.meaning}, {"levels", factor.levels},
+                    {"low", drawn(factor.low)},  {"high", drawn(factor.high)},
+                    {"log", factor.log},         {"values", packed(factor.values)}};
+    });
 }
 
 /// Every case: where it stands, what it is called, how it ended.
-void add_cases(Json& value, const Responses& responses) {
+Json cases_of(const Responses& responses) {
     std::vector<std::string> outcomes;
     for (const auto& outcome : responses.outcomes)
         outcomes.push_back(outcome ? std::string(campaign::to_string(*outcome)) : "not yet");
-    value["points"] = packed(responses.points);
-    value["repeats"] = packed(responses.replicates);
-    value["outcome_of"] = packed(outcomes);
-    value["ids"] = packed_ids(responses.case_ids);
+    return {{"points", packed(responses.points)},
+            {"repeats", packed(responses.replicates)},
+            {"outcome_of", packed(outcomes)},
+            {"ids", packed_ids(responses.case_ids)}};
 }
 
 bool failed(const std::optional<campaign::Outcome>& outcome) {
@@ -200,32 +181,35 @@ bool failed(const std::optional<campaign::Outcome>& outcome) {
 }
 
 Json failures_of(const store::Store& store, const Responses& responses) {
-    Json value = {{"count", std::ranges::count_if(responses.outcomes, failed)}, {"listed", Json::array()}};
-    for (std::size_t row = 0; row < responses.rows(); ++row) {
+    Json listed = Json::array();
+    for (std::size_t row = 0, count = 0; row < responses.rows() && count < most_listed_failures; ++row) {
         if (!failed(responses.outcomes[row])) continue;
-        if (value["listed"].size() == most_listed_failures) break;
-        Json one = case_of(responses, row);
-        one["outcome"] = campaign::to_string(*responses.outcomes[row]);
+        ++count;
         const auto attempts = store.attempts(responses.case_ids[row]);
-        one["attempts"] = attempts.size();
-        one["reason"] = attempts.empty() ? "" : attempts.back().message;
-        value["listed"].push_back(std::move(one));
+        listed.push_back(case_of(responses, row)
+                             .add({{"outcome", campaign::to_string(*responses.outcomes[row])},
+                                   {"attempts", attempts.size()},
+                                   {"reason", attempts.empty() ? "" : attempts.back().message}}));
     }
-    return value;
+    return {{"count", std::ranges::count_if(responses.outcomes, failed)}, {"listed", listed}};
 }
 
 Json json_of(const Curves& curves) {
-    Json value = {{"completed", curves.completed}, {"drawn", curves.drawn}, {"families", Json::array()}};
-    for (const auto& family : curves.families) {
-        Json one = {{"name", family.name},    {"unit", family.unit},           {"meaning", family.meaning},
-                    {"over", family.over},    {"over_bins", family.over_bins}, {"at", drawn(family.at_time)},
-                    {"curves", Json::array()}};
-        for (const auto& curve : family.curves)
-            one["curves"].push_back(
-                {{"row", curve.row}, {"label", curve.label}, {"x", drawn(curve.x)}, {"y", drawn(curve.y)}});
-        value["families"].push_back(std::move(one));
-    }
-    return value;
+    const auto json_of_curve = [](const Curve& curve) {
+        return Json{{"row", curve.row}, {"label", curve.label}, {"x", drawn(curve.x)}, {"y", drawn(curve.y)}};
+    };
+    const auto json_of_family = [&](const CurveFamily& family) {
+        return Json{{"name", family.name},
+                    {"unit", family.unit},
+                    {"meaning", family.meaning},
+                    {"over", family.over},
+                    {"over_bins", family.over_bins},
+                    {"at", drawn(family.at_time)},
+                    {"curves", Json::list(family.curves, json_of_curve)}};
+    };
+    return {{"completed", curves.completed},
+            {"drawn", curves.drawn},
+            {"families", Json::list(curves.families, json_of_family)}};
 }
 
 Json runs_of(const store::Store& store, const std::string& campaign) {
@@ -257,11 +241,7 @@ Json models_of(const store::Store& store, const Responses& responses, const Page
     return list;
 }
 
-void refuse_unknown_models(const Json& page, const PageModels& asked) {
-    std::vector<std::string> names;
-    for (const auto& campaign : page["campaigns"])
-        for (const auto& observable : campaign["observables"])
-            if (const std::string name = observable["name"]; !std::ranges::count(names, name)) names.push_back(name);
+void refuse_unknown_models(const std::vector<std::string>& names, const PageModels& asked) {
     for (const auto& name : asked.of)
         if (!std::ranges::count(names, name))
             throw campaign::wrong_question(
@@ -270,75 +250,77 @@ void refuse_unknown_models(const Json& page, const PageModels& asked) {
                 campaign::nearest_word(name, names));
 }
 
+/// The main observable, and every other that has a value.
+std::vector<const ResponseColumn*> shown_observables(const Responses& responses) {
+    std::vector<const ResponseColumn*> shown;
+    for (const auto& response : responses.observables)
+        if (&response == responses.main_observable() ||
+            std::ranges::any_of(response.values, [](double x) { return std::isfinite(x); }))
+            shown.push_back(&response);
+    return shown;
+}
+
+/// `measured`: names of scalars, to which those of this campaign are added.
 Json campaign_of(const store::Store& store, const store::CampaignRecord& record, std::string_view database,
-                 const PageModels& models) {
+                 const PageModels& models, std::vector<std::string>& measured) {
     const auto responses = read_responses(store, record);
     const SceneInfo* scene = find_scene(record.scene);
-    Json value = {{"name", record.name},
-                  {"database", database},
-                  {"notes", campaign::remarks_in(record.text).notes},
-                  {"scene", record.scene},
-                  {"revision", record.revision},
-                  {"summary", scene == nullptr ? "" : scene->summary},
-                  {"design", record.design},
-                  {"design_text", campaign::design_line(record)},
-                  {"fixed_text", campaign::fixed_line(record)},
-                  {"where", record.condition},
-                  {"sequences", repeats(responses) ? record.sequences : 1},
-                  {"replicates", record.replicates},
-                  {"rows", responses.rows()},
-                  {"settled", responses.settled},
-                  {"settled_points", responses.counted_points()},
-                  {"sample", responses.ordered_sample()},
-                  {"text", record.text}};
-    value["stopped_at"] = record.stopped_at ? Json(*record.stopped_at) : Json(nullptr);
-    value["outcomes"] = Json::array();
-    for (const auto& [outcome, count] : count_outcomes(responses)) value["outcomes"].push_back({outcome, count});
-    add_cases(value, responses);
-    value["factors"] = factors_of(responses);
-    value["observables"] = Json::array();
-    value["main"] = 0;
-    const auto* main = responses.main_observable();
-    for (const auto& response : responses.observables) {
-        const auto finite = [](double x) { return std::isfinite(x); };
-        if (&response != main && std::ranges::none_of(response.values, finite)) continue;
-        if (&response == main) value["main"] = value["observables"].size();
-        value["observables"].push_back(json_of(responses, response));
-    }
-    value["brackets"] = nullptr;
-    if (const auto brackets = brackets_of(store, record)) {
-        const auto table = brackets_table(*brackets);
-        value["brackets"] = {{"says", brackets_line(*brackets)}, {"columns", table.columns}, {"rows", Json::array()}};
-        for (const auto& row : table.rows) {
-            Json cells = Json::array();
-            for (const auto& cell : row) cells.push_back(to_json(cell));
-            value["brackets"]["rows"].push_back(std::move(cells));
-        }
-    }
-    value["models"] = models_of(store, responses, models);
+    const auto observables = shown_observables(responses);
+    for (const auto* one : observables)
+        if (!std::ranges::count(measured, one->name)) measured.push_back(one->name);
+    const auto main = std::ranges::find(observables, responses.main_observable());
+    const auto brackets = brackets_of(store, record);
     const auto calibration = calibration_report(store, record);
-    value["calibration"] = calibration ? page_of(*calibration) : Json(nullptr);
-    value["curves"] = json_of(read_curves(store, responses));
-    value["failures"] = failures_of(store, responses);
-    value["runs"] = runs_of(store, record.name);
-    return value;
+    const auto named_count = [](const auto& counted) { return std::array<Json, 2>{counted.first, counted.second}; };
+    return Json{{"name", record.name},
+                {"database", database},
+                {"notes", campaign::remarks_in(record.text).notes},
+                {"scene", record.scene},
+                {"revision", record.revision},
+                {"summary", scene == nullptr ? "" : scene->summary},
+                {"design", record.design},
+                {"design_text", campaign::design_line(record)},
+                {"fixed_text", campaign::fixed_line(record)},
+                {"where", record.condition},
+                {"sequences", repeats(responses) ? record.sequences : 1},
+                {"replicates", record.replicates},
+                {"rows", responses.rows()},
+                {"settled", responses.settled},
+                {"settled_points", responses.counted_points()},
+                {"sample", responses.ordered_sample()},
+                {"text", record.text},
+                {"stopped_at", record.stopped_at},
+                {"outcomes", Json::list(count_outcomes(responses), named_count)}}
+        .add(cases_of(responses))
+        .add({{"factors", factors_of(responses)},
+              {"observables", Json::list(observables, [&](const auto* one) { return json_of(responses, *one); })},
+              {"main", main == observables.end() ? 0 : main - observables.begin()},
+              {"brackets",
+               brackets ? Json{{"says", brackets_line(*brackets)}}.add(columns_and_rows(brackets_table(*brackets)))
+                        : Json()},
+              {"models", models_of(store, responses, models)},
+              {"calibration", calibration ? page_of(*calibration) : Json()},
+              {"curves", json_of(read_curves(store, responses))},
+              {"failures", failures_of(store, responses)},
+              {"runs", runs_of(store, record.name)}});
 }
 
 }  // namespace
 
 Json page_data(std::span<const PageSource> sources, const PageModels& models) {
-    Json value = {{"databases", Json::array()}, {"campaigns", Json::array()}};
+    Json databases = Json::array(), campaigns = Json::array();
+    std::vector<std::string> measured;
     for (const auto& [store, database] : sources) {
-        value["databases"].push_back(database);
+        databases.push_back(database);
         for (const auto& record : find_campaigns(*store, ""))
-            value["campaigns"].push_back(campaign_of(*store, record, database, models));
+            campaigns.push_back(campaign_of(*store, record, database, models, measured));
     }
-    refuse_unknown_models(value, models);
-    return value;
+    refuse_unknown_models(measured, models);
+    return {{"databases", databases}, {"campaigns", campaigns}};
 }
 
 std::string safe_in_script(const Json& value) {
-    const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    const std::string& text = value.text();
     std::string safe;
     safe.reserve(text.size());
     for (std::size_t i = 0; i < text.size(); ++i) {

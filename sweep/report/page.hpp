@@ -2,9 +2,7 @@
 // nothing of any network.
 #pragma once
 
-#include "sweep/store/store.hpp"
-
-#include <nlohmann/json_fwd.hpp>
+#include "sweep/report/table.hpp"
 
 #include <cstddef>
 #include <iosfwd>
@@ -41,10 +39,10 @@ struct PageFilm {
 
 /// The figures and all cases of every campaign of the databases, as the page's program reads them. Columns of numbers
 /// are packed (packed_column.hpp).
-[[nodiscard]] nlohmann::ordered_json page_data(std::span<const PageSource> sources, const PageModels& models = {});
+[[nodiscard]] Json page_data(std::span<const PageSource> sources, const PageModels& models = {});
 
 /// JSON that may stand inside a script element: "</", "<!--" and the line separators of JavaScript cannot occur.
-[[nodiscard]] std::string safe_in_script(const nlohmann::ordered_json& value);
+[[nodiscard]] std::string safe_in_script(const Json& value);
 
 /// Writes the page: all campaigns of all databases, of which any two can be laid over one another. Bytes of a database
 /// that are no UTF-8 are replaced.

@@ -1,16 +1,13 @@
 #include "sweep/report/summary.hpp"
 
-#include "sweep/report/bracket_tables.hpp"
-#include "sweep/report/calibration_tables.hpp"
 #include "sweep/report/file_size.hpp"
-#include "sweep/report/table.hpp"
+#include "sweep/report/findings.hpp"
 #include "sweep/study/error_text.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace grainsweep::report {
 
@@ -45,11 +42,6 @@ void add_extreme(store::Table& table, const Responses& responses, const Response
     table.rows.push_back(std::move(cells));
 }
 
-/// "gap (m)"; a pure number and a word have no unit.
-std::string unit_heading(const std::string& name, const std::string& unit) {
-    return unit.empty() || unit == "1" ? name : fmt::format("{} ({})", name, unit);
-}
-
 std::string moments_heading(const Responses& responses, const History& history) {
     if (!history.provisional) return fmt::format("moments over {} points, 95 % errors", responses.counted_points());
     return fmt::format(
@@ -80,6 +72,14 @@ std::string outcome_line(const Responses& responses) {
     return line.empty() ? "no cases" : line;
 }
 
+std::string study_heading(const Responses& responses, const ResponseColumn& response) {
+    const auto& record = responses.campaign;
+    const bool sequences = record.sequences > 1 && repeats(responses);
+    return fmt::format("{}: {} over {} points of a {} design{}; {}", record.name,
+                       with_unit(response.name, response.unit), responses.counted_points(), record.design,
+                       sequences ? fmt::format(" of {} sequences", record.sequences) : "", outcome_line(responses));
+}
+
 store::Table moments_table(const Responses& responses) {
     store::Table table;
     table.columns = {"observable", "unit", "mean", "sd", "skewness", "g1", "kurtosis", "values"};
@@ -99,8 +99,8 @@ store::Table extremes_table(const Responses& responses, const ResponseColumn& re
     store::Table table;
     table.columns = {"", "point"};
     if (responses.campaign.replicates > 1) table.columns.emplace_back("replicate");
-    for (const auto& factor : responses.factors) table.columns.push_back(unit_heading(factor.name, factor.unit));
-    table.columns.push_back(unit_heading(response.name, response.unit));
+    for (const auto& factor : responses.factors) table.columns.push_back(with_unit(factor.name, factor.unit));
+    table.columns.push_back(with_unit(response.name, response.unit));
     if (!responses.case_ids.empty()) table.columns.emplace_back("case_id");
     const auto values = responses.known(response);
     const auto finite =
@@ -118,34 +118,33 @@ store::Table extremes_table(const Responses& responses, const ResponseColumn& re
     return table;
 }
 
-std::string closing_summary(const store::Store& store, const std::string& campaign,
-                            const std::filesystem::path& database) {
+Document closing_summary(const store::Store& store, const std::string& campaign,
+                         const std::filesystem::path& database) {
     const auto responses = read_responses(store, find_campaigns(store, campaign).front());
-    std::ostringstream text;
-    text << fmt::format("{}: {} cases of {}: {}\n", campaign, responses.rows(), responses.campaign.scene,
-                        outcome_line(responses));
-    if (!responses.campaign.condition.empty()) text << "where: " << points_line(responses) << '\n';
+    Document shown;
+    shown.say(fmt::format("{}: {} cases of {}: {}", campaign, responses.rows(), responses.campaign.scene,
+                          outcome_line(responses)));
+    if (!responses.campaign.condition.empty()) shown.say("where: " + points_line(responses));
     if (const auto brackets = brackets_of(store, responses.campaign)) {
-        text << brackets_line(*brackets) << "\n\n";
-        write(text, brackets_table(*brackets), Format::text);
+        shown.say(brackets_line(*brackets)).say().show(brackets_table(*brackets));
     } else if (const auto calibration = calibration_report(store, responses.campaign)) {
-        text << calibration_text(*calibration);
+        say_calibration(shown, *calibration);
     } else if (const auto* main = responses.main_observable()) {
         const bool has_rule = responses.campaign.convergence.has_value();
         const auto history = has_rule ? history_of(responses, *main) : figures_of(responses, *main);
-        if (history.has_rule) text << fmt::format("{}: {}\n", main->name, history.verdict);
-        for (const auto& warning : history.warnings) text << "note: " << warning << '\n';
-        if (responses.finished() > 0) {
-            text << '\n' << moments_heading(responses, history) << '\n';
-            write(text, moments_table(responses), Format::text);
-            text << '\n';
-            write(text, extremes_table(responses, *main, extremes_in_text), Format::text);
-        }
+        if (history.has_rule) shown.say(fmt::format("{}: {}", main->name, history.verdict));
+        shown.say_notes(history.warnings);
+        if (responses.finished() > 0)
+            shown.say()
+                .say(moments_heading(responses, history))
+                .show(moments_table(responses))
+                .say()
+                .show(extremes_table(responses, *main, extremes_in_text));
     }
-    text << fmt::format(
-        "\ndatabase {2}\nnext: grainsweep report {0}\n      grainsweep query {0} \"SELECT * FROM {1}\"\n",
-        database.string(), campaign, named_with_size(database));
-    return text.str();
+    shown.say(
+        fmt::format("\ndatabase {2}\nnext: grainsweep report {0}\n      grainsweep query {0} \"SELECT * FROM {1}\"",
+                    database.string(), campaign, named_with_size(database)));
+    return shown;
 }
 
 }  // namespace grainsweep::report

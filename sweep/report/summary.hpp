@@ -1,7 +1,7 @@
 // What a run ends with: counts by outcome, moments with errors, extremes, where everything is.
 #pragma once
 
-#include "stats/sensitivity.hpp"
+#include "sweep/report/document.hpp"
 #include "sweep/study/history.hpp"
 #include "sweep/study/responses.hpp"
 
@@ -17,6 +17,9 @@ namespace grainsweep::report {
 /// "640 completed, 12 unstable": outcomes that occur.
 [[nodiscard]] std::string outcome_line(const study::Responses& responses);
 
+/// "heap: angle (1) over 64 points of a sobol design; 64 completed"
+[[nodiscard]] std::string study_heading(const study::Responses& responses, const study::ResponseColumn& response);
+
 /// One row per scalar observable, the main one first: moments with their 95 % errors over the settled beginning; while
 /// finished cases lie behind one that is not, the provisional ones over all of them.
 [[nodiscard]] store::Table moments_table(const study::Responses& responses);
@@ -27,7 +30,7 @@ namespace grainsweep::report {
                                           std::size_t count);
 
 /// The text `run` ends with. `campaign` must be in the store.
-[[nodiscard]] std::string closing_summary(const store::Store& store, const std::string& campaign,
-                                          const std::filesystem::path& database);
+[[nodiscard]] Document closing_summary(const store::Store& store, const std::string& campaign,
+                                       const std::filesystem::path& database);
 
 }  // namespace grainsweep::report

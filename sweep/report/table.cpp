@@ -6,7 +6,6 @@
 #include "sweep/report/text_table.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +17,6 @@ namespace grainsweep::report {
 namespace {
 
 using Cell = store::Table::Cell;
-using Json = nlohmann::ordered_json;
 
 /// No text of a database moves the cursor of a terminal or is computed by a spreadsheet.
 std::string harmless(const std::string& text) {
@@ -74,14 +72,14 @@ std::vector<std::string> distinct(const std::vector<std::string>& columns) {
 
 Json object_of(const std::vector<std::string>& names, const std::vector<Cell>& row) {
     Json object = Json::object();
-    for (std::size_t j = 0; j < row.size(); ++j) object[names[j]] = to_json(row[j]);
+    for (std::size_t j = 0; j < row.size(); ++j) object.add(names[j], to_json(row[j]));
     return object;
 }
 
 }  // namespace
 
-std::string json_text(const Json& value) {
-    std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+std::string harmless_json(const Json& value) {
+    std::string text = value.text();
     // JSON leaves DEL and U+0080 to U+009F as they are, and some terminals obey them.
     for (std::size_t at = 0; at < text.size(); ++at) {
         const auto c = static_cast<unsigned char>(text[at]);
@@ -124,7 +122,7 @@ void RowWriter::begin(const std::vector<std::string>& columns) {
 
 void RowWriter::add(const std::vector<Cell>& row) {
     if (format_ != Format::json) return write_csv_line(*out_, row);
-    *out_ << (std::exchange(first_, false) ? "" : ",") << json_text(object_of(names_, row));
+    *out_ << (std::exchange(first_, false) ? "" : ",") << harmless_json(object_of(names_, row));
 }
 
 void RowWriter::end(bool part) {
@@ -134,24 +132,33 @@ void RowWriter::end(bool part) {
 Json to_json(const Cell& cell) {
     if (const auto* whole = std::get_if<std::int64_t>(&cell))
         return exact_in_a_double(*whole) ? Json(*whole) : Json(std::to_string(*whole));
-    if (const auto* real = std::get_if<double>(&cell)) return std::isfinite(*real) ? Json(*real) : Json(nullptr);
+    if (const auto* real = std::get_if<double>(&cell)) return *real;
     if (const auto* text = std::get_if<std::string>(&cell)) return *text;
     return nullptr;
 }
 
-Json json_number(double x) {
-    return to_json(to_cell(x));
-}
-
 Json to_json(const store::Table& table) {
     const auto names = distinct(table.columns);
-    Json rows = Json::array();
-    for (const auto& row : table.rows) rows.push_back(object_of(names, row));
-    return rows;
+    return Json::list(table.rows, [&](const auto& row) { return object_of(names, row); });
+}
+
+Json to_json(const store::Table& table, std::size_t row) {
+    return object_of(distinct(table.columns), table.rows[row]);
+}
+
+Json to_json(const Inputs& inputs) {
+    Json object = Json::object();
+    for (const auto& [name, value] : inputs) object.add(name, to_json(to_cell(value)));
+    return object;
+}
+
+Json columns_and_rows(const store::Table& table) {
+    const auto cells = [](const auto& row) { return Json::list(row, [](const Cell& cell) { return to_json(cell); }); };
+    return {{"columns", table.columns}, {"rows", Json::list(table.rows, cells)}};
 }
 
 void write(std::ostream& out, const Json& value) {
-    out << json_text(value) << '\n';
+    out << harmless_json(value) << '\n';
 }
 
 Cell to_cell(const Value& value) {
@@ -160,10 +167,6 @@ Cell to_cell(const Value& value) {
 
 Cell to_cell(double number) {
     return std::isnan(number) ? Cell{} : Cell{number};
-}
-
-nlohmann::ordered_json to_json(const std::optional<bool>& flag) {
-    return flag ? nlohmann::ordered_json(*flag) : nlohmann::ordered_json(nullptr);
 }
 
 }  // namespace grainsweep::report

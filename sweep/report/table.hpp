@@ -15,9 +15,8 @@
 #pragma once
 
 #include "solver/scenes/values.hpp"
+#include "sweep/campaign/json_writer.hpp"
 #include "sweep/store/store.hpp"
-
-#include <nlohmann/json_fwd.hpp>
 
 #include <iosfwd>
 #include <optional>
@@ -26,6 +25,8 @@
 #include <vector>
 
 namespace grainsweep::report {
+
+using Json = campaign::JsonText;
 
 enum class Format { text, csv, json };
 
@@ -51,16 +52,16 @@ private:
 void write(std::ostream& out, const store::Table& table, Format format);
 
 /// The table as a list of objects, to be part of a larger value.
-[[nodiscard]] nlohmann::ordered_json to_json(const store::Table& table);
-[[nodiscard]] nlohmann::ordered_json to_json(const store::Table::Cell& cell);
-/// null where it is not finite.
-[[nodiscard]] nlohmann::ordered_json json_number(double x);
-/// null where there is none.
-[[nodiscard]] nlohmann::ordered_json to_json(const std::optional<bool>& flag);
-/// One JSON value and a line end; bytes that are no UTF-8 are replaced.
-void write(std::ostream& out, const nlohmann::ordered_json& value);
-/// The value alone.
-[[nodiscard]] std::string json_text(const nlohmann::ordered_json& value);
+[[nodiscard]] Json to_json(const store::Table& table);
+[[nodiscard]] Json to_json(const store::Table& table, std::size_t row);
+[[nodiscard]] Json to_json(const store::Table::Cell& cell);
+[[nodiscard]] Json to_json(const Inputs& inputs);
+/// {"columns": names, "rows": lists of cells}, as pages show a table.
+[[nodiscard]] Json columns_and_rows(const store::Table& table);
+/// One JSON value and a line end.
+void write(std::ostream& out, const Json& value);
+/// The value alone, without characters that a terminal obeys.
+[[nodiscard]] std::string harmless_json(const Json& value);
 
 [[nodiscard]] store::Table::Cell to_cell(const Value& value);
 /// NaN is an absent value.

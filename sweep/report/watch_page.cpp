@@ -8,7 +8,7 @@
 #include "sweep/report/table.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <array>
 
 #include <algorithm>
 #include <cmath>
@@ -27,10 +27,8 @@ GRAINSWEEP_EMBED(watch_report, WATCH_FOLDER "/report.js");
 namespace grainsweep::report {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json entry(const std::string& name, Json value, const std::string& unit) {
-    return {name, std::move(value), unit};
+Json entry(const std::string& name, const Json& value, const std::string& unit) {
+    return std::array<Json, 3>{name, value, unit};
 }
 
 std::string as_text(const std::string& bytes) {
@@ -43,24 +41,24 @@ Json about_case(const campaign::Case& question, const campaign::CaseResult& resu
     const SceneInfo* scene = find_scene(question.scene);
     std::string title = question.scene;
     std::ranges::replace(title, '_', ' ');
-    Json about = {{"title", title},
-                  {"name", question.scene + "_" + question.id.substr(0, 8)},
-                  {"case", question.id},
-                  {"subtitle", fmt::format("case {}, seed {}", question.id.substr(0, 10), question.seed)},
-                  {"message", ""},
-                  {"inputs", Json::array()},
-                  {"results", Json::array()}};
-    if (result.outcome != campaign::Outcome::completed)
-        about["message"] = fmt::format("{}: {}", campaign::to_string(result.outcome), result.message);
-    if (scene == nullptr) return about;
-    for (const auto& parameter : scene->parameters)
-        if (const auto found = question.inputs.find(parameter.name); found != question.inputs.end())
-            about["inputs"].push_back(entry(parameter.name, to_json(to_cell(found->second)), parameter.unit));
-    for (const auto& observable : scene->observables)
-        if (const auto found = result.observations.scalars.find(observable.name);
-            found != result.observations.scalars.end() && std::isfinite(found->second))
-            about["results"].push_back(entry(observable.name, found->second, observable.unit));
-    return about;
+    const std::string message = result.outcome == campaign::Outcome::completed
+                                    ? ""
+                                    : fmt::format("{}: {}", campaign::to_string(result.outcome), result.message);
+    Json inputs = Json::array(), results = Json::array();
+    if (scene != nullptr) {
+        for (const auto& parameter : scene->parameters)
+            if (const auto found = question.inputs.find(parameter.name); found != question.inputs.end())
+                inputs.push_back(entry(parameter.name, to_json(to_cell(found->second)), parameter.unit));
+        for (const auto& observable : scene->observables)
+            if (const auto found = result.observations.scalars.find(observable.name);
+                found != result.observations.scalars.end() && std::isfinite(found->second))
+                results.push_back(entry(observable.name, found->second, observable.unit));
+    }
+    return {
+        {"title", title},      {"name", question.scene + "_" + question.id.substr(0, 8)},
+        {"case", question.id}, {"subtitle", fmt::format("case {}, seed {}", question.id.substr(0, 10), question.seed)},
+        {"message", message},  {"inputs", inputs},
+        {"results", results}};
 }
 
 std::string watch_page(const Film& film, const Json& about) {

@@ -4,8 +4,6 @@
 #include "sweep/campaign/case.hpp"
 #include "sweep/report/film.hpp"
 
-#include <nlohmann/json_fwd.hpp>
-
 #include <string>
 #include <string_view>
 
@@ -13,10 +11,10 @@ namespace grainsweep::report {
 
 /// What a page says of a case beside its film: title, inputs and results with their units, and why it ended where it
 /// is not completed.
-[[nodiscard]] nlohmann::ordered_json about_case(const campaign::Case& question, const campaign::CaseResult& result);
+[[nodiscard]] Json about_case(const campaign::Case& question, const campaign::CaseResult& result);
 
 /// The page. Throws std::invalid_argument where the film shows nothing.
-[[nodiscard]] std::string watch_page(const Film& film, const nlohmann::ordered_json& about);
+[[nodiscard]] std::string watch_page(const Film& film, const Json& about);
 
 /// What another page needs to show films: a style sheet, and a program that defines grainsweepWatch.
 struct Player {

@@ -4,12 +4,10 @@
 #include "sweep/report/page.hpp"
 #include "sweep/report/page_files.hpp"
 #include "sweep/report/page_template.hpp"
-#include "sweep/report/table.hpp"
 #include "sweep/study/factor_axis.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <ostream>
@@ -19,8 +17,6 @@ namespace grainsweep::report {
 using namespace study;
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::size_t points_of_curve = 41;
 
@@ -76,7 +72,7 @@ Json responses_of(const Window& window, const Judgement& one) {
     Json list = Json::array();
     for (std::size_t k = 0; k < window.models.size(); ++k) {
         const auto& p = one.predictions[k];
-        const auto shown = [&](double x) { return one.believed ? json_number(x) : Json(nullptr); };
+        const auto shown = [&](double x) { return one.believed ? Json(x) : Json(); };
         list.push_back({{"mean", shown(p.mean)},
                         {"mean_half_width", shown(p.mean_half_width())},
                         {"run_half_width", shown(p.run_half_width())}});
@@ -85,53 +81,33 @@ Json responses_of(const Window& window, const Judgement& one) {
 }
 
 Json json_of(const ModelCases& cases, const Window& window, const Judgement& one) {
-    Json value = {{"setting", Json::array()}, {"texts", Json::array()}};
-    for (std::size_t j = 0; j < cases.factors.size(); ++j) {
-        value["setting"].push_back(one.setting[j]);
-        value["texts"].push_back(cases.factors[j].text(one.setting[j]));
-    }
-    value["probability"] = json_number(one.probability);
-    value["responses"] = responses_of(window, one);
-    return value;
+    Json texts = Json::array();
+    for (std::size_t j = 0; j < cases.factors.size(); ++j) texts.push_back(cases.factors[j].text(one.setting[j]));
+    return {{"setting", one.setting},
+            {"texts", texts},
+            {"probability", one.probability},
+            {"responses", responses_of(window, one)}};
 }
 
 Json json_of(const Window& window, const FactorCurve& curve) {
-    Json value = {{"at", curve.at}, {"probability", Json::array()}, {"responses", Json::array()}};
-    for (const auto& one : curve.judged) {
-        value["probability"].push_back(json_number(one.probability));
-        value["responses"].push_back(responses_of(window, one));
-    }
-    return value;
+    return {{"at", curve.at},
+            {"probability", Json::list(curve.judged, probability_of)},
+            {"responses", Json::list(curve.judged, [&](const auto& one) { return responses_of(window, one); })}};
 }
 
 Json map_of(const ModelCases& cases, const WindowRequest& request, const Window& window, const Admits& admits,
             const Setting& centre, std::size_t a, std::size_t b) {
-    const auto across = cells_along(cases.factors[a], points_of_curve),
-               up = cells_along(cases.factors[b], points_of_curve);
-    std::vector<Setting> settings;
-    for (const double y : up)
-        for (const double x : across) {
-            settings.push_back(centre);
-            settings.back()[a] = x;
-            settings.back()[b] = y;
-        }
+    const auto settings = settings_of_map(cases.factors, centre, a, b, points_of_curve);
     const auto judged = judge_settings(cases, request, window, settings);
     const bool modelled = modelled_objective(request, window);
-    Json value = {{"across", a},
-                  {"up", b},
-                  {"across_edges", cell_edges(cases.factors[a], points_of_curve)},
-                  {"up_edges", cell_edges(cases.factors[b], points_of_curve)},
-                  {"columns", across.size()},
-                  {"rows", up.size()},
-                  {"probability", Json::array()},
-                  {"objective", modelled ? Json::array() : Json(nullptr)}};
+    Json probability = Json::array(), objective = modelled ? Json::array() : Json();
     for (std::size_t i = 0; i < settings.size(); ++i) {
         const bool there = !admits || admits(settings[i]);
-        value["probability"].push_back(there ? json_number(judged[i].probability) : Json(nullptr));
+        probability.push_back(there ? Json(judged[i].probability) : Json());
         const bool answers = there && judged[i].believed;
-        if (modelled) value["objective"].push_back(answers ? json_number(judged[i].objective.mean) : Json(nullptr));
+        if (modelled) objective.push_back(answers ? Json(judged[i].objective.mean) : Json());
     }
-    return value;
+    return map_json(cases.factors, a, b, points_of_curve).add({{"probability", probability}, {"objective", objective}});
 }
 
 }  // namespace
@@ -151,45 +127,43 @@ Json window_page_data(const ModelCases& cases, const WindowRequest& request, con
         whole_range = high - low;
     }
     const auto order = order_of(curves, modelled, whole_range);
-    Json value = {{"campaigns", {{{"name", cases.campaign.name}}}},
-                  {"campaign", cases.campaign.name},
-                  {"scene", cases.campaign.scene},
-                  {"where", request.where},
-                  {"objective", objective ? Json(request.objective) : Json(nullptr)},
-                  {"maximize", request.maximise},
-                  {"single_run", request.judged == stats::Judged::single_run},
-                  {"risk", request.risk},
-                  {"share", window.share_of_box},
-                  {"share_error", window.share_error},
-                  {"factors", axes_json(cases.factors)},
-                  {"meets", window.best.has_value()},
-                  {"best", json_of(cases, window, centre)},
-                  {"failed", failed_json(cases)},
-                  {"failed_near", cases.failed.empty() ? "" : near_text(cases, centre.near)},
-                  {"order", order}};
-    value["responses"] = Json::array();
-    value["models"] = Json::array();
-    for (const auto& model : window.models) {
-        value["responses"].push_back({{"name", model.observable}, {"unit", model.unit}});
-        value["models"].push_back(model_lines(model));
-    }
-    value["curves"] = Json::array();
-    for (const auto& curve : curves) value["curves"].push_back(json_of(window, curve));
-    value["map"] =
-        order.size() < 2 ? Json(nullptr) : map_of(cases, request, window, admits, centre.setting, order[0], order[1]);
-    for (const auto& [name, list] : {std::pair{"front", &window.front}, std::pair{"next", &window.next}}) {
-        value[name] = Json::array();
-        for (const auto& one : *list) value[name].push_back(json_of(cases, window, one));
-    }
-    value["against"] = window.against ? Json(window.models[*window.against].observable) : Json(nullptr);
-    value["notes"] = window.notes;
-    return value;
+    Json responses = Json::array();
+    for (const auto& model : window.models) responses.push_back({{"name", model.observable}, {"unit", model.unit}});
+    const auto settings = [&](const std::vector<Judgement>& judged) {
+        return Json::list(judged, [&](const Judgement& one) { return json_of(cases, window, one); });
+    };
+    const Json map =
+        order.size() < 2 ? Json() : map_of(cases, request, window, admits, centre.setting, order[0], order[1]);
+    return {{"campaigns", std::array{Json{{"name", cases.campaign.name}}}},
+            {"campaign", cases.campaign.name},
+            {"scene", cases.campaign.scene},
+            {"where", request.where},
+            {"objective", objective ? Json(request.objective) : Json()},
+            {"maximize", request.maximise},
+            {"single_run", request.judged == stats::Judged::single_run},
+            {"risk", request.risk},
+            {"share", window.share_of_box},
+            {"share_error", window.share_error},
+            {"factors", axes_json(cases.factors)},
+            {"meets", window.best.has_value()},
+            {"best", json_of(cases, window, centre)},
+            {"failed", failed_json(cases)},
+            {"failed_near", cases.failed.empty() ? "" : near_text(cases, centre.near)},
+            {"order", order},
+            {"responses", responses},
+            {"models", Json::list(window.models, model_lines)},
+            {"curves", Json::list(curves, [&](const FactorCurve& curve) { return json_of(window, curve); })},
+            {"map", map},
+            {"front", settings(window.front)},
+            {"next", settings(window.next)},
+            {"against", window.against ? Json(window.models[*window.against].observable) : Json()},
+            {"notes", window.notes}};
 }
 
 void write_window_page(std::ostream& out, const Json& data, std::string_view database) {
     const auto files = page_files();
     Json all = data;
-    all["databases"] = {database};
+    all.add("databases", std::array{database});
     const auto text = safe_in_script(all);
     const auto program = enclosed(files.window);
     const auto scripts = script_sources({files.library, program});

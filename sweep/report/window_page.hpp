@@ -8,10 +8,9 @@
 // factor with levels has one each. Bands are 95 %: of the mean, and of a single run about it.
 #pragma once
 
+#include "sweep/report/table.hpp"
 #include "sweep/study/box_search.hpp"
 #include "sweep/study/process_window.hpp"
-
-#include <nlohmann/json_fwd.hpp>
 
 #include <iosfwd>
 #include <string_view>
@@ -22,11 +21,10 @@ namespace grainsweep::report {
 /// "failed": settings and outcomes of failed cases, "failed_near", "order": factors by how much they matter, "curves":
 /// one per factor, "map": of the first two of `order` or null, "front", "next", "models", "notes"}. `admits`: settings
 /// that the campaign's `where` leaves out are drawn as empty.
-[[nodiscard]] nlohmann::ordered_json window_page_data(const study::ModelCases& cases,
-                                                      const study::WindowRequest& request, const study::Window& window,
-                                                      const study::Admits& admits);
+[[nodiscard]] Json window_page_data(const study::ModelCases& cases, const study::WindowRequest& request,
+                                    const study::Window& window, const study::Admits& admits);
 
 /// Asks nothing of any network. `database`: what the page calls it.
-void write_window_page(std::ostream& out, const nlohmann::ordered_json& data, std::string_view database);
+void write_window_page(std::ostream& out, const Json& data, std::string_view database);
 
 }  // namespace grainsweep::report

@@ -2,20 +2,17 @@
 
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/report/model_tables.hpp"
-#include "sweep/report/table.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
-#include <ostream>
+#include <optional>
+#include <span>
+#include <utility>
 
 namespace grainsweep::report {
 
 using namespace study;
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 void add_row(store::Table& table, const ModelCases& cases, std::string_view part, const Judgement& one) {
     std::vector<store::Table::Cell> row;
@@ -47,90 +44,22 @@ store::Table settings_table(const ModelCases& cases, const Window& window, std::
 }
 
 Json json_of(const ModelCases& cases, const WindowRequest& request, const Window& window, const Judgement& one) {
-    Json object = {{"inputs", inputs_json(cases.factors, one.setting)}};
-    if (!request.objective.empty()) {
-        object["mean"] = json_number(one.objective.mean);
-        object["mean_error"] = json_number(one.objective.mean_error);
-        object["scatter"] = json_number(one.objective.scatter);
-    }
-    object["probability"] = json_number(one.probability);
-    object["near_cases"] = one.near.cases;
-    object["near_failed"] = one.near.failed.size();
-    object["observables"] = Json::object();
+    const auto estimate = [](const stats::Prediction& p) {
+        return Json{{"mean", p.mean}, {"mean_error", p.mean_error}, {"scatter", p.scatter}};
+    };
+    Json observables = Json::object();
     for (std::size_t k = 0; k < window.models.size(); ++k)
-        object["observables"][window.models[k].observable] = {
-            {"mean", json_number(one.predictions[k].mean)},
-            {"mean_error", json_number(one.predictions[k].mean_error)},
-            {"scatter", json_number(one.predictions[k].scatter)}};
-    return object;
+        observables.add(window.models[k].observable, estimate(one.predictions[k]));
+    Json object = {{"inputs", inputs_json(cases.factors, one.setting)}};
+    if (!request.objective.empty()) object.add(estimate(one.objective));
+    return object.add({{"probability", one.probability},
+                       {"near_cases", one.near.cases},
+                       {"near_failed", one.near.failed.size()},
+                       {"observables", observables}});
 }
 
 std::string_view judged_text(stats::Judged judged) {
     return judged == stats::Judged::mean ? "mean" : "single_run";
-}
-
-void write_settings(std::ostream& out, std::string_view heading, const ModelCases& cases, const Window& window,
-                    std::span<const Judgement> settings) {
-    if (settings.empty()) return;
-    out << heading << '\n';
-    write(out, settings_table(cases, window, settings), Format::text);
-    out << '\n';
-}
-
-}  // namespace
-
-void write_window(std::ostream& out, const ModelCases& cases, const WindowRequest& request, const Window& window) {
-    const std::string where = request.where.empty() ? "no condition" : request.where;
-    out << fmt::format("{}: {}\n", cases.campaign.name, where);
-    out << fmt::format(
-        "holds with probability {:.6g} or more {} in {:.1f} +- {:.1f} % of the box ({} settings looked at)\n\n",
-        1 - request.risk, request.judged == stats::Judged::mean ? "for the mean" : "for a single run",
-        100 * window.share_of_box, 100 * window.share_error, window.searched.size());
-    const auto goal = request.objective.empty()
-                          ? std::string("where the condition is surest")
-                          : fmt::format("{} {} there", request.maximise ? "largest" : "smallest", request.objective);
-    if (window.best) write_settings(out, goal, cases, window, std::span(&*window.best, 1));
-    if (window.surest)
-        write_settings(out, "where the condition is likeliest", cases, window, std::span(&*window.surest, 1));
-    if (window.against)
-        write_settings(out,
-                       fmt::format("trade-off of {} and {}, whether the condition holds or not", request.objective,
-                                   window.models[*window.against].observable),
-                       cases, window, window.front);
-    write_settings(out, "to run next", cases, window, window.next);
-    for (const auto& model : window.models) out << model_lines(model);
-    for (const auto& note : window.notes) out << "note: " << note << '\n';
-}
-
-Json window_json(const ModelCases& cases, const WindowRequest& request, const Window& window) {
-    const auto list = [&](std::span<const Judgement> settings) {
-        Json all = Json::array();
-        for (const auto& one : settings) all.push_back(json_of(cases, request, window, one));
-        return all;
-    };
-    const auto one_or_null = [&](const std::optional<Judgement>& one) {
-        return one ? json_of(cases, request, window, *one) : Json(nullptr);
-    };
-    Json objective = nullptr;
-    if (!request.objective.empty())
-        objective = {{window.objective_is_factor ? "factor" : "observable", request.objective},
-                     {"maximize", request.maximise}};
-    Json models = Json::array();
-    for (const auto& model : window.models) models.push_back(model_json(model));
-    return {{"campaign", cases.campaign.name},
-            {"where", request.where},
-            {"objective", objective},
-            {"risk", request.risk},
-            {"judged", judged_text(request.judged)},
-            {"share_of_box", window.share_of_box},
-            {"share_error", window.share_error},
-            {"share_failed", window.share_failed},
-            {"best", one_or_null(window.best)},
-            {"surest", one_or_null(window.surest)},
-            {"front", list(window.front)},
-            {"next", list(window.next)},
-            {"models", models},
-            {"notes", window.notes}};
 }
 
 store::Table window_rows(const ModelCases& cases, const Window& window) {
@@ -140,6 +69,61 @@ store::Table window_rows(const ModelCases& cases, const Window& window) {
     for (const auto& one : window.front) add_row(table, cases, "front", one);
     for (const auto& one : window.next) add_row(table, cases, "next", one);
     return table;
+}
+
+void say_settings(Document& shown, std::string heading, const ModelCases& cases, const Window& window,
+                  std::span<const Judgement> settings) {
+    if (!settings.empty()) shown.say(std::move(heading)).show(settings_table(cases, window, settings)).say();
+}
+
+std::span<const Judgement> list_of(const std::optional<Judgement>& one) {
+    return one ? std::span(&*one, 1) : std::span<const Judgement>();
+}
+
+}  // namespace
+
+Json window_json(const ModelCases& cases, const WindowRequest& request, const Window& window) {
+    const auto json = [&](const Judgement& one) { return json_of(cases, request, window, one); };
+    Json objective;
+    if (!request.objective.empty())
+        objective = {{window.objective_is_factor ? "factor" : "observable", request.objective},
+                     {"maximize", request.maximise}};
+    return {{"campaign", cases.campaign.name},
+            {"where", request.where},
+            {"objective", objective},
+            {"risk", request.risk},
+            {"judged", judged_text(request.judged)},
+            {"share_of_box", window.share_of_box},
+            {"share_error", window.share_error},
+            {"share_failed", window.share_failed},
+            {"best", window.best ? json(*window.best) : Json()},
+            {"surest", window.surest ? json(*window.surest) : Json()},
+            {"front", Json::list(window.front, json)},
+            {"next", Json::list(window.next, json)},
+            {"models", Json::list(window.models, model_json)},
+            {"notes", window.notes}};
+}
+
+Document window_document(const ModelCases& cases, const WindowRequest& request, const Window& window) {
+    Document shown{.rows = window_rows(cases, window), .value = window_json(cases, request, window)};
+    shown.say(fmt::format("{}: {}", cases.campaign.name, request.where.empty() ? "no condition" : request.where));
+    shown.say(fmt::format(
+        "holds with probability {:.6g} or more {} in {:.1f} +- {:.1f} % of the box ({} settings looked at)\n\n",
+        1 - request.risk, request.judged == stats::Judged::mean ? "for the mean" : "for a single run",
+        100 * window.share_of_box, 100 * window.share_error, window.searched.size()));
+    const auto goal = request.objective.empty()
+                          ? std::string("where the condition is surest")
+                          : fmt::format("{} {} there", request.maximise ? "largest" : "smallest", request.objective);
+    say_settings(shown, goal, cases, window, list_of(window.best));
+    say_settings(shown, "where the condition is likeliest", cases, window, list_of(window.surest));
+    if (window.against)
+        say_settings(shown,
+                     fmt::format("trade-off of {} and {}, whether the condition holds or not", request.objective,
+                                 window.models[*window.against].observable),
+                     cases, window, window.front);
+    say_settings(shown, "to run next", cases, window, window.next);
+    for (const auto& model : window.models) shown.say(model_lines(model));
+    return shown.say_notes(window.notes);
 }
 
 }  // namespace grainsweep::report

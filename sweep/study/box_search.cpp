@@ -1,7 +1,5 @@
 #include "sweep/study/box_search.hpp"
 
-#include "sweep/designs/design.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,13 +11,8 @@ namespace grainsweep::study {
 namespace {
 
 designs::PointSet sobol(std::size_t dimensions, std::size_t count) {
-    const auto& design = designs::design_named("sobol");
-    designs::DesignRequest request{.levels = std::vector<std::size_t>(dimensions, 0), .options = {}};
-    for (const auto& option : design.options)
-        if (option.default_value) request.options.try_emplace(option.name, *option.default_value);
-    request.options.insert_or_assign("points", static_cast<std::int64_t>(count));
-    request.options.insert_or_assign("scramble", std::string("none"));
-    return design.sample(request);
+    return sobol_points({.levels = std::vector<std::size_t>(dimensions, 0),
+                         .options = {{"points", static_cast<std::int64_t>(count)}, {"scramble", std::string("none")}}});
 }
 
 bool has_levels(const ModelFactor& factor) {
@@ -70,6 +63,13 @@ Setting setting_at(std::span<const ModelFactor> factors, std::span<const double>
 }
 
 }  // namespace
+
+designs::PointSet sobol_points(designs::DesignRequest request) {
+    const auto& design = designs::design_named("sobol");
+    for (const auto& option : design.options)
+        if (option.default_value) request.options.try_emplace(option.name, *option.default_value);
+    return design.sample(request);
+}
 
 Setting rounded_setting(std::span<const ModelFactor> factors, std::span<const double> u) {
     return setting_at(factors, u, rounded_number_at);

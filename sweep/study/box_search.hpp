@@ -1,6 +1,7 @@
 // Settings of a campaign's box: spread over all of it, or about one of them.
 #pragma once
 
+#include "sweep/designs/design.hpp"
 #include "sweep/study/features.hpp"
 
 #include <cstddef>
@@ -9,6 +10,9 @@
 #include <vector>
 
 namespace grainsweep::study {
+
+/// A design of the catalogue's kind "sobol"; options that are not given have their default values.
+[[nodiscard]] designs::PointSet sobol_points(designs::DesignRequest request);
 
 /// A setting and where it stands in the unit cube.
 struct BoxPoint {

@@ -20,8 +20,6 @@ public:
     explicit CasesNear(const ModelCases& cases);
 
     [[nodiscard]] Near at(const Setting& setting) const { return nearest_.at(coordinates(setting)); }
-    /// Whether a case failed at all; else every setting answers.
-    [[nodiscard]] bool any_failed() const { return nearest_.any_failed(); }
 
 private:
     [[nodiscard]] std::vector<double> coordinates(const Setting& setting) const;

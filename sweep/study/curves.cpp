@@ -14,14 +14,6 @@
 namespace grainsweep::study {
 namespace {
 
-using Cell = store::Table::Cell;
-
-double number_or_nan(const Cell& cell) {
-    if (const auto* real = std::get_if<double>(&cell)) return *real;
-    if (const auto* whole = std::get_if<std::int64_t>(&cell)) return static_cast<double>(*whole);
-    return std::numeric_limits<double>::quiet_NaN();
-}
-
 struct Sampled {
     double time, bin, value;
 };
@@ -38,8 +30,7 @@ Series series_of(const store::Store& store, const std::string& case_id) {
                     "WHERE c.case_id = '{}' ORDER BY 1, 2, 3",
                     case_id));
     for (const auto& row : table.rows)
-        all[std::get<std::string>(row[0])].push_back(
-            {number_or_nan(row[1]), number_or_nan(row[2]), number_or_nan(row[3])});
+        all[std::get<std::string>(row[0])].push_back({number_of(row[1]), number_of(row[2]), number_of(row[3])});
     return all;
 }
 

@@ -28,4 +28,8 @@ std::string index_text(const stats::SensitivityIndex& index) {
     return nothing ? "0" : with_error(index.value, index.half_width);
 }
 
+std::string with_unit(std::string_view name, std::string_view unit) {
+    return unit.empty() || unit == "1" ? std::string(name) : fmt::format("{} ({})", name, unit);
+}
+
 }  // namespace grainsweep::study

@@ -1,9 +1,10 @@
-// Figures and their errors as a reader quotes them.
+// Figures with their errors and names with their units, as a reader quotes them.
 #pragma once
 
 #include "stats/sensitivity.hpp"
 
 #include <string>
+#include <string_view>
 
 namespace grainsweep::study {
 
@@ -13,5 +14,8 @@ namespace grainsweep::study {
 
 /// An index and its error; below 1e-9 rounding is all there is, and it is shown as 0.
 [[nodiscard]] std::string index_text(const stats::SensitivityIndex& index);
+
+/// "gap (m)"; a pure number and a word have no unit.
+[[nodiscard]] std::string with_unit(std::string_view name, std::string_view unit);
 
 }  // namespace grainsweep::study

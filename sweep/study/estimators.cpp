@@ -23,15 +23,11 @@ constexpr std::int64_t least_repeated = 100;
 
 /// Points of the box, one scrambling after the other, all of one size; none where `where` leaves too small a part.
 std::vector<Setting> integration_points(const ModelCases& cases, const Admits& admits) {
-    const auto& design = designs::design_named("sobol");
-    designs::DesignRequest request{.levels = std::vector<std::size_t>(cases.factors.size(), 0),
+    const auto set = sobol_points({.levels = std::vector<std::size_t>(cases.factors.size(), 0),
                                    .options = {{"scramble", std::string("random")},
                                                {"sequences", static_cast<std::int64_t>(scramblings)},
                                                {"points", static_cast<std::int64_t>(scramblings * points_each)}},
-                                   .seed = seed_of_integration};
-    for (const auto& option : design.options)
-        if (option.default_value) request.options.try_emplace(option.name, *option.default_value);
-    const auto set = design.sample(request);
+                                   .seed = seed_of_integration});
     std::vector<std::vector<Setting>> parts(scramblings);
     for (std::size_t p = 0; p < set.size(); ++p) {
         auto setting = exact_setting(cases.factors, set.point(p));

@@ -47,4 +47,17 @@ std::vector<double> cell_edges(const ModelFactor& factor, std::size_t count) {
     return edges;
 }
 
+std::vector<Setting> settings_of_map(std::span<const ModelFactor> factors, const Setting& centre, std::size_t a,
+                                     std::size_t b, std::size_t count) {
+    const auto across = cells_along(factors[a], count), up = cells_along(factors[b], count);
+    std::vector<Setting> settings;
+    for (const double y : up)
+        for (const double x : across) {
+            settings.push_back(centre);
+            settings.back()[a] = x;
+            settings.back()[b] = y;
+        }
+    return settings;
+}
+
 }  // namespace grainsweep::study

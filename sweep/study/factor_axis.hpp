@@ -16,4 +16,8 @@ namespace grainsweep::study {
 /// Where the cells begin and end, one more than there are; of levels none.
 [[nodiscard]] std::vector<double> cell_edges(const ModelFactor& factor, std::size_t count);
 
+/// Settings of a map over factors a and b, the others as in `centre`; a goes fastest.
+[[nodiscard]] std::vector<Setting> settings_of_map(std::span<const ModelFactor> factors, const Setting& centre,
+                                                   std::size_t a, std::size_t b, std::size_t count);
+
 }  // namespace grainsweep::study

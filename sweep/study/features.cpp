@@ -36,10 +36,6 @@ bool as_logarithm(const ModelFactor& factor) {
     return !factor.is_word() && factor.low > 0 && factor.high >= logarithm_from * factor.low;
 }
 
-bool varied(const ModelFactor& factor) {
-    return factor.is_word() ? factor.words.size() > 1 : factor.high > factor.low;
-}
-
 }  // namespace
 
 Value ModelFactor::value(double number) const {
@@ -96,7 +92,7 @@ Features default_features(std::span<const ModelFactor> factors, std::span<const 
     std::vector<Part> parts;
     for (std::size_t j = 0; j < factors.size(); ++j) {
         const auto& factor = factors[j];
-        if (!varied(factor)) continue;
+        if (!factor.varies()) continue;
         const auto ratio = std::ranges::find(ratios, j, &Ratio::over);
         if (ratio != ratios.end()) {
             features.names.push_back(fmt::format("log({}/{})", factor.name, factors[ratio->under].name));
@@ -166,7 +162,7 @@ std::vector<Ratio> candidate_ratios(std::span<const ModelFactor> factors) {
         for (std::size_t under = 0; under < factors.size(); ++under) {
             const auto &a = factors[over], &b = factors[under];
             const bool lengths = over != under && a.unit == b.unit && !a.unit.empty() && a.unit != "1";
-            if (lengths && !a.is_word() && !b.is_word() && a.low > 0 && b.low > 0 && varied(a) && varied(b))
+            if (lengths && !a.is_word() && !b.is_word() && a.low > 0 && b.low > 0 && a.varies() && b.varies())
                 ratios.push_back({over, under});
         }
     return ratios;

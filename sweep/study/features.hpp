@@ -27,6 +27,7 @@ struct ModelFactor {
     std::vector<std::string> words;  ///< levels that are words; empty: numbers
 
     [[nodiscard]] bool is_word() const { return !words.empty(); }
+    [[nodiscard]] bool varies() const { return is_word() ? words.size() > 1 : high > low; }
     /// The value as the campaign file has it.
     [[nodiscard]] Value value(double number) const;
     /// The same as text, to be read again: the shortest that is the same number.

@@ -14,10 +14,6 @@
 namespace grainsweep::study {
 namespace {
 
-bool varies(const ModelFactor& factor) {
-    return factor.is_word() ? factor.words.size() > 1 : factor.high > factor.low;
-}
-
 /// The parts that errors come from, of the cases at `rows`; empty where they are fewer than two.
 std::vector<std::size_t> groups_of(const Responses& responses, std::span<const std::size_t> rows) {
     const auto labels = sample_parts(responses).labels;
@@ -53,7 +49,7 @@ ModelInfluence model_influence_of(const Responses& responses, const ResponseColu
     const auto cases = settled_cases(responses, &rows);
     std::vector<std::size_t> varied;
     for (std::size_t j = 0; j < cases.factors.size(); ++j)
-        if (varies(cases.factors[j])) varied.push_back(j);
+        if (cases.factors[j].varies()) varied.push_back(j);
     for (const auto j : varied) found.factors.push_back(cases.factors[j].name);
     auto learned = learn(cases, cases.observable(response.name));
     if (auto* refused = std::get_if<stats::Refusal>(&learned)) {

@@ -1,6 +1,7 @@
 #include "sweep/study/model_view.hpp"
 
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/study/box_search.hpp"
 
 #include <fmt/format.h>
 
@@ -64,16 +65,6 @@ private:
     Features features_;
 };
 
-designs::PointSet sobol_points(const campaign::Campaign& campaign, std::uint64_t seed) {
-    const auto& sobol = designs::design_named("sobol");
-    designs::DesignRequest request{.levels = campaign.request.levels, .options = {}, .seed = seed};
-    request.options["points"] = points_of_set;
-    request.options["scramble"] = std::string("random");
-    for (const auto& option : sobol.options)
-        if (option.default_value) request.options.try_emplace(option.name, *option.default_value);
-    return sobol.sample(request);
-}
-
 void check_defined(const Mapped& mapped, const std::vector<double>& features) {
     for (std::size_t k = 0; k < features.size(); ++k)
         if (!std::isfinite(features[k]))
@@ -88,7 +79,9 @@ std::vector<double> view_points(const campaign::Campaign& campaign, const Mapped
     std::array<std::vector<double>, integration_sets> parts;
     std::size_t least = std::numeric_limits<std::size_t>::max();
     for (std::size_t k = 0; k < integration_sets; ++k) {
-        const auto set = sobol_points(campaign, first_seed + k);
+        const auto set = sobol_points({.levels = campaign.request.levels,
+                                       .options = {{"points", points_of_set}, {"scramble", std::string("random")}},
+                                       .seed = first_seed + k});
         for (std::size_t i = 0; i < set.size(); ++i) {
             if (!campaign.where.empty() && !filter(campaign.space.at(set.point(i)))) continue;
             const auto features = mapped(set.point(i));

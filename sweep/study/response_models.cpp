@@ -202,15 +202,7 @@ std::optional<stats::Refusal> undefined_feature(const Features& features, const 
 }  // namespace
 
 const ResponseColumn& ModelCases::observable(std::string_view name) const {
-    const std::string_view wanted = name.empty() ? std::string_view(main) : name;
-    if (wanted.empty()) throw campaign::wrong_question("campaign " + campaign.name, "", "its scene measures no scalar");
-    const auto found = std::ranges::find(observables, wanted, &ResponseColumn::name);
-    if (found != observables.end()) return *found;
-    const auto names = observable_names();
-    throw campaign::wrong_question(
-        "--observable", fmt::format("'{}'", name),
-        fmt::format("scene '{}' measures no such scalar; it measures {}", campaign.scene, campaign::listed(names)),
-        campaign::nearest_word(name, names));
+    return named_observable(observables, name.empty() ? std::string_view(main) : name, campaign);
 }
 
 std::vector<std::string> ModelCases::observable_names() const {

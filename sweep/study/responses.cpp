@@ -35,19 +35,13 @@ std::int64_t integer(const Cell& cell) {
     return value == nullptr ? 0 : *value;
 }
 
-double number(const Cell& cell) {
-    if (const auto* real = std::get_if<double>(&cell)) return *real;
-    if (const auto* whole = std::get_if<std::int64_t>(&cell)) return static_cast<double>(*whole);
-    return no_value;
-}
-
 /// A level as it is shown; a file by its name.
 std::string column_level(const Cell& cell) {
     if (const auto* word = std::get_if<std::string>(&cell)) {
         const auto file = file_word(*word);
         return file ? std::filesystem::path(file->path).filename().string() : *word;
     }
-    return fmt::format("{:.6g}", number(cell));
+    return fmt::format("{:.6g}", number_of(cell));
 }
 
 /// What makes two levels the same, whichever type a view or an identity gives them: numbers by value, files by
@@ -59,7 +53,7 @@ std::string key_of_level(std::string_view word) {
 
 std::string key_of_cell(const Cell& cell) {
     const auto* word = std::get_if<std::string>(&cell);
-    return word == nullptr ? campaign::shortest(number(cell)) : key_of_level(campaign::identity_text(*word));
+    return word == nullptr ? campaign::shortest(number_of(cell)) : key_of_level(campaign::identity_text(*word));
 }
 
 /// Levels that occur, in the order of the campaign file, and their places among all.
@@ -107,7 +101,7 @@ public:
     }
     void add(const Cell& cell) {
         if (stated_.between)
-            factor_.values.push_back(number(cell));
+            factor_.values.push_back(number_of(cell));
         else
             cells_.push_back(cell);
     }
@@ -195,6 +189,12 @@ void find_settled(Responses& responses) {
 
 }  // namespace
 
+double number_of(const Cell& cell) {
+    if (const auto* real = std::get_if<double>(&cell)) return *real;
+    if (const auto* whole = std::get_if<std::int64_t>(&cell)) return static_cast<double>(*whole);
+    return no_value;
+}
+
 bool has_final_outcome(const std::optional<campaign::Outcome>& outcome) {
     return outcome && *outcome != campaign::Outcome::abandoned;
 }
@@ -228,11 +228,9 @@ const ResponseColumn* Responses::main_observable() const {
     return observables.empty() ? nullptr : &observables.front();
 }
 
-const ResponseColumn& Responses::observable(std::string_view name) const {
-    if (name.empty()) {
-        if (const auto* main = main_observable()) return *main;
-        throw campaign::wrong_question("campaign " + campaign.name, "", "its scene measures no scalar");
-    }
+const ResponseColumn& named_observable(std::span<const ResponseColumn> observables, std::string_view name,
+                                       const store::CampaignRecord& campaign) {
+    if (name.empty()) throw campaign::wrong_question("campaign " + campaign.name, "", "its scene measures no scalar");
     const auto found = std::ranges::find(observables, name, &ResponseColumn::name);
     if (found != observables.end()) return *found;
     std::vector<std::string> names;
@@ -241,6 +239,11 @@ const ResponseColumn& Responses::observable(std::string_view name) const {
         "--observable", fmt::format("'{}'", name),
         fmt::format("scene '{}' measures no such scalar; it measures {}", campaign.scene, campaign::listed(names)),
         campaign::nearest_word(name, names));
+}
+
+const ResponseColumn& Responses::observable(std::string_view name) const {
+    const auto* main = name.empty() ? main_observable() : nullptr;
+    return main != nullptr ? *main : named_observable(observables, name, campaign);
 }
 
 bool Responses::measures(std::string_view name) const {
@@ -312,7 +315,7 @@ Responses read_responses(const store::Store& store, const store::CampaignRecord&
         responses.outcomes.push_back(outcome_of(row));
         for (std::size_t j = 0; j < factors.size(); ++j) factors[j].add(row[first_factor + j]);
         for (std::size_t k = first_observable; k < row.size(); ++k)
-            responses.observables[k - first_observable].values.push_back(number(row[k]));
+            responses.observables[k - first_observable].values.push_back(number_of(row[k]));
     };
     // The campaign's view is the archive's public face; its columns are promised to users, too.
     store.query(fmt::format("SELECT * FROM \"{}\" ORDER BY point, replicate", record.name), {}, declare, add);

@@ -91,6 +91,10 @@ struct Responses {
     [[nodiscard]] bool ordered_sample() const;
 };
 
+/// Throws WrongQuestion with the nearest name, or that there is none where the name is empty.
+[[nodiscard]] const ResponseColumn& named_observable(std::span<const ResponseColumn> observables, std::string_view name,
+                                                     const store::CampaignRecord& campaign);
+
 /// Whether a case will not be computed any more in this run of its campaign.
 [[nodiscard]] bool has_final_outcome(const std::optional<campaign::Outcome>& outcome);
 
@@ -115,6 +119,9 @@ struct Responses {
 [[nodiscard]] std::vector<std::size_t> random_rows(std::vector<std::size_t> rows, std::size_t most);
 /// The `count` rows with the largest (or smallest) finite values, best first; equal values by row.
 [[nodiscard]] std::vector<std::size_t> extreme_rows(std::span<const double> values, std::size_t count, bool largest);
+
+/// NaN where it is no number.
+[[nodiscard]] double number_of(const store::Table::Cell& cell);
 
 /// A factor's value at a row as text: the level's word, or the number to 6 digits.
 [[nodiscard]] std::string factor_text(const FactorColumn& factor, std::size_t row);

@@ -1,12 +1,14 @@
 #include "sweep/workers/message_form.hpp"
 
-#include <nlohmann/json.hpp>
+#include "sweep/campaign/json_writer.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
+#include <concepts>
+#include <cstdint>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 namespace grainsweep::workers {
@@ -26,29 +28,17 @@ public:
         return *this;
     }
     Writer& text(std::string_view words) {
-        if (std::ranges::all_of(words, is_plain)) {
-            text_.append("\"").append(words) += '"';
-        } else {
-            // Invalid UTF-8 in a message (from a library's error text, say) must not lose the result.
-            text_ += nlohmann::json(words).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-        }
+        campaign::append_json(text_, words);  // invalid UTF-8 (of a library's error text, say) must not lose a result
         return *this;
     }
-    template <class Whole>
+    template <std::integral Whole>
     Writer& whole(Whole number) {
-        std::array<char, 24> digits{};
-        const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
-        text_.append(digits.data(), end);
+        campaign::append_json(text_, std::conditional_t<std::is_signed_v<Whole>, std::int64_t, std::uint64_t>{number});
         return *this;
     }
-    /// With ".0" where it is whole, so that the reader can tell a count from a real; what is not finite is null.
+    /// With a point or an exponent, so that the reader can tell a count from a real; what is not finite is null.
     Writer& real(double number) {
-        if (!std::isfinite(number)) return raw("null");
-        std::array<char, 32> digits{};
-        const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
-        const std::string_view shown(digits.data(), static_cast<std::size_t>(end - digits.data()));
-        text_ += shown;
-        if (shown.find_first_of(".e") == std::string_view::npos) text_ += ".0";
+        campaign::append_json(text_, number);
         return *this;
     }
     Writer& value(const Value& held) {

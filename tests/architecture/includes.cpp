@@ -105,6 +105,8 @@ const std::vector<Rule>& rules() {
         {"sweep/report/",
          {"sweep/report/", "sweep/study/", "sweep/store/", "sweep/campaign/", "stats/", "solver/plain_text.hpp",
           "solver/scenes/values.hpp", "solver/scenes/scene.hpp"}},
+        {"sweep/cli/run_campaign",  // a run computes and shows nothing
+         {"sweep/cli/", "sweep/campaign/", "sweep/schedule/", "sweep/store/", "sweep/study/", "sweep/workers/"}},
         {"sweep/cli/", {"sweep/", "stats/", "solver/scenes/values.hpp", "solver/scenes/scene.hpp"}},
     };
     return table;
@@ -122,8 +124,8 @@ const std::vector<Library>& libraries() {
         {"boost/process", {"sweep/workers/child."}},
         {"boost/asio", {"sweep/workers/pool.", "sweep/workers/child."}},
         {"nlohmann/",
-         {"sweep/campaign/", "sweep/workers/message.cpp", "sweep/workers/message_form.cpp",
-          "sweep/workers/program_results.cpp", "sweep/workers/program_json.", "sweep/report/", "sweep/cli/"}},
+         {"sweep/campaign/", "sweep/workers/message.cpp", "sweep/workers/program_results.cpp",
+          "sweep/workers/program_json."}},
         {"CLI/", {"sweep/cli/parser.cpp"}},
         {"Eigen/", {"solver/", "stats/"}},
         {"nlopt", {"stats/response/fit.cpp"}},

@@ -4,10 +4,10 @@
 #include "sweep/store/expression.hpp"
 #include "sweep/study/curves.hpp"
 #include "tests/support/archive.hpp"
+#include "tests/support/written.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <set>
@@ -110,7 +110,7 @@ TEST_F(ReportCurves, ManyCasesAreDrawnAtRandomAndTheSameEveryTime) {
 TEST_F(ReportCurves, StandInThePage) {
     answer_all_but_the_last();
     const report::PageSource source{&store, "a.db"};
-    const auto data = report::page_data({&source, 1});
+    const auto data = tests::parsed(report::page_data({&source, 1}));
     const auto& curves = data["campaigns"][0]["curves"];
     EXPECT_EQ(curves["drawn"], 11);
     EXPECT_EQ(curves["families"][0]["over"], "time (sqrt(2 L/g))");

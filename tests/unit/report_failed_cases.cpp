@@ -7,12 +7,10 @@
 #include "sweep/study/cases_near.hpp"
 #include "sweep/study/process_window.hpp"
 #include "tests/support/answered.hpp"
+#include "tests/support/written.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-
-#include <sstream>
 
 namespace grainsweep::tests::report_failed_cases_test {
 
@@ -64,10 +62,8 @@ TEST_F(FailedCases, NoSettingIsRecommendedAmongThem) {
     EXPECT_THAT(window.notes,
                 Contains(testing::MatchesRegex("near the best setting .* of the 5 nearest cases failed.*")));
 
-    std::ostringstream text;
-    write_window(text, known, request, window);
-    EXPECT_THAT(text.str(), HasSubstr("near_failed"));
-    const auto json = window_json(known, request, window);
+    EXPECT_THAT(tests::text_of(window_document(known, request, window)), HasSubstr("near_failed"));
+    const auto json = tests::parsed(window_json(known, request, window));
     EXPECT_EQ(json["share_failed"], window.share_failed);
     EXPECT_EQ(json["best"]["near_cases"], 5);
     EXPECT_EQ(json["best"]["near_failed"], window.best->near.failed.size());
@@ -91,9 +87,7 @@ TEST_F(FailedCases, WithoutOneNothingChanges) {
     const auto window = window_of(store, known, request);
     EXPECT_EQ(window.share_failed, 0);
     EXPECT_THAT(window.notes, Each(testing::Not(HasSubstr("failed"))));
-    std::ostringstream text;
-    write_window(text, known, request, window);
-    EXPECT_THAT(text.str(), testing::Not(HasSubstr("near_")));
+    EXPECT_THAT(tests::text_of(window_document(known, request, window)), testing::Not(HasSubstr("near_")));
 }
 
 TEST_F(FailedCases, WhereNearlyAllFailedThereIsNoWindow) {
@@ -126,7 +120,7 @@ TEST_F(FailedCases, APredictionAmongThemSaysThatNoCaseNearHasAnAnswer) {
     EXPECT_THAT(
         failures_near(known, predicted),
         HasSubstr("no case near x1 = 0.05, x2 = 0.5 has an answer: 5 of the 5 nearest cases failed (5 unstable)"));
-    const auto json = predictions_json(known, model, predicted);
+    const auto json = tests::parsed(predictions_json(known, model, predicted));
     EXPECT_TRUE(json["points"][0]["mean"].is_null());
     EXPECT_EQ(json["points"][0]["answers_near"], false);
     EXPECT_EQ(json["points"][0]["near_cases"], 5);
@@ -145,7 +139,7 @@ TEST_F(FailedCases, APredictionAmongThemSaysThatNoCaseNearHasAnAnswer) {
 TEST_F(FailedCases, PagesDrawThemAndNothingOverThem) {
     const auto known = cases(jams);
     const auto model = learn_or_refuse(known, known.observable("y"));
-    const auto page = model_page_data(known, model, {});
+    const auto page = tests::parsed(model_page_data(known, model, {}));
     ASSERT_EQ(page["failed"].size(), known.failed.size());
     EXPECT_EQ(page["failed"][0]["outcome"], "unstable");
     EXPECT_LE(page["failed"][0]["setting"][0], 0.3);
@@ -160,7 +154,7 @@ TEST_F(FailedCases, PagesDrawThemAndNothingOverThem) {
 
     const WindowRequest request{.where = "y >= 0.5", .objective = "y"};
     const auto window = window_of(store, known, request);
-    const auto drawn = window_page_data(known, request, window, {});
+    const auto drawn = tests::parsed(window_page_data(known, request, window, {}));
     EXPECT_EQ(drawn["failed"].size(), known.failed.size());
     EXPECT_THAT(drawn["failed_near"].get<std::string>(), HasSubstr("of the 5 nearest cases failed"));
     const auto& map = drawn["map"];

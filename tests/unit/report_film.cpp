@@ -34,7 +34,7 @@ void expect_round_trip(const Numbers& values, std::size_t items) {
 }
 
 std::string packed_film(const Film& film) {
-    return film.bytes(nlohmann::ordered_json::object());
+    return film.bytes(report::Json::object());
 }
 
 /// Two particles, the second of which is gone in the second frame, a frozen third.
@@ -284,7 +284,7 @@ Film agitated(std::size_t spheres, std::size_t frames) {
 
 TEST(WatchPage, TwentyThousandSpheresInSixtyFramesFitInTenMegabytes) {
     const Film film = agitated(20'000, 60);
-    const std::string page = report::watch_page(film, nlohmann::ordered_json::object());
+    const std::string page = report::watch_page(film, report::Json::object());
     RecordProperty("bytes", static_cast<int>(page.size()));
     EXPECT_LT(page.size(), 10'000'000U);
     const auto read = read_film(packed_film(film));
@@ -294,7 +294,7 @@ TEST(WatchPage, TwentyThousandSpheresInSixtyFramesFitInTenMegabytes) {
 }
 
 TEST(WatchPage, OfNothingIsRefused) {
-    EXPECT_THROW((void)report::watch_page(Film(), nlohmann::ordered_json::object()), std::invalid_argument);
+    EXPECT_THROW((void)report::watch_page(Film(), report::Json::object()), std::invalid_argument);
 }
 
 TEST(WatchPage, AsksNothingOfAnyNetworkAndHoldsItsFilm) {

@@ -3,10 +3,10 @@
 #include "sweep/study/effects.hpp"
 #include "sweep/study/influence.hpp"
 #include "tests/support/study.hpp"
+#include "tests/support/written.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 namespace grainsweep::tests::report_influence_test {
 
@@ -165,7 +165,7 @@ TEST_F(Study, SensitivityTellsInteractionFromScatterWhereReplicatesAllow) {
     EXPECT_TRUE(std::isnan(influence.split.scatter.value));
     EXPECT_NEAR(influence.split.unexplained.value, 0.5, 2 * influence.split.unexplained.half_width);
     EXPECT_THAT(unexplained_text(influence), HasSubstr("replicates would tell these apart"));
-    const auto json = to_json(responses, responses.observable("y"), influence);
+    const auto json = tests::parsed(to_json(responses, responses.observable("y"), influence));
     EXPECT_TRUE(json["variance"]["scatter"]["value"].is_null());
     EXPECT_GT(json["variance"]["unexplained"]["error"], 0);
 }

@@ -7,10 +7,10 @@
 #include "sweep/study/model_influence.hpp"
 #include "sweep/study/responses.hpp"
 #include "tests/support/answered.hpp"
+#include "tests/support/written.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 
@@ -85,7 +85,7 @@ TEST_F(ModelFigures, JsonHasBothAndNamesWhatIsThere) {
     answer_by(store, campaign_of(halton(104)), response);
     const auto all = responses();
     const auto history = history_of(all, all.observable(""));
-    const auto json = estimators_json(history, estimators());
+    const auto json = tests::parsed(estimators_json(history, estimators()));
     for (const char* statistic : {"mean", "sd", "skewness", "g1", "kurtosis"})
         EXPECT_TRUE(json["plain"][statistic]["value"].is_number()) << statistic;
     for (const char* statistic : {"mean", "sd", "g1", "kurtosis"})
@@ -108,7 +108,7 @@ TEST_F(ModelFigures, EveryWithdrawnEstimateIsMarkedAndThePopulationNamed) {
     EXPECT_TRUE(found.assisted->of(stats::Statistic::sd).withdrawn);
     const auto table = estimators_table(found);
     const auto all = responses();
-    const auto json = estimators_json(history_of(all, all.observable("")), found);
+    const auto json = tests::parsed(estimators_json(history_of(all, all.observable("")), found));
     for (std::size_t k = 0; k < table.rows.size(); ++k) {
         const auto statistic = stats::assisted_statistics[k];
         const bool withdrawn = found.assisted->of(statistic).withdrawn;
@@ -136,7 +136,7 @@ TEST_F(ModelFigures, MomentsAreRefusedByTheirReason) {
     EXPECT_FALSE(found.assisted);
     EXPECT_THAT(found.refused, HasSubstr("4 independently randomised sequences"));
     const auto all = responses();
-    const auto json = estimators_json(history_of(all, all.observable("")), found);
+    const auto json = tests::parsed(estimators_json(history_of(all, all.observable("")), found));
     EXPECT_TRUE(json["model_assisted"].is_null());
     EXPECT_EQ(json["note"], found.refused);
 }
@@ -164,7 +164,7 @@ TEST_F(ModelFigures, TotalIndicesAndInteractionsFromAnySample) {
     EXPECT_NEAR(indices.pairs[0].value, pair, 0.01);
     EXPECT_EQ(model_influence_table(influence).rows[0][0], store::Table::Cell("x2")) << "the most influential first";
     EXPECT_THAT(model_influence_lines(influence).front(), HasSubstr("interactions of pairs: x1 with x2 0.2"));
-    const auto json = model_influence_json(influence);
+    const auto json = tests::parsed(model_influence_json(influence));
     EXPECT_EQ(json["factors"][0]["name"], "x1");
     EXPECT_EQ(json["pairs"][0]["factors"][1], "x2");
     EXPECT_TRUE(json["scatter_share"].is_number());

@@ -3,10 +3,10 @@
 #include "sweep/report/model_page.hpp"
 #include "sweep/report/page.hpp"
 #include "tests/support/study.hpp"
+#include "tests/support/written.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -34,7 +34,7 @@ struct ModelPage : Study {
                       std::to_string(points) + "}" + more + "}",
                   [](const Inputs& i) { return known(input(i, "x1"), input(i, "x2"), input(i, "x3")); });
         const PageSource source{&store, "a.db"};
-        return page_data({&source, 1}, models)["campaigns"][0]["models"];
+        return tests::parsed(page_data({&source, 1}, models))["campaigns"][0]["models"];
     }
 };
 

@@ -5,11 +5,11 @@
 #include "sweep/report/page_template.hpp"
 #include "sweep/report/summary.hpp"
 #include "tests/support/answered.hpp"
+#include "tests/support/written.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -174,7 +174,7 @@ TEST_F(Page, HoldsSeveralDatabases) {
         "design": {"kind": "halton", "sequences": 8, "points": 16}})",
               [](const Inputs& inputs) { return input(inputs, "x1"); });
     const std::vector<report::PageSource> sources = {{&store, "a.db"}, {&second, "b.db"}};
-    const auto data = report::page_data(sources);
+    const auto data = tests::parsed(report::page_data(sources));
     EXPECT_EQ(data["databases"], Json({"a.db", "b.db"}));
     ASSERT_EQ(data["campaigns"].size(), 2u);
     EXPECT_EQ(data["campaigns"][0]["database"], "a.db");
@@ -314,7 +314,8 @@ TEST_F(Page, ACampaignWithoutAnswersHasAPageToo) {
     EXPECT_EQ(campaign["settled"], 0);
     EXPECT_EQ(campaign["observables"][0]["history"]["count"], 0);
     EXPECT_EQ(campaign["outcomes"].back(), Json({"not yet", 64}));
-    EXPECT_THAT(report::closing_summary(store, "new", "a.db"), HasSubstr("new: 64 cases of rehearsal: 64 not yet"));
+    EXPECT_THAT(tests::text_of(report::closing_summary(store, "new", "a.db")),
+                HasSubstr("new: 64 cases of rehearsal: 64 not yet"));
 }
 
 TEST_F(Page, ALargeCampaignStaysLight) {

@@ -8,10 +8,10 @@
 #include "sweep/study/history.hpp"
 #include "sweep/study/influence.hpp"
 #include "tests/support/study.hpp"
+#include "tests/support/written.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <limits>
@@ -85,7 +85,7 @@ TEST_F(Study, FinishedCasesBehindAnOpenOneGiveProvisionalFigures) {
     EXPECT_THAT(history.verdict, HasSubstr("not converged: first check at 80 points, 0 are settled"));
     EXPECT_THAT(history.warnings, Contains(HasSubstr("they count in the provisional figures only")));
 
-    const auto text = report::closing_summary(store, "c", folder / "a.db");
+    const auto text = tests::text_of(report::closing_summary(store, "c", folder / "a.db"));
     EXPECT_THAT(text, HasSubstr("provisional moments over all 426 finished cases"));
     EXPECT_THAT(text, Not(HasSubstr("moments over 0 points")));
     EXPECT_THAT(text, HasSubstr("largest"));
@@ -93,12 +93,12 @@ TEST_F(Study, FinishedCasesBehindAnOpenOneGiveProvisionalFigures) {
     ASSERT_EQ(rows.rows.size(), 1u);
     EXPECT_EQ(rows.columns.back(), "provisional");
     EXPECT_EQ(text_of(rows.rows[0].back()), "1");
-    const auto json = to_json(responses, responses.observable("y"), history, {});
+    const auto json = tests::parsed(to_json(responses, responses.observable("y"), history, {}));
     EXPECT_EQ(json["provisional"]["values"], 426);
     EXPECT_EQ(json["finished"], 426);
     EXPECT_EQ(json["converged"], false);
     const std::vector<report::PageSource> sources = {{&store, "a.db"}};
-    const nlohmann::ordered_json page = report::page_data(sources);
+    const nlohmann::ordered_json page = tests::parsed(report::page_data(sources));
     const nlohmann::ordered_json& shown = page["campaigns"][0]["observables"][0]["history"];
     EXPECT_EQ(shown["provisional"]["count"], 426);
     EXPECT_EQ(shown["notes"].back().get<std::string>().rfind("provisional, over all finished cases (426 values)", 0),
@@ -118,7 +118,8 @@ TEST_F(Study, WhatTheConditionLeavesOutIsCounted) {
     EXPECT_EQ(responses.dropped(), 64 - static_cast<std::int64_t>(responses.rows()));
     EXPECT_EQ(points_line(responses), "64 candidates, " + std::to_string(responses.dropped()) + " left out by where, " +
                                           std::to_string(responses.rows()) + " cases asked, 20 finished");
-    EXPECT_THAT(report::closing_summary(store, "c", folder / "a.db"), HasSubstr("where: 64 candidates"));
+    EXPECT_THAT(tests::text_of(report::closing_summary(store, "c", folder / "a.db")),
+                HasSubstr("where: 64 candidates"));
 }
 
 // A verdict needs one observable; it is the same without the others.
@@ -331,7 +332,7 @@ TEST_F(Study, ExtremesHaveUnits) {
 
 TEST_F(Study, TheRunEndsWithCountsMomentsExtremesAndThePlace) {
     answer_by(store, halton("c", 64), [](const Inputs& inputs) { return linear(inputs); });
-    const auto text = report::closing_summary(store, "c", folder / "a.db");
+    const auto text = tests::text_of(report::closing_summary(store, "c", folder / "a.db"));
     EXPECT_THAT(text, HasSubstr("c: 64 cases of rehearsal: 64 completed"));
     EXPECT_THAT(text, HasSubstr("largest"));
     EXPECT_THAT(text, HasSubstr("smallest"));

@@ -1,5 +1,5 @@
 // One table, three formats: aligned text, CSV, JSON; numbers read back as they were.
-#include "sweep/report/table.hpp"
+#include "sweep/report/document.hpp"
 
 #include <gtest/gtest.h>
 
@@ -121,6 +121,25 @@ TEST(Table, RowsWrittenAsTheyComeAreTheTable) {
             EXPECT_EQ(out.str(), written(table, format));
         }
     }
+}
+
+TEST(Documents, StandOneBelowTheOtherInEveryFormat) {
+    const auto made = [](const std::string& name, bool alone) {
+        Document document{.rows = {{"campaign"}, {{name}}}, .value = {{"campaign", name}}, .alone = alone};
+        return document.say(name + "\n").say_notes({"first", "second"}).show({{"x"}, {{0.5}}});
+    };
+    const auto written = [](const std::vector<Document>& documents, Format format) {
+        std::ostringstream out;
+        write(out, documents, format);
+        return out.str();
+    };
+    const std::vector documents = {made("a", false), made("b", true), made("c", false)};
+    EXPECT_EQ(written({documents[0], documents[2]}, Format::text),
+              "a\nnote: first\nnote: second\n  x\n0.5\n\nc\nnote: first\nnote: second\n  x\n0.5\n");
+    EXPECT_EQ(written(documents, Format::json), "[{\"campaign\":\"a\"},{\"campaign\":\"b\"},{\"campaign\":\"c\"}]\n");
+    EXPECT_EQ(written(documents, Format::csv), "campaign\na\nc\n") << "what stands alone comes below nothing";
+    EXPECT_EQ(written({documents[1], documents[0]}, Format::csv), "campaign\nb\n") << "and nothing below it";
+    EXPECT_EQ(written({}, Format::json), "[]\n");
 }
 
 }  // namespace grainsweep::tests::report_table_test

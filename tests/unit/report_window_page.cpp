@@ -4,10 +4,10 @@
 #include "sweep/study/process_window.hpp"
 #include "sweep/study/response_models.hpp"
 #include "tests/support/answered.hpp"
+#include "tests/support/written.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <sstream>
@@ -42,7 +42,7 @@ struct WindowPage : testing::Test {
 TEST_F(WindowPage, MapsTheTwoFactorsThatMatterMostThroughTheBestSetting) {
     const auto known = cases();
     const auto window = window_of(store, known, request);
-    const auto data = window_page_data(known, request, window, {});
+    const auto data = tests::parsed(window_page_data(known, request, window, {}));
     EXPECT_EQ(data["meets"], true);
     EXPECT_NEAR(data["best"]["setting"][0], 0.5, 0.01);
     EXPECT_NEAR(data["best"]["setting"][1], 0.0, 0.01);
@@ -81,10 +81,10 @@ TEST_F(WindowPage, AFactorMayBeTheObjective) {
         EXPECT_GT(window.front[k].setting[0], window.front[k - 1].setting[0]);
         EXPECT_GT(window.front[k].predictions[0].mean, window.front[k - 1].predictions[0].mean);
     }
-    const auto json = window_json(known, request, window);
+    const auto json = tests::parsed(window_json(known, request, window));
     EXPECT_EQ(json["objective"], nlohmann::ordered_json({{"factor", "x1"}, {"maximize", true}}));
     EXPECT_EQ(json["best"]["mean"], window.best->setting[0]);
-    const auto data = window_page_data(known, request, window, {});
+    const auto data = tests::parsed(window_page_data(known, request, window, {}));
     EXPECT_TRUE(data["map"]["objective"].is_null()) << "it would be the factor's own axis";
     request.maximise = false;
     request.where = "y >= 0.3";
@@ -97,7 +97,7 @@ TEST_F(WindowPage, AFactorMayBeTheObjective) {
 TEST_F(WindowPage, CurvesHoldBandsOfTheMeanAndOfARun) {
     const auto known = cases();
     const auto window = window_of(store, known, request);
-    const auto data = window_page_data(known, request, window, {});
+    const auto data = tests::parsed(window_page_data(known, request, window, {}));
     const auto& curve = data["curves"][1];
     ASSERT_EQ(curve["at"].size(), 41U);
     EXPECT_EQ(curve["at"][0], 0);
@@ -116,7 +116,7 @@ TEST_F(WindowPage, CurvesHoldBandsOfTheMeanAndOfARun) {
 TEST_F(WindowPage, CellsThatTheCampaignLeavesOutAreEmpty) {
     const auto known = cases(R"(, "where": "x2 < 0.5")");
     const auto window = window_of(store, known, request);
-    const auto data = window_page_data(known, request, window, admission(store, known));
+    const auto data = tests::parsed(window_page_data(known, request, window, admission(store, known)));
     const auto& map = data["map"];
     EXPECT_EQ(map["up"], 1);
     EXPECT_TRUE(map["probability"][40 * 41].is_null());
@@ -128,7 +128,7 @@ TEST_F(WindowPage, IsDrawnWhereNothingMeetsTheConditionToo) {
     request.where = "y > 5";
     const auto window = window_of(store, known, request);
     const auto data = window_page_data(known, request, window, {});
-    EXPECT_EQ(data["meets"], false);
+    EXPECT_EQ(tests::parsed(data)["meets"], false);
     std::ostringstream page;
     write_window_page(page, data, "a.db");
     EXPECT_THAT(page.str(), HasSubstr("<!doctype html>"));

@@ -1,0 +1,272 @@
+#include "sweep/report/findings.hpp"
+
+#include "sweep/report/summary.hpp"
+#include "sweep/study/error_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace grainsweep::report {
+
+using namespace study;
+
+namespace {
+
+using designs::Bracket;
+using designs::RefinedLevel;
+using Cell = store::Table::Cell;
+
+std::string measured(std::string_view what, std::string_view unit) {
+    return unit.empty() || unit == "1" ? std::string(what) : fmt::format("{} {}", what, unit);
+}
+
+/// "0.61 ± 0.02 (4 runs)", "0.61 ± 0.02 (2 runs, 2 without an answer)".
+std::string level_text(const RefinedLevel& level) {
+    if (level.answers.empty()) return "-";
+    return fmt::format("{} ({} run{}{})", with_error(level.mean(), level.half_width()), level.answers.size(),
+                       level.answers.size() == 1 ? "" : "s",
+                       level.unanswered == 0 ? "" : fmt::format(", {} without an answer", level.unanswered));
+}
+
+/// Every number in a column of its own.
+store::Table brackets_rows(const Brackets& brackets, const std::string& campaign) {
+    store::Table table;
+    table.columns = {"campaign", "observable", "threshold", "factor"};
+    table.columns.insert(table.columns.end(), brackets.others.begin(), brackets.others.end());
+    table.columns.insert(table.columns.end(), {"low", "high", "mean_at_low", "error_at_low", "runs_at_low",
+                                               "mean_at_high", "error_at_high", "runs_at_high", "runs", "state"});
+    for (std::size_t c = 0; c < brackets.found.size(); ++c) {
+        const auto& one = brackets.found[c];
+        std::vector<Cell> row = {campaign, brackets.observable, brackets.threshold, brackets.factor};
+        row.insert(row.end(), brackets.levels[c].begin(), brackets.levels[c].end());
+        row.insert(row.end(), {one.low.value, one.high.value});
+        for (const auto* level : {&one.low, &one.high})
+            row.insert(row.end(), {to_cell(level->mean()), to_cell(level->half_width()),
+                                   static_cast<std::int64_t>(level->answers.size())});
+        row.insert(row.end(), {static_cast<std::int64_t>(one.runs), std::string(designs::to_string(one.state))});
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+Json to_json(const Brackets& brackets) {
+    const auto level = [](const RefinedLevel& at) {
+        return Json{{"value", at.value},
+                    {"mean", at.mean()},
+                    {"error", at.half_width()},
+                    {"runs", at.answers.size()},
+                    {"unanswered", at.unanswered}};
+    };
+    Json found = Json::array();
+    for (std::size_t c = 0; c < brackets.found.size(); ++c) {
+        const auto& one = brackets.found[c];
+        Json levels = Json::object();
+        for (std::size_t j = 0; j < brackets.others.size(); ++j) levels.add(brackets.others[j], brackets.levels[c][j]);
+        found.push_back({{"levels", levels},
+                         {"low", level(one.low)},
+                         {"high", level(one.high)},
+                         {"runs", one.runs},
+                         {"state", designs::to_string(one.state)}});
+    }
+    return {{"factor", brackets.factor},
+            {"observable", brackets.observable},
+            {"threshold", brackets.threshold},
+            {"width", brackets.width},
+            {"brackets", found}};
+}
+
+constexpr std::size_t drawn_on_page = 800;
+
+Json to_json(const CalibrationReport& report) {
+    const auto wave = [](const auto& one) {
+        return Json{{"settings", one.settings},
+                    {"cases", one.cases},
+                    {"failed", one.failed},
+                    {"kept", one.kept},
+                    {"model_errors", one.model_error}};
+    };
+    const auto factor = [](const study::FactorPosterior& one) {
+        return Json{{"factor", one.name}, {"mean", one.mean}, {"sd", one.sd},
+                    {"q05", one.low},     {"q95", one.high},  {"share_of_range", one.share_of_range}};
+    };
+    const auto target = [](const study::TargetCheck& one) {
+        return Json{{"observable", one.observable},
+                    {"condition", one.condition},
+                    {"value", one.value},
+                    {"error", one.error},
+                    {"discrepancy", one.discrepancy},
+                    {"predicted", one.predicted},
+                    {"predicted_sd", one.predicted_error},
+                    {"checked", one.checked},
+                    {"checked_sd", one.checked_sd},
+                    {"runs", one.runs},
+                    {"z", one.z()}};
+    };
+    const auto& found = report.found;
+    return {{"ended", found.waves_end},
+            {"why", found.why_they_end},
+            {"waves", Json::list(found.waves, wave)},
+            {"posterior", Json::list(report.factors, factor)},
+            {"correlation", found.shape ? Json(found.shape->correlation) : Json::array()},
+            {"targets", Json::list(report.targets, target)},
+            {"notes", report.notes}};
+}
+
+std::string calibration_line(const CalibrationReport& report) {
+    const auto& found = report.found;
+    if (found.waves.empty()) return "calibration: the first wave is not answered yet";
+    const auto& last = found.waves.back();
+    const auto done = fmt::format("calibration: {} wave{}, {} cases, {:.3g} % of the box kept", found.waves.size(),
+                                  found.waves.size() == 1 ? "" : "s", last.cases, 100 * last.kept);
+    if (!found.waves_end) return done + "; the next wave is not answered yet";
+    return fmt::format("{}; {}", done, found.why_they_end);
+}
+
+store::Table waves_table(const CalibrationReport& report) {
+    store::Table table{{"wave", "settings", "cases", "failed", "kept"}, {}};
+    for (const auto& target : report.targets) table.columns.push_back(fmt::format("model error of {}", target.name()));
+    for (std::size_t w = 0; w < report.found.waves.size(); ++w) {
+        const auto& wave = report.found.waves[w];
+        std::vector<Cell> row = {static_cast<std::int64_t>(w + 1), static_cast<std::int64_t>(wave.settings),
+                                 static_cast<std::int64_t>(wave.cases), static_cast<std::int64_t>(wave.failed),
+                                 fmt::format("{:.3g} %", 100 * wave.kept)};
+        for (const double error : wave.model_error)
+            row.emplace_back(std::isfinite(error) ? fmt::format("{:.2g} sd", error) : std::string("no model"));
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+store::Table posterior_table(const CalibrationReport& report) {
+    store::Table table{{"factor", "unit", "mean", "sd", "5 %", "95 %", "width over range's"}, {}};
+    for (const auto& factor : report.factors)
+        table.rows.push_back({factor.name, factor.unit, fmt::format("{:.4g}", factor.mean),
+                              fmt::format("{:.2g}", factor.sd), fmt::format("{:.4g}", factor.low),
+                              fmt::format("{:.4g}", factor.high), fmt::format("{:.2f}", factor.share_of_range)});
+    return table;
+}
+
+store::Table targets_table(const CalibrationReport& report) {
+    store::Table table{{"target", "unit", "measured", "discrepancy", "model", "fresh runs", "runs", "z"}, {}};
+    const auto pair = [](double value, double error) {
+        return std::isfinite(value) ? with_error(value, error) : std::string("-");
+    };
+    for (const auto& target : report.targets)
+        table.rows.push_back({target.name(), target.unit, with_error(target.value, target.error),
+                              fmt::format("{:.3g}", target.discrepancy), pair(target.predicted, target.predicted_error),
+                              pair(target.checked, target.checked_sd), static_cast<std::int64_t>(target.runs),
+                              std::isfinite(target.z()) ? fmt::format("{:+.1f}", target.z()) : std::string("-")});
+    return table;
+}
+
+}  // namespace
+
+std::string brackets_line(const Brackets& brackets) {
+    std::string counts;
+    using enum Bracket::State;
+    for (const auto state : {found, below, above, unanswered, open}) {
+        const auto n = std::ranges::count(brackets.found, state, &Bracket::state);
+        if (n == 0) continue;
+        counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", n, designs::to_string(state));
+    }
+    return fmt::format("where {} passes {} along {}, to {}: {} of {}", brackets.observable, brackets.threshold,
+                       brackets.factor, measured(fmt::format("{:.4g}", brackets.width), brackets.factor_unit), counts,
+                       brackets.found.size());
+}
+
+store::Table brackets_table(const Brackets& brackets) {
+    store::Table table;
+    table.columns = brackets.others;
+    const std::string unit = brackets.factor_unit == "1" ? "" : fmt::format(" ({})", brackets.factor_unit);
+    for (const char* end : {"from", "to"}) table.columns.push_back(fmt::format("{} {}{}", brackets.factor, end, unit));
+    for (const char* end : {"from", "to"}) table.columns.push_back(fmt::format("{} at '{}'", brackets.observable, end));
+    table.columns.insert(table.columns.end(), {"runs", "is"});
+    for (std::size_t c = 0; c < brackets.found.size(); ++c) {
+        const auto& one = brackets.found[c];
+        std::vector<Cell> row(brackets.levels[c].begin(), brackets.levels[c].end());
+        row.insert(row.end(), {one.low.value, one.high.value, level_text(one.low), level_text(one.high),
+                               static_cast<std::int64_t>(one.runs), std::string(designs::to_string(one.state))});
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+void say_calibration(Document& shown, const CalibrationReport& report) {
+    shown.say(calibration_line(report));
+    if (!report.found.waves.empty()) shown.say().show(waves_table(report));
+    if (!report.factors.empty()) shown.say("\nposterior").show(posterior_table(report));
+    shown.say("\ntargets (standard deviations: measurement, spread over the posterior, scatter of fresh runs)");
+    shown.show(targets_table(report)).say_notes(report.notes);
+}
+
+Json page_of(const CalibrationReport& report) {
+    const auto& found = report.found;
+    Json factors = Json::array(), draws = Json::array(), settings = Json::array();
+    for (std::size_t j = 0; j < found.factors.size(); ++j) {
+        const auto& range = found.ranges[j];
+        const double low = range.value_at(0), high = range.value_at(1);
+        const bool logarithmic = std::abs(range.value_at(0.5) - (low + high) / 2) > 1e-6 * (high - low);
+        const std::string unit = j < report.factors.size() ? report.factors[j].unit : "1";
+        factors.push_back({{"name", found.factors[j]},
+                           {"unit", unit},
+                           {"levels", Json::array()},
+                           {"low", low},
+                           {"high", high},
+                           {"log", logarithmic},
+                           {"values", std::array{low, high}}});
+    }
+    const auto add = [&](Json& rows, std::span<const double> coordinates) {
+        Json row = Json::array();
+        for (std::size_t j = 0; j < found.factors.size(); ++j) row.push_back(found.ranges[j].value_at(coordinates[j]));
+        rows.push_back(row);
+    };
+    if (found.posterior) {
+        const auto all = found.posterior->rows();
+        const std::size_t step = std::max<std::size_t>(1, all.size() / drawn_on_page);
+        for (std::size_t i = 0; i < all.size(); i += step) add(draws, all.row(i));
+    }
+    for (std::size_t i = 0; i + found.factors.size() <= found.settings.size(); i += found.factors.size())
+        add(settings, std::span(found.settings).subspan(i));
+    return {{"says", calibration_line(report)},
+            {"notes", report.notes},
+            {"posterior", found.posterior ? columns_and_rows(posterior_table(report)) : Json()},
+            {"targets", columns_and_rows(targets_table(report))},
+            {"waves", columns_and_rows(waves_table(report))},
+            {"factors", factors},
+            {"draws", draws},
+            {"settings", settings}};
+}
+
+namespace {
+
+Document document_of(const Brackets& brackets, const Responses& responses) {
+    const auto& campaign = responses.campaign.name;
+    Document shown{
+        .rows = brackets_rows(brackets, campaign), .value = {{"campaign", campaign}}, .alone = true, .converged = true};
+    shown.value.add(to_json(brackets));
+    shown.say(fmt::format("{}: {}; {}", campaign, brackets_line(brackets), outcome_line(responses)));
+    shown.say().show(brackets_table(brackets));
+    return shown;
+}
+
+Document document_of(const CalibrationReport& report, const Responses& responses) {
+    Document shown{.rows = posterior_table(report), .value = {{"campaign", responses.campaign.name}}, .alone = true};
+    shown.value.add(to_json(report));
+    shown.converged = report.found.waves_end && report.found.posterior;
+    shown.say(fmt::format("{}: {}", responses.campaign.name, outcome_line(responses)));
+    say_calibration(shown, report);
+    return shown;
+}
+
+}  // namespace
+
+std::optional<Document> findings_document(const store::Store& store, const Responses& responses) {
+    if (const auto brackets = brackets_of(store, responses.campaign)) return document_of(*brackets, responses);
+    if (const auto report = calibration_report(store, responses.campaign)) return document_of(*report, responses);
+    return std::nullopt;
+}
+
+}  // namespace grainsweep::report
