@@ -1,13 +1,12 @@
 // A table as aligned text that fits a width, by the first of these that is enough:
 //
-//   cells of text are wrapped, and headings after an underscore
+//   cells of text are wrapped, and headings behind an underscore
 //   columns with the same value in every row are given in one line below
 //   case ids are shortened to their beginning, which every command takes
-//   three rows or fewer stand as records, a line per column
-//   columns are left out: whole numbers beyond 2^53 (seeds), how a case was computed (wall_seconds, attempts), then
-//   from the right; a line names them and says how to see them
+//   columns are left out: whole numbers beyond 2^53 (seeds), then columns on how a case was computed (wall_seconds,
+//   attempts), then from the right; a line below names them
 //
-// Numbers stand to the right and are never broken.
+// Numbers are aligned to the right and never broken.
 #pragma once
 
 #include "sweep/store/store.hpp"
