@@ -111,18 +111,17 @@ void warn(History& history, const Responses& responses, const ResponseColumn& re
     const auto& record = responses.campaign;
     if (history.has_rule && history.settings.rule == ConvergenceRule::any_change) {
         history.warnings.emplace_back(
-            "the rule any_change stops too early in about half of all sweeps: quote the errors, not the verdict");
+            "the rule any_change stops too early in about half of all campaigns: quote the errors, not the verdict");
     }
     if (history.has_rule && history.settings.rule == ConvergenceRule::assisted) {
         history.warnings.emplace_back(
-            "the checks, and the measures, are of estimates with a model of the response, as the run judged them; "
-            "value "
-            "and error over all points are plain");
+            "checks and measures use estimates with a response model, as judged in the run; values and errors over "
+            "all points are plain estimates");
         if (history.all.excluded > 0)
-            history.warnings.push_back(fmt::format(
-                "the estimates with a model are of the whole box, extrapolated into the settings of the {} cases "
-                "without a value; plain ones are of the cases that answer",
-                history.all.excluded));
+            history.warnings.push_back(
+                fmt::format("estimates with a model cover the whole box, extrapolated to the settings of the {} cases "
+                            "without a value; plain estimates use the cases with a value",
+                            history.all.excluded));
     }
     if (record.convergence && record.convergence->observable != response.name) {
         history.warnings.push_back(
@@ -130,11 +129,11 @@ void warn(History& history, const Responses& responses, const ResponseColumn& re
     }
     const auto& design = responses.design();
     if (design.grows) {
-        history.warnings.push_back(fmt::format(
-            "the points of a {} gather where its answers say so: their moments describe no range", record.design));
+        history.warnings.push_back(
+            fmt::format("a {} places its points by results: their moments do not describe the ranges", record.design));
     } else if (design.beginning == designs::Beginning::corner) {
-        history.warnings.push_back(fmt::format(
-            "a {} has no errors and cannot be judged from inside: compare campaigns of growing levels", record.design));
+        history.warnings.push_back(
+            fmt::format("a {} gives no errors of its moments: compare campaigns of growing levels", record.design));
     }
     if (design.beginning == designs::Beginning::listed)
         history.warnings.emplace_back("listed points are no sample: their moments have no errors");
@@ -144,8 +143,7 @@ void warn(History& history, const Responses& responses, const ResponseColumn& re
     }
     if (stats::median_is_unsound(history.all.zero_share)) {
         history.warnings.push_back(
-            fmt::format("{:.0f} % of the values are zero: the median jumps between zero and the rest, Pearson's "
-                        "skewness is ill-defined",
+            fmt::format("{:.0f} % of the values are zero: the median jumps, and Pearson's skewness is ill-defined",
                         100 * history.all.zero_share));
     }
     if (!responses.repeated.empty()) {
@@ -155,7 +153,7 @@ void warn(History& history, const Responses& responses, const ResponseColumn& re
     }
     if (history.all.excluded > 0) {
         const std::string why = campaign::why_absent(record.scene, response.name);
-        history.warnings.push_back(fmt::format("{} of {} cases have no value and are left out{}{}",
+        history.warnings.push_back(fmt::format("{} of {} cases have no value and are excluded{}{}",
                                                history.all.excluded, history.all.excluded + history.all.count,
                                                why.empty() ? "" : ": a completed case has none where ", why));
     }
@@ -166,7 +164,7 @@ void warn(History& history, const Responses& responses, const ResponseColumn& re
     }
     if (history.provisional) {
         history.warnings.push_back(
-            fmt::format("{} finished cases lie behind one that is not: they count in the provisional figures only",
+            fmt::format("{} finished cases follow an unfinished one: only the provisional figures include them",
                         finished - responses.settled));
     }
     if (auto note = extent_note(record); !note.empty()) history.warnings.push_back(std::move(note));
@@ -190,7 +188,7 @@ std::string verdict_of(const History& history, const Responses& responses) {
     const auto& check = converged == history.checks.end() ? history.checks.back() : *converged;
     const auto line = schedule::verdict_of(check, history.settings, responses.candidates);
     if (!history.has_rule)
-        return fmt::format("no rule was given; by '{}' it would say: {}", stats::to_string(history.settings.rule),
+        return fmt::format("no rule was given; the rule '{}' would give: {}", stats::to_string(history.settings.rule),
                            line);
     return check.converged ? fmt::format("converged at {} points: {}", check.points, line) : "not converged: " + line;
 }
@@ -208,7 +206,7 @@ std::string extent_note(const store::CampaignRecord& campaign) {
     const auto text = [](const store::Extent& extent) {
         return fmt::format("{} points x {}", extent.candidates, extent.replicates);
     };
-    return fmt::format("asked now: {}; stored: {}: view and statistics are over what is stored", text(campaign.asked),
+    return fmt::format("asked now: {}; stored: {}; view and statistics use the stored cases", text(campaign.asked),
                        text(campaign.stored));
 }
 

@@ -157,9 +157,8 @@ TEST_F(Study, ACampaignThatIsAskedForLessSaysSo) {
     const auto responses = ask("c");
     EXPECT_EQ(responses.rows(), 64u);
     EXPECT_EQ(responses.candidates, 64);
-    EXPECT_THAT(
-        history_of(responses, responses.observable("y")).warnings,
-        Contains("asked now: 16 points x 1; stored: 64 points x 1: view and statistics are over what is stored"));
+    EXPECT_THAT(history_of(responses, responses.observable("y")).warnings,
+                Contains("asked now: 16 points x 1; stored: 64 points x 1; view and statistics use the stored cases"));
 }
 
 // The order of a lattice means nothing: every case with a final outcome counts, wherever the others lie.
@@ -253,7 +252,7 @@ TEST_F(Study, FailedCasesAreLeftOutCountedAndSaid) {
     ASSERT_GT(failed, 8);
     EXPECT_EQ(history.all.excluded, failed);
     EXPECT_EQ(history.all.count, 160 - failed);
-    EXPECT_THAT(history.warnings, Contains(std::to_string(failed) + " of 160 cases have no value and are left out"));
+    EXPECT_THAT(history.warnings, Contains(std::to_string(failed) + " of 160 cases have no value and are excluded"));
     const auto influence = influence_of(responses, y);
     EXPECT_EQ(influence.excluded, failed);
     EXPECT_THAT(influence.notes, Contains(HasSubstr("without a value are left out")));
