@@ -55,9 +55,9 @@ TEST(DiscrepancyReference, SquaredL2Measures) {
             EXPECT_NEAR(got, table.number(r, column), 1e-6 * table.number(r, column))
                 << column << " of " << table.cell(r, "design") << " d = " << d << " n = " << n;
         };
-        near(testing::squared_l2_star_discrepancy(*points, d), "l2star_sq");
-        near(testing::squared_centred_discrepancy(*points, d), "cd_sq");
-        near(testing::squared_wraparound_discrepancy(*points, d), "wd_sq");
+        near(squared_l2_star_discrepancy(*points, d), "l2star_sq");
+        near(squared_centred_discrepancy(*points, d), "cd_sq");
+        near(squared_wraparound_discrepancy(*points, d), "wd_sq");
         ++compared;
     }
     EXPECT_GT(compared, 50);
@@ -72,9 +72,9 @@ TEST(DiscrepancyReference, StarDiscrepancyOfEveryPair) {
         if (!points) continue;
         double mean = 0;
         for (std::size_t i = 0; i < 8; ++i)
-            for (std::size_t j = i + 1; j < 8; ++j) mean += testing::star_discrepancy_of_pair(*points, 8, i, j) / 28;
+            for (std::size_t j = i + 1; j < 8; ++j) mean += star_discrepancy_of_pair(*points, 8, i, j) / 28;
         EXPECT_NEAR(mean, table.number(r, "mean_over_28_pairs"), 1e-12) << table.cell(r, "design");
-        EXPECT_NEAR(testing::worst_pair_star_discrepancy(*points, 8), table.number(r, "worst_pair_value"), 1e-12)
+        EXPECT_NEAR(worst_pair_star_discrepancy(*points, 8), table.number(r, "worst_pair_value"), 1e-12)
             << table.cell(r, "design");
         ++compared;
     }

@@ -8,7 +8,6 @@
 
 namespace grainsweep::tests::stats_discrepancy_test {
 
-
 TEST(Discrepancy, OnePointByHand) {
     // The star discrepancy of the single point (x, y) is max(1 - x y, x, y).
     for (const auto& [x, y] : {std::pair{0.5, 0.5}, std::pair{0.9, 0.2}, std::pair{0.97, 0.96}})
