@@ -19,7 +19,7 @@ program_packages=(
     g++=/usr/bin/g++ cmake=/usr/bin/cmake ninja-build=/usr/bin/ninja git=/usr/bin/git
     libeigen3-dev=/usr/include/eigen3/Eigen/Core libboost-dev=/usr/include/boost/process.hpp
     libboost-filesystem-dev=/usr/include/boost/filesystem.hpp:libboost_filesystem.so libsqlite3-dev=/usr/include/sqlite3.h
-    nlohmann-json3-dev=/usr/include/nlohmann/json.hpp libfmt-dev=/usr/include/fmt/format.h
+    zlib1g-dev=/usr/include/zlib.h nlohmann-json3-dev=/usr/include/nlohmann/json.hpp libfmt-dev=/usr/include/fmt/format.h
     libcli11-dev=/usr/include/CLI/CLI.hpp libxxhash-dev=/usr/include/xxhash.h
     libnlopt-dev=/usr/include/nlopt.h libhwy-dev=/usr/include/hwy/highway.h
     libjs-chart.js=/usr/share/javascript/chart.js/chart.min.js

@@ -38,8 +38,8 @@ public:
     /// Anything to see: particles or a flow.
     [[nodiscard]] bool shows_anything() const { return !spheres_.empty() || !slices_.empty(); }
 
-    /// The film as the player reads it: "GSF1", the length of the header (32 bits, little endian), the header (JSON,
-    /// UTF-8) and the blocks it names by offset and length. `about` is what the player says of the case.
+    /// Returns the film: "GSF2", the length of the header (32 bits, little endian), the header (JSON, UTF-8) and the
+    /// blocks, whose lengths and numbers are in the header. `about`: text on the case.
     [[nodiscard]] std::string bytes(const Json& about) const;
 
 private:

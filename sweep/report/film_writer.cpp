@@ -1,4 +1,4 @@
-// A film's header and blocks. What each entry of the header means stands where it is written.
+// Header and blocks of a film.
 #include "sweep/report/film.hpp"
 #include "sweep/report/film_codec.hpp"
 
@@ -53,7 +53,7 @@ std::uint16_t colour_of(double x, const ValueRange& range) {
 
 }  // namespace
 
-/// Puts the blocks one after the other and writes down where they are.
+/// Writes the blocks one after the other and their lengths into the header.
 class FilmWriter {
 public:
     FilmWriter(const Film& film, const Json& about)
@@ -74,8 +74,9 @@ public:
         write_walls();
         write_slices();
         write_columns();
+        header_.add("blocks", lengths_);
         const std::string& header = header_.text();
-        std::string bytes = "GSF1";
+        std::string bytes = "GSF2";
         for (unsigned shift = 0; shift < 32; shift += 8)
             bytes.push_back(static_cast<char>(header.size() >> shift & 0xFFU));
         return bytes + header + blocks_;
@@ -84,12 +85,12 @@ public:
 private:
     using Numbers = std::vector<std::uint16_t>;
 
-    /// [offset, length] of the packed column.
-    Json block(const Numbers& values, std::size_t items) { return block(pack_film_column(values, items)); }
-    Json block(const std::string& bytes) {
-        const Json place = std::array{blocks_.size(), bytes.size()};
+    /// Returns the number of the block.
+    std::size_t block(const Numbers& values, std::size_t items) { return block(pack_film_column(values, items)); }
+    std::size_t block(const std::string& bytes) {
         blocks_ += bytes;
-        return place;
+        lengths_.push_back(bytes.size());
+        return lengths_.size() - 1;
     }
 
     /// Three columns, one after the other in each frame; where a particle is not, it stays as it is.
@@ -258,20 +259,20 @@ private:
                              {"low", low},
                              {"step", step},
                              {"places", block(places, 3 * n)},
-                             {"triangles", list_of(wall.shape.triangles)},
-                             {"edges", list_of(wall.shape.edges)}});
+                             {"triangles", cells_of(wall.shape.triangles)},
+                             {"edges", cells_of(wall.shape.edges)}});
         }
         header_.add("walls", walls);
         if (!left_out.empty()) header_.add("walls_left_out", left_out);
     }
 
-    /// Indices, all first corners, then all second ones, ...
+    /// The corners of each cell, as a frame of the column.
     template <std::size_t Corners>
-    Json list_of(const std::vector<std::array<std::int32_t, Corners>>& cells) {
+    std::size_t cells_of(const std::vector<std::array<std::int32_t, Corners>>& cells) {
         Numbers indices;
-        for (std::size_t k = 0; k < Corners; ++k)
-            for (const auto& cell : cells) indices.push_back(static_cast<std::uint16_t>(cell[k]));
-        return {{"count", cells.size()}, {"block", block(indices, indices.size())}};
+        for (const auto& cell : cells)
+            for (const auto corner : cell) indices.push_back(static_cast<std::uint16_t>(corner));
+        return block(indices, Corners);
     }
 
     /// planes[a]: across axis a; the other two axes in their order, the first of them fastest.
@@ -301,6 +302,7 @@ private:
 
     const Film& film_;
     Json header_;
+    std::vector<std::size_t> lengths_;  // of the blocks, bytes
     std::string blocks_;
 };
 

@@ -14,51 +14,48 @@
 namespace grainsweep::report {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::size_t most_different = 256;
 constexpr double exact_in_float = 16'777'216;  // 2^24
 
+/// Little-endian.
 template <std::unsigned_integral Word>
-void append(Bytes& bytes, Word word) {
-    for (std::size_t k = 0; k < sizeof word; ++k) bytes.push_back(static_cast<std::uint8_t>(word >> (8 * k)));
+void append(std::string& bytes, Word word) {
+    for (std::size_t k = 0; k < sizeof word; ++k) bytes += static_cast<char>(word >> (8 * k) & 0xFFU);
 }
 
 /// Indices into the different values, in the order in which they occur; nothing where there are too many.
 template <class T>
-std::optional<std::pair<std::vector<T>, Bytes>> dictionary(std::span<const T> values) {
-    std::map<T, std::uint8_t> places;
-    std::pair<std::vector<T>, Bytes> found;
+std::optional<std::pair<std::vector<T>, std::string>> dictionary(std::span<const T> values) {
+    std::map<T, char> places;
+    std::pair<std::vector<T>, std::string> found;
     for (const T& value : values) {
-        auto place = places.find(value);
-        if (place == places.end()) {
-            if (places.size() == most_different) return std::nullopt;
-            place = places.emplace(value, static_cast<std::uint8_t>(places.size())).first;
-            found.first.push_back(value);
-        }
-        found.second.push_back(place->second);
+        const auto [place, is_new] = places.try_emplace(value, static_cast<char>(places.size()));
+        if (places.size() > most_different) return std::nullopt;
+        if (is_new) found.first.push_back(value);
+        found.second += place->second;
     }
     return found;
 }
 
 }  // namespace
 
-std::string base64(std::span<const std::uint8_t> bytes) {
+std::string base64(std::string_view bytes) {
     static constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string text;
     text.reserve((bytes.size() + 2) / 3 * 4);
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
         const std::size_t there = std::min<std::size_t>(3, bytes.size() - i);
         std::uint32_t word = 0;
-        for (std::size_t k = 0; k < 3; ++k) word = word << 8 | (k < there ? bytes[i + k] : 0u);
-        for (std::size_t k = 0; k < 4; ++k) text += k <= there ? digits[word >> (18 - 6 * k) & 63u] : '=';
+        for (std::size_t k = 0; k < 3; ++k)
+            word = word << 8 | (k < there ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+        for (std::size_t k = 0; k < 4; ++k) text += k <= there ? digits[word >> (18 - 6 * k) & 63U] : '=';
     }
     return text;
 }
 
 Json packed(std::span<const double> values) {
-    // NaN is not equal to itself: in the dictionary it is an infinity, which no column holds.
-    std::vector<double> keys;
+    std::vector<double> keys;  // NaN, unequal to itself, as an infinity, which no column holds
     for (const double x : values) keys.push_back(std::isfinite(x) ? x : HUGE_VAL);
     if (const auto found = dictionary<double>(keys)) return {{"of", found->first}, {"u8", base64(found->second)}};
     const bool wide = std::ranges::any_of(values, [](double x) {
@@ -67,7 +64,7 @@ Json packed(std::span<const double> values) {
                (size > 0 && size < std::numeric_limits<float>::min()) ||
                (std::isfinite(x) && size > std::numeric_limits<float>::max());
     });
-    Bytes bytes;
+    std::string bytes;
     for (const double x : values) {
         if (wide)
             append(bytes, std::bit_cast<std::uint64_t>(x));
@@ -89,7 +86,7 @@ Json packed(std::span<const std::string> words) {
 }
 
 std::string packed_ids(std::span<const std::string> ids) {
-    Bytes bytes;
+    std::string bytes;
     for (const auto& id : ids) {
         if (id.size() != 32) throw std::invalid_argument("'" + id + "' is no case id");
         for (std::size_t k = 0; k < 32; k += 2) {
@@ -97,7 +94,7 @@ std::string packed_ids(std::span<const std::string> ids) {
             const auto [end, error] = std::from_chars(id.data() + k, id.data() + k + 2, byte, 16);
             if (error != std::errc{} || end != id.data() + k + 2)
                 throw std::invalid_argument("'" + id + "' is no case id");
-            bytes.push_back(byte);
+            bytes += static_cast<char>(byte);
         }
     }
     return base64(bytes);

@@ -1,4 +1,4 @@
-// Columns of numbers as the page carries them: ten thousand cases in a few bytes each.
+// Columns of numbers in a page: a few bytes per case.
 #pragma once
 
 #include "sweep/report/table.hpp"
@@ -13,7 +13,7 @@
 namespace grainsweep::report {
 
 /// Base64 (RFC 4648, section 4).
-[[nodiscard]] std::string base64(std::span<const std::uint8_t> bytes);
+[[nodiscard]] std::string base64(std::string_view bytes);
 
 /// One of, in base64 where bytes are meant, little-endian:
 ///   {"of": [values], "u8": indices}   at most 256 different values, exact; NaN among them is null
@@ -21,9 +21,9 @@ namespace grainsweep::report {
 ///   {"f64": numbers}                  whole numbers that seven digits do not hold, numbers beyond the range of float
 [[nodiscard]] Json packed(std::span<const double> values);
 [[nodiscard]] Json packed(std::span<const std::int64_t> values);
-/// Words: {"of": [words], "u8": indices}; throws std::length_error for more than 256 different ones.
+/// Words: {"of": [words], "u8": indices}. Throws std::length_error for more than 256 different words.
 [[nodiscard]] Json packed(std::span<const std::string> words);
-/// 32 hexadecimal digits each, as 16 bytes each in base64. Throws std::invalid_argument for another text.
+/// Ids of 32 hexadecimal digits as 16 bytes each, in base64. Throws std::invalid_argument for other texts.
 [[nodiscard]] std::string packed_ids(std::span<const std::string> ids);
 
 }  // namespace grainsweep::report

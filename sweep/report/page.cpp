@@ -13,7 +13,7 @@
 #include "sweep/report/page_files.hpp"
 #include "sweep/report/page_template.hpp"
 #include "sweep/report/summary.hpp"
-#include "sweep/report/watch_page.hpp"
+#include "sweep/report/table.hpp"
 #include "sweep/study/curves.hpp"
 #include "sweep/study/effects.hpp"
 #include "sweep/study/error_text.hpp"
@@ -339,48 +339,34 @@ std::string safe_in_script(const Json& value) {
 
 namespace {
 
-std::string film_script() {
-    return std::string(player().program) + std::string(player().in_report);
-}
-
-/// Films, each in a script element of its own, with the player; nothing where there is none.
-std::string film_elements(std::span<const PageFilm> films) {
-    if (films.empty()) return {};
+/// The player's style, each film in a script element of its own, and the player.
+std::string film_elements(std::span<const PageFilm> films, std::string_view player) {
     const auto escaped = [](std::string_view text) {
         std::string safe;
         for (const char c : text)
             safe += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
         return safe;
     };
-    const Player with = player();
-    std::string text = fmt::format("<style>\n{}</style>\n", with.style);
+    std::string text = fmt::format("<style>\n{}</style>\n", page_files().watch_style);
     for (const auto& film : films) {
         text += fmt::format(
             R"(<script type="application/octet-stream;base64" id="watch-{0}" data-film data-campaign="{1}" )"
             R"(data-case="{0}" data-says="{2}">)",
             escaped(film.case_id), escaped(film.campaign), escaped(film.says));
-        text += base64(std::span(reinterpret_cast<const std::uint8_t*>(film.bytes.data()), film.bytes.size()));
+        text += base64(film.bytes);
         text += "</script>\n";
     }
-    return text + fmt::format("<script>{}</script>\n", film_script());
+    return text + fmt::format("<script>{}</script>\n", player);
 }
 
 }  // namespace
 
 void write_page(std::ostream& out, std::span<const PageSource> sources, std::span<const PageFilm> films,
                 const PageModels& models) {
-    const auto files = page_files();
     const auto data = safe_in_script(page_data(sources, models));
-    const auto program = enclosed(files.program);
-    const auto scripts = films.empty() ? script_sources({files.library, program})
-                                       : script_sources({files.library, program, film_script()});
-    fill(out, files.skeleton,
-         {{"scripts", scripts},
-          {"style", files.style},
-          {"library", files.library},
-          {"films", film_elements(films)},
-          {"data", data},
-          {"program", program}});
+    if (films.empty()) return write_figures(out, page_files().report, data);
+    const auto player = enclosed(page_files().films);
+    write_figures(out, page_files().report, data, film_elements(films, player), player);
 }
 
 }  // namespace grainsweep::report

@@ -1,19 +1,46 @@
 #include "sweep/report/page_files.hpp"
 
-#include "sweep/report/embedded_file.hpp"
+#include <cstddef>
 
-// The build names the files (sweep/report/page/embed.cmake).
-GRAINSWEEP_EMBED(page_html, PAGE_FOLDER "/page.html");
-GRAINSWEEP_EMBED(page_css, PAGE_FOLDER "/page.css");
-GRAINSWEEP_EMBED(page_js, PAGE_PROGRAM);
-GRAINSWEEP_EMBED(window_js, WINDOW_PROGRAM);
-GRAINSWEEP_EMBED(chart_js, CHART_JS);
+/// `name` is the contents of the file: the assembler copies them between two labels. At namespace scope.
+#define EMBED(name, file)                                  \
+    __asm__(                                               \
+        ".pushsection .rodata\n"                           \
+        ".global grainsweep_" #name                        \
+        "_begin\n"                                         \
+        ".global grainsweep_" #name                        \
+        "_end\n"                                           \
+        "grainsweep_" #name                                \
+        "_begin:\n"                                        \
+        ".incbin \"" file                                  \
+        "\"\n"                                             \
+        "grainsweep_" #name                                \
+        "_end:\n"                                          \
+        ".byte 0\n"                                        \
+        ".popsection\n");                                  \
+    extern "C" const char grainsweep_##name##_begin[];     \
+    extern "C" const char grainsweep_##name##_end[];       \
+    const std::string_view name(grainsweep_##name##_begin, \
+                                std::size_t(grainsweep_##name##_end - grainsweep_##name##_begin))
 
 namespace grainsweep::report {
+namespace {
+
+// The build defines the folders (sweep/report/page/embed.cmake).
+EMBED(page_html, PAGE_FOLDER "/page.html");
+EMBED(page_css, PAGE_FOLDER "/page.css");
+EMBED(report_js, PAGE_SCRIPTS "/report.js");
+EMBED(window_js, PAGE_SCRIPTS "/window.js");
+EMBED(chart_js, CHART_JS);
+EMBED(watch_html, PAGE_FOLDER "/watch/page.html");
+EMBED(watch_css, PAGE_FOLDER "/watch/watch.css");
+EMBED(watch_js, PAGE_SCRIPTS "/watch.js");
+EMBED(films_js, PAGE_SCRIPTS "/films.js");
+
+}  // namespace
 
 PageFiles page_files() {
-    return {GRAINSWEEP_EMBEDDED(page_html), GRAINSWEEP_EMBEDDED(page_css), GRAINSWEEP_EMBEDDED(page_js),
-            GRAINSWEEP_EMBEDDED(window_js), GRAINSWEEP_EMBEDDED(chart_js)};
+    return {page_html, page_css, report_js, window_js, chart_js, watch_html, watch_css, watch_js, films_js};
 }
 
 }  // namespace grainsweep::report

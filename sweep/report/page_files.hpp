@@ -1,4 +1,4 @@
-// The files a page is made of, as they lay on disk when the program was built.
+// The files of the pages, as they were on disk when the program was built.
 #pragma once
 
 #include <string_view>
@@ -6,12 +6,14 @@
 namespace grainsweep::report {
 
 struct PageFiles {
-    std::string_view
-        skeleton;  ///< page.html, with {{style}}, {{library}}, {{films}}, {{data}}, {{program}} where the rest goes
-    std::string_view style;    ///< page.css
-    std::string_view program;  ///< the page's scripts, one after the other: the body of a function
-    std::string_view window;   ///< the same of the page of a process window
+    std::string_view skeleton;  ///< page.html, with places for style, library, films, data and program
+    std::string_view style;
+    std::string_view report;   ///< script of the report: the body of a function, as the other scripts
+    std::string_view window;   ///< script of the page of a process window
     std::string_view library;  ///< Chart.js (MIT licence)
+    std::string_view watch_skeleton, watch_style;
+    std::string_view watch;  ///< script of the page of one film
+    std::string_view films;  ///< script that plays films in a report
 };
 
 [[nodiscard]] PageFiles page_files();

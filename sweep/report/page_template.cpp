@@ -1,6 +1,7 @@
 #include "sweep/report/page_template.hpp"
 
 #include "sweep/report/packed_column.hpp"
+#include "sweep/report/page_files.hpp"
 #include "sweep/report/sha256.hpp"
 
 #include <algorithm>
@@ -23,6 +24,22 @@ void fill(std::ostream& out, std::string_view skeleton,
     out << skeleton;
 }
 
+void write_figures(std::ostream& out, std::string_view script, std::string_view data, std::string_view films,
+                   std::string_view film_script) {
+    const auto files = page_files();
+    const auto program = enclosed(script);
+    std::vector<std::string_view> scripts = {files.library, program};
+    if (!film_script.empty()) scripts.push_back(film_script);
+    const std::string sources = script_sources(scripts);
+    fill(out, files.skeleton,
+         {{"scripts", sources},
+          {"style", files.style},
+          {"library", files.library},
+          {"films", films},
+          {"data", data},
+          {"program", program}});
+}
+
 std::string enclosed(std::string_view script) {
     return "(function () {\n\"use strict\";\n" + std::string(script) + "\n})();\n";
 }
@@ -31,7 +48,8 @@ std::string script_sources(const std::vector<std::string_view>& scripts) {
     std::string sources;
     for (const auto script : scripts) {
         const auto digest = sha256(script);
-        sources += (sources.empty() ? "'sha256-" : " 'sha256-") + base64(digest) + "'";
+        sources +=
+            (sources.empty() ? "'sha256-" : " 'sha256-") + base64(std::string(digest.begin(), digest.end())) + "'";
     }
     return sources;
 }

@@ -1,4 +1,4 @@
-// Pages are skeletons with named places in double braces.
+// Pages from skeletons with named places in double braces.
 #pragma once
 
 #include <iosfwd>
@@ -9,13 +9,17 @@
 
 namespace grainsweep::report {
 
-/// Writes the skeleton with each part in the place of its name; a place without a part stays empty.
+/// Writes the skeleton with each part in the place of its name. A place without a part stays empty.
 void fill(std::ostream& out, std::string_view skeleton,
           const std::vector<std::pair<std::string_view, std::string_view>>& parts);
 
-/// A script whose names are its own.
+/// Writes a page of figures: its script, its data (safe_in_script), and the elements of films with their script.
+void write_figures(std::ostream& out, std::string_view script, std::string_view data, std::string_view films = "",
+                   std::string_view film_script = "");
+
+/// Encloses a script in a function, so that it defines no global names.
 [[nodiscard]] std::string enclosed(std::string_view script);
-/// The sources that a content security policy names for scripts, each the text of one script element, from tag to tag.
+/// Returns the sources for a content security policy, one for the text of each script element from tag to tag.
 [[nodiscard]] std::string script_sources(const std::vector<std::string_view>& scripts);
 
 }  // namespace grainsweep::report

@@ -2,8 +2,8 @@
 
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/program.hpp"
-#include "sweep/report/embedded_file.hpp"
 #include "sweep/report/packed_column.hpp"
+#include "sweep/report/page_files.hpp"
 #include "sweep/report/page_template.hpp"
 #include "sweep/report/table.hpp"
 
@@ -12,27 +12,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <span>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
-
-GRAINSWEEP_EMBED(watch_html, WATCH_FOLDER "/page.html");
-GRAINSWEEP_EMBED(watch_css, WATCH_FOLDER "/watch.css");
-GRAINSWEEP_EMBED(watch_player, WATCH_PLAYER);
-GRAINSWEEP_EMBED(watch_page, WATCH_FOLDER "/page.js");
-GRAINSWEEP_EMBED(watch_report, WATCH_FOLDER "/report.js");
 
 namespace grainsweep::report {
 namespace {
 
 Json entry(const std::string& name, const Json& value, const std::string& unit) {
     return std::array<Json, 3>{name, value, unit};
-}
-
-std::string as_text(const std::string& bytes) {
-    return base64(std::span(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()));
 }
 
 }  // namespace
@@ -63,20 +51,13 @@ Json about_case(const campaign::Case& question, const campaign::CaseResult& resu
 
 std::string watch_page(const Film& film, const Json& about) {
     if (!film.shows_anything()) throw std::invalid_argument("a film without particles or a flow");
-    const std::string program =
-        std::string(GRAINSWEEP_EMBEDDED(watch_player)) + std::string(GRAINSWEEP_EMBEDDED(watch_page));
-    const std::string text = as_text(film.bytes(about));
+    const auto files = page_files();
+    const auto program = enclosed(files.watch), sources = script_sources({program});
+    const std::string text = base64(film.bytes(about));
     std::ostringstream page;
-    fill(page, GRAINSWEEP_EMBEDDED(watch_html),
-         {{"scripts", script_sources({program})},
-          {"style", GRAINSWEEP_EMBEDDED(watch_css)},
-          {"film", text},
-          {"program", program}});
+    fill(page, files.watch_skeleton,
+         {{"scripts", sources}, {"style", files.watch_style}, {"film", text}, {"program", program}});
     return std::move(page).str();
-}
-
-Player player() {
-    return {GRAINSWEEP_EMBEDDED(watch_css), GRAINSWEEP_EMBEDDED(watch_player), GRAINSWEEP_EMBEDDED(watch_report)};
 }
 
 }  // namespace grainsweep::report

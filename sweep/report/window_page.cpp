@@ -161,19 +161,9 @@ Json window_page_data(const ModelCases& cases, const WindowRequest& request, con
 }
 
 void write_window_page(std::ostream& out, const Json& data, std::string_view database) {
-    const auto files = page_files();
     Json all = data;
     all.add("databases", std::array{database});
-    const auto text = safe_in_script(all);
-    const auto program = enclosed(files.window);
-    const auto scripts = script_sources({files.library, program});
-    fill(out, files.skeleton,
-         {{"scripts", scripts},
-          {"style", files.style},
-          {"library", files.library},
-          {"films", ""},
-          {"data", text},
-          {"program", program}});
+    write_figures(out, page_files().window, safe_in_script(all));
 }
 
 }  // namespace grainsweep::report

@@ -242,7 +242,7 @@ TEST_F(ReportInABrowser, DrawsAProcessWindow) {
     EXPECT_EQ(seen["figures"].size(), 8u);
     for (const auto& [title, ink] : seen["figures"].get<std::vector<std::pair<std::string, int>>>())
         EXPECT_GT(ink, 500) << title;
-    EXPECT_EQ(seen["titles"], Json({"Setting", "The window", "Along each factor", "To run next", "What it rests on"}));
+    EXPECT_EQ(seen["titles"], Json({"Setting", "Process window", "Along each factor", "To run next", "Basis"}));
     EXPECT_NE(seen["set"].get<std::string>().find("x1"), std::string::npos);
 }
 
@@ -275,7 +275,7 @@ TEST_F(ReportInABrowser, DrawsSavesFiltersAndSelects) {
 
     const auto above = query("SELECT count(*) FROM first WHERE x1 > 0.5");
     EXPECT_EQ(seen["filtered"], above.substr(0, above.find('\n')) + " of 320 cases");
-    EXPECT_EQ(seen["refused"], "many is no number");
+    EXPECT_EQ(seen["refused"], "many is not a number");
     EXPECT_NEAR(seen["lowest"].get<double>(), std::stod(query("SELECT min(x1) FROM first")), 1e-5);
     EXPECT_NEAR(seen["highest"].get<double>(), std::stod(query("SELECT max(x1) FROM first")), 1e-5);
 

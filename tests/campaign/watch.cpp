@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "sweep/report/page_template.hpp"
 #include "tests/support/browser.hpp"
 #include "tests/support/process.hpp"
 
@@ -31,13 +32,99 @@ const char* cavity =
   "fixed": {"frequency": 23300, "acceleration": 1.09e9, "particles": 50, "cells": 10, "steps_per_period": 16,
             "end_time": 0.01, "sampling_cells": 5}, "design": {"kind": "lattice"}})";
 
-/// Solves the case with --watch and lets the page test itself.
+std::string contents(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Stands before the page's program and collects every error.
+const std::string listener = R"(<script>
+window.errors = [];
+window.addEventListener("error", (event) => errors.push(event.message));
+window.addEventListener("unhandledrejection", (event) => errors.push(String(event.reason)));
+</script>)";
+
+/// Stands behind it: plays with the player, and writes what it drew into attributes of the root element.
+const std::string self_test = R"(<script>
+function pixels(player, moment) {
+  const { gl, canvas } = player.painter, bytes = new Uint8Array(4 * canvas.width * canvas.height);
+  player.moment = moment;
+  player.paint();
+  gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+  return bytes;
+}
+function differing(a, b) {
+  let count = 0;
+  for (let i = 0; i < a.length; i += 4) count += a[i] !== b[i] || a[i + 1] !== b[i + 1] || a[i + 2] !== b[i + 2] ? 1 : 0;
+  return count;
+}
+function places({ places, spheres, header }, frame) {
+  const mean = [0, 0, 0];
+  let count = 0;
+  for (let at = 4 * frame * spheres; at < 4 * (frame + 1) * spheres; at += 4) {
+    if (places[at + 3] === 0) continue;
+    ++count;
+    for (let a = 0; a < 3; ++a) mean[a] += header.positions.low[a] + header.positions.step[a] * places[at + a];
+  }
+  return { count, mean: mean.map((sum) => sum / Math.max(count, 1)) };
+}
+function tested(player) {
+  const { film } = player, last = film.frames - 1, ground = player.ground.map((c) => Math.round(255 * c));
+  const first = pixels(player, 0), end = pixels(player, last);
+  let painted = 0;
+  for (let i = 0; i < first.length; i += 4) painted += Math.abs(first[i] - ground[0]) + Math.abs(first[i + 1] - ground[1]) > 2 ? 1 : 0;
+  const told = { frames: film.frames, spheres: film.spheres, pixels: first.length / 4, painted, differing: differing(first, end) };
+  if (film.spheres > 0) {
+    told.first = places(film, 0);
+    told.last = places(film, last);
+    const middle = Math.floor(last / 2), before = pixels(player, middle);
+    told.colours = player.shadings.map((shading) => { player.colourBy(shading.key); return [shading.key, differing(before, pixels(player, middle))]; });
+    player.colourBy(player.shadings[0].key);
+    player.painter.show.walls = false;
+    told.walls = differing(before, pixels(player, middle));
+    player.painter.show.walls = true;
+  }
+  told.slices = film.header.slices.map((slice, k) => {
+    player.chooseSlice(-1);
+    const without = pixels(player, last);
+    player.chooseSlice(k);
+    return differing(without, pixels(player, last));
+  });
+  player.camera.turn(0.7, 0.2);
+  told.turned = differing(end, pixels(player, last));
+  told.graphics = player.painter.gl.getError();
+  told.keys = [...document.querySelectorAll(".watch-keys > span")].map((one) => one.textContent);
+  return told;
+}
+(async () => {
+  const told = document.documentElement.dataset;
+  try {
+    while (!window.grainsweepWatch) await new Promise((go) => setTimeout(go, 5));
+    told.selftest = JSON.stringify(tested(grainsweepWatch.player));
+  } catch (error) {
+    errors.push(String(error.stack));
+  }
+  told.errors = JSON.stringify(errors);
+})();
+</script>)";
+
+std::string inside(const std::string& element) {
+    return element.substr(8, element.size() - 17);  // without <script> and </script>
+}
+
+/// Solves the case with --watch and tests the page.
 json watched(const char* config, const char* frames, const Folder& folder) {
     folder.write("c.json", config);
     const auto ended = run_program({"solve", "c.json", "--watch", "case.html", "--frames", frames}, folder.path());
     EXPECT_EQ(ended.code, 0) << ended.err;
     EXPECT_NE(ended.out.find("case.html ("), std::string::npos) << ended.out;  // it says what it wrote
-    const Browsed seen = browse(folder / "case.html", "#selftest", folder.path());
+    std::string page = contents(folder / "case.html");
+    const std::string policy = "script-src ";
+    page.insert(page.find(policy) + policy.size(),
+                grainsweep::report::script_sources({inside(listener), inside(self_test)}) + " ");
+    page.insert(page.find("<style>"), listener);
+    page.insert(page.rfind("</body>"), self_test);
+    const Browsed seen = browse(folder.write("tested.html", page), "#t=0", folder.path());
     EXPECT_EQ(seen.data.count("errors"), 1U) << seen.said;
     EXPECT_EQ(seen.data.at("errors"), "[]");
     EXPECT_THAT(seen.console, testing::IsEmpty());
@@ -46,6 +133,8 @@ json watched(const char* config, const char* frames, const Folder& folder) {
     EXPECT_GT(told.at("painted"), told.at("pixels").get<double>() / 100) << told;
     EXPECT_GT(told.at("differing"), 100) << told;
     EXPECT_GT(told.at("turned"), 100) << told;
+    EXPECT_THAT(told.at("keys").get<std::vector<std::string>>(),
+                testing::IsSupersetOf({"space play or pause", "Home End first or last frame", "1 2 3 4 views"}));
     return told;
 }
 
@@ -80,8 +169,7 @@ TEST(Watch, TheBrowserUnpacksTheVeryPositions) {
         0);
     EXPECT_TRUE(std::filesystem::exists(folder / "again.html"));
     // Centres of mass, from the VTP files of the same moments.
-    std::ifstream stream(folder / "film/tpms_discharge_0000.vtp", std::ios::binary);
-    const std::string vtp{std::istreambuf_iterator<char>(stream), {}};
+    const std::string vtp = contents(folder / "film/tpms_discharge_0000.vtp");
     const std::string opening = "<AppendedData encoding=\"raw\">\n_";
     const std::size_t begin = vtp.find(opening) + opening.size();
     std::uint64_t length = 0;
@@ -158,12 +246,9 @@ TEST(Watch, FilmsOfAReportPlayBesideTheirCase) {
     EXPECT_NE(made.err.find("film 3 of 3: largest mfr"), std::string::npos) << made.err;
     EXPECT_NE(made.err.find("3 films: "), std::string::npos) << made.err;
     EXPECT_EQ(plain.err, "");
-    const auto contents = [&](const char* name) {
-        std::ifstream stream(folder / name, std::ios::binary);
-        return std::string{std::istreambuf_iterator<char>(stream), {}};
-    };
-    EXPECT_EQ(contents("plain.html").find("watch-canvas"), std::string::npos);  // the player only where it is needed
-    const std::string page = contents("r.html");
+    EXPECT_EQ(contents(folder / "plain.html").find("watch-canvas"),
+              std::string::npos);  // the player only where it is needed
+    const std::string page = contents(folder / "r.html");
     const std::regex film("id=\"watch-([0-9a-f]{32})\" data-film data-campaign=\"b\"");
     std::vector<std::string> ids;
     for (std::sregex_iterator found(page.begin(), page.end(), film), end; found != end; ++found)

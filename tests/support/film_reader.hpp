@@ -10,16 +10,16 @@
 
 namespace grainsweep::tests {
 
-/// Throws std::out_of_range where the bytes end too early.
-[[nodiscard]] std::vector<std::uint16_t> unpack_film_column(std::string_view bytes, std::size_t frames,
+/// Throws std::runtime_error for bytes that do not hold so many numbers.
+[[nodiscard]] std::vector<std::uint16_t> unpack_film_column(std::string_view packed, std::size_t frames,
                                                             std::size_t items);
 
 struct ReadFilm {
     nlohmann::json header;
     std::string blocks;
 
-    /// place: [offset, length] of the header; the block must be used up.
-    [[nodiscard]] std::vector<std::uint16_t> column(const nlohmann::json& place, std::size_t frames,
+    /// number: of the block, as in the header.
+    [[nodiscard]] std::vector<std::uint16_t> column(const nlohmann::json& number, std::size_t frames,
                                                     std::size_t items) const;
 };
 [[nodiscard]] ReadFilm read_film(const std::string& bytes);

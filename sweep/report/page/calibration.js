@@ -1,10 +1,10 @@
-// What a calibration has found: where its waves have come to, the posterior over each pair of factors, the targets.
+// The result of a calibration: its waves, its targets, and the posterior over each pair of factors.
 function cardOf(title, { columns, rows }) {
   return el("div", { class: "card" }, el("h3", {}, title),
     table(columns.map((name, j) => [name, rows.length > 0 && typeof rows[0][j] === "number" ? "number" : ""]), rows));
 }
 
-// Settings that were run, wave by wave fainter to stronger, and draws of the posterior.
+// Settings that were run, and draws of the posterior.
 function posteriorFigure(calibration, i, j) {
   const [a, b] = [calibration.factors[i], calibration.factors[j]];
   const across = quantity(a), up = quantity(b);
@@ -20,7 +20,7 @@ function posteriorFigure(calibration, i, j) {
   })).node;
 }
 
-// Of the only factor there is.
+// The posterior of a single factor.
 function posteriorHistogram(calibration) {
   const [factor] = calibration.factors, shown = quantity(factor), bins = 24;
   const counts = new Array(bins).fill(0);
@@ -41,7 +41,7 @@ function calibrationSection(campaign) {
   for (let j = 1; j < calibration.factors.length; ++j) for (let i = 0; i < j; ++i) pairs.push([i, j]);
   const figures = calibration.draws.length === 0 ? [] : calibration.factors.length === 1 ? [posteriorHistogram(calibration)]
     : pairs.map(([i, j]) => posteriorFigure(calibration, i, j));
-  return section("calibration", "Calibration", calibration.says.replace(/^./, (c) => c.toUpperCase()) + ".",
+  return section("calibration", "Calibration", capital(calibration.says) + ".",
     calibration.notes.length === 0 ? null : el("div", { class: "verdict no" }, calibration.notes.map((note) => el("p", {}, note))),
     el("div", { class: "grid wide" }, calibration.posterior ? cardOf("Posterior", calibration.posterior) : null,
       cardOf("Targets", calibration.targets), cardOf("Waves", calibration.waves)),

@@ -1,5 +1,4 @@
-// The selected case: its inputs and what it answered. Whatever shows more of a case listens for the event
-// `grainsweep:case` of the document, whose detail names the campaign and the case.
+// The selected case: its inputs and responses. The event `grainsweep:case` of the document announces it.
 let selected = null;  // { index of the campaign, row }
 const selectionChanged = [];
 
@@ -19,7 +18,7 @@ function closeCase() {
   casePanel().hidden = true;
   document.dispatchEvent(new CustomEvent("grainsweep:closed"));
   document.body.classList.remove("with-panel");
-  selectionChanged.forEach((tell) => tell());
+  selectionChanged.forEach((changed) => changed());
 }
 
 function selectCase(model, row) {
@@ -33,15 +32,15 @@ function selectCase(model, row) {
   const failure = campaign.failures.listed.find((one) => one.case === id);
   casePanel().replaceChildren(
     el("div", { class: "caption" }, el("h2", {}, `Point ${model.places[0].values[row]}` + (model.places[1] ? `, replicate ${model.places[1].values[row]}` : "")),
-      el("button", { type: "button", class: "plain", "aria-label": "close", click: closeCase }, "✕")),
+      button("✕", closeCase, { "aria-label": "close" })),
     el("p", { class: "says" }, `${campaignTitle(campaign)} · ${model.outcome(row)}`),
     failure ? el("p", { class: "warning" }, failure.reason) : "",
     el("div", { class: "watch" }),
     ...list("Inputs", model.factors), ...list("Responses", model.responses),
-    el("p", { class: "says" }, "Compute it again: ", el("code", {}, `grainsweep replay ${campaign.database} ${id}`)));
+    el("p", { class: "says" }, "Recompute this case: ", el("code", {}, `grainsweep replay ${campaign.database} ${id}`)));
   casePanel().hidden = false;
   document.body.classList.add("with-panel");
-  selectionChanged.forEach((tell) => tell());
+  selectionChanged.forEach((changed) => changed());
   document.dispatchEvent(new CustomEvent("grainsweep:case", { detail: { campaign: campaign.name, case_id: id } }));
 }
 

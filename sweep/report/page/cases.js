@@ -1,8 +1,8 @@
-// The table of all cases: sorted by a click on a column's name, filtered by an expression per column; only the rows in view
-// are in the page, so ten thousand are as fast as ten.
-const filterHelp = "Numbers: >0.3, <=2, 0.2..0.5, =1, !=1, several with a space between. Texts: a part of them, =all of it, !not this. none: no value.";
+// The table of all cases, with sorting and a filter per column. The document holds the rows in view only, so ten thousand
+// cases are as fast as ten.
+const filterHelp = "Filter numbers with >0.3, <=2, 0.2..0.5, =1 or !=1, and texts with a part of the text, =whole text or !unwanted. The word none selects missing values. Separate several conditions by spaces.";
 
-// An expression of one column as a test of its rows, or a text that says what is wrong with it.
+// Returns the test of a row that an expression describes, or a text that names its error.
 function filterOf(expression, column) {
   const tests = [];
   for (const word of expression.trim().split(/[\s,]+/).filter(Boolean)) {
@@ -11,16 +11,16 @@ function filterOf(expression, column) {
     else if (word === "!none") tests.push((row) => !column.missing(row));
     else if (column.number && range) {
       const [low, high] = [Number(range[1]), Number(range[2])];
-      if (Number.isNaN(low) || Number.isNaN(high)) return `${word}: a range is two numbers, as 0.2..0.5`;
+      if (Number.isNaN(low) || Number.isNaN(high)) return `${word}: a range needs two numbers, such as 0.2..0.5`;
       tests.push((row) => column.number(row) >= low && column.number(row) <= high);
     } else if (column.number && comparison) {
       const x = Number(comparison[2]), near = (y) => Math.abs(y - x) <= 1e-6 * Math.max(Math.abs(x), Math.abs(y));
-      if (Number.isNaN(x)) return `${comparison[2]} is no number`;
+      if (Number.isNaN(x)) return `${comparison[2]} is not a number`;
       tests.push({ ">": (row) => column.number(row) > x, ">=": (row) => column.number(row) >= x, "<": (row) => column.number(row) < x, "<=": (row) => column.number(row) <= x,
         "=": (row) => near(column.number(row)), "!=": (row) => !near(column.number(row)) }[comparison[1]]);
     } else if (comparison && comparison[1] === "=") tests.push((row) => column.text(row).toLowerCase() === comparison[2].toLowerCase());
     else if (comparison && comparison[1] === "!=") tests.push((row) => column.text(row).toLowerCase() !== comparison[2].toLowerCase());
-    else if (comparison) return `${word}: this column holds texts; only = and != compare them`;
+    else if (comparison) return `${word}: texts are compared by = and != only`;
     else if (word[0] === "!") tests.push((row) => !column.text(row).toLowerCase().includes(word.slice(1).toLowerCase()));
     else if (column.number) tests.push((row) => column.text(row).startsWith(word));
     else tests.push((row) => column.text(row).toLowerCase().includes(word.toLowerCase()));
@@ -31,15 +31,15 @@ function filterOf(expression, column) {
 function caseColumns(model) {
   const numbers = (variable) => variable.levels.map(Number);
   const words = (variable) => variable.levels.length > 0 && numbers(variable).some(Number.isNaN);
-  const ofLevels = (variable, levels) => ({ title: variable.name, unit: variable.unit === "1" ? "" : unitText(variable.unit), meaning: variable.meaning, number: (row) => levels[variable.values[row]],
+  const ofLevels = (variable, levels) => ({ title: variable.name, unit: unitText(variable.unit), meaning: variable.meaning, number: (row) => levels[variable.values[row]],
     text: (row) => textOf(variable, row), missing: () => false, sort: (row) => levels[variable.values[row]] });
   const ofVariable = (variable) => (variable.levels.length > 0 && !words(variable) ? ofLevels(variable, numbers(variable)) : variable.levels.length > 0
     ? { title: variable.name, unit: "", meaning: variable.meaning, text: (row) => textOf(variable, row), missing: () => false, sort: (row) => variable.values[row] }
-    : { title: variable.name, unit: variable.unit === "1" ? "" : unitText(variable.unit), meaning: variable.meaning, number: (row) => variable.values[row], text: (row) => show(variable.values[row], 5),
+    : { title: variable.name, unit: unitText(variable.unit), meaning: variable.meaning, number: (row) => variable.values[row], text: (row) => show(variable.values[row], 5),
       missing: (row) => !Number.isFinite(variable.values[row]), sort: (row) => variable.values[row] });
   const word = (title, meaning, text) => ({ title, unit: "", meaning, text, missing: () => false, sort: text });
-  return [...model.places.map(ofVariable), word("outcome", "how the case ended", model.outcome), ...model.factors.map(ofVariable), ...model.responses.map(ofVariable),
-    word("case", "its id: grainsweep explain, replay and solve take it", (row) => (hasFilm(model, row) ? "▶ " : "") + model.id(row).slice(0, 10))];
+  return [...model.places.map(ofVariable), word("outcome", "outcome of the case", model.outcome), ...model.factors.map(ofVariable), ...model.responses.map(ofVariable),
+    word("case", "case id for grainsweep explain, replay and solve", (row) => (hasFilm(model, row) ? "▶ " : "") + model.id(row).slice(0, 10))];
 }
 
 function caseTable(model, filtered) {
@@ -108,10 +108,9 @@ function caseTable(model, filtered) {
     save(fileName(model.campaign.name, "cases") + ".csv", new Blob([lines.join("\n") + "\n"], { type: "text/csv" }));
   }
   const clear = () => { inputs.forEach((input, k) => { input.value = ""; input.classList.remove("wrong"); filters[k] = null; }); filter(); };
-  shown = order;
   count.textContent = plural(model.rows, "case");
   const node = el("div", { class: "card cases" }, el("div", { class: "controls" }, count, el("span", { class: "spring" }),
-    el("button", { type: "button", class: "plain", click: clear }, "Clear filters"), el("button", { type: "button", class: "plain", click: csv }, "Save as CSV")), view,
+    button("Clear filters", clear), button("Save as CSV", csv)), view,
   el("p", { class: "says" }, filterHelp));
   return { node, paint };
 }

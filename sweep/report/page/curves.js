@@ -1,5 +1,5 @@
-// Series and profiles, one line per case: coloured by a factor, with a list of the cases beside them. Pointing at a line
-// or a name shows it among the others; clicking keeps it alone, or with others clicked.
+// Series and profiles, one line per case, coloured by a factor, with a list of the cases. Pointing at a line or a name
+// highlights it; clicking shows it alone, or with others clicked.
 function curveFigure(model, family) {
   const settings = { by: chosen.curvesBy && model.factors.some((f) => f.name === chosen.curvesBy) ? chosen.curvesBy : family.by || model.factors[0].name };
   const xs = family.curves.flatMap((curve) => curve.x), ys = family.curves.flatMap((curve) => curve.y);
@@ -51,8 +51,8 @@ function curveFigure(model, family) {
   };
   const point = (k) => { if (k !== pointed) { pointed = k; dress(); } };
   const keep = (k) => { if (alone.has(k)) alone.delete(k); else alone.add(k); pointed = -1; dress(); };
-  const order = family.curves.map((_, k) => k).sort((a, b) => factor().values[family.curves[a].row] - factor().values[family.curves[b].row]);
-  const names = family.curves.map((curve, k) => el("button", { type: "button", class: "name", title: "click to keep this curve alone", mouseenter: () => point(k), mouseleave: () => point(-1), click: () => keep(k) }, el("i"), el("span")));
+  const order = family.curves.map((_, k) => k);
+  const names = family.curves.map((curve, k) => el("button", { type: "button", class: "name", mouseenter: () => point(k), mouseleave: () => point(-1), click: () => keep(k) }, el("i"), el("span")));
   const list = el("div", { class: "names" });
   const sortNames = () => {
     order.sort((a, b) => factor().values[family.curves[a].row] - factor().values[family.curves[b].row]);
@@ -67,9 +67,8 @@ function curveFigure(model, family) {
     });
   };
   const recolour = (value) => { settings.by = chosen.curvesBy = value; sortNames(); self.redraw(); dress(); };
-  const all = el("button", { type: "button", class: "plain", hidden: true, click: () => { alone.clear(); dress(); } }, "Show all");
-  const controls = el("div", { class: "controls" }, choice("colour", model.factors.map((f) => [f.name, titled(f)]), settings.by, recolour),
-    all);
+  const all = button("Show all", () => { alone.clear(); dress(); }, { hidden: true });
+  const controls = el("div", { class: "controls" }, choice("colour", model.factors.map((f) => [f.name, titled(f)]), settings.by, recolour), all);
   const self = figure(titled(family), family.meaning + (family.at === null ? "" : `; at time ${show(family.at)}`), build, { tall: true, controls, below: list });
   self.canvas.addEventListener("mouseleave", () => point(-1));
   sortNames();

@@ -1,4 +1,4 @@
-// Any variable against any other, coloured by a third; and maps of a response over two factors.
+// Any variable against any other, coloured by a third, and maps of a response over two factors.
 function randomRows(rows, most) {
   if (rows.length <= most) return rows;
   const draw = (row) => { let h = Math.imul(row + 1, 2654435761); h ^= h >>> 15; h = Math.imul(h, 2246822519); return (h ^ (h >>> 13)) >>> 0; };
@@ -30,9 +30,9 @@ function onLogAxis(variable) {
 
 const dotSize = (count) => (count > 4000 ? 1.5 : count > 600 ? 2 : count > 150 ? 2.6 : 3.4);
 
-// Triangles on the cases that can be watched, as on a player's button.
+// Triangles, as on a player's button, on the cases that have a film.
 function filmMarks(points, radius) {
-  return { label: "can be watched", data: points, pointStyle: "triangle", rotation: 90, pointRadius: radius + 4, pointHoverRadius: radius + 6, backgroundColor: colour("two"),
+  return { label: "has a film", data: points, pointStyle: "triangle", rotation: 90, pointRadius: radius + 4, pointHoverRadius: radius + 6, backgroundColor: colour("two"),
     borderColor: colour("card"), borderWidth: 1, clip: 8, order: -1 };
 }
 
@@ -96,19 +96,18 @@ function explorer(model, other) {
     };
   };
   const note = el("p", { class: "says" });
-  const tell = () => { note.textContent = `${plural(drawn, "case")}` + (model.keep ? `, those that pass the filters of the table below` : "") + ". Click a point to see its case."; };
+  const tell = () => { note.textContent = plural(drawn, "case") + (model.keep ? " within the filters of the table below" : "") + ". Click a point to open its case."; };
   const change = (key) => (value) => { view[key] = value; self.redraw(); tell(); };
-  const tick = (label, key) => el("label", { class: "choice" }, el("input", { type: "checkbox", checked: view[key], change: (event) => change(key)(event.target.checked) }), label);
-  const controls = el("div", { class: "controls" }, choice("across", variableChoices(model), view.x, change("x")), tick("logarithmic", "logX"),
-    choice("up", variableChoices(model), view.y, change("y")), tick("logarithmic", "logY"),
+  const controls = el("div", { class: "controls" }, choice("across", variableChoices(model), view.x, change("x")), tick("logarithmic", view.logX, change("logX")),
+    choice("up", variableChoices(model), view.y, change("y")), tick("logarithmic", view.logY, change("logY")),
     choice("colour", variableChoices(model, [["", "none"]]), view.by, change("by")));
   const self = figure("Cases", "", build, { height: 420, controls, below: note });
   drawn = datasets().sets.reduce((sum, set) => sum + (set.data.length > 0 && set.data[0].row !== undefined ? set.data.length : 0), 0);
   tell();
-  return { node: self.node, redraw() { self.redraw(); tell(); }, choose(x, y) { view.x = x; view.y = y; } };
+  return { node: self.node, redraw() { self.redraw(); tell(); } };
 }
 
-// One factor, its cases and its binned mean: clicking takes the pair to the large figure.
+// The response against one factor: cases and binned mean.
 function scatter(model, factor, bins, response) {
   const across = quantity(factor), values = named(model, response.name), up = quantity(values);
   return figure(`${response.name} against ${factor.name}`, "", () => {
@@ -169,7 +168,7 @@ function cellMeans(model, a, b, response) {
   return { across: across.edges, up: up.edges, cells: [...cells.values()] };
 }
 
-const mapFigures = [["mean", "mean"], ["error", "standard error of the mean"], ["pure", "standard error by the scatter of runs alone (pure error)"], ["count", "number of cases"]];
+const mapFigures = [["mean", "mean"], ["error", "standard error of the mean"], ["pure", "standard error by the pure error"], ["count", "number of cases"]];
 
 function factorMap(model, observable) {
   const view = chosen.map, response = Object.assign(Object.create(named(model, observable.name)), { pure: observable.pure_error });
@@ -178,53 +177,32 @@ function factorMap(model, observable) {
   const build = () => {
     const a = named(model, view.a), b = named(model, view.b), map = cellMeans(model, a, b, response);
     const [across, up, value] = [quantity(a), quantity(b), quantity(response)];
-    const of = (cell) => cell[view.shows], numbers = map.cells.map(of).filter((x) => x !== null);
+    const cells = map.cells.map((cell) => ({ x0: across.of(map.across[cell.i]), x1: across.of(map.across[cell.i + 1]),
+      y0: up.of(map.up[cell.j]), y1: up.of(map.up[cell.j + 1]), value: cell[view.shows], ...cell }));
     const title = view.shows === "count" ? { name: "cases", unit: "", levels: [] } : { name: view.shows === "mean" ? response.name : "standard error", unit: response.unit, levels: [] };
-    const tones = colouring(title, numbers), centre = (edges, k) => (edges[k] + edges[k + 1]) / 2;
-    const squares = {
-      id: "squares",
-      beforeDatasetsDraw(chart) {
-        const { ctx, scales } = chart;
-        ctx.save();
-        for (const cell of map.cells) {
-          if (of(cell) === null) continue;
-          const x0 = scales.x.getPixelForValue(across.of(map.across[cell.i])), x1 = scales.x.getPixelForValue(across.of(map.across[cell.i + 1]));
-          const y0 = scales.y.getPixelForValue(up.of(map.up[cell.j])), y1 = scales.y.getPixelForValue(up.of(map.up[cell.j + 1]));
-          ctx.fillStyle = tones.of(of(cell));
-          ctx.fillRect(x0 + 0.5, y1 + 0.5, x1 - x0 - 1, y0 - y1 - 1);
-          if (x1 - x0 < 78 || y0 - y1 < 34) continue;
-          ctx.fillStyle = inkOn(ctx.fillStyle);
-          ctx.textAlign = "center";
-          ctx.font = "12px system-ui, sans-serif";
-          const error = cell.pure === null ? cell.error : cell.pure;
-          ctx.fillText(error === null ? show(value.of(cell.mean), 3) : withError(value.of(cell.mean), value.of(error)), (x0 + x1) / 2, (y0 + y1) / 2 - 1);
-          ctx.font = "10.5px system-ui, sans-serif";
-          ctx.fillText(plural(cell.count, "case"), (x0 + x1) / 2, (y0 + y1) / 2 + 13);
-        }
-        ctx.restore();
-      },
+    const over = (ctx, boxes) => {
+      ctx.textAlign = "center";
+      for (const { cell, left, right, top, bottom } of boxes) {
+        if (cell.value === null || right - left < 78 || bottom - top < 34) continue;
+        const error = cell.pure === null ? cell.error : cell.pure, x = (left + right) / 2, y = (top + bottom) / 2;
+        ctx.fillStyle = inkOn(tones.of(cell.value));
+        ctx.font = "12px system-ui, sans-serif";
+        ctx.fillText(error === null ? show(value.of(cell.mean), 3) : withError(value.of(cell.mean), value.of(error)), x, y - 1);
+        ctx.font = "10.5px system-ui, sans-serif";
+        ctx.fillText(plural(cell.count, "case"), x, y + 13);
+      }
     };
+    const side = (factor, shown, edges, k) => `${factor.name}: ${factor.levels.length > 0 ? factor.levels[k] : `${shown.says(edges[k])} to ${shown.says(edges[k + 1])}`}`;
+    const label = (cell) => [side(a, across, map.across, cell.i), side(b, up, map.up, cell.j), `mean ${value.says(cell.mean)}, ${plural(cell.count, "case")}`]
+      .concat(cell.error === null ? [] : [`standard error ${value.says(cell.error)}`], cell.pure === null ? [] : [`by the pure error ${value.says(cell.pure)}`]);
     const ends = (factor, shown, edges) => (factor.levels.length > 0 ? {} : { min: shown.of(edges[0]), max: shown.of(edges[edges.length - 1]) });
-    return {
-      type: "scatter",
-      data: { datasets: [{ data: map.cells.map((cell) => ({ x: across.of(centre(map.across, cell.i)), y: up.of(centre(map.up, cell.j)), cell })), pointRadius: 0, pointHoverRadius: 0, pointHitRadius: 40 }] },
-      options: {
-        layout: { padding: { right: 74, top: 20 } },
-        interaction: { mode: "nearest", intersect: false },
-        scales: { x: Object.assign(variableAxis(a), ends(a, across, map.across)), y: Object.assign(variableAxis(b), ends(b, up, map.up)) },
-        plugins: { colourBar: numbers.length > 0 ? { tones } : {}, tooltip: { callbacks: { label: (item) => {
-          const { cell } = item.raw, side = (factor, shown, edges, k) => (factor.levels.length > 0 ? factor.levels[k] : `${shown.says(edges[k])} to ${shown.says(edges[k + 1])}`);
-          return [`${a.name}: ${side(a, across, map.across, cell.i)}`, `${b.name}: ${side(b, up, map.up, cell.j)}`, `mean ${value.says(cell.mean)}, ${plural(cell.count, "case")}`]
-            .concat(cell.error === null ? [] : [`standard error ${value.says(cell.error)}`], cell.pure === null ? [] : [`by the scatter of runs alone ${value.says(cell.pure)}`]);
-        } } } },
-      },
-      plugins: [squares],
-    };
+    const tones = colouring(title, cells.map((cell) => cell.value).filter((x) => x !== null));
+    return cellChart({ x: Object.assign(variableAxis(a), ends(a, across, map.across)), y: Object.assign(variableAxis(b), ends(b, up, map.up)), cells, tones, gap: 1, over, label });
   };
   const change = (key) => (value) => { view[key] = value; self.redraw(); };
   const factors = model.factors.map((factor) => [factor.name, titled(factor)]);
   const controls = el("div", { class: "controls" }, choice("across", factors, view.a, change("a")), choice("up", factors, view.b, change("b")), choice("shown", offered, view.shows, change("shows")));
-  const says = `In the cells: mean ± standard error (${observable.pure_error === null ? "of the values in the cell" : "by the scatter of single runs, pure error"}), number of cases.`;
+  const says = `Cells show mean ± standard error and the number of cases. The error follows from ${observable.pure_error === null ? "the values in the cell" : "the scatter of single runs (pure error)"}.`;
   const self = figure(`Map of ${response.name}`, says, build, { height: 420, controls });
   return self;
 }

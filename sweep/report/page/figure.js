@@ -1,26 +1,23 @@
-// Figures: drawn by Chart.js when they come into view, saved as SVG or PNG by drawing them once more on paper.
+// Figures, drawn by Chart.js when they come into view and saved as SVG or PNG.
 const whiskers = {
   id: "whiskers",
   afterDatasetsDraw(chart) {
-    const { ctx } = chart;
+    const { ctx } = chart, across = chart.options.indexAxis === "y", cap = across ? 4 : 3;
+    const scale = across ? chart.scales.x : chart.scales.y;
     chart.data.datasets.forEach((set, index) => {
       if (!set.errors || !chart.isDatasetVisible(index)) return;
-      const across = chart.options.indexAxis === "y", scale = across ? chart.scales.x : chart.scales.y;
       ctx.save();
       ctx.strokeStyle = set.errorColour || colour("ink");
       ctx.lineWidth = 1.2;
       chart.getDatasetMeta(index).data.forEach((element, i) => {
-        const value = typeof set.data[i] === "object" && set.data[i] !== null ? set.data[i].y : set.data[i];
-        const error = set.errors[i];
+        const at = set.data[i], value = at !== null && typeof at === "object" ? at.y : at, error = set.errors[i];
         if (value === null || error === null || error === undefined) return;
         const low = scale.getPixelForValue(value - error), high = scale.getPixelForValue(value + error);
+        const middle = across ? element.y : element.x;
         ctx.beginPath();
-        for (const [from, to, cap] of across ? [[low, high, 4]] : [[low, high, 3]]) {
-          const line = (a, b, c, d) => (across ? (ctx.moveTo(a, b), ctx.lineTo(c, d)) : (ctx.moveTo(b, a), ctx.lineTo(d, c)));
-          const middle = across ? element.y : element.x;
-          line(from, middle, to, middle);
-          line(from, middle - cap, from, middle + cap);
-          line(to, middle - cap, to, middle + cap);
+        for (const [from, a, to, b] of [[low, middle, high, middle], [low, middle - cap, low, middle + cap], [high, middle - cap, high, middle + cap]]) {
+          ctx.moveTo(...(across ? [from, a] : [a, from]));
+          ctx.lineTo(...(across ? [to, b] : [b, to]));
         }
         ctx.stroke();
       });
@@ -81,19 +78,23 @@ const colourBar = {
   },
 };
 
+function strokedRing(ctx, x, y, width, tone) {
+  ctx.lineWidth = width;
+  ctx.strokeStyle = tone;
+  ctx.beginPath();
+  ctx.arc(x, y, 8, 0, 2 * Math.PI);
+  ctx.stroke();
+}
+
 // A ring around the selected case.
 const ring = {
   id: "ring",
   afterDatasetsDraw(chart, _, options) {
     const at = options.at && options.at();
     if (!at || !Number.isFinite(at.x) || !Number.isFinite(at.y)) return;
-    const { ctx } = chart;
+    const { ctx, scales } = chart;
     ctx.save();
-    ctx.strokeStyle = colour("ink");
-    ctx.lineWidth = 2;
-    ctx.beginPath();
-    ctx.arc(chart.scales.x.getPixelForValue(at.x), chart.scales.y.getPixelForValue(at.y), 7, 0, 2 * Math.PI);
-    ctx.stroke();
+    strokedRing(ctx, scales.x.getPixelForValue(at.x), scales.y.getPixelForValue(at.y), 2, colour("ink"));
     ctx.restore();
   },
 };
@@ -156,7 +157,7 @@ function configured(build) {
 
 let figures = [];
 
-// What is not in view is drawn while the browser has nothing else to do, a figure at a time.
+// Draws the figures out of view one by one while the browser is idle.
 const whenIdle = window.requestIdleCallback || ((work) => setTimeout(work, 50));
 let idling = false;
 function drawTheRest() {
@@ -175,14 +176,13 @@ const inView = new IntersectionObserver((entries) => {
   for (const entry of entries) if (entry.isIntersecting) entry.target.figure.draw();
 }, { rootMargin: "300px" });
 
-// `build` makes the configuration of Chart.js anew: in the theme of the moment, with the data of the moment.
+// `build` makes the configuration of Chart.js for the present theme and data.
 function figure(title, says, build, more) {
   const { tall, height, controls, below } = more || {};
   const canvas = el("canvas", { role: "img", "aria-label": title });
   const box = el("div", { class: tall ? "figure tall" : "figure", style: height ? `height: ${height}px` : null }, canvas);
   const self = { canvas, chart: null, title,
     draw() { if (!self.chart) self.chart = new Chart(canvas, configured(build)); return self.chart; },
-    // Out of view it is drawn when it comes into view.
     redraw() {
       if (!self.chart) return;
       self.chart.destroy();
@@ -192,7 +192,7 @@ function figure(title, says, build, more) {
       else { inView.unobserve(box); inView.observe(box); drawTheRest(); }
     },
     drop() { inView.unobserve(box); if (self.chart) self.chart.destroy(); self.chart = null; } };
-  const saver = (kind, work) => el("button", { type: "button", class: "save", title: `Save this figure as ${kind}`, click: () => work(self, build) }, kind);
+  const saver = (kind, work) => button(kind, () => work(self, build), { class: "save", title: `Save this figure as ${kind}` });
   self.node = el("figure", { class: "card" },
     el("div", { class: "caption" }, el("h3", {}, title), el("span", { class: "savers" }, saver("SVG", saveSvg), saver("PNG", savePng))),
     says ? el("p", { class: "says" }, says) : null, controls || null, box, below || null);
@@ -202,48 +202,53 @@ function figure(title, says, build, more) {
   return self;
 }
 
-// Draws the figure once more, on a canvas of its own, and hands the canvas to `use` before the chart goes.
-function redrawn(self, build, ratio, use, context) {
-  const width = Math.max(420, self.canvas.clientWidth), height = Math.max(240, self.canvas.clientHeight);
-  return onPaper(() => {
-    const canvas = document.createElement("canvas");
-    canvas.width = width;
-    canvas.height = height;
-    if (context) canvas.getContext = () => context(canvas, width, height);
+// Draws the figure once more, in the colours of paper and on a canvas of its own, for `use`.
+function redrawn(self, build, ratio, use) {
+  const canvas = el("canvas", { width: Math.max(420, self.canvas.clientWidth), height: Math.max(240, self.canvas.clientHeight) });
+  onPaper(() => {
     const config = configured(build);
-    Object.assign(config.options, { responsive: false, devicePixelRatio: ratio, events: [] });
+    // With `segment` Chart.js draws lines on the canvas itself, not through a Path2D, whose points cannot be read.
+    Object.assign(config.options, { responsive: false, devicePixelRatio: ratio, events: [], segment: {} });
     const chart = new Chart(canvas, config);
     try {
-      return use(canvas, chart);
+      use(canvas, chart);
     } finally {
       chart.destroy();
     }
   });
 }
 
+function savedAs(self, extension) { return `${fileName(data.campaigns[chosen.campaign].name, self.title)}.${extension}`; }
+
 function saveSvg(self, build) {
-  let svg = null;
-  const canvasPath = window.Path2D;
-  window.Path2D = SvgPath;  // Chart.js keeps the outlines of its lines in one
-  try {
-    redrawn(self, build, 1, (_, chart) => { svg.body = []; chart.draw(); }, (canvas, width, height) => (svg = svg || new SvgContext(canvas, width, height)));
-  } finally {
-    window.Path2D = canvasPath;
-  }
-  save(fileName(data.campaigns[chosen.campaign].name, self.title) + ".svg", new Blob([svg.text(self.title)], { type: "image/svg+xml" }));
+  redrawn(self, build, 1, (canvas, chart) => {
+    const svg = svgRecorder(chart.ctx);
+    chart.draw();
+    save(savedAs(self, "svg"), new Blob([svg(self.title, canvas.width, canvas.height)], { type: "image/svg+xml" }));
+  });
 }
 
 function savePng(self, build) {
-  redrawn(self, build, 3, (canvas) => {
-    const paper = document.createElement("canvas");
-    paper.width = canvas.width;
-    paper.height = canvas.height;
-    const context = paper.getContext("2d");
-    context.fillStyle = "#ffffff";
-    context.fillRect(0, 0, paper.width, paper.height);
-    context.drawImage(canvas, 0, 0);
-    paper.toBlob((blob) => save(fileName(data.campaigns[chosen.campaign].name, self.title) + ".png", blob), "image/png");
+  redrawn(self, build, 3, (canvas, { ctx }) => {
+    ctx.globalCompositeOperation = "destination-over";  // white behind what is drawn
+    ctx.fillStyle = "#ffffff";
+    ctx.resetTransform();
+    ctx.fillRect(0, 0, canvas.width, canvas.height);
+    canvas.toBlob((blob) => save(savedAs(self, "png"), blob), "image/png");
   });
+}
+
+// Replaces the page by the parts that `build` makes, and lists its sections in the navigation.
+function showPage(build) {
+  Chart.defaults.font.family = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Noto Sans', sans-serif";
+  document.getElementById("database").textContent = data.databases.join(", ");
+  figures.forEach((one) => one.drop());
+  figures = [];
+  const page = document.getElementById("page");
+  page.replaceChildren(...build().filter(Boolean));
+  document.getElementById("sections").replaceChildren(...[...page.querySelectorAll("section[id]")].map((one) =>
+    el("button", { type: "button", click: () => one.scrollIntoView({ behavior: "smooth" }) }, one.querySelector("h2").textContent)));
+  setTimeout(drawTheRest, 600);  // after the figures in view
 }
 
 window.addEventListener("beforeprint", () => figures.forEach((one) => one.draw()));

@@ -1,10 +1,10 @@
-// Figures of response models: a map of cells over two factors, a curve with its bands against one.
+// Figures of response models: cells over two factors, and a curve with its bands against one.
 
-// Where a setting stands on the axis of a factor: a level by its place among them.
+// The place of a setting on the axis of a factor; of a level, its index.
 function placeOf(factor, x) { return factor.numbers.length > 0 ? factor.numbers.indexOf(x) : x; }
 function shownOf(factor) { return factor.levels.length > 0 ? { of: (x) => placeOf(factor, x), says: (x) => factor.levels[placeOf(factor, x)] } : quantity(factor); }
 
-// Crosses at places of a canvas, white below black: seen on every colour.
+// Crosses, black on white to stand out on every colour.
 function drawCrosses(ctx, places) {
   for (const [width, tone] of [[4, "#ffffff"], [1.8, "#000000"]]) {
     ctx.lineWidth = width;
@@ -15,69 +15,64 @@ function drawCrosses(ctx, places) {
   }
 }
 
-function failedSays(failed) { return failed.length > 0 ? " Crosses: failed cases; no response is drawn where the nearest cases failed." : ""; }
+function failedSays(failed) { return failed.length > 0 ? " Crosses: failed cases. No response is drawn where the nearest cases failed." : ""; }
 
-// Cells of a map { across, up, across_edges, up_edges, columns, rows } coloured by `values`; a line surrounds the cells
+// A chart of cells { x0, x1, y0, y1, value, ... } in units of the axes `x` and `y`; cells without a value stay empty.
+// `gap`: pixels between them. `over` draws on them; `label` returns the lines of a cell's tooltip.
+function cellChart({ x, y, cells, tones, gap, over, label }) {
+  const squares = { id: "squares", beforeDatasetsDraw({ ctx, scales }) {
+    const boxes = cells.map((cell) => ({ cell, left: scales.x.getPixelForValue(cell.x0), right: scales.x.getPixelForValue(cell.x1),
+      bottom: scales.y.getPixelForValue(cell.y0), top: scales.y.getPixelForValue(cell.y1) }));
+    ctx.save();
+    for (const { cell, left, right, bottom, top } of boxes) {
+      if (cell.value === null) continue;
+      ctx.fillStyle = tones.of(cell.value);
+      ctx.fillRect(left + gap / 2, top + gap / 2, right - left - gap, bottom - top - gap);
+    }
+    over(ctx, boxes, scales);
+    ctx.restore();
+  } };
+  const points = cells.map((cell) => ({ x: (cell.x0 + cell.x1) / 2, y: (cell.y0 + cell.y1) / 2, cell }));
+  return { type: "scatter", data: { datasets: [{ data: points, pointRadius: 0, pointHoverRadius: 0, pointHitRadius: 40 }] },
+    options: { layout: { padding: { right: 74, top: 20 } }, interaction: { mode: "nearest", intersect: false }, scales: { x, y },
+      plugins: { colourBar: cells.some((cell) => cell.value !== null) ? { tones } : {}, tooltip: { callbacks: { label: (item) => label(item.raw.cell) } } } },
+    plugins: [squares] };
+}
+
+// Cells of a map { across, up, across_edges, up_edges, columns, rows } coloured by `values`. A line encloses the cells
 // that are `inside`, a ring marks the `setting`, a cross each of the `failed` cases.
 function cellMap(map, factors, values, { title, says, variable, tones, inside, setting, failed, more }) {
   const a = factors[map.across], b = factors[map.up], across = shownOf(a), up = shownOf(b);
   const edge = (factor, shown, edges, k) => (factor.levels.length > 0 ? k - 0.5 : shown.of(edges[k]));
-  const at = (i, j) => j * map.columns + i, value = quantity(variable, values.filter((x) => x !== null));
-  const within = (i, j) => Boolean(inside) && i >= 0 && j >= 0 && i < map.columns && j < map.rows && inside(at(i, j));
-  const cells = [];
-  for (let j = 0; j < map.rows; ++j) for (let i = 0; i < map.columns; ++i) cells.push({ i, j, value: values[at(i, j)] });
-  const build = () => {
-    const colours = tones();
-    const box = (scales, { i, j }) => [edge(a, across, map.across_edges, i), edge(a, across, map.across_edges, i + 1)].map((x) => scales.x.getPixelForValue(x))
-      .concat([edge(b, up, map.up_edges, j), edge(b, up, map.up_edges, j + 1)].map((y) => scales.y.getPixelForValue(y)));
-    const ring = (ctx, x, y, width, tone) => {
-      ctx.lineWidth = width;
-      ctx.strokeStyle = tone;
-      ctx.beginPath();
-      ctx.arc(x, y, 8, 0, 2 * Math.PI);
-      ctx.stroke();
-    };
-    const squares = { id: "squares", beforeDatasetsDraw(chart) {
-      const { ctx, scales } = chart;
-      ctx.save();
-      for (const cell of cells) {
-        if (cell.value === null) continue;
-        const [x0, x1, y0, y1] = box(scales, cell);
-        ctx.fillStyle = colours.of(cell.value);
-        ctx.fillRect(x0, y1, x1 - x0 + 0.5, y0 - y1 + 0.5);
-      }
-      ctx.strokeStyle = colour("ink");
-      ctx.lineWidth = 2.5;
-      ctx.beginPath();
-      for (const cell of cells) {
-        const [x0, x1, y0, y1] = box(scales, cell), here = within(cell.i, cell.j);
-        if (cell.i + 1 < map.columns && within(cell.i + 1, cell.j) !== here) { ctx.moveTo(x1, y0); ctx.lineTo(x1, y1); }
-        if (cell.j + 1 < map.rows && within(cell.i, cell.j + 1) !== here) { ctx.moveTo(x0, y1); ctx.lineTo(x1, y1); }
-      }
-      ctx.stroke();
-      drawCrosses(ctx, failed.map((one) => [scales.x.getPixelForValue(across.of(one.setting[map.across])), scales.y.getPixelForValue(up.of(one.setting[map.up]))]));
-      if (setting) {
-        const x = scales.x.getPixelForValue(across.of(setting[map.across])), y = scales.y.getPixelForValue(up.of(setting[map.up]));
-        ring(ctx, x, y, 5, "#ffffff");
-        ring(ctx, x, y, 2.5, "#000000");
-      }
-      ctx.restore();
-    } };
-    const centre = (factor, shown, edges, k) => (factor.levels.length > 0 ? k : shown.of((edges[k] + edges[k + 1]) / 2));
-    const points = cells.map((cell) => ({ x: centre(a, across, map.across_edges, cell.i), y: centre(b, up, map.up_edges, cell.j), cell }));
-    return { type: "scatter", data: { datasets: [{ data: points, pointRadius: 0, pointHoverRadius: 0, pointHitRadius: 20 }] },
-      options: { layout: { padding: { right: 74, top: 20 } }, interaction: { mode: "nearest", intersect: false }, scales: { x: variableAxis(a), y: variableAxis(b) },
-        plugins: { colourBar: { tones: colours }, tooltip: { callbacks: { label: (item) => {
-          const { cell } = item.raw;
-          return [`${a.name} ${a.levels.length > 0 ? a.levels[cell.i] : show(item.raw.x)}, ${b.name} ${b.levels.length > 0 ? b.levels[cell.j] : show(item.raw.y)}`,
-            `${variable.name} ${cell.value === null ? "–" : value.says(cell.value)}`].concat(more ? more(at(cell.i, cell.j)) : []);
-        } } } } }, plugins: [squares] };
+  const value = quantity(variable, values.filter((x) => x !== null));
+  const within = (i, j) => Boolean(inside) && i < map.columns && j < map.rows && inside(j * map.columns + i);
+  const cells = values.map((one, k) => {
+    const i = k % map.columns, j = Math.floor(k / map.columns);
+    return { k, i, j, value: one, x0: edge(a, across, map.across_edges, i), x1: edge(a, across, map.across_edges, i + 1), y0: edge(b, up, map.up_edges, j), y1: edge(b, up, map.up_edges, j + 1) };
+  });
+  const over = (ctx, boxes, scales) => {
+    const place = (one) => [scales.x.getPixelForValue(across.of(one[map.across])), scales.y.getPixelForValue(up.of(one[map.up]))];
+    ctx.strokeStyle = colour("ink");
+    ctx.lineWidth = 2.5;
+    ctx.beginPath();
+    for (const { cell: { i, j }, left, right, bottom, top } of boxes) {
+      const here = within(i, j);
+      if (i + 1 < map.columns && within(i + 1, j) !== here) { ctx.moveTo(right, bottom); ctx.lineTo(right, top); }
+      if (j + 1 < map.rows && within(i, j + 1) !== here) { ctx.moveTo(left, top); ctx.lineTo(right, top); }
+    }
+    ctx.stroke();
+    drawCrosses(ctx, failed.map((one) => place(one.setting)));
+    if (setting) for (const [width, tone] of [[5, "#ffffff"], [2.5, "#000000"]]) strokedRing(ctx, ...place(setting), width, tone);
   };
+  const at = (factor, low, high, k) => `${factor.name} ${factor.levels.length > 0 ? factor.levels[k] : show((low + high) / 2)}`;
+  const label = (cell) => [`${at(a, cell.x0, cell.x1, cell.i)}, ${at(b, cell.y0, cell.y1, cell.j)}`,
+    `${variable.name} ${cell.value === null ? "–" : value.says(cell.value)}`].concat(more ? more(cell.k) : []);
+  const build = () => cellChart({ x: variableAxis(a), y: variableAxis(b), cells, tones: tones(), gap: -0.5, over, label });
   return figure(title, says, build, { height: 520 }).node;
 }
 
-// A line through `lines.mean` against a factor, with the 95 % band of the mean and, dashed, the one of a single run; a
-// second line through `lines.averaged`. `failed`: the factor's values in failed cases, crosses at the lower edge.
+// `lines.mean` against a factor with the 95 % bands of the mean (shaded) and of a single run (dashed), and
+// `lines.averaged`. `failed`: the factor's values in failed cases, crosses at the lower edge.
 function bandCurve(factor, ats, lines, { title, value, limits, marker, failed }) {
   const shown = shownOf(factor), xs = ats.map((x) => shown.of(x));
   const of = (pick) => xs.map((x, i) => ({ x, y: pick(i) }));

@@ -1,36 +1,34 @@
-// The page itself: its sections from top to bottom, and what the reader chose.
-const page = document.getElementById("page");
+// The page: its sections from top to bottom, and the reader's choices.
 const chosen = { campaign: 0, observable: 0, other: "", view: {}, map: {}, curvesBy: "" };
 
 function heading(campaign) {
-  const tile = (number, label, bad) => el("div", { class: bad ? "tile bad" : "tile" }, el("b", {}, number), el("span", {}, label));
   const good = ["completed", "skipped", "abandoned", "not yet"];
   const tiles = campaign.outcomes.filter(([, count]) => count > 0)
-    .map(([outcome, count]) => tile(count, outcome === "abandoned" ? "to be continued" : outcome.replace("_", " "), !good.includes(outcome)));
+    .map(([outcome, count]) => tile(count, outcome === "abandoned" ? "to be resumed" : outcome.replace("_", " "), !good.includes(outcome)));
   const parts = [`${campaign.scene}, revision ${campaign.revision}`,
     `${campaign.design} design` + (campaign.sequences > 1 ? ` of ${campaign.sequences} independent sequences` : ""),
     plural(campaign.factors.length, "factor"),
     campaign.replicates > 1 ? plural(campaign.replicates, "repeat") + " of each point" : null,
     campaign.where ? `where ${campaign.where}` : null].filter(Boolean);
-  const ranges = campaign.factors.map((f) => [f.name, f.unit === "1" ? "" : unitText(f.unit),
+  const ranges = campaign.factors.map((f) => [f.name, unitText(f.unit),
     f.levels.length > 0 ? f.levels.join(", ") : `${show(f.low)} to ${show(f.high)}${f.log ? ", logarithmic" : ""}`, f.meaning]);
   return [el("h1", {}, campaign.name), el("p", { class: "says" }, parts.join(" · ")),
     campaign.summary ? el("p", {}, campaign.summary) : null,
     campaign.notes ? el("p", { class: "notes" }, campaign.notes) : null,
     el("div", { class: "tiles" }, tile(campaign.rows, "cases"), tiles,
-      campaign.stopped_at !== null ? tile(campaign.stopped_at, "points when it converged and stopped") : null),
-    el("details", { open: "" }, el("summary", {}, "What was varied"),
+      campaign.stopped_at !== null ? tile(campaign.stopped_at, "points at convergence") : null),
+    el("details", { open: "" }, el("summary", {}, "Factors"),
       el("div", { class: "card" }, table([["factor"], ["unit"], ["values"], ["meaning", "text"]], ranges),
         campaign.fixed_text ? el("p", { class: "says" }, "Fixed: ", el("code", {}, campaign.fixed_text)) : null,
         el("p", { class: "says" }, "Design: ", el("code", {}, campaign.design_text))))];
 }
 
-// Figures over every finished case of a campaign that is not at its end: shown, and marked.
+// Figures over all finished cases of an unfinished campaign, marked as provisional.
 function provisionalMark(history) {
   if (!history.provisional) return null;
   const { points, count } = history.provisional;
   return el("div", { class: "verdict provisional" }, el("b", {}, "Provisional: "),
-    `figures over all finished cases (${plural(count, "value")} of ${plural(points, "point")}) still move with which cases happen to be finished; they are not judged and not to be quoted.`);
+    `These figures include all finished cases (${plural(count, "value")} at ${plural(points, "point")}). They depend on the order of completion and are not judged. Do not quote them.`);
 }
 
 function verdict(history) {
@@ -45,30 +43,30 @@ function distributionSection(response, sample, other) {
   const says = response.meaning ? `${titled(response)}: ${response.meaning}` : titled(response);
   return section("response", "Response", says, verdict(response.history), provisionalMark(response.history), el("div", { class: "grid wide" }, response.histogram.counts.length > 0 ? histogram(response, other && other.response) : null,
     el("div", { class: "card" }, el("h3", {}, "Moments"),
-      el("p", { class: "says" }, (response.history.count > 0 ? `over ${plural(response.history.count, "value")}` : "no value counts yet") + (sample && response.history.count > 0 ? ", with 95 % errors" : "") +
-        (response.history.excluded > 0 ? `; ${plural(response.history.excluded, "case")} without a value left out` : "")),
+      el("p", { class: "says" }, (response.history.count > 0 ? plural(response.history.count, "value") + (sample ? " with 95 % errors." : ".") : "No value counts yet.") +
+        (response.history.excluded > 0 ? ` ${plural(response.history.excluded, "case")} without a value excluded.` : "")),
       table(columns, rows))));
 }
 
-// Where the answer passes its threshold, of a design that sought it.
+// Threshold crossings, of a design that seeks them.
 function bracketsSection(campaign) {
   if (!campaign.brackets) return null;
   const { says, columns, rows } = campaign.brackets;
-  return section("brackets", "Passages", says.replace(/^./, (c) => c.toUpperCase()) + ".",
+  return section("brackets", "Threshold crossings", capital(says) + ".",
     el("div", { class: "card" }, table(columns.map((title, j) => [title, typeof rows[0][j] === "number" ? "number" : ""]), rows)));
 }
 
 function momentsSection(campaign, response, other) {
   if (!campaign.sample || response.history.points.length === 0) return null;
-  return section("convergence", "Convergence", "Moments of the first points of the design against their number, with 95 % errors. " +
-    "A verdict uses complete blocks of a gapless beginning, so it does not depend on which case finished first.",
+  return section("convergence", "Convergence", "Moments against the number of design points, with 95 % errors. The verdict uses complete blocks of the " +
+    "prefix of the design. It does not depend on the order in which cases finish.",
   el("div", { class: "grid" }, statistics.map((statistic) => moment(campaign, response.history, other && other.response.history, statistic))));
 }
 
 function effectsSection(model, response, other) {
   const others = model.factors.map((factor) => effectOf(other, factor));
   const range = effectRange(response.effects.concat(others.filter(Boolean)));
-  return section("effects", "Main effects", "Mean response in 16 bins of equal count (fewer for few cases, a level is a bin), one scale for all factors. " +
+  return section("effects", "Main effects", "Mean response in 16 bins of equal count, or fewer for few cases. Each level is a bin. All factors share one scale. " +
     `Whiskers: ${response.whiskers}.`,
   el("div", { class: "grid" }, model.factors.map((factor, j) => effect(factor, response.effects[j], response, range, others[j]))));
 }
@@ -81,19 +79,19 @@ function influenceSection(response) {
   const titles = { morris: [["mu*", n], ["sigma", n]], saltelli: [["first order", n], ["total", n]], given_data: [["first order", n]] }[influence.method];
   const columns = [["factor"], ...titles, ["trend", "sign"], ["rank correlation", n]];
   const rows = influence.factors.map((f) => [f.name, ...figuresOf(f), trendSigns[f.trend] || "", f.rank_text]);
-  const says = influence.method === "morris" ? "Change of the response when a factor moves over its range."
-    : "Share of the variance of the response that a factor explains alone" + (influence.method === "saltelli" ? ", and with all its interactions." : ".");
+  const says = influence.method === "morris" ? "Change of the response over the range of each factor."
+    : "Share of the variance of the response due to each factor alone" + (influence.method === "saltelli" ? ", and with its interactions." : ".");
   return section("sensitivity", "Sensitivity", says, el("div", { class: "grid wide" }, influenceFigure(influence),
     el("div", { class: "card" }, table(columns, rows), varianceBar(influence.variance),
-      influence.unexplained ? el("p", { class: "says" }, influence.unexplained.replace(/^./, (c) => c.toUpperCase()) + ".") : null,
+      influence.unexplained ? el("p", { class: "says" }, capital(influence.unexplained) + ".") : null,
       influence.notes.map((note) => el("p", { class: "says" }, note)))));
 }
 
 function curvesSection(model) {
   const { completed, drawn, families } = model.campaign.curves;
   if (families.length === 0 || model.factors.length === 0) return null;
-  const says = (drawn < completed ? `${drawn} of ${completed} completed cases, chosen at random.` : "Every completed case, a line each.") +
-    " Point at a line or a name to see it among the others, click to keep it.";
+  const says = (drawn < completed ? `${drawn} of ${completed} completed cases, chosen at random.` : "One line per completed case.") +
+    " Point at a line or a name to highlight it. Click to show it alone.";
   return section("curves", "Curves", says, el("div", { class: "grid wide" }, families.map((family) => curveFigure(model, family))));
 }
 
@@ -103,7 +101,7 @@ function extremesSection(campaign, response) {
     campaign.factors.map((f) => [f.name, f.levels.length > 0 ? "" : n]), [[response.name, n], ["case"]]);
   const rows = (list) => list.map((one) => [one.point].concat(campaign.replicates > 1 ? [one.replicate] : [], one.factors, [one.value, one.case.slice(0, 10)]));
   const part = (title, list) => el("div", { class: "card" }, el("h3", {}, title), table(columns, rows(list)));
-  return section("extremes", "Extremes", "grainsweep explain and replay take the id in the last column.",
+  return section("extremes", "Extremes", "Use the id in the last column with grainsweep explain and replay.",
     el("div", { class: campaign.factors.length > 3 ? "grid full" : "grid wide" }, part(`Largest ${response.name}`, response.largest), part(`Smallest ${response.name}`, response.smallest)));
 }
 
@@ -114,17 +112,17 @@ function failuresSection(campaign) {
     .concat(campaign.factors.map((f) => [f.name, f.levels.length > 0 ? "" : "number"]), [["case"]]);
   const rows = listed.map((one) => [one.point, one.outcome, one.attempts, one.reason].concat(one.factors, [one.case.slice(0, 10)]));
   const says = listed.length < count ? `The first ${listed.length} of ${count}. ` : "";
-  return section("failures", "Failed cases", says + "They are left out of all statistics.", el("div", { class: "card tail" }, table(columns, rows)));
+  return section("failures", "Failed cases", says + "All statistics exclude these cases.", el("div", { class: "card tail" }, table(columns, rows)));
 }
 
 function provenanceSection(campaign) {
   const columns = [["start"], ["version"], ["commit"], ["compiler"], ["flags", "text"], ["instructions"], ["processor", "text"], ["host"], ["settled", "number"]];
   const rows = campaign.runs.map((run) => [run.start, run.version, String(run.commit).replace(/^([0-9a-f]{12})[0-9a-f]*/, "$1"), run.compiler, run.flags, run.instruction_path, run.processor, run.host, run.settled]);
-  return section("provenance", "Provenance", "One line per run over this database.", el("div", { class: "card" }, table(columns, rows)),
-    el("details", {}, el("summary", {}, "The campaign file"), el("pre", { class: "card" }, campaign.text)));
+  return section("provenance", "Provenance", "One row per grainsweep run on this database.", el("div", { class: "card" }, table(columns, rows)),
+    el("details", {}, el("summary", {}, "Campaign file"), el("pre", { class: "card" }, campaign.text)));
 }
 
-// What is drawn first: the response against its most influential factor, coloured by the second.
+// The first view: the response against its most influential factor, coloured by the second.
 function firstView(model, response) {
   const weight = (f) => f.mu_star || f.total || f.first || 0;
   const order = [...response.influence.factors].sort((a, b) => weight(b) - weight(a)).map((f) => f.name);
@@ -134,19 +132,30 @@ function firstView(model, response) {
   chosen.curvesBy = a;
 }
 
+function againstSection(model, response) {
+  const { settled } = model.campaign;
+  return section("against", "Against each factor", settled > 1500 ? `1500 of ${settled} cases, chosen at random. Lines: binned means of all cases.` : "All cases, and their binned mean.",
+    el("div", { class: "grid" }, model.factors.map((factor, j) => scatter(model, factor, response.effects[j], response))));
+}
+
+function plainCases(model) {
+  const cases = caseTable(model, () => {});
+  return { cases, sections: [section("cases", "Cases", null, cases.node)] };
+}
+
 function explorerSections(model, response, other) {
   const large = explorer(model, other), map = model.factors.length > 1 ? factorMap(model, response) : null;
   const cases = caseTable(model, () => { large.redraw(); if (map) map.redraw(); });
   selectionChanged.length = 0;
   selectionChanged.push(() => cases.paint(), () => { const chart = figures.find((one) => one.title === "Cases"); if (chart && chart.chart) chart.chart.draw(); });
-  const explore = section("explore", "Explore", "Any factor or response against any other, coloured by a third.", el("div", { class: "grid full" }, large.node));
-  const small = response ? section("against", "Against each factor", model.campaign.settled > 1500 ? `1500 of ${model.campaign.settled} cases are drawn, chosen at random; the lines are binned means of all cases.` : "Every case, and the binned mean.",
-    el("div", { class: "grid" }, model.factors.map((factor, j) => scatter(model, factor, response.effects[j], response)))) : null;
-  const maps = map ? section("map", "Two factors at once", "Mean response cell by cell. Point at a cell for its number of cases, the standard error of its mean" +
-    (response.pure_error !== null ? `, and what the scatter of single runs alone gives (pure error of ${response.pure_error_freedom} degrees of freedom).` : "; without replicates that error holds the other factors' influence, too."),
-  el("div", { class: "grid full" }, map.node)) : null;
-  const listed = section("cases", "Cases", "Every case. Click a column's name to sort, write below it to filter, click a row to see the case; the filters hold for the figures of Explore and of two factors, too.", cases.node);
-  return { explore, small, maps, listed, paint: cases.paint };
+  const sections = [section("explore", "Explore", "Any factor or response against any other, coloured by a third.", el("div", { class: "grid full" }, large.node))];
+  if (map)
+    sections.push(section("map", "Two factors at once", "Mean response in each cell. Point at a cell for its number of cases and its standard error. " +
+      (response.pure_error !== null ? `The pure error has ${response.pure_error_freedom} degrees of freedom.` : "Without replicates the standard error includes the influence of the other factors."),
+    el("div", { class: "grid full" }, map.node)));
+  sections.push(section("cases", "Cases", "Click a column's name to sort. Type below it to filter. Click a row to open the case. The filters also apply to the figures of Explore" +
+    (map ? " and Two factors at once." : "."), cases.node));
+  return { cases, sections };
 }
 
 // The cases whose films the page holds.
@@ -156,53 +165,44 @@ function filmsSection(model) {
   const films = filmPlayer.films().filter((film) => film.campaign === model.campaign.name);
   const buttons = films.map((film) => {
     const row = rows.find((one) => model.id(one) === film.id);
-    return row === undefined ? null : el("button", { type: "button", class: "plain", click: () => selectCase(model, row) }, `▶ ${film.says}`);
+    return row === undefined ? null : button(`▶ ${film.says}`, () => selectCase(model, row));
   });
-  return section("films", "Cases to watch", "Their particles in three dimensions; triangles mark them among the points, ▶ in the table.", el("div", { class: "controls" }, buttons));
+  return section("films", "Cases to watch", "Films of some cases in three dimensions. Triangles mark these cases in the figures, ▶ in the table.", el("div", { class: "controls" }, buttons));
 }
 
-function navigation() {
-  const links = [...page.querySelectorAll("section[id]")].map((one) => el("button", { type: "button", click: () => one.scrollIntoView({ behavior: "smooth" }) }, one.querySelector("h2").textContent));
-  document.getElementById("sections").replaceChildren(...links);
+// The campaign to compare with, where it has the response, too.
+function compared(response) {
+  if (!response || chosen.other === "") return null;
+  const model = open(Number(chosen.other)), found = model.campaign.observables.find((one) => one.name === response.name);
+  return found && found.history.count > 0 ? { model, response: found } : null;
+}
+
+function comparedLine(campaign, response, other) {
+  if (chosen.other === "") return null;
+  const name = campaignTitle(data.campaigns[Number(chosen.other)]);
+  return el("p", { class: "overlaid" }, other ? ["Blue: ", el("b", {}, campaignTitle(campaign)), "; orange: ", el("b", { class: "second" }, name)]
+    : `${name} has no values of ${response ? response.name : "this response"}.`);
 }
 
 function render() {
-  figures.forEach((one) => one.drop());
-  figures = [];
   if (selected && selected.index !== chosen.campaign) closeCase();
   const model = open(chosen.campaign), { campaign } = model;
-  const response = campaign.observables[chosen.observable];
-  page.replaceChildren(...heading(campaign).filter(Boolean));
-  let other = null;
-  if (response && chosen.other !== "") {
-    const otherModel = open(Number(chosen.other)), found = otherModel.campaign.observables.find((one) => one.name === response.name);
-    if (found && found.history.count > 0) other = { model: otherModel, response: found };
-  }
-  if (chosen.other !== "") {
-    const name = campaignTitle(data.campaigns[Number(chosen.other)]);
-    page.append(el("p", { class: "overlaid" }, other ? ["Blue: ", el("b", {}, campaignTitle(campaign)), "; orange: ", el("b", { class: "second" }, name)] : `${name} has no values of ${response ? response.name : "this response"}.`));
-  }
-  let parts = null;
-  const values = response ? model.responses[chosen.observable].values : [];
-  if (response && response.history.count > 0) {
-    if (!chosen.view.x) firstView(model, response);
-    parts = explorerSections(model, response, other);
-    page.append(...[bracketsSection(campaign), calibrationSection(campaign), distributionSection(response, campaign.sample, other), momentsSection(campaign, response, other), effectsSection(model, response, other),
-      influenceSection(response), modelSection(campaign, response), filmsSection(model), parts.explore, parts.maps, parts.listed, parts.small, curvesSection(model), extremesSection(campaign, response)].filter(Boolean));
-  } else if (values.some(Number.isFinite)) {  // answers, but none of the gapless beginning
-    if (!chosen.view.x) firstView(model, response);
-    parts = explorerSections(model, response, other);
-    page.append(...[calibrationSection(campaign), distributionSection(response, campaign.sample, other), filmsSection(model), parts.explore, parts.maps, parts.listed, curvesSection(model)].filter(Boolean));
-  } else {
-    page.append(el("p", {}, campaign.observables.length === 0 ? "Series and profiles are measured, and no scalar." : "No case has an answer yet."));
-    const cases = caseTable(model, () => {});
-    parts = { paint: cases.paint };
-    page.append(...[calibrationSection(campaign), section("cases", "Cases", "Every case.", cases.node), curvesSection(model)].filter(Boolean));
-  }
-  page.append(...[failuresSection(campaign), provenanceSection(campaign)].filter(Boolean));
-  parts.paint();
-  navigation();
-  setTimeout(drawTheRest, 600);  // what the reader sees comes first
+  const response = campaign.observables[chosen.observable], other = compared(response);
+  const settled = response && response.history.count > 0;  // values in the prefix of the design
+  const answered = settled || (response && model.responses[chosen.observable].values.some(Number.isFinite));
+  if (answered && !chosen.view.x) firstView(model, response);
+  let cases = null;
+  showPage(() => {
+    const explore = answered ? explorerSections(model, response, other) : plainCases(model);
+    ({ cases } = explore);
+    return [...heading(campaign), comparedLine(campaign, response, other),
+      answered ? null : el("p", {}, campaign.observables.length === 0 ? "The scene measures series and profiles only." : "No case has a result yet."),
+      settled ? bracketsSection(campaign) : null, calibrationSection(campaign), answered ? distributionSection(response, campaign.sample, other) : null,
+      ...(settled ? [momentsSection(campaign, response, other), effectsSection(model, response, other), influenceSection(response), modelSection(campaign, response)] : []),
+      answered ? filmsSection(model) : null, ...explore.sections, settled ? againstSection(model, response) : null, curvesSection(model),
+      settled ? extremesSection(campaign, response) : null, failuresSection(campaign), provenanceSection(campaign)];
+  });
+  cases.paint();
 }
 
 function fillObservables() {
@@ -220,8 +220,6 @@ function fillOthers() {
 }
 
 function start() {
-  Chart.defaults.font.family = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Noto Sans', sans-serif";
-  document.getElementById("database").textContent = data.databases.join(", ");
   document.title = `${data.databases.join(", ")} · grainsweep report`;
   const campaigns = document.getElementById("campaign");
   campaigns.replaceChildren(...data.campaigns.map((c, i) => el("option", { value: i }, campaignTitle(c))));

@@ -1,7 +1,7 @@
-// One response: its distribution, how its moments settled, its main effects and what they explain. Another campaign that
-// has the same response is drawn over it.
+// One response: distribution, convergence of its moments, main effects and sensitivity. The same response of another
+// campaign is drawn over it.
 const statistics = [
-  ["mean", "mean"], ["sd", "standard deviation (divides by N)"], ["skewness", "skewness (Pearson, 3 (mean − median)/sd)"],
+  ["mean", "mean"], ["sd", "standard deviation (divisor N)"], ["skewness", "skewness (Pearson, 3 (mean − median)/sd)"],
   ["g1", "moment skewness g1"], ["kurtosis", "kurtosis (3 for a normal distribution)"]];
 
 function histogram(response, other) {
@@ -10,7 +10,7 @@ function histogram(response, other) {
     return { low, high, counts, width: (high - low) / Math.max(1, counts.length), total: counts.reduce((a, b) => a + b, 0) };
   });
   const [own, second] = parts, shown = quantity(Object.assign({ levels: [] }, response, { low: undefined, high: undefined }), [own.low, own.high]);
-  const says = `${plural(own.total, "value")}` + (response.history.zero_share > 0 ? `, ${Number((100 * response.history.zero_share).toPrecision(2))} % of them zero` : "");
+  const says = `${plural(own.total, "value")}` + (response.history.zero_share > 0 ? `, ${Number((100 * response.history.zero_share).toPrecision(2))} % zero` : "");
   return figure("Distribution", says, () => {
     const height = (part, n) => (second ? n / part.total : n);
     const centres = own.counts.map((_, i) => shown.of(own.low + (i + 0.5) * own.width));
@@ -24,7 +24,7 @@ function histogram(response, other) {
         .concat(second ? [{ type: "line", data: steps, borderColor: colour("two"), borderWidth: 2, pointRadius: 0, pointHitRadius: 0 }] : []) },
       options: {
         scales: { x: axis(shown.title, high > low ? { type: "linear", min: shown.of(low), max: shown.of(high), offset: false } : { type: "linear", offset: true }),
-          y: axis(second ? "share of the cases per bar" : "cases", { beginAtZero: true }) },
+          y: axis(second ? "share of the cases" : "cases", { beginAtZero: true }) },
         plugins: { tooltip: { filter: (item) => item.datasetIndex === 0, callbacks: {
           title: (items) => (items.length > 0 ? `${shown.says(own.low + items[0].dataIndex * own.width)} to ${shown.says(own.low + (items[0].dataIndex + 1) * own.width)}` : ""),
           label: (item) => plural(own.counts[item.dataIndex], "case") } } },
@@ -89,7 +89,7 @@ function effect(factor, bins, response, range, others) {
           label: (item) => {
             const [, mean, error, count, pure] = item.dataset.bins[item.dataIndex];
             return [(error === null ? show(up.of(mean)) : withError(up.of(mean), up.of(error))) + (up.unit ? ` ${up.unit}` : "") + `, ${plural(count, "case")}`].concat(
-              pure === null ? [] : [`scatter of single runs alone: ± ${up.says(pure)}`]);
+              pure === null ? [] : [`pure error: ± ${up.says(pure)}`]);
           } } } } },
     };
   }).node;
@@ -100,10 +100,10 @@ function influenceFigure(influence) {
   const factors = [...influence.factors].sort((a, b) => (b[key] || 0) - (a[key] || 0));
   const two = influence.method !== "given_data";
   const most = influence.method === "morris" ? Math.max(...factors.map((f) => (f.mu_star || 0) + (f.mu_star_error || 0))) : 1;
-  return figure(influence.method === "morris" ? "Elementary effects over the whole range" : "Share of the variance", "", () => {
+  return figure(influence.method === "morris" ? "Elementary effects" : "Share of the variance", "", () => {
     const bar = (label, field, tone) => ({ label, data: factors.map((f) => (f[field] === undefined ? null : f[field])), errors: factors.map((f) => f[field + "_error"]),
       errorColour: colour("ink"), backgroundColor: colour(tone), maxBarThickness: 22 });
-    const sets = influence.method === "morris" ? [bar("mu* (mean size of the elementary effects)", "mu_star", "one"), bar("sigma (their scatter: bends and interactions)", "sigma", "two")]
+    const sets = influence.method === "morris" ? [bar("mu* (mean absolute elementary effect)", "mu_star", "one"), bar("sigma (curvature and interactions)", "sigma", "two")]
       : influence.method === "saltelli" ? [bar("first order", "first", "one"), bar("total, with interactions", "total", "two")] : [bar("first order", "first", "one")];
     return {
       type: "bar",
@@ -116,7 +116,7 @@ function influenceFigure(influence) {
   }, { height: 70 + factors.length * (two ? 54 : 34) }).node;
 }
 
-// What the variance is made of, as one bar.
+// Parts of the variance, as one bar.
 function varianceBar(variance) {
   const parts = [["main effects", variance.main_effects, "one"], ["interactions", variance.interactions, "two"], ["interactions of two", variance.pairs, "two"],
     ["scatter of single runs", variance.scatter, "four"], ["scatter and higher interactions", variance.remainder, "four"]].filter(([, share]) => share !== null);

@@ -1,132 +1,67 @@
-// A drawing context that writes SVG: the figures are drawn on it by the same program as on the screen, and what comes out
-// are lines, areas and texts. It knows what Chart.js and the figures of this page use of CanvasRenderingContext2D.
-class SvgPath {
-  constructor() { this.steps = []; }
-  moveTo(x, y) { this.steps.push(["M", x, y]); }
-  lineTo(x, y) { this.steps.push([this.steps.length > 0 ? "L" : "M", x, y]); }
-  bezierCurveTo(...p) { this.steps.push(["C", ...p]); }
-  quadraticCurveTo(...p) { this.steps.push(["Q", ...p]); }
-  rect(x, y, w, h) { this.moveTo(x, y); this.lineTo(x + w, y); this.lineTo(x + w, y + h); this.lineTo(x, y + h); this.closePath(); }
-  closePath() { this.steps.push(["Z"]); }
-  arc(x, y, r, from, to, backwards) {
-    const full = 2 * Math.PI;
-    let sweep = backwards ? from - to : to - from;
-    sweep = sweep >= full ? full : ((sweep % full) + full) % full;
-    // Quarter circles as cubic curves: an arc command cannot be transformed point by point.
-    const parts = Math.max(1, Math.ceil(sweep / (Math.PI / 2) - 1e-9)), step = ((backwards ? -1 : 1) * sweep) / parts;
-    const k = (4 / 3) * Math.tan(step / 4);
-    this.lineTo(x + r * Math.cos(from), y + r * Math.sin(from));
-    for (let i = 0, a = from; i < parts; ++i, a += step) {
-      const b = a + step;
-      this.bezierCurveTo(x + r * (Math.cos(a) - k * Math.sin(a)), y + r * (Math.sin(a) + k * Math.cos(a)),
-        x + r * (Math.cos(b) + k * Math.sin(b)), y + r * (Math.sin(b) - k * Math.cos(b)), x + r * Math.cos(b), y + r * Math.sin(b));
-    }
+// Records what is drawn on a canvas as SVG: lines, areas and texts. The canvas draws on and keeps its state; transform,
+// colours, font and dashes of a shape are read from it. Covers the calls of Chart.js and of these figures.
+function svgRecorder(context) {
+  const shapes = [], open = [0];  // clip groups opened since each save()
+  let path = "", clips = 0;
+  const round = (x) => Math.round(100 * x) / 100;
+  const quoted = (text) => String(text).replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/"/g, "&quot;");
+  const at = (x, y) => {
+    const point = context.getTransform().transformPoint({ x, y });
+    return `${round(point.x)} ${round(point.y)}`;
+  };
+  // A canvas returns its styles as #rrggbb or rgba(r, g, b, a).
+  const paint = (kind, style) => {
+    const [, rgb, alpha] = /^rgba\((.*), ([\d.]+)\)$/.exec(style) || [];
+    const opacity = context.globalAlpha * (rgb ? Number(alpha) : 1);
+    return ` ${kind}="${rgb ? `rgb(${rgb})` : style}"` + (opacity < 1 ? ` ${kind}-opacity="${round(opacity)}"` : "");
+  };
+  const shape = (style) => { if (path) shapes.push(`<path d="${path}"${style}/>`); };
+  const recorders = {
+    save() { open.push(0); },
+    restore() { if (open.length > 1) for (let ends = open.pop(); ends > 0; --ends) shapes.push("</g>"); },
+    clip() {
+      shapes.push(`<clipPath id="clip${clips}"><path d="${path}"/></clipPath><g clip-path="url(#clip${clips++})">`);
+      open[open.length - 1] += 1;
+    },
+    beginPath() { path = ""; },
+    moveTo(x, y) { path += `M${at(x, y)}`; },
+    lineTo(x, y) { path += `${path ? "L" : "M"}${at(x, y)}`; },
+    bezierCurveTo(a, b, c, d, x, y) { path += `C${at(a, b)} ${at(c, d)} ${at(x, y)}`; },
+    closePath() { path += "Z"; },
+    rect(x, y, w, h) { path += `M${at(x, y)}L${at(x + w, y)}L${at(x + w, y + h)}L${at(x, y + h)}Z`; },
+    // Two halves: one arc command cannot close a circle.
+    arc(x, y, r, from, to, backwards) {
+      const full = 2 * Math.PI, turn = backwards ? from - to : to - from;
+      const angle = (backwards ? -1 : 1) * (turn >= full ? full : ((turn % full) + full) % full);
+      const point = (share) => at(x + r * Math.cos(from + share * angle), y + r * Math.sin(from + share * angle));
+      const half = (share) => `A${round(r)} ${round(r)} 0 0 ${backwards ? 0 : 1} ${point(share)}`;
+      path += (path ? "L" : "M") + point(0) + half(0.5) + half(1);
+    },
+    fill() { shape(paint("fill", context.fillStyle)); },
+    stroke() {
+      const dash = context.getLineDash();
+      shape(` fill="none"${paint("stroke", context.strokeStyle)} stroke-width="${round(context.lineWidth)}"` +
+        ` stroke-linejoin="${context.lineJoin}" stroke-linecap="${context.lineCap}"` + (dash.length > 0 ? ` stroke-dasharray="${dash.join(" ")}"` : ""));
+    },
+    fillRect(...box) { const before = path; path = ""; recorders.rect(...box); recorders.fill(); path = before; },
+    strokeRect(...box) { const before = path; path = ""; recorders.rect(...box); recorders.stroke(); path = before; },
+    fillText(text, x, y) {
+      const [, style, size, family] = /^(.*?)([\d.]+)px (.*)$/.exec(context.font), { a, b, c, d, e, f } = context.getTransform();
+      const anchor = { center: "middle", right: "end", end: "end" }[context.textAlign] || "start";
+      const down = { top: 0.8, hanging: 0.8, middle: 0.35, bottom: -0.2 }[context.textBaseline] || 0;
+      shapes.push(`<text transform="matrix(${[a, b, c, d, e, f].map((one) => Number(one.toFixed(4))).join(" ")})" x="${round(x)}" y="${round(y + down * size)}"` +
+        ` font-size="${size}" font-family="${quoted(family)}"${/bold|[5-9]00/.test(style) ? ' font-weight="bold"' : ""} text-anchor="${anchor}"` +
+        `${paint("fill", context.fillStyle)}>${quoted(text)}</text>`);
+    },
+  };
+  for (const [name, record] of Object.entries(recorders)) {
+    const draw = context[name];
+    context[name] = (...all) => {
+      if (all[0] instanceof Path2D) throw new Error("the points of a Path2D cannot be recorded");
+      record(...all);
+      return draw.apply(context, all);
+    };
   }
-}
-
-class SvgContext {
-  constructor(canvas, width, height) {
-    this.canvas = canvas;
-    this.width = width;
-    this.height = height;
-    this.ruler = document.createElement("canvas").getContext("2d");
-    this.body = [];
-    this.clips = new Map();
-    this.stack = [];
-    this.path = new SvgPath();
-    this.state = { matrix: [1, 0, 0, 1, 0, 0], clip: null, dash: [] };
-    Object.assign(this, { fillStyle: "#000", strokeStyle: "#000", lineWidth: 1, lineCap: "butt", lineJoin: "miter", miterLimit: 10, lineDashOffset: 0,
-      font: "10px sans-serif", textAlign: "start", textBaseline: "alphabetic", globalAlpha: 1, globalCompositeOperation: "source-over" });
-  }
-  static styles = ["fillStyle", "strokeStyle", "lineWidth", "lineCap", "lineJoin", "miterLimit", "lineDashOffset", "font", "textAlign", "textBaseline", "globalAlpha"];
-
-  save() { this.stack.push([{ ...this.state }, SvgContext.styles.map((name) => this[name])]); }
-  restore() {
-    const [state, styles] = this.stack.pop() || [this.state, SvgContext.styles.map((name) => this[name])];
-    this.state = state;
-    SvgContext.styles.forEach((name, i) => { this[name] = styles[i]; });
-  }
-  setTransform(...m) { this.state.matrix = typeof m[0] === "object" ? [m[0].a, m[0].b, m[0].c, m[0].d, m[0].e, m[0].f] : m; }
-  resetTransform() { this.state.matrix = [1, 0, 0, 1, 0, 0]; }
-  transform(a, b, c, d, e, f) {
-    const [A, B, C, D, E, F] = this.state.matrix;
-    this.state.matrix = [A * a + C * b, B * a + D * b, A * c + C * d, B * c + D * d, A * e + C * f + E, B * e + D * f + F];
-  }
-  translate(x, y) { this.transform(1, 0, 0, 1, x, y); }
-  scale(x, y) { this.transform(x, 0, 0, y, 0, 0); }
-  rotate(angle) { this.transform(Math.cos(angle), Math.sin(angle), -Math.sin(angle), Math.cos(angle), 0, 0); }
-
-  beginPath() { this.path = new SvgPath(); }
-  moveTo(x, y) { this.path.moveTo(x, y); }
-  lineTo(x, y) { this.path.lineTo(x, y); }
-  bezierCurveTo(...p) { this.path.bezierCurveTo(...p); }
-  quadraticCurveTo(...p) { this.path.quadraticCurveTo(...p); }
-  rect(...p) { this.path.rect(...p); }
-  arc(...p) { this.path.arc(...p); }
-  closePath() { this.path.closePath(); }
-  setLineDash(dash) { this.state.dash = [...dash]; }
-  getLineDash() { return [...this.state.dash]; }
-  measureText(text) { this.ruler.font = this.font; return this.ruler.measureText(text); }
-  clearRect() {}
-
-  static number(x) { return String(Math.round(100 * x) / 100); }
-  at(x, y) {
-    const [a, b, c, d, e, f] = this.state.matrix;
-    return `${SvgContext.number(a * x + c * y + e)} ${SvgContext.number(b * x + d * y + f)}`;
-  }
-  outline(path) {
-    return path.steps.map(([kind, ...p]) => {
-      const points = [];
-      for (let i = 0; i < p.length; i += 2) points.push(this.at(p[i], p[i + 1]));
-      return kind + points.join(" ");
-    }).join("");
-  }
-  // Any colour of the style sheet as #rrggbb and an opacity.
-  paint(kind, style) {
-    this.ruler.fillStyle = "#000";
-    this.ruler.fillStyle = style;
-    const tone = this.ruler.fillStyle, parts = /^rgba\((\d+), (\d+), (\d+), ([\d.]+)\)$/.exec(tone);
-    const solid = parts ? "#" + parts.slice(1, 4).map((c) => Number(c).toString(16).padStart(2, "0")).join("") : tone;
-    const opacity = (parts ? Number(parts[4]) : 1) * this.globalAlpha;
-    return ` ${kind}="${solid}"` + (opacity < 1 ? ` ${kind}-opacity="${SvgContext.number(opacity)}"` : "");
-  }
-  clipped() { return this.state.clip === null ? "" : ` clip-path="url(#clip${this.state.clip})"`; }
-  clip(path) {
-    const text = `${this.clipped()}><path d="${this.outline(path instanceof SvgPath ? path : this.path)}"/>`;
-    if (!this.clips.has(text)) this.clips.set(text, this.clips.size);
-    this.state.clip = this.clips.get(text);
-  }
-  fill(path) {
-    const d = this.outline(path instanceof SvgPath ? path : this.path);
-    if (d) this.body.push(`<path d="${d}"${this.paint("fill", this.fillStyle)}${this.clipped()}/>`);
-  }
-  stroke(path) {
-    const d = this.outline(path instanceof SvgPath ? path : this.path);
-    if (!d || this.lineWidth <= 0) return;
-    const dash = this.state.dash.length > 0 ? ` stroke-dasharray="${this.state.dash.join(" ")}"` : "";
-    this.body.push(`<path d="${d}" fill="none"${this.paint("stroke", this.strokeStyle)} stroke-width="${SvgContext.number(this.lineWidth)}"` +
-      ` stroke-linejoin="${this.lineJoin}" stroke-linecap="${this.lineCap}"${dash}${this.clipped()}/>`);
-  }
-  fillRect(x, y, w, h) { const path = new SvgPath(); path.rect(x, y, w, h); this.fill(path); }
-  strokeRect(x, y, w, h) { const path = new SvgPath(); path.rect(x, y, w, h); this.stroke(path); }
-  strokeText() {}
-  fillText(text, x, y) {
-    const size = Number((/([\d.]+)px/.exec(this.font) || [0, 10])[1]), family = this.font.replace(/^.*?px(\/\S+)?\s*/, "");
-    const weight = /\b(bold|[5-9]00)\b/.test(this.font.split("px")[0]) ? ' font-weight="bold"' : "";
-    const anchor = { center: "middle", right: "end", end: "end" }[this.textAlign] || "start";
-    const down = { top: 0.8, hanging: 0.8, middle: 0.35, bottom: -0.2, ideographic: -0.2 }[this.textBaseline] || 0;
-    const [a, b, c, d] = this.state.matrix.map(SvgContext.number), [e, f] = this.at(x, y).split(" ");
-    const place = `${a} ${b} ${c} ${d}` === "1 0 0 1" ? `x="${e}" y="${SvgContext.number(Number(f) + down * size)}"`
-      : `transform="matrix(${a} ${b} ${c} ${d} ${e} ${f})" y="${SvgContext.number(down * size)}"`;
-    const safe = (words) => String(words).replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/"/g, "&quot;");
-    this.body.push(`<text ${place} font-size="${size}" font-family="${safe(family)}"${weight} text-anchor="${anchor}"` +
-      `${this.paint("fill", this.fillStyle)}${this.clipped()}>${safe(text)}</text>`);
-  }
-
-  text(title) {
-    const clips = [...this.clips].map(([text, id]) => `<clipPath id="clip${id}"${text}</clipPath>`).join("");
-    const safe = String(title).replace(/&/g, "&amp;").replace(/</g, "&lt;");
-    return `<svg xmlns="${svgSpace}" width="${this.width}" height="${this.height}" viewBox="0 0 ${this.width} ${this.height}">` +
-      `<title>${safe}</title><defs>${clips}</defs>\n<rect width="100%" height="100%" fill="#ffffff"/>\n${this.body.join("\n")}\n</svg>\n`;
-  }
+  return (title, width, height) => `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}">` +
+    `<title>${quoted(title)}</title>\n<rect width="100%" height="100%" fill="#ffffff"/>\n${shapes.join("\n")}\n</svg>\n`;
 }

@@ -1,7 +1,6 @@
-// The page of a process window: what to set, what it gives, the map of the two factors that matter most, and every
-// response against every factor through the best setting.
+// The page of a process window: the setting, its predictions, the map over the two most influential factors, and every
+// response against every factor through the setting.
 const chosen = { campaign: 0 };
-const page = document.getElementById("page");
 const factors = data.factors.map((f) => Object.assign({ meaning: "", values: [f.low, f.high] }, f));
 const responses = data.responses.map((r) => Object.assign({ levels: [] }, r));
 const wanted = data.where || "no condition";
@@ -17,17 +16,16 @@ function withWidth(k, mean, width) { const s = responseScale(k); return withErro
 function settingSection() {
   const { best } = data;
   const says = data.meets
-    ? `${data.objective ? `${data.maximize ? "Largest" : "Smallest"} ${data.objective} where` : "Surest setting where"} ${data.where ? `"${data.where}" holds` : "it is defined"} with probability ${sure} or more, ${data.single_run ? "for every single run" : "for the mean of many runs"}.`
-    : `The condition "${wanted}" holds nowhere with probability ${sure}; it is likeliest here.`;
+    ? `${data.objective ? `Setting with the ${data.maximize ? "largest" : "smallest"} ${data.objective}` : "Most probable setting"} where ${data.where ? `"${data.where}" holds` : "the response is defined"} with probability ${sure} or more. The probability is that of ${data.single_run ? "a single run" : "the mean of many runs"}.`
+    : `No setting meets "${wanted}" with probability ${sure}. This one has the largest probability.`;
   const near = data.failed_near ? ` Here ${data.failed_near}.` : "";
-  const set = table([["set"], ["to", "number"]], factors.map((f, j) => [f.name, settingText(best, j)]));
-  const gives = table([["expected"], ["mean, 95 %", "number"], ["a single run, 95 %", "number"]],
+  const set = table([["factor"], ["value", "number"]], factors.map((f, j) => [f.name, settingText(best, j)]));
+  const gives = table([["response"], ["mean, 95 %", "number"], ["a single run, 95 %", "number"]],
     responses.map((r, k) => { const one = best.responses[k]; return [r.name, withWidth(k, one.mean, one.mean_half_width), "± " + withError(responseScale(k).of(one.run_half_width), NaN)]; }));
   const share = `${show(100 * data.share, 3)} ± ${show(100 * data.share_error, 1)} %`;
-  const tile = (number, label, bad) => el("div", { class: bad ? "tile bad" : "tile" }, el("b", {}, number), el("span", {}, label));
   return section("setting", "Setting", says + near,
-    el("div", { class: "tiles" }, tile(share, "of the ranges lie in the window"), tile(show(best.probability, 3), "probability of the condition here", !data.meets)),
-    el("div", { class: "grid wide" }, el("div", { class: "card" }, el("h3", {}, "Set"), set), responses.length > 0 ? el("div", { class: "card" }, el("h3", {}, "What it gives"), gives) : null));
+    el("div", { class: "tiles" }, tile(share, "of the ranges is in the window"), tile(show(best.probability, 3), "probability of the condition", !data.meets)),
+    el("div", { class: "grid wide" }, el("div", { class: "card" }, el("h3", {}, "Setting"), set), responses.length > 0 ? el("div", { class: "card" }, el("h3", {}, "Prediction"), gives) : null));
 }
 
 // Cells of a map, the edge of the window, and the best setting.
@@ -43,15 +41,15 @@ function mapSection() {
   if (!map) return null;
   const [a, b] = [factors[map.across], factors[map.up]];
   const rest = factors.map((f, j) => [f, j]).filter(([, j]) => j !== map.across && j !== map.up).map(([f, j]) => `${f.name} ${settingText(data.best, j)}`);
-  const says = `The two factors that matter most at this setting; ${rest.length > 0 ? `the others stay: ${rest.join(", ")}` : "there is no other"}. The line surrounds where the condition holds with probability ${sure}; the ring is the setting.` + failedSays(data.failed);
+  const says = `The two most influential factors at this setting.${rest.length > 0 ? ` Other factors: ${rest.join(", ")}.` : ""} Inside the line the condition holds with probability ${sure} or more. The ring marks the setting.` + failedSays(data.failed);
   const probability = { name: "probability", unit: "1", levels: [] };
   const whole = () => Object.assign(colouring(probability, [0, 1]), { title: "probability" });
-  const maps = [windowMap(map.probability, `Process window: ${wanted}`, `Probability that it holds, over ${a.name} and ${b.name}.`, probability, whole)];
+  const maps = [windowMap(map.probability, `Process window: ${wanted}`, `Probability of the condition against ${a.name} and ${b.name}.`, probability, whole)];
   if (map.objective) {
     const numbers = map.objective.filter((x) => x !== null);
-    if (numbers.length > 0) maps.push(windowMap(map.objective, `${data.objective} over ${a.name} and ${b.name}`, "Mean response by the model.", responses[0], () => colouring(responses[0], numbers)));
+    if (numbers.length > 0) maps.push(windowMap(map.objective, `${data.objective} against ${a.name} and ${b.name}`, "Predicted mean.", responses[0], () => colouring(responses[0], numbers)));
   }
-  return section("map", "The window", says, el("div", { class: "grid wide" }, maps));
+  return section("map", "Process window", says, el("div", { class: "grid wide" }, maps));
 }
 
 function curveFigure(j, k) {
@@ -66,7 +64,7 @@ function curvesSection() {
   const order = data.order;
   const figuresOf = (k) => order.map((j) => curveFigure(j, k));
   const all = responses.flatMap((_, k) => figuresOf(k)).concat(data.where ? figuresOf(null) : []);
-  return section("curves", "Along each factor", "Through the setting, the other factors as they are there. Shaded: the mean lies within with 95 %; dashed: a single run does." + failedSays(data.failed), el("div", { class: "grid" }, all));
+  return section("curves", "Along each factor", "Predictions through the setting; the other factors keep their values there. Shaded: 95 % band of the mean. Dashed: 95 % band of a single run." + failedSays(data.failed), el("div", { class: "grid" }, all));
 }
 
 function listSection(id, title, says, list) {
@@ -77,18 +75,12 @@ function listSection(id, title, says, list) {
 }
 
 function start() {
-  Chart.defaults.font.family = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Noto Sans', sans-serif";
-  document.getElementById("database").textContent = data.databases.join(", ");
   document.title = `${data.campaign}: process window`;
   for (const id of ["campaign-choice", "other-choice", "observable-choice"]) document.getElementById(id).hidden = true;
-  figures.forEach((one) => one.drop());
-  figures = [];
-  page.replaceChildren(...[el("h1", {}, `${data.campaign}: process window`), el("p", { class: "says" }, `${data.scene} · ${wanted}`), settingSection(), mapSection(), curvesSection(),
-    listSection("front", "Trade-off", `Settings where neither ${data.objective} nor ${data.against} can be better without the other being worse, whether the condition holds or not.`, data.front),
-    listSection("next", "To run next", "The cases that promise most.", data.next),
-    section("basis", "What it rests on", null, el("div", { class: "card" }, data.models.concat(data.notes).map((text) => el("p", { class: "notes" }, text))))].filter(Boolean));
-  document.getElementById("sections").replaceChildren(...[...page.querySelectorAll("section[id]")].map((one) => el("button", { type: "button", click: () => one.scrollIntoView({ behavior: "smooth" }) }, one.querySelector("h2").textContent)));
-  setTimeout(drawTheRest, 100);
+  showPage(() => [el("h1", {}, `${data.campaign}: process window`), el("p", { class: "says" }, `${data.scene} · ${wanted}`), settingSection(), mapSection(), curvesSection(),
+    listSection("front", "Trade-off", `Settings where ${data.objective} cannot improve unless ${data.against} worsens. The condition need not hold.`, data.front),
+    listSection("next", "To run next", "The most promising cases.", data.next),
+    section("basis", "Basis", null, el("div", { class: "card" }, data.models.concat(data.notes).map((text) => el("p", { class: "notes" }, text))))]);
 }
 
 window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", start);
