@@ -11,6 +11,12 @@
 #include <utility>
 
 namespace grainsweep::report {
+/// Range of the colours of a column.
+struct ValueRange {
+    double low = 0, high = 0;
+    bool clipped = false;  ///< a few values lie beyond
+};
+
 namespace {
 
 constexpr double finest = 65535;
@@ -19,11 +25,6 @@ constexpr double common_share = 0.995;    // of the values: beyond their quantil
 constexpr double far_beyond = 1.5;        // times that quantile
 constexpr std::size_t sampled = 200'000;  // values that determine a quantile
 constexpr double bytes_per_sphere = 8.3;  // and frame, as text
-
-struct ValueRange {
-    double low = 0, high = 0;
-    bool clipped = false;  ///< a few values lie beyond
-};
 
 /// From the values that are numbers: from 0, or around 0, or from the least where all are far from 0 and differ.
 ValueRange range_of(std::vector<float> values) {

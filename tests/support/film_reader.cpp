@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace grainsweep::test {
+namespace grainsweep::tests {
 
 std::vector<std::uint16_t> unpack_film_column(std::string_view packed, std::size_t frames, std::size_t items) {
     const std::size_t count = frames * items;
@@ -38,4 +38,4 @@ ReadFilm read_film(const std::string& bytes) {
     return {nlohmann::json::parse(bytes.substr(8, length)), bytes.substr(8 + length)};
 }
 
-}  // namespace grainsweep::test
+}  // namespace grainsweep::tests
