@@ -42,7 +42,7 @@ struct ModelFigures : testing::Test {
         const double x1 = input(inputs, "x1"), x2 = input(inputs, "x2");
         return x1 + 2 * x2 + 4 * (x1 - 0.5) * (x2 - 0.5);
     }
-    report::Responses responses() { return read_responses(store, store.campaigns().front()); }
+    Responses responses() { return read_responses(store, store.campaigns().front()); }
     Estimators estimators() {
         const auto all = responses();
         return estimators_of(store, all, all.observable(""));
