@@ -11,7 +11,6 @@
 #include "solver/scenes/thermovibration/warnings.hpp"
 
 #include <cmath>
-#include <type_traits>
 
 namespace grainsweep {
 namespace {
@@ -179,13 +178,7 @@ std::unique_ptr<Scene> make(const Inputs& inputs, std::uint64_t seed, Artefacts&
     using namespace thermovibration;
     const Question question(inputs);
     if (!question.carried()) return std::make_unique<Live>(question, seed);
-    const auto carried = [&]<class Kernel>(std::type_identity<Kernel>) {
-        return std::make_unique<Carried>(
-            question, seed, artefacts,
-            question.mirrored() ? carry<coupling::OneWayMirrored, Kernel> : carry<coupling::OneWay, Kernel>);
-    };
-    return question.interpolation == "solenoidal" ? carried(std::type_identity<coupling::Solenoidal>{})
-                                                  : carried(std::type_identity<coupling::Trilinear>{});
+    return std::make_unique<Carried>(question, seed, artefacts, carried_step(question));
 }
 
 // Of fields with their scratch, and of particles with their lists.

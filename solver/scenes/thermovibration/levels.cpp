@@ -6,6 +6,7 @@
 #include "solver/coupling/spring_contacts.hpp"
 #include "solver/coupling/suspension.hpp"
 #include "solver/scenes/thermovibration/question.hpp"
+#include "solver/scenes/thermovibration/runs.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -61,7 +62,7 @@ std::unique_ptr<Coupled> dense(const Question& q, std::uint64_t seed, Interactio
 
 /// Calls make<Kernel>() with the kernel of the interpolation.
 template <class Make>
-std::unique_ptr<Coupled> with_kernel(const Question& q, Make make) {
+auto with_kernel(const Question& q, Make make) {
     return q.interpolation == "solenoidal" ? make.template operator()<coupling::Solenoidal>()
                                            : make.template operator()<coupling::Trilinear>();
 }
@@ -134,6 +135,12 @@ std::span<const LevelInfo> levels() {
 
 const LevelInfo& level_named(std::string_view name) {
     return *std::ranges::find(all_levels, name, &LevelInfo::name);
+}
+
+CarriedStep* carried_step(const Question& q) {
+    return with_kernel(q, [&]<class Kernel>() -> CarriedStep* {
+        return q.mirrored() ? carry<coupling::OneWayMirrored, Kernel> : carry<coupling::OneWay, Kernel>;
+    });
 }
 
 }  // namespace grainsweep::thermovibration

@@ -150,6 +150,9 @@ void carry(CarriedCloud& cloud, double phase, double vibration) {
         [](std::size_t, const coupling::Vec3&) {}, cloud.slabs);
 }
 
+/// The step of a case's particles (levels.cpp).
+[[nodiscard]] CarriedStep* carried_step(const Question& question);
+
 class Carried final : public Scene {
 public:
     Carried(const Question& question, std::uint64_t seed, Artefacts& artefacts, CarriedStep* carry_step);
