@@ -143,7 +143,7 @@ TEST(Interference, AMainProgramThatIsStoppedForAWhileCostsNothing) {
     std::this_thread::sleep_for(700ms);
     ASSERT_TRUE(run.running());
     run.signal(SIGSTOP);
-    std::this_thread::sleep_for(5s);
+    std::this_thread::sleep_for(3500ms);
     run.signal(SIGCONT);
     const auto ended = run.wait();
     EXPECT_EQ(ended.code, 0) << ended.err;

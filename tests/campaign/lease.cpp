@@ -48,7 +48,7 @@ TEST(Lease, TimeSpentStoppedDoesNotCountSilenceDoes) {
 
     std::this_thread::sleep_for(500ms);
     for (const pid_t pid : pair) ::kill(pid, SIGSTOP);
-    std::this_thread::sleep_for(4s);
+    std::this_thread::sleep_for(2500ms);
     ::kill(*told, SIGCONT);
     std::this_thread::sleep_for(300ms);  // a main program sends every ten seconds, not at once
     ::kill(*main_program, SIGCONT);

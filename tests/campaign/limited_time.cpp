@@ -56,7 +56,7 @@ private:
 };
 
 TEST(Walltime, RunAfterRunTheCampaignIsFinished) {
-    const LimitedCampaign campaign(16, 0.5, 4);
+    const LimitedCampaign campaign(16, 0.25, 2);
     int runs = 1;
     Ended ended;
     for (; runs < 10; ++runs) {

@@ -176,7 +176,7 @@ TEST(Hosts, AHostThatIsAskedToEndSavesWhatItsWorkersHave) {
 }
 
 TEST(Hosts, AHostThatFallsSilentIsReplaced) {
-    const HostedCampaign campaign(60, 0.1, {{"silence_seconds", 3}});
+    const HostedCampaign campaign(60, 0.05, {{"silence_seconds", 3}});
     Process run(campaign.command(), campaign.folder().path());
     campaign.await(run, 8);
     const auto hosts = run.children();
