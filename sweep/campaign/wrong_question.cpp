@@ -61,7 +61,7 @@ std::string_view beginning(std::string_view text) {
 }
 
 /// One line that moves no cursor of a terminal: white space as blanks, other control characters by their number.
-std::string on_one_line(std::string_view text) {
+std::string single_line(std::string_view text) {
     std::string line;
     line.reserve(text.size());
     for (const char c : text) {
@@ -87,7 +87,7 @@ WrongQuestion wrong_question(std::string_view where, std::string_view value, std
     sentence += rule;
     if (!sentence.ends_with('.')) sentence += '.';
     if (!suggestion.empty()) sentence += fmt::format(" Did you mean '{}'?", suggestion);
-    return WrongQuestion(on_one_line(sentence));
+    return WrongQuestion(single_line(sentence));
 }
 
 std::string listed(std::span<const std::string> names) {

@@ -59,7 +59,7 @@ void add_check(store::Table& table, const Responses& responses, const ResponseCo
     table.rows.push_back(std::move(row));
 }
 
-Json json_of(double value, double error) {
+Json estimate_json(double value, double error) {
     return {{"value", value}, {"error", error}};
 }
 
@@ -68,7 +68,7 @@ Json provisional_of(const History& history) {
     const auto& known = *history.provisional;
     Json statistics = Json::object();
     for (const auto statistic : stats::statistics)
-        statistics.add(to_string(statistic), json_of(known.of(statistic).value, known.of(statistic).error));
+        statistics.add(to_string(statistic), estimate_json(known.of(statistic).value, known.of(statistic).error));
     return {
         {"points", known.points}, {"values", known.count}, {"excluded", known.excluded}, {"statistics", statistics}};
 }
@@ -287,14 +287,14 @@ std::vector<std::string> estimator_lines(const Estimators& estimators) {
 Json estimators_json(const History& history, const Estimators& estimators) {
     Json plain = Json::object(), with_model, without_scatter, shares;
     for (const auto statistic : stats::statistics)
-        plain.add(key(statistic), json_of(history.all.of(statistic).value, history.all.of(statistic).error));
+        plain.add(key(statistic), estimate_json(history.all.of(statistic).value, history.all.of(statistic).error));
     const bool known = estimators.assisted.has_value();
     const bool scatter_known = known && !estimators.scatter_from.empty();
     if (known)
         for (const auto statistic : stats::assisted_statistics) {
             const auto& one = estimators.assisted->of(statistic);
             const auto json_with = [](const stats::AssistedEstimate& estimate) {
-                return json_of(estimate.value, estimate.half_width);
+                return estimate_json(estimate.value, estimate.half_width);
             };
             with_model.add(key(statistic),
                            json_with(one.assisted).add("taken", one.takes_assisted).add("withdrawn", one.withdrawn));

@@ -52,7 +52,7 @@ store::Table brackets_rows(const Brackets& brackets, const std::string& campaign
     return table;
 }
 
-Json to_json(const Brackets& brackets) {
+Json brackets_json(const Brackets& brackets) {
     const auto level = [](const RefinedLevel& at) {
         return Json{{"value", at.value},
                     {"mean", at.mean()},
@@ -80,7 +80,7 @@ Json to_json(const Brackets& brackets) {
 
 constexpr std::size_t drawn_on_page = 800;
 
-Json to_json(const CalibrationReport& report) {
+Json calibration_json(const CalibrationReport& report) {
     const auto wave = [](const auto& one) {
         return Json{{"settings", one.settings},
                     {"cases", one.cases},
@@ -246,7 +246,7 @@ Document document_of(const Brackets& brackets, const Responses& responses) {
     const auto& campaign = responses.campaign.name;
     Document shown{
         .rows = brackets_rows(brackets, campaign), .value = {{"campaign", campaign}}, .alone = true, .converged = true};
-    shown.value.add(to_json(brackets));
+    shown.value.add(brackets_json(brackets));
     shown.say(fmt::format("{}: {}; {}", campaign, brackets_line(brackets), outcome_line(responses)));
     shown.say().show(brackets_table(brackets));
     return shown;
@@ -254,7 +254,7 @@ Document document_of(const Brackets& brackets, const Responses& responses) {
 
 Document document_of(const CalibrationReport& report, const Responses& responses) {
     Document shown{.rows = posterior_table(report), .value = {{"campaign", responses.campaign.name}}, .alone = true};
-    shown.value.add(to_json(report));
+    shown.value.add(calibration_json(report));
     shown.converged = report.found.waves_end && report.found.posterior;
     shown.say(fmt::format("{}: {}", responses.campaign.name, outcome_line(responses)));
     say_calibration(shown, report);

@@ -44,7 +44,7 @@ Cell trend_cell(const FactorInfluence& factor) {
     return factor.trend == Trend::unknown ? Cell{} : Cell{std::string(to_string(factor.trend))};
 }
 
-Json json_of(const stats::SensitivityIndex& index) {
+Json index_json(const stats::SensitivityIndex& index) {
     return {{"value", index.value}, {"error", index.half_width}};
 }
 
@@ -121,15 +121,15 @@ Json to_json(const Responses& responses, const ResponseColumn& response, const I
     const auto json_of_factor = [&](const FactorInfluence& factor) {
         Json one = {{"name", factor.factor}};
         if (influence.method != Influence::Method::morris)
-            one.add("bins", factor.bins).add("first", json_of(factor.first));
+            one.add("bins", factor.bins).add("first", index_json(factor.first));
         if (influence.method == Influence::Method::saltelli)
-            one.add("first_saltelli", json_of(factor.first_saltelli)).add("total", json_of(factor.total));
+            one.add("first_saltelli", index_json(factor.first_saltelli)).add("total", index_json(factor.total));
         if (factor.effects)
             one.add("mu_star", {{"value", factor.effects->mu_star}, {"error", factor.effects->mu_star_half_width}})
                 .add("mu", factor.effects->mu)
                 .add("sigma", factor.effects->sigma);
         one.add("trend", to_json(trend_cell(factor)));
-        return one.add("rank_correlation", json_of(factor.rank_correlation));
+        return one.add("rank_correlation", index_json(factor.rank_correlation));
     };
     const auto& split = influence.split;
     return {{"campaign", responses.campaign.name},
@@ -139,12 +139,12 @@ Json to_json(const Responses& responses, const ResponseColumn& response, const I
             {"excluded", influence.excluded},
             {"factors", Json::list(influence.factors, json_of_factor)},
             {"variance",
-             {{"main_effects", json_of(split.main_effects)},
-              {"unexplained", json_of(split.unexplained)},
-              {"interactions", json_of(split.interactions)},
-              {"scatter", json_of(split.scatter)},
-              {"interactions_of_two", json_of(split.pairs)},
-              {"scatter_and_higher", json_of(split.remainder)},
+             {{"main_effects", index_json(split.main_effects)},
+              {"unexplained", index_json(split.unexplained)},
+              {"interactions", index_json(split.interactions)},
+              {"scatter", index_json(split.scatter)},
+              {"interactions_of_two", index_json(split.pairs)},
+              {"scatter_and_higher", index_json(split.remainder)},
               {"pure_error", split.pure.variance},
               {"pure_error_freedom", split.pure.freedom}}},
             {"notes", influence.notes}};
@@ -196,12 +196,12 @@ Json model_influence_json(const ModelInfluence& influence) {
         const auto& indices = *influence.indices;
         for (std::size_t j = 0; j < influence.factors.size(); ++j)
             factors.push_back({{"name", influence.factors[j]},
-                               {"first", json_of(indices.first[j])},
-                               {"total", json_of(indices.total[j])},
-                               {"interactions", json_of(indices.interactions[j])}});
+                               {"first", index_json(indices.first[j])},
+                               {"total", index_json(indices.total[j])},
+                               {"interactions", index_json(indices.interactions[j])}});
         for_each_pair(influence, [&](std::size_t j, std::size_t k, const stats::SensitivityIndex& index) {
             pairs.push_back(
-                Json{{"factors", std::array{influence.factors[j], influence.factors[k]}}}.add(json_of(index)));
+                Json{{"factors", std::array{influence.factors[j], influence.factors[k]}}}.add(index_json(index)));
         });
         const auto& quality = influence.model->model.quality();
         scatter = quality.noise_share;

@@ -85,7 +85,7 @@ SliceCurve curve_of(const Pictured& pictured, std::size_t factor) {
     return curve;
 }
 
-Json json_of(const Pictured& pictured, const SliceCurve& curve) {
+Json model_page_json(const Pictured& pictured, const SliceCurve& curve) {
     Json mean = Json::array(), mean_half_width = Json::array(), run_half_width = Json::array();
     const auto predictions = pictured.model.predict(curve.slice);
     for (std::size_t i = 0; i < curve.at.size(); ++i) {
@@ -126,7 +126,7 @@ Json model_page_data(const ModelCases& cases, const ObservableModel& model,
 
     Json texts = Json::array();
     for (std::size_t j = 0; j < cases.factors.size(); ++j) texts.push_back(cases.factors[j].text(pictured.middle[j]));
-    const auto drawn = [&](const SliceCurve& curve) { return json_of(pictured, curve); };
+    const auto drawn = [&](const SliceCurve& curve) { return model_page_json(pictured, curve); };
     return {{"observable", model.observable},
             {"unit", model.unit},
             {"says", model_lines(model)},

@@ -46,7 +46,7 @@ Json drawn(const std::vector<double>& values) {
     return Json::list(values, [](double x) { return drawn(x); });
 }
 
-Json json_of(const History& history) {
+Json page_json(const History& history) {
     const auto converged = std::ranges::find(history.checks, true, &stats::Checkpoint::converged);
     const auto checks = checks_to_show(history, most_drawn_checks);
     Json statistics = Json::object(), known_statistics = Json::object(), known;
@@ -82,7 +82,7 @@ Json json_of(const History& history) {
             {"zero_share", drawn(history.all.zero_share)}};
 }
 
-Json json_of(const Influence& influence) {
+Json page_json(const Influence& influence) {
     const auto json_of_factor = [](const FactorInfluence& factor) {
         Json one = {{"name", factor.factor},
                     {"first_text", index_text(factor.first)},
@@ -114,7 +114,7 @@ Json json_of(const Influence& influence) {
             {"unexplained", unexplained_text(influence)}};
 }
 
-Json json_of(const std::vector<EffectBin>& effect) {
+Json page_json(const std::vector<EffectBin>& effect) {
     return Json::list(effect, [](const EffectBin& bin) {
         return Json(
             std::array<Json, 5>{drawn(bin.at), drawn(bin.mean), drawn(bin.error), bin.count, drawn(bin.pure_error)});
@@ -134,22 +134,22 @@ Json extremes_of(const Responses& responses, const ResponseColumn& response, boo
     });
 }
 
-Json json_of(const Responses& responses, const ResponseColumn& response) {
+Json page_json(const Responses& responses, const ResponseColumn& response) {
     const auto judged = responses.judged(response);
     const auto histogram = histogram_of(judged);
     const auto errors = effect_errors(responses, response);
-    const auto effect = [&](const FactorColumn& factor) { return json_of(main_effect(factor, judged, errors)); };
+    const auto effect = [&](const FactorColumn& factor) { return page_json(main_effect(factor, judged, errors)); };
     return {
         {"name", response.name},
         {"unit", response.unit},
         {"meaning", response.meaning},
-        {"history", json_of(history_of(responses, response))},
+        {"history", page_json(history_of(responses, response))},
         {"histogram", {{"low", drawn(histogram.low)}, {"high", drawn(histogram.high)}, {"counts", histogram.counts}}},
         {"effects", Json::list(responses.factors, effect)},
         {"whiskers", errors.says},
         {"pure_error", drawn(errors.pure.variance)},
         {"pure_error_freedom", errors.pure.freedom},
-        {"influence", json_of(influence_of(responses, response))},
+        {"influence", page_json(influence_of(responses, response))},
         {"values", packed(response.values)},
         {"largest", extremes_of(responses, response, true)},
         {"smallest", extremes_of(responses, response, false)}};
@@ -194,7 +194,7 @@ Json failures_of(const store::Store& store, const Responses& responses) {
     return {{"count", std::ranges::count_if(responses.outcomes, failed)}, {"listed", listed}};
 }
 
-Json json_of(const Curves& curves) {
+Json page_json(const Curves& curves) {
     const auto json_of_curve = [](const Curve& curve) {
         return Json{{"row", curve.row}, {"label", curve.label}, {"x", drawn(curve.x)}, {"y", drawn(curve.y)}};
     };
@@ -293,14 +293,14 @@ Json campaign_of(const store::Store& store, const store::CampaignRecord& record,
                 {"outcomes", Json::list(count_outcomes(responses), named_count)}}
         .add(cases_of(responses))
         .add({{"factors", factors_of(responses)},
-              {"observables", Json::list(observables, [&](const auto* one) { return json_of(responses, *one); })},
+              {"observables", Json::list(observables, [&](const auto* one) { return page_json(responses, *one); })},
               {"main", main == observables.end() ? 0 : main - observables.begin()},
               {"brackets",
                brackets ? Json{{"says", brackets_line(*brackets)}}.add(columns_and_rows(brackets_table(*brackets)))
                         : Json()},
               {"models", models_of(store, responses, models)},
               {"calibration", calibration ? page_of(*calibration) : Json()},
-              {"curves", json_of(read_curves(store, responses))},
+              {"curves", page_json(read_curves(store, responses))},
               {"failures", failures_of(store, responses)},
               {"runs", runs_of(store, record.name)}});
 }

@@ -80,7 +80,7 @@ Json responses_of(const Window& window, const Judgement& one) {
     return list;
 }
 
-Json json_of(const ModelCases& cases, const Window& window, const Judgement& one) {
+Json window_page_json(const ModelCases& cases, const Window& window, const Judgement& one) {
     Json texts = Json::array();
     for (std::size_t j = 0; j < cases.factors.size(); ++j) texts.push_back(cases.factors[j].text(one.setting[j]));
     return {{"setting", one.setting},
@@ -89,7 +89,7 @@ Json json_of(const ModelCases& cases, const Window& window, const Judgement& one
             {"responses", responses_of(window, one)}};
 }
 
-Json json_of(const Window& window, const FactorCurve& curve) {
+Json window_page_json(const Window& window, const FactorCurve& curve) {
     return {{"at", curve.at},
             {"probability", Json::list(curve.judged, probability_of)},
             {"responses", Json::list(curve.judged, [&](const auto& one) { return responses_of(window, one); })}};
@@ -130,7 +130,7 @@ Json window_page_data(const ModelCases& cases, const WindowRequest& request, con
     Json responses = Json::array();
     for (const auto& model : window.models) responses.push_back({{"name", model.observable}, {"unit", model.unit}});
     const auto settings = [&](const std::vector<Judgement>& judged) {
-        return Json::list(judged, [&](const Judgement& one) { return json_of(cases, window, one); });
+        return Json::list(judged, [&](const Judgement& one) { return window_page_json(cases, window, one); });
     };
     const Json map =
         order.size() < 2 ? Json() : map_of(cases, request, window, admits, centre.setting, order[0], order[1]);
@@ -146,13 +146,13 @@ Json window_page_data(const ModelCases& cases, const WindowRequest& request, con
             {"share_error", window.share_error},
             {"factors", axes_json(cases.factors)},
             {"meets", window.best.has_value()},
-            {"best", json_of(cases, window, centre)},
+            {"best", window_page_json(cases, window, centre)},
             {"failed", failed_json(cases)},
             {"failed_near", cases.failed.empty() ? "" : near_text(cases, centre.near)},
             {"order", order},
             {"responses", responses},
             {"models", Json::list(window.models, model_lines)},
-            {"curves", Json::list(curves, [&](const FactorCurve& curve) { return json_of(window, curve); })},
+            {"curves", Json::list(curves, [&](const FactorCurve& curve) { return window_page_json(window, curve); })},
             {"map", map},
             {"front", settings(window.front)},
             {"next", settings(window.next)},

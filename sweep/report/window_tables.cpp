@@ -43,7 +43,8 @@ store::Table settings_table(const ModelCases& cases, const Window& window, std::
     return table;
 }
 
-Json json_of(const ModelCases& cases, const WindowRequest& request, const Window& window, const Judgement& one) {
+Json window_table_json(const ModelCases& cases, const WindowRequest& request, const Window& window,
+                       const Judgement& one) {
     const auto estimate = [](const stats::Prediction& p) {
         return Json{{"mean", p.mean}, {"mean_error", p.mean_error}, {"scatter", p.scatter}};
     };
@@ -83,7 +84,7 @@ std::span<const Judgement> list_of(const std::optional<Judgement>& one) {
 }  // namespace
 
 Json window_json(const ModelCases& cases, const WindowRequest& request, const Window& window) {
-    const auto json = [&](const Judgement& one) { return json_of(cases, request, window, one); };
+    const auto json = [&](const Judgement& one) { return window_table_json(cases, request, window, one); };
     Json objective;
     if (!request.objective.empty())
         objective = {{window.objective_is_factor ? "factor" : "observable", request.objective},

@@ -21,7 +21,7 @@
 using namespace grainsweep;
 using grainsweep::tests::answered;
 using grainsweep::tests::calibration_request;
-using grainsweep::tests::Responses;
+using grainsweep::tests::ResponseFunctions;
 using grainsweep::tests::spreading_response;
 
 namespace {
@@ -88,7 +88,7 @@ Coverage coverage_of(std::size_t d, const std::vector<Measured>& measured) {
         std::vector<double> truth;
         for (std::size_t j = 0; j < d; ++j) truth.push_back(uniform_at(e, j));
         std::vector<designs::MeasuredTarget> targets;
-        Responses responses;
+        ResponseFunctions responses;
         for (std::size_t t = 0; t < measured.size(); ++t) {
             const auto& m = measured[t];
             const std::string name = "y" + std::to_string(t);

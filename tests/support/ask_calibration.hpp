@@ -13,7 +13,7 @@
 namespace grainsweep::tests {
 
 /// Of a point of the unit box; conditions are coordinates like the others.
-using Responses = std::map<std::string, std::function<double(std::span<const double>)>>;
+using ResponseFunctions = std::map<std::string, std::function<double(std::span<const double>)>>;
 
 /// Factors f0, f1, ... over [0, 1].
 inline designs::DesignRequest calibration_request(std::size_t dimensions,
@@ -32,14 +32,15 @@ inline designs::DesignRequest calibration_request(std::size_t dimensions,
     return request;
 }
 
-inline void answer(designs::DesignRequest& request, const designs::PointSet& points, const Responses& responses) {
+inline void answer(designs::DesignRequest& request, const designs::PointSet& points,
+                   const ResponseFunctions& responses) {
     for (const auto& [observable, response] : responses) {
         auto& answers = request.answers[observable];
         for (std::size_t p = answers.size(); p < points.size(); ++p) answers.emplace_back(response(points.point(p)));
     }
 }
 
-inline designs::Calibration answered(designs::DesignRequest& request, const Responses& responses) {
+inline designs::Calibration answered(designs::DesignRequest& request, const ResponseFunctions& responses) {
     for (std::size_t asked = 0;;) {
         auto found = designs::calibration_of(request);
         if (found.points.size() == asked) return found;

@@ -232,7 +232,7 @@ TEST(CalibrationWaves, ACurveOfManyPointsIsNoMoreCertainThanWhatItLeavesOut) {
     // The same shift along the whole curve: twelve points determine it little better than the discrepancy of one.
     const auto sd_of = [](std::size_t points) {
         std::vector<MeasuredTarget> targets;
-        grainsweep::tests::Responses responses;
+        grainsweep::tests::ResponseFunctions responses;
         for (std::size_t k = 0; k < points; ++k) {
             const auto name = "c@" + std::to_string(static_cast<double>(k) / static_cast<double>(points - 1));
             targets.push_back({name, 0.5, 0.01, 0.05, {}, 1});
