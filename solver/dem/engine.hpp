@@ -28,6 +28,7 @@ struct Sphere {
     Vec3 angular_velocity{};  ///< rad/s
     double radius = 0;        ///< m
     bool mobile = true;       ///< false: frozen, an obstacle of infinite mass
+    std::uint8_t kind = 0;    ///< of Setup::kinds
 };
 
 /// Periodic faces wrap; a particle whose centre passes an open face is removed.
@@ -45,15 +46,27 @@ struct Shaking {
     double frequency = 0;  ///< Hz; a period lasts at least twenty time steps
 };
 
+/// Place of the pair of two kinds, in any order, in a list of all pairs.
+[[nodiscard]] constexpr std::size_t place_of_pair(std::size_t a, std::size_t b) {
+    return a < b ? b * (b + 1) / 2 + a : a * (a + 1) / 2 + b;
+}
+
+/// Powder of several kinds of spheres.
+struct Kinds {
+    std::vector<double> densities;  ///< of each, kg/m3
+    std::vector<Material> pairs;    ///< of their contacts, at place_of_pair(); the density in them counts for nothing
+};
+
 struct Setup {
     Domain domain;
-    Material material;
+    Material material;  ///< of all spheres, unless there are kinds
+    Kinds kinds;
     Vec3 gravity{0, 0, -9.81};  ///< m/s2
     Shaking shaking;
     double time_step = 1e-5;  ///< s
     std::vector<Sphere> spheres;
     std::vector<Wall> walls;
-    Surface frozen;  ///< what differs from the material in contacts with frozen spheres
+    Surface frozen;  ///< what differs from the material in contacts with frozen spheres; without kinds
 };
 
 /// How to compute it; never changes what is asked beyond the stated error of the precision.
@@ -149,11 +162,6 @@ public:
     virtual void save(std::vector<std::byte>& into) const = 0;
     virtual void restore(std::span<const std::byte> from) = 0;
 };
-
-/// Those in contacts between particles, wall by wall with walls, and with frozen spheres where these differ.
-[[nodiscard]] std::vector<Material> materials_of(const Setup& setup);
-/// Whether there are frozen spheres in contacts with which something differs from the material.
-[[nodiscard]] bool frozen_differ(const Setup& setup);
 
 /// Throws std::invalid_argument with one sentence on a setup that no engine computes.
 void require_possible(const Setup& setup);

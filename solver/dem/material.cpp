@@ -1,19 +1,24 @@
 #include "solver/dem/material.hpp"
 
-#include "solver/dem/engine.hpp"
+#include "solver/dem/walls/wall.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace grainsweep::dem {
 
 double effective_modulus(const Material& m) {
-    return m.youngs_modulus / (2 * (1 - m.poisson_ratio * m.poisson_ratio));
+    if (!m.partner) return m.youngs_modulus / (2 * (1 - m.poisson_ratio * m.poisson_ratio));
+    const auto compliance = [](double modulus, double ratio) { return (1 - ratio * ratio) / modulus; };
+    return 1 / (compliance(m.youngs_modulus, m.poisson_ratio) +
+                compliance(m.partner->youngs_modulus, m.partner->poisson_ratio));
 }
 
 double effective_shear_modulus(const Material& m) {
-    return m.youngs_modulus / (4 * (2 - m.poisson_ratio) * (1 + m.poisson_ratio));
+    if (!m.partner) return m.youngs_modulus / (4 * (2 - m.poisson_ratio) * (1 + m.poisson_ratio));
+    const auto compliance = [](double modulus, double ratio) { return 2 * (2 - ratio) * (1 + ratio) / modulus; };
+    return 1 / (compliance(m.youngs_modulus, m.poisson_ratio) +
+                compliance(m.partner->youngs_modulus, m.partner->poisson_ratio));
 }
 
 double damping_ratio(double restitution) {
@@ -37,18 +42,6 @@ Material at_surface(const Material& material, const Surface& surface) {
     m.cohesion = surface.cohesion.value_or(m.cohesion);
     m.surface_energy = surface.surface_energy.value_or(m.surface_energy);
     return m;
-}
-
-std::vector<Material> materials_of(const Setup& setup) {
-    std::vector<Material> all{setup.material};
-    for (const Wall& wall : setup.walls) all.push_back(at_surface(setup.material, wall.surface));
-    if (frozen_differ(setup)) all.push_back(at_surface(setup.material, setup.frozen));
-    return all;
-}
-
-bool frozen_differ(const Setup& setup) {
-    return at_surface(setup.material, setup.frozen) != setup.material &&
-           std::ranges::any_of(setup.spheres, [](const Sphere& s) { return !s.mobile; });
 }
 
 }  // namespace grainsweep::dem

@@ -1,14 +1,23 @@
-// The parameters of a powder, and what contact laws need of them, one material shared by particles and walls.
+// The parameters of a powder, and what contact laws need of them.
 //
 //     1/E* = 2 (1 - nu^2)/E          1/G* = 4 (2 - nu)(1 + nu)/E         beta = ln e / sqrt(ln^2 e + pi^2)
+//
+// of one material; of two
+//
+//     1/E* = (1 - nu_a^2)/E_a + (1 - nu_b^2)/E_b        1/G* = 2 (2 - nu_a)(1 + nu_a)/E_a + 2 (2 - nu_b)(1 + nu_b)/E_b
 //
 // Hertz (1882), Mindlin (1949). (Wu 2020, eq. 2, prints (1 - nu)^2: a misprint. Gupta, eq. 11, drops the sign of
 // beta, which is negative for e < 1.)
 #pragma once
 
+#include <optional>
+
 namespace grainsweep::dem {
 
 struct Surface;  // walls/wall.hpp
+
+/// Most kinds of spheres with materials of their own.
+inline constexpr unsigned kinds_at_most = 8;
 
 /// How touching bodies attract each other. By cohesion energy density times a contact area, overlap d, first order in
 /// d for equal spheres: sjkr pi R d (LIGGGHTS 3.8 `sjkr`), sjkr2 2 pi R d, paper pi R d/4 (Gupta, eq. 15 as printed).
@@ -27,13 +36,23 @@ enum class RollingLaw { epsd, epsd_liggghts, cdt };
     return law == CohesionLaw::jkr || law == CohesionLaw::dmt;
 }
 
-/// One material for particles and walls; the Surface of a wall, or of frozen spheres, may differ in part.
+/// Elastic constants of a body.
+struct Elasticity {
+    double youngs_modulus = 21e6;  ///< Pa
+    double poisson_ratio = 0.3;
+
+    bool operator==(const Elasticity&) const = default;
+};
+
+/// One material for particles and walls; the Surface of a wall, or of frozen spheres, may differ in part. Or how bodies
+/// of two materials touch.
 struct Material {
     double youngs_modulus = 21e6;  ///< Pa
     double poisson_ratio = 0.3;
-    double density = 7980;     ///< kg/m3
-    double restitution = 0.5;  ///< (0, 1]
-    double friction = 0.2;     ///< Coulomb, particle-particle and particle-wall; 0: no tangential law at all
+    std::optional<Elasticity> partner{};  ///< of the other body, where it is of another material
+    double density = 7980;                ///< kg/m3
+    double restitution = 0.5;             ///< (0, 1]
+    double friction = 0.2;                ///< Coulomb, particle-particle and particle-wall; 0: no tangential law at all
     /// mu_r, tangent of the steepest slope on which a sphere stays at rest, [0, 1]; 0: no rolling resistance at all
     double rolling_friction = 0;
     RollingLaw rolling_law = RollingLaw::epsd;

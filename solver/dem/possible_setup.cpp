@@ -1,4 +1,4 @@
-#include "solver/dem/engine.hpp"
+#include "solver/dem/kinds.hpp"
 #include "solver/dem/shaking.hpp"
 #include "solver/geometry/vector.hpp"
 #include "solver/particles/neighbour_list.hpp"
@@ -31,8 +31,26 @@ void check(const Material& m) {
     require(not_negative(m.cohesion), "the cohesion energy density must not be negative");
     require(not_negative(m.surface_energy), "the surface energy must not be negative");
     // Beyond 1 the rolling spring would be stiffer than those the time step is judged by.
+    if (m.partner) {
+        require(positive(m.partner->youngs_modulus), "Young's modulus must be positive");
+        require(m.partner->poisson_ratio > -1 && m.partner->poisson_ratio <= 0.5,
+                "Poisson's ratio must lie in (-1, 0.5]");
+    }
     require(m.rolling_friction >= 0 && m.rolling_friction <= 1, "the rolling friction must lie in [0, 1]");
     require(m.rolling_damping >= 0 && m.rolling_damping <= 1, "the rolling damping must lie in [0, 1]");
+}
+
+void check_kinds(const Setup& setup) {
+    const auto& [densities, pairs] = setup.kinds;
+    if (densities.empty()) return require(pairs.empty(), "kinds of spheres need a density each");
+    const std::size_t count = densities.size();
+    require(count <= kinds_at_most, "there are at most eight kinds of spheres");
+    require(pairs.size() == place_of_pair(count - 1, count - 1) + 1, "every pair of kinds needs a material");
+    for (const double density : densities) require(positive(density), "the density must be positive");
+    for (const Material& m : pairs) check(m);
+    for (const Wall& wall : setup.walls) std::ranges::for_each(wall.materials, check);
+    for (const Sphere& s : setup.spheres) require(s.kind < count, "a sphere is of a kind that there is not");
+    require(setup.frozen == Surface{}, "among several kinds frozen spheres are of a kind, and have no surface");
 }
 
 void check_spheres(const Setup& setup) {
@@ -59,11 +77,13 @@ void check_spheres(const Setup& setup) {
 
 void require_possible(const Setup& setup) {
     check(setup.material);
+    check_kinds(setup);
     check_spheres(setup);
     const std::string of_frozen = flaw(setup.frozen, "frozen spheres");
     require(of_frozen.empty(), of_frozen);
-    for (const Material& m : materials_of(setup))
-        require(m.cohesion_law != CohesionLaw::jkr || (m.surface_energy > 0) == (setup.material.surface_energy > 0),
+    const std::vector<Material> all = materials_of(setup);
+    for (const Material& m : all)
+        require(m.cohesion_law != CohesionLaw::jkr || (m.surface_energy > 0) == (all.front().surface_energy > 0),
                 "jkr needs surface energy in all contacts or in none: a small one, or dmt, where there is none");
     require(positive(setup.time_step), "the time step must be positive");
     require(geometry::finite(setup.gravity), "gravity must be finite");

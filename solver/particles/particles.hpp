@@ -22,6 +22,7 @@ struct Particles {
     std::vector<Vec3> torque;            ///< N m
     std::vector<double> radius;          ///< m
     std::vector<double> inverse_mass;    ///< 1/kg; 0: frozen
+    std::vector<std::uint8_t> kind;      ///< of contact
 
     [[nodiscard]] std::size_t size() const { return id.size(); }
 
@@ -36,6 +37,7 @@ struct Particles {
         visit(self.torque);
         visit(self.radius);
         visit(self.inverse_mass);
+        visit(self.kind);
     }
 
     void resize(std::size_t n) {

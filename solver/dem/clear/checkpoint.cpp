@@ -6,7 +6,7 @@
 
 namespace grainsweep::dem::clear {
 
-inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'0007ULL;  // "grnscl", version 7
+inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'0008ULL;  // "grnscl", version 8
 
 void ClearEngine::state(State& into) const {
     std::vector<std::uint32_t> place(spheres_at_start_, particles::gone);
@@ -60,7 +60,7 @@ void ClearEngine::save(std::vector<std::byte>& into) const {
     into.clear();
     ByteWriter out(into);
     out.put(checkpoint_format);
-    out.put(laws_->constants());
+    out.put(constants());
     out.put(static_cast<std::uint64_t>(spheres_at_start_));
     out.put(time_step_);
     out.put(shaking_);
@@ -162,9 +162,9 @@ void ClearEngine::restore(std::span<const std::byte> from) {
             throw std::invalid_argument("checkpoint of another engine or another setup");
     };
     expect(checkpoint_format);
-    std::vector<double> constants;
-    in.get(constants);
-    if (constants != laws_->constants()) throw std::invalid_argument("checkpoint of other laws or another material");
+    std::vector<double> of_laws;
+    in.get(of_laws);
+    if (of_laws != constants()) throw std::invalid_argument("checkpoint of other laws or another material");
     expect(static_cast<std::uint64_t>(spheres_at_start_));
     expect(time_step_);
     expect(shaking_);
@@ -174,6 +174,7 @@ void ClearEngine::restore(std::span<const std::byte> from) {
     };
     within(p_.radius, radii_at_start_);
     within(p_.inverse_mass, inverse_masses_at_start_);
+    for (const std::uint8_t kind : p_.kind) in.require(kind < table_.kinds());
     list_.restore(in, p_.size());
     restore_walls(in);
     in.finish();

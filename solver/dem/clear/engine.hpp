@@ -11,7 +11,7 @@
 
 #include "solver/bytes.hpp"
 #include "solver/dem/energy_balance.hpp"
-#include "solver/dem/engine.hpp"
+#include "solver/dem/kinds.hpp"
 #include "solver/dem/laws/any_contact.hpp"
 #include "solver/dem/walls/moving_wall.hpp"
 #include "solver/geometry/domain.hpp"
@@ -24,7 +24,8 @@ namespace grainsweep::dem::clear {
 /// One wall, the particles that may touch it before the next rebuild, ascending, and its contacts.
 struct WallContacts {
     MovingWall wall;
-    std::unique_ptr<const AnyContact> laws;  // of its surface
+    std::vector<std::unique_ptr<const AnyContact>> laws;  // of its contacts with each kind of spheres
+    std::vector<double> stiffness;                        // likewise, over that of the first pair of kinds
     std::vector<std::uint32_t> near;
     double built = 0;  // wall time when they were listed, s
     geometry::Pose pose_when_built;
@@ -38,7 +39,7 @@ struct WallContacts {
 class ClearEngine final : public Engine {
 public:
     /// `equal`: all radii are the same, which shortens reduced masses and radii (to other last digits).
-    ClearEngine(const Setup& setup, const Method& method, std::unique_ptr<const AnyContact> laws, bool equal);
+    ClearEngine(const Setup& setup, const Method& method, const AnyContact& laws, bool equal);
 
     void run(std::int64_t steps) override;
     void set_walls(std::vector<Wall> walls) override;
@@ -77,9 +78,8 @@ private:
         const double ri = radius(i), rj = radius(j);
         return inertia_about_contact / (inverse_mass(i) / (ri * ri) + inverse_mass(j) / (rj * rj));
     }
-    [[nodiscard]] const AnyContact& laws_of(std::size_t i, std::size_t j) const {
-        return mobile(i) && mobile(j) ? *laws_ : *frozen_laws_;
-    }
+    [[nodiscard]] std::size_t pair(std::size_t i, std::size_t j) const { return place_of_pair(p_.kind[i], p_.kind[j]); }
+    [[nodiscard]] const AnyContact& laws_of(std::size_t i, std::size_t j) const { return *laws_[pair(i, j)]; }
     [[nodiscard]] particles::Radii radii() const { return {0, p_.radius}; }
     /// Components of a contact's memory.
     [[nodiscard]] std::size_t memories() const { return pairs_.components(); }
@@ -108,6 +108,7 @@ private:
     [[nodiscard]] Vec3 momentum() const;
     void rebuild(std::span<const std::int32_t> removed = {});
     void forget_separated();
+    [[nodiscard]] std::vector<double> constants() const;
     [[nodiscard]] std::vector<Contacts> make_walls(const std::vector<Wall>& walls) const;
     void list_walls(std::span<const std::uint32_t> fresh_index);
     void carry_touches(Contacts& contacts, std::span<const std::uint32_t> before,
@@ -129,9 +130,10 @@ private:
     void require_possible() const;
     void restore_walls(ByteReader& in);
 
-    Material material_;
-    std::unique_ptr<const AnyContact> laws_, frozen_laws_;  // of pairs, and of those with a frozen partner
-    bool spins_, rolls_, reaches_, remembers_separation_;   // traits of the laws
+    ContactTable table_;
+    std::vector<std::unique_ptr<const AnyContact>> laws_;  // of pairs of kinds
+    std::vector<double> stiffness_;                        // E* of these over that of the first
+    bool spins_, rolls_, reaches_, remembers_separation_;  // traits of the laws
     geometry::Domain domain_;
     std::array<Vec3, 27> image_shifts_;
     Vec3 gravity_;
@@ -142,7 +144,7 @@ private:
     bool equal_;
     double mass_ = 0;                                                     // of all particles, if equal_
     std::pair<double, double> radii_at_start_, inverse_masses_at_start_;  // least and largest
-    double swing_factor_;  // dt^2 2 E*: times sqrt(R* d)/m* it is the square of a contact's phase per step
+    double swing_factor_;  // dt^2 2 E*, of the first pair: times stiffest_ the square of a contact's phase per step
     double skin_;
     double beyond_pair_ = 0, beyond_wall_ = 0;  // how far contacts may last beyond touch, m
     std::size_t spheres_at_start_;
@@ -168,7 +170,7 @@ private:
     double largest_overlap_ = 0;
     double peak_overlap_ = 0;          // largest of it so far
     double largest_wall_overlap_ = 0;  // over the diameter
-    double stiffest_ = 0;              // largest sqrt(R* d)/m* of a contact, m/kg
+    double stiffest_ = 0;              // largest sqrt(R* d)/m* of a contact times its stiffness, m/kg
     double speed_limit_ = 0;
     double work_of_walls_ = 0;     // J, since the walls were set
     double work_of_shaking_ = 0;   // J, since the start

@@ -129,7 +129,7 @@ void ClearEngine::pair_contacts(bool advance) {
             const AnyContact& laws = laws_of(i, j);
             if (reaches_ && !begins(laws, t, memory)) continue;
             largest = std::max(largest, t.overlap / (2 * std::min(t.radius_i, t.radius_j)));
-            stiffest_ = std::max(stiffest_, t.root / t.reduced_mass);
+            stiffest_ = std::max(stiffest_, t.root / t.reduced_mass * stiffness_[pair(i, j)]);
             const auto r = advance ? laws.advance(t, memory) : laws.respond(t, memory);
             const Vec3 f = r.normal * t.normal - r.resistance;
             p_.force[i] += f;
@@ -187,10 +187,11 @@ void ClearEngine::wall_contacts(Contacts& contacts, bool advance) {
         const Vec3 wall_velocity = twist.at(x - place.distance * place.normal);
         auto t = touch(i, place, wall_velocity);
         double* const memory = contacts.memory.data() + k * memories();
-        if (reaches_ && !begins(*contacts.laws, t, memory)) continue;
+        const AnyContact& laws = *contacts.laws[p_.kind[i]];
+        if (reaches_ && !begins(laws, t, memory)) continue;
         largest = std::max(largest, t.overlap / (2 * t.radius_i));
-        stiffest_ = std::max(stiffest_, t.root * inverse_mass(i));
-        const auto r = advance ? contacts.laws->advance(t, memory) : contacts.laws->respond(t, memory);
+        stiffest_ = std::max(stiffest_, t.root * inverse_mass(i) * contacts.stiffness[p_.kind[i]]);
+        const auto r = advance ? laws.advance(t, memory) : laws.respond(t, memory);
         const Vec3 f = r.normal * t.normal - r.resistance;
         const double arm = t.radius_i - t.overlap / 2;
         p_.force[i] += f;
@@ -245,7 +246,7 @@ void ClearEngine::for_each_touched_wall(Visit&& visit) const {
             const double* const memory = contacts.memory.data() + k * memories();
             const Vec3 x = contacts.wall.image().of(p_.position[i]);
             auto t = touch(i, place, contacts.wall.twist().at(x - place.distance * place.normal));
-            if (!reaches_ || contacts.laws->begin(t, memory)) visit(i, w, t, memory);
+            if (!reaches_ || contacts.laws[p_.kind[i]]->begin(t, memory)) visit(i, w, t, memory);
         }
     }
 }
@@ -261,7 +262,7 @@ void ClearEngine::contacts(std::vector<ContactForce>& into) const {
         add(laws_of(i, j), i, p_.id[j], t, memory);
     });
     for_each_touched_wall([&](std::size_t i, std::size_t w, const auto& t, const double* memory) {
-        add(*walls_[w].laws, i, -1 - static_cast<std::int32_t>(w), t, memory);
+        add(*walls_[w].laws[p_.kind[i]], i, -1 - static_cast<std::int32_t>(w), t, memory);
     });
 }
 
@@ -278,8 +279,8 @@ double ClearEngine::mechanical_energy(double& active) const {
     for_each_touching_pair([&](std::size_t i, std::size_t j, const auto& t, const double* memory) {
         add(laws_of(i, j).energy(t, memory));
     });
-    for_each_touched_wall([&](std::size_t, std::size_t w, const auto& t, const double* memory) {
-        add(walls_[w].laws->energy(t, memory));
+    for_each_touched_wall([&](std::size_t i, std::size_t w, const auto& t, const double* memory) {
+        add(walls_[w].laws[p_.kind[i]]->energy(t, memory));
     });
     for (std::size_t i = 0; i < p_.size(); ++i) {
         if (!mobile(i)) continue;

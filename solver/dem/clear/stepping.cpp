@@ -34,14 +34,12 @@ std::vector<double> factors_of_exchange(const AnyContact& laws) {
 
 }  // namespace
 
-ClearEngine::ClearEngine(const Setup& setup, const Method& method, std::unique_ptr<const AnyContact> laws, bool equal)
-    : material_(setup.material),
-      laws_(std::move(laws)),
-      frozen_laws_(laws_->of(at_surface(setup.material, setup.frozen))),
-      spins_(laws_->traits().spin),
-      rolls_(laws_->traits().rolls),
-      reaches_(laws_->traits().reaches),
-      remembers_separation_(laws_->traits().remembers_separation),
+ClearEngine::ClearEngine(const Setup& setup, const Method& method, const AnyContact& laws, bool equal)
+    : table_(setup),
+      spins_(laws.traits().spin),
+      rolls_(laws.traits().rolls),
+      reaches_(laws.traits().reaches),
+      remembers_separation_(laws.traits().remembers_separation),
       domain_{setup.domain.low, setup.domain.high, setup.domain.periodic},
       image_shifts_(domain_.image_shifts()),
       gravity_(setup.gravity),
@@ -50,10 +48,10 @@ ClearEngine::ClearEngine(const Setup& setup, const Method& method, std::unique_p
       body_(setup.gravity),
       time_step_(setup.time_step),
       equal_(equal),
-      swing_factor_(2 * effective_modulus(setup.material) * setup.time_step * setup.time_step),
+      swing_factor_(2 * effective_modulus(table_.pairs().front()) * setup.time_step * setup.time_step),
       skin_(method.skin),
       spheres_at_start_(setup.spheres.size()),
-      pairs_(factors_of_exchange(*laws_)) {
+      pairs_(factors_of_exchange(laws)) {
     const std::size_t n = setup.spheres.size();
     p_.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
@@ -63,17 +61,22 @@ ClearEngine::ClearEngine(const Setup& setup, const Method& method, std::unique_p
         p_.velocity[i] = s.velocity;
         p_.angular_velocity[i] = s.angular_velocity;
         p_.radius[i] = s.radius;
-        p_.inverse_mass[i] = s.mobile ? 1 / sphere_mass(s.radius, material_.density) : 0;
+        p_.inverse_mass[i] = s.mobile ? 1 / sphere_mass(s.radius, density_of(setup, s)) : 0;
+        p_.kind[i] = table_.kind_of(s);
     }
     radii_at_start_ = range_of(p_.radius);
     inverse_masses_at_start_ = range_of(p_.inverse_mass);
     const auto [smallest, largest] = radii_at_start_;
     for (const Material& m : materials_of(setup)) {
-        const auto contact = laws_->of(m);
+        const auto contact = laws.of(m);
         beyond_pair_ = std::max(beyond_pair_, contact->beyond(largest / 2));
         beyond_wall_ = std::max(beyond_wall_, contact->beyond(largest));
     }
-    mass_ = sphere_mass(largest, material_.density);
+    for (const Material& m : table_.pairs()) {
+        laws_.push_back(laws.of(m));
+        stiffness_.push_back(effective_modulus(m) / effective_modulus(table_.pairs().front()));
+    }
+    mass_ = n > 0 ? sphere_mass(largest, density_of(setup, setup.spheres.front())) : 0;
     if (skin_ <= 0 && n > 0) {
         skin_ = default_skin * 2 * smallest;
         // Two images of one particle must never reach the same partner.
@@ -209,16 +212,32 @@ void ClearEngine::forget_separated() {
         }
 }
 
+/// Of all pairs of kinds.
+std::vector<double> ClearEngine::constants() const {
+    std::vector<double> all;
+    for (const auto& laws : laws_) {
+        const std::vector<double> some = laws->constants();
+        all.insert(all.end(), some.begin(), some.end());
+    }
+    return all;
+}
+
 std::vector<WallContacts> ClearEngine::make_walls(const std::vector<Wall>& walls) const {
     std::vector<Contacts> made;
     for (const Wall& wall : walls) {
-        const Material m = at_surface(material_, wall.surface);
-        if (!laws_->covers(m))
-            throw std::invalid_argument("the surface of a wall has friction or cohesion that nothing at the start had");
-        auto laws = laws_->of(m);
-        if (laws->beyond(radii_at_start_.second) > beyond_wall_)
-            throw std::invalid_argument("the surface of a wall attracts from further than anything at the start did");
-        made.push_back({MovingWall(wall, domain_, radii_at_start_.second), std::move(laws), {}, 0, {}, {}, {}, {}, {}});
+        Contacts contacts{MovingWall(wall, domain_, radii_at_start_.second), {}, {}, {}, 0, {}, {}, {}, {}, {}};
+        for (std::size_t kind = 0; kind < table_.kinds(); ++kind) {
+            const Material m = table_.at_wall(wall, kind);
+            if (!laws_.front()->covers(m))
+                throw std::invalid_argument(
+                    "the surface of a wall has friction or cohesion that nothing at the start had");
+            contacts.laws.push_back(laws_.front()->of(m));
+            contacts.stiffness.push_back(effective_modulus(m) / effective_modulus(table_.pairs().front()));
+            if (contacts.laws.back()->beyond(radii_at_start_.second) > beyond_wall_)
+                throw std::invalid_argument(
+                    "the surface of a wall attracts from further than anything at the start did");
+        }
+        made.push_back(std::move(contacts));
     }
     return made;
 }

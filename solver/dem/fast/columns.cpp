@@ -48,6 +48,7 @@ void Columns::bind(Field& f) const {
     f.records = records.data();
     f.residuals = residuals.data();
     f.forces = forces.data();
+    f.kind = kind.data();
     f.row = row.data();
     f.advanced = advanced.data();
     f.advanced_before = advanced_before.data();
@@ -81,6 +82,7 @@ void Columns::hold_particles(std::size_t particles, std::size_t wall_count) {
     else
         forces_next.hold(n);
     id.hold(n), id_next.hold(n);
+    kind.hold(n), kind_next.hold(n);
     row.hold(n);
     for (auto& c : column) c.hold(n);
     column_radius.hold(n), column_mobile.hold(n);

@@ -10,12 +10,12 @@
 namespace grainsweep::dem::fast {
 namespace {
 
-template <class K, bool frozen_differ = false>
-constexpr Kernels compiled{width,       sweep<K, frozen_differ>, advance<K>,         walls<K>,
-                           find_pieces, search<K::unequal>,      refresh<K::unequal>};
+template <class K, bool several = false>
+constexpr Kernels compiled{width,       sweep<K, several>,  advance<K>,         walls<K, several>,
+                           find_pieces, search<K::unequal>, refresh<K::unequal>};
 template <class K>
 GRAINSWEEP_LANES const Kernels& holding(const Needs& n) {
-    return n.frozen_differ ? compiled<K, true> : compiled<K>;
+    return n.several ? compiled<K, true> : compiled<K>;
 }
 
 template <class Combination>

@@ -23,13 +23,12 @@ ContactReader::ContactReader(const PairContacts& laws, const ListSpace& space, c
       parked_(parked),
       beyond_pair_(space.scale.length * static_cast<double>(field.constants.beyond)),
       beyond_wall_(space.scale.length * static_cast<double>(field.constants.beyond_wall)) {
-    std::ranges::transform(laws.powder->traits().memory, memory_unit_.begin(),
+    std::ranges::transform(laws.front()->traits().memory, memory_unit_.begin(),
                            [&](const MemoryKind& kind) { return unit_of(kind.dimension, space.scale); });
 }
 
 const AnyContact& ContactReader::laws_of(std::int32_t i, std::int32_t j) const {
-    const bool powder = field_.records[i].inverse_mass > 0 && field_.records[j].inverse_mass > 0;
-    return powder ? *laws_.powder : *laws_.frozen;
+    return *laws_[place_of_pair(field_.kind[i], field_.kind[j])];
 }
 
 double ContactReader::radius(std::int32_t i) const {
@@ -166,7 +165,7 @@ void ContactReader::for_each_at_wall(const Walls& walls, std::size_t w, Visit&& 
             const Memory of_contact = memory_at_wall(walls, w, i, slot++);
             t.normal = closest.normal;
             t.root = std::sqrt(t.effective_radius * std::max(t.overlap, 0.0));
-            if (!walls.laws(w).begin(t, of_contact.data())) continue;
+            if (!walls.laws(w, field_.kind[i]).begin(t, of_contact.data())) continue;
             visit(i, wall.twist().at(x - closest.distance * closest.normal), t, of_contact);
         }
     });
@@ -188,8 +187,8 @@ void ContactReader::wall(const Walls& walls, std::size_t w, std::vector<ContactF
                          t.rolling_inertia = inertia_about_contact * t.reduced_mass * t.radius_i * t.radius_i;
                          const Motion& motion = motions_[static_cast<std::size_t>(i)];
                          const Vec3 turn = (t.radius_i - t.overlap / 2) * motion.spin;
-                         add(walls.laws(w), t, i, -1 - static_cast<std::int32_t>(w), motion.velocity - velocity, turn,
-                             motion.spin, memory, into);
+                         add(walls.laws(w, field_.kind[i]), t, i, -1 - static_cast<std::int32_t>(w),
+                             motion.velocity - velocity, turn, motion.spin, memory, into);
                      });
 }
 
@@ -204,8 +203,8 @@ StoredEnergy ContactReader::stored(const Walls& walls) const {
         add_energy(laws_of(i, j), t, memory);
     });
     for (std::size_t w = 0; w < walls.count(); ++w)
-        for_each_at_wall(walls, w, [&](std::int32_t, const Vec3&, const auto& t, const Memory& memory) {
-            add_energy(walls.laws(w), t, memory);
+        for_each_at_wall(walls, w, [&](std::int32_t i, const Vec3&, const auto& t, const Memory& memory) {
+            add_energy(walls.laws(w, field_.kind[i]), t, memory);
         });
     return e;
 }

@@ -30,10 +30,8 @@ struct StoredEnergy {
     double squeezed = 0;
 };
 
-/// Laws of contacts between particles.
-struct PairContacts {
-    std::unique_ptr<const AnyContact> powder, frozen;  ///< without and with a frozen partner
-};
+/// Laws of contacts between particles, of each pair of kinds at place_of_pair().
+using PairContacts = std::vector<std::unique_ptr<const AnyContact>>;
 
 class ContactReader {
 public:

@@ -56,12 +56,15 @@ Depth deepest_at_walls(const FaultView& s) {
 }  // namespace
 
 SoundOverlaps sound_overlaps(const Setup& setup) {
-    double radius = std::numeric_limits<double>::infinity();
-    for (const Sphere& sphere : setup.spheres) radius = std::min(radius, sphere.radius);
+    double radius = std::numeric_limits<double>::infinity(), density = radius, modulus = 0;
+    for (const Sphere& sphere : setup.spheres) {
+        radius = std::min(radius, sphere.radius);
+        density = std::min(density, density_of(setup, sphere));
+    }
     if (!std::isfinite(radius)) return {static_cast<float>(overlap_limit), static_cast<float>(overlap_limit)};
-    const Material& m = setup.material;
-    const double modulus = m.youngs_modulus / (2 * (1 - m.poisson_ratio * m.poisson_ratio));
-    const double mass = 4.0 / 3 * std::numbers::pi * radius * radius * radius * m.density;
+    const ContactTable table(setup);
+    for (const Material& m : table.pairs()) modulus = std::max(modulus, effective_modulus(m));
+    const double mass = 4.0 / 3 * std::numbers::pi * radius * radius * radius * density;
     const auto limit = [&](double share) {  // R* = share R, m* = share m
         const double root = largest_sound_swing * largest_sound_swing * share * mass /
                             (2 * modulus * setup.time_step * setup.time_step);

@@ -374,5 +374,13 @@ GRAINSWEEP_LANES void flush_streams() {
 #endif
 }
 
+/// Number `at` of a table, in every lane; of one that fits a vector.
+GRAINSWEEP_LANES F looked_up(F table, I at) {
+    return {hn::TableLookupLanes(table.v, hn::IndicesFromVec(singles, at.v))};
+}
+GRAINSWEEP_LANES F gathered(const float* table, I at) {
+    return {hn::GatherIndex(singles, table, at.v)};
+}
+
 }  // namespace
 }  // namespace grainsweep::dem::fast

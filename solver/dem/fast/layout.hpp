@@ -19,8 +19,8 @@
 
 namespace grainsweep::dem::fast {
 
-/// Touching pairs worked on at a time: the fewest with which beds and chutes were fastest (docs/tried_and_dropped.md). No bit
-/// depends on it.
+/// Touching pairs worked on at a time: the fewest with which beds and chutes were fastest (docs/tried_and_dropped.md).
+/// No bit depends on it.
 constexpr std::int32_t tile = 256;
 /// Contacts with a wall worked on at a time. Its sums are formed row by row: another number rounds them otherwise.
 constexpr std::int32_t wall_tile = 128;
@@ -81,16 +81,15 @@ struct ParkedContact {
 struct Constants {
     double unit[3];  ///< length of one position unit
     float unit_single[3];
-    float inverse_unit[4];                  ///< fourth: 0
-    float gravity[8];                       ///< change of velocity per step; spin part 0
-    float radius;                           ///< of all particles where they are equal
-    double reach_squared;                   ///< (2 radius)^2, exact
-    float candidate_squared;                ///< the same, enlarged by the rounding of single precision
-    float beyond, beyond_wall;              ///< how far contacts may last beyond touch, of pairs and at walls
-    float root_radius;                      ///< sqrt(R*) of an equal pair
-    float rotation;                         ///< 2.5/R^2 where radii are equal
-    double laws[constants_at_most];         ///< of the combination of laws, in order
-    double frozen_laws[constants_at_most];  ///< in contacts with frozen particles
+    float inverse_unit[4];           ///< fourth: 0
+    float gravity[8];                ///< change of velocity per step; spin part 0
+    float radius;                    ///< of all particles where they are equal
+    double reach_squared;            ///< (2 radius)^2, exact
+    float candidate_squared;         ///< the same, enlarged by the rounding of single precision
+    float beyond, beyond_wall;       ///< how far contacts may last beyond touch, of pairs and at walls
+    float root_radius;               ///< sqrt(R*) of an equal pair
+    float rotation;                  ///< 2.5/R^2 where radii are equal
+    double laws[constants_at_most];  ///< of the combination of laws, in order; of the first pair of kinds
 };
 
 /// Bytes of what a shape is written in for lanes, at most.
@@ -107,7 +106,8 @@ struct alignas(16) PlacedWall {
     double middle[3], period[3], inverse_period[3];  ///< of images; 0 along axes that have none
     double rows[3][3];                               ///< of the turn from its body frame
     double velocity[3], spin[3], pivot[3];           ///< of its material
-    double laws[constants_at_most];                  ///< of its surface
+    double laws[constants_at_most];                  ///< of its surface, in contacts with the first kind
+    const double* laws_of_kinds;                     ///< rows of constants_at_most, where there are several kinds
     unsigned char numbers[numbers_at_most];
 };
 
@@ -177,6 +177,11 @@ struct Field {
     const std::int32_t* advanced;
     const std::int32_t* advanced_before;  ///< count+1
     std::int32_t skips;                   ///< 1: they are read
+
+    // Kinds of particles; read where there are several.
+    std::uint8_t* kind;           ///< of each record
+    std::int32_t kinds;           ///< how many
+    const double* laws_of_pairs;  ///< rows of constants_at_most: of kind a with kind b in row a*kinds + b
 
     // Inner list: pairs that may touch before the next refresh, sorted by the first particle.
     Place* inner_first;
@@ -253,10 +258,10 @@ struct Needs {
     bool unequal;              ///< radii differ, or the combination is compiled for such only
     bool frozen;               ///< particles of infinite mass are present
     bool resting;              ///< particles at rest may be left unadvanced
-    bool frozen_differ;        ///< contacts with frozen particles have constants of their own
+    bool several;              ///< kinds of particles, with constants of their own
     bool skips;                ///< those that are not advanced are passed over: worth its list unless they are few
     /// Whether some particles are not advanced, or the kernel allows for it.
-    [[nodiscard]] constexpr bool holds() const { return unequal || frozen || resting; }
+    [[nodiscard]] constexpr bool holds() const { return unequal || frozen || resting || several; }
 };
 
 [[nodiscard]] const Kernels& baseline_kernels(const Needs&);

@@ -37,6 +37,7 @@ void MixedEngine::pass(Self& self, Archive& archive) {
     if (c.residuals_apart) archive.column(c.residuals, particles);
     archive.column(c.forces, particles);
     archive.column(c.id, particles);
+    archive.column(c.kind, particles);
     const auto outer = static_cast<std::size_t>(self.field_.outer_count) + spare;
     archive.column(c.outer_first, outer);
     archive.column(c.outer_second, outer);
@@ -61,8 +62,8 @@ void MixedEngine::pass_walls(const MixedEngine& self, Writer& archive) {
 }
 
 void MixedEngine::pass_walls(MixedEngine& self, Reader& archive) {
-    self.walls_ =
-        Walls::restored(archive, self.space_.domain, self.space_.scale, self.needs_.combination, self.materials_);
+    self.walls_ = Walls::restored(archive, self.space_.domain, self.space_.scale, self.needs_.combination, self.table_,
+                                  self.materials_);
 }
 
 /// Of the case, the same at every step.
@@ -73,7 +74,7 @@ Seal MixedEngine::seal() const {
     s.width = kernels_->width;
     s.needs.combination = needs_.combination;
     s.needs.unequal = needs_.unequal, s.needs.frozen = needs_.frozen, s.needs.resting = needs_.resting;
-    s.needs.skips = needs_.skips;
+    s.needs.skips = needs_.skips, s.needs.several = needs_.several;
     std::memcpy(static_cast<void*>(&s.constants), &field_.constants, sizeof s.constants);
     for (std::size_t a = 0; a < 3; ++a) s.constants.gravity[a] = gravity_in_steps(gravity_[a], space_.scale);
     s.shaking = shaking_;
@@ -106,6 +107,7 @@ void MixedEngine::save(std::vector<std::byte>& into) const {
     clear_spare_entries();
     Writer writer(into);
     writer.value(seal());
+    writer.list(constants_);
     pass(*this, writer);
 }
 
@@ -132,9 +134,11 @@ void MixedEngine::require_possible() const {
         const std::int32_t id = c.id[k];
         require(id >= 0 && id < spheres_at_start_ && !known[static_cast<std::size_t>(id)]);
         known[static_cast<std::size_t>(id)] = true;
+        require(c.kind[k] == kinds_[static_cast<std::size_t>(id)]);
         const Record& r = c.records[k];
         require(r.radius >= 0.5F * smallest_diameter_ * (1 - rounding) && r.radius <= 0.5F + rounding);
-        require(r.inverse_mass >= 0 && r.inverse_mass <= (1 + rounding) / (8 * r.radius * r.radius * r.radius));
+        require(r.inverse_mass >= 0 &&
+                r.inverse_mass <= (1 + rounding) * lightest_ / (8 * r.radius * r.radius * r.radius));
     }
 
     // A list is sorted by its first particles; behind the particles two more fill vectors up.
@@ -196,6 +200,9 @@ void MixedEngine::restore(std::span<const std::byte> from) {
     const Seal own = seal();
     if (std::memcmp(&theirs, &own, sizeof own) != 0)
         throw std::invalid_argument("the checkpoint belongs to another setup, instruction path or version");
+    std::vector<double> constants;
+    reader.list(constants);
+    if (constants != constants_) throw std::invalid_argument("the checkpoint belongs to other materials");
     subdomains_.drop();
     pass(*this, reader);
     reader.finish();

@@ -28,10 +28,9 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
       needs_(make_needs(setup, rest_speed > 0)),
       rest_speed_(rest_speed),
       kernels_(&kernels_of(path, needs_)),
-      laws_{make_contact(needs_.combination, setup.material),
-            make_contact(needs_.combination, at_surface(setup.material, setup.frozen))},
+      table_(setup),
       materials_(materials_of(setup)),
-      walls_(setup.walls, setup.domain, space_.scale, needs_.combination, materials_),
+      walls_(setup.walls, setup.domain, space_.scale, needs_.combination, table_, materials_),
       sound_(sound_overlaps(setup)),
       watch_(setup, space_.scale),
       resting_(setup, laws_, space_.scale, rest_speed),
@@ -46,13 +45,26 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
     if (skin > 0) space_.skin = static_cast<float>(skin / space_.scale.length);
     space_.skin = std::min(space_.skin, largest_skin_);
     field_.constants = make_constants(setup, space_.scale, needs_);
-    columns_.histories = static_cast<std::int32_t>(laws_.powder->traits().memory.size());
-    std::ranges::transform(laws_.powder->traits().memory, columns_.exchanged,
+    for (const Material& m : table_.pairs()) laws_.push_back(make_contact(needs_.combination, m));
+    write_pair_laws();
+    columns_.histories = static_cast<std::int32_t>(laws_.front()->traits().memory.size());
+    std::ranges::transform(laws_.front()->traits().memory, columns_.exchanged,
                            [](const MemoryKind& kind) { return static_cast<float>(kind.exchanged); });
     load(setup);
     touches_.begin(field_, columns_, walls_, space_.scale);
     restart_forces();
     set_limits();
+}
+
+void MixedEngine::write_pair_laws() {
+    const std::size_t count = table_.kinds();
+    constants_.resize(count * count * constants_at_most);
+    for (std::size_t a = 0; a < count; ++a)
+        for (std::size_t b = 0; b < count; ++b)
+            write_law_constants(needs_.combination, table_.pairs()[place_of_pair(a, b)], space_.scale,
+                                constants_.data() + (a * count + b) * constants_at_most);
+    field_.kinds = static_cast<std::int32_t>(count);
+    field_.laws_of_pairs = constants_.data();
 }
 
 void MixedEngine::load(const Setup& setup) {
@@ -78,7 +90,11 @@ void MixedEngine::load(const Setup& setup) {
         r.radius = static_cast<float>(needs_.unequal ? radius : 0.5);
         if (needs_.unequal) r.rest[3] = r.radius;
         r.inverse_radius = 1 / r.radius;
-        r.inverse_mass = sphere.mobile ? static_cast<float>(1 / (8 * radius * radius * radius)) : 0.0F;
+        const double density = density_of(setup, sphere) / reference_density(setup);
+        r.inverse_mass = sphere.mobile ? static_cast<float>(1 / (8 * radius * radius * radius * density)) : 0.0F;
+        lightest_ = std::max(lightest_, static_cast<float>(1 / density));
+        kinds_.push_back(table_.kind_of(sphere));
+        columns_.kind[i] = kinds_.back();
         smallest_diameter_ = std::min(smallest_diameter_, 2 * r.radius);
         columns_.id[i] = static_cast<std::int32_t>(i);
         for (int a = 0; a < 3; ++a) {

@@ -261,7 +261,7 @@ void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
 }
 
 void MixedEngine::set_walls(std::vector<Wall> walls) {
-    Walls fresh(walls, space_.domain, space_.scale, needs_.combination, materials_);
+    Walls fresh(walls, space_.domain, space_.scale, needs_.combination, table_, materials_);
     full_step_velocities();
     if (needs_.resting) resting_.advance_all(field_);
     walls_ = std::move(fresh);

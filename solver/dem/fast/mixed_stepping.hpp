@@ -66,6 +66,7 @@ public:
 
 private:
     void load(const Setup& setup);
+    void write_pair_laws();
     void stand_walls();
     void begin_tally();
     void press_walls(bool moves);
@@ -112,11 +113,15 @@ private:
     Needs needs_;
     double rest_speed_;
     const Kernels* kernels_;
+    ContactTable table_;
     PairContacts laws_;                ///< in SI, for what is no part of a step
+    std::vector<std::uint8_t> kinds_;  ///< of spheres by id
+    std::vector<double> constants_;    ///< of laws, see Field::laws_of_pairs
     std::vector<Material> materials_;  ///< of particles and walls at the start
     Walls walls_;
     WallTouches touches_;
     float smallest_diameter_ = 1;
+    float lightest_ = 1;  ///< reference density over the smallest
     SoundOverlaps sound_;
     bool box_includes_rest_ = true;  ///< something at rest, or a face, bounds displacements besides the particles
 

@@ -25,12 +25,16 @@ double largest_radius(const Setup& setup) {
 
 }  // namespace
 
+double reference_density(const Setup& setup) {
+    return setup.kinds.densities.empty() ? setup.material.density : setup.kinds.densities.front();
+}
+
 Scale make_scale(const Setup& setup) {
     const double radius = largest_radius(setup);
     Scale s;
     s.length = 2 * radius;
     s.time = setup.time_step;
-    s.mass = 4.0 / 3 * pi * radius * radius * radius * setup.material.density;
+    s.mass = 4.0 / 3 * pi * radius * radius * radius * reference_density(setup);
     for (std::size_t a = 0; a < 3; ++a) {
         const double low = setup.domain.low[a], high = setup.domain.high[a];
         s.centre[a] = 0.5 * (low + high);
@@ -74,14 +78,14 @@ Constants make_constants(const Setup& setup, const Scale& scale, const Needs& ne
     }
     c.root_radius = 0.5F;
     c.rotation = needs.unequal ? 2.5F : 10.0F;
-    write_law_constants(needs.combination, setup.material, scale, c.laws);
-    write_law_constants(needs.combination, at_surface(setup.material, setup.frozen), scale, c.frozen_laws);
+    write_law_constants(needs.combination, ContactTable(setup).pairs().front(), scale, c.laws);
     return c;
 }
 
 Needs make_needs(const Setup& setup, bool resting) {
     Needs n{};
     n.resting = resting;
+    n.unequal = !equally_dense(setup);
     for (const Sphere& s : setup.spheres) {
         n.unequal = n.unequal || s.radius != setup.spheres.front().radius;
         n.frozen = n.frozen || !s.mobile;
@@ -89,7 +93,7 @@ Needs make_needs(const Setup& setup, bool resting) {
     n.combination = choose_combination(materials_of(setup), [&](const CombinationFacts& facts) {
         return !n.unequal || facts.columns != dem::Columns::equal;
     });
-    n.frozen_differ = frozen_differ(setup);
+    n.several = ContactTable(setup).kinds() > 1;
     // what is compiled for any spheres computes with each particle's own radius
     n.unequal = n.unequal || facts_of(n.combination).columns == dem::Columns::any;
     n.skips = n.resting || (n.frozen && !n.unequal && facts_of(n.combination).spin);

@@ -1,8 +1,8 @@
 // From SI to the engine's units and back, and the constants of the contact law in them.
 #pragma once
 
-#include "solver/dem/engine.hpp"
 #include "solver/dem/fast/layout.hpp"
+#include "solver/dem/kinds.hpp"
 
 namespace grainsweep::dem::fast {
 
@@ -20,6 +20,8 @@ struct Scale {
 };
 
 [[nodiscard]] Scale make_scale(const Setup& setup);
+/// That of Scale::mass, kg/m3.
+[[nodiscard]] double reference_density(const Setup& setup);
 /// An acceleration, m/s2, as change of velocity per step.
 [[nodiscard]] float gravity_in_steps(double acceleration, const Scale& scale);
 /// Of a quantity, in SI: what is 1 inside. Moments of inertia about a contact are counted in 7/5 m R^2 inside.

@@ -186,12 +186,13 @@ void sort_particles(Field& f, Columns& c, const ListSpace& space, std::int32_t k
             else
                 c.forces_next[t] = c.forces[i];
             c.id_next[t] = c.id[i];
+            c.kind_next[t] = c.kind[i];
             for (int a = 0; a < 3; ++a) c.column[a][t] = r.position[a];
             c.column_radius[t] = r.radius;
             c.column_mobile[t] = r.inverse_mass > 0 ? 1.0F : 0.0F;
         }
     });
-    c.records.swap(c.records_next), c.id.swap(c.id_next);
+    c.records.swap(c.records_next), c.id.swap(c.id_next), c.kind.swap(c.kind_next);
     if (c.residuals_apart)
         c.residuals.swap(c.residuals_next);
     else

@@ -162,6 +162,7 @@ void Subdomains::place_copies(Field& whole, Columns& columns) {
         next = even(next + 2 + subdomain->partner.size());
     }
     columns.records.hold(next + spare);
+    columns.kind.hold(next + spare);
     columns.forces.hold(next + spare);
     columns.bind(whole);
     for (const auto& subdomain : subdomains_)

@@ -80,7 +80,7 @@ struct alignas(64) Subdomain {
     /// How many pairs of a part of its inner list touch.
     [[nodiscard]] std::int32_t touching_in(std::int32_t from, std::int32_t count, std::int32_t width) const;
     /// Copies the records of its partners: all, or those that a sweep over the inner list meets.
-    void copy_partners(Record* records, bool all) const;
+    void copy_partners(Record* records, std::uint8_t* kind, bool all) const;
     /// Those of some particles, ascending, that are its own.
     [[nodiscard]] std::span<const std::int32_t> own(const std::vector<std::int32_t>& particles) const;
     /// Lets a sweep fetch the rows that send() will write.

@@ -12,6 +12,7 @@
 #pragma once
 
 #include "solver/dem/fast/integration.hpp"
+#include "solver/dem/fast/law_table.hpp"
 
 #include <cstring>
 #include <type_traits>
@@ -107,54 +108,30 @@ GRAINSWEEP_LANES F sum_of_turning_masses(const Record* records, const Place* fir
     return load(sum);
 }
 
-/// Lanes in which a partner is frozen.
-template <class Kernel>
-GRAINSWEEP_LANES M with_frozen(const Record* records, const Place* first, const Place* second, F inverse_masses) {
-    if constexpr (!Kernel::unequal) return inverse_masses < broadcast(1.5f);  // mobile ones have mass 1
-    float of_first[width], of_second[width];
-    for (int q = 0; q < width; ++q) {
-        of_first[q] = record_at(records, first[q])->inverse_mass;
-        of_second[q] = record_at(records, second[q])->inverse_mass;
-    }
-    return min(load(of_first), load(of_second)) < broadcast(1e-30f);
-}
-
-/// Constants of laws, each from `a` in the lanes of m, from `b` elsewhere. Laws are constants of lanes and nothing
-/// else.
-template <class Laws>
-GRAINSWEEP_LANES Laws selected(M m, const Laws& a, const Laws& b) {
-    static_assert(std::is_trivially_copyable_v<Laws> && sizeof(Laws) % sizeof(F) == 0);
-    constexpr std::size_t count = sizeof(Laws) / sizeof(F);
-    F of_a[count], of_b[count];
-    std::memcpy(static_cast<void*>(of_a), &a, sizeof(Laws));
-    std::memcpy(static_cast<void*>(of_b), &b, sizeof(Laws));
-    for (std::size_t k = 0; k < count; ++k) of_a[k] = select(m, of_a[k], of_b[k]);
-    Laws result = a;
-    std::memcpy(static_cast<void*>(&result), of_a, sizeof(Laws));
-    return result;
-}
-
-/// The laws of a kernel: of all pairs, or of those without and those with a frozen partner.
-template <class Kernel, bool frozen_differ>
+/// The laws of pairs: the same of all, or by the kinds of both particles.
+template <class Kernel, bool several>
 struct PairLaws {
     using Laws = typename Kernel::Laws;
-    explicit PairLaws(const Constants& c) : all(c.laws) {}
-    GRAINSWEEP_LANES const Laws& of(const Record*, const Place*, const Place*, F) const { return all; }
+    explicit PairLaws(const Field& f) : all(f.constants.laws) {}
+    GRAINSWEEP_LANES const Laws& of(const Field&, const Place*, const Place*) const { return all; }
     Laws all;
 };
 template <class Kernel>
 struct PairLaws<Kernel, true> {
     using Laws = typename Kernel::Laws;
-    explicit PairLaws(const Constants& c) : powder(c.laws), frozen(c.frozen_laws) {}
-    GRAINSWEEP_LANES Laws of(const Record* records, const Place* first, const Place* second, F inverse_masses) const {
-        return selected(with_frozen<Kernel>(records, first, second, inverse_masses), frozen, powder);
+    explicit PairLaws(const Field& f) : table(f.laws_of_pairs, f.kinds * f.kinds) {}
+    GRAINSWEEP_LANES Laws of(const Field& f, const Place* first, const Place* second) const {
+        std::int32_t row[width];
+        for (int q = 0; q < width; ++q)
+            row[q] = f.kind[first[q] / places_per_index] * f.kinds + f.kind[second[q] / places_per_index];
+        return table.at(load(row));
     }
-    Laws powder, frozen;
+    LawTable<Laws> table;
 };
 
 /// Force and torques of the packed pairs, into the outcome rows; histories from stream index `at` on.
-template <class Kernel, bool streams, bool frozen_differ>
-GRAINSWEEP_PHASE void meet(const Field& f, const PairLaws<Kernel, frozen_differ>& laws, Packed& p, int batches,
+template <class Kernel, bool streams, bool several>
+GRAINSWEEP_PHASE void meet(const Field& f, const PairLaws<Kernel, several>& laws, Packed& p, int batches,
                            std::int64_t at, Tally& t) {
     const Constants& c = f.constants;
     F largest_overlap = broadcast(t.overlap);
@@ -225,7 +202,7 @@ GRAINSWEEP_PHASE void meet(const Field& f, const PairLaws<Kernel, frozen_differ>
             for (int a = 0; a < Kernel::histories; ++a) memory[a] = load(p.memory[a] + b * width);
         else
             load_memory<Kernel>(f.history_next, at + b * width, memory);
-        const auto [force, turn, rolling] = respond(laws.of(f.records, first, second, m.inverse_masses), m, memory);
+        const auto [force, turn, rolling] = respond(laws.of(f, first, second), m, memory);
         if constexpr (streams)
             for (int a = 0; a < Kernel::histories; ++a) stream(f.history_next[a] + at + b * width, memory[a]);
         else
@@ -301,12 +278,12 @@ GRAINSWEEP_LANES void fetch_what_is_written_after(const Field& f, std::int32_t b
         prefetch_to_write(f.written_after + static_cast<std::int64_t>(cache_line) * fetched);
 }
 
-template <class Kernel, bool streams, bool frozen_differ>
+template <class Kernel, bool streams, bool several>
 void sweep_pairs(const Field& f, bool advancing, Tally& t) {
     Packed p;
     Progress at{};
     at.done = f.begin;
-    const PairLaws<Kernel, frozen_differ> laws(f.constants);
+    const PairLaws<Kernel, several> laws(f);
     const std::int32_t batches = f.inner_count / width;
     std::int32_t fetched = 0;
     for (bool last = false; !last;) {
@@ -315,7 +292,7 @@ void sweep_pairs(const Field& f, bool advancing, Tally& t) {
         if (last) fill_up(f, p, at.packed);
         if (f.lines_written_after != 0) fetch_what_is_written_after(f, at.batch, batches, fetched);
         const int full = (last ? at.packed + width - 1 : at.packed) / width;
-        meet<Kernel, streams, frozen_differ>(f, laws, p, full, at.met, t);
+        meet<Kernel, streams, several>(f, laws, p, full, at.met, t);
         scatter<Kernel>(f, p, full);
         at.met += full * width;
         at.packed = last ? 0 : at.packed - full * width;
@@ -332,13 +309,13 @@ void sweep_pairs(const Field& f, bool advancing, Tally& t) {
     if constexpr (streams) flush_streams();
 }
 
-template <class Kernel, bool frozen_differ>
+template <class Kernel, bool several>
 void sweep(const Field& f, bool advancing, Tally& t) {
     const auto denormals = flush_denormals();
     if (Kernel::histories > 0 && f.streams != 0)
-        sweep_pairs<Kernel, (Kernel::histories > 0), frozen_differ>(f, advancing, t);
+        sweep_pairs<Kernel, (Kernel::histories > 0), several>(f, advancing, t);
     else
-        sweep_pairs<Kernel, false, frozen_differ>(f, advancing, t);
+        sweep_pairs<Kernel, false, several>(f, advancing, t);
     restore_denormals(denormals);
 }
 

@@ -4,6 +4,7 @@
 // Included by the files of the instruction paths; internal linkage on purpose.
 #pragma once
 
+#include "solver/dem/fast/law_table.hpp"
 #include "solver/dem/fast/wall_places.hpp"
 
 namespace grainsweep::dem::fast {
@@ -52,9 +53,29 @@ GRAINSWEEP_LANES void fill_up(const Field& f, WallTile& t, int packed) {
     for (int a = 0; a < Kernel::histories; ++a) store(t.memory[a] + packed, zero);
 }
 
+/// The laws of a wall: the same of all particles, or by their kinds.
+template <class Kernel, bool several>
+struct WallLaws {
+    using Laws = typename Kernel::Laws;
+    WallLaws(const Field&, const PlacedWall& wall) : all(wall.laws) {}
+    GRAINSWEEP_LANES const Laws& of(const Field&, const Place*) const { return all; }
+    Laws all;
+};
+template <class Kernel>
+struct WallLaws<Kernel, true> {
+    using Laws = typename Kernel::Laws;
+    WallLaws(const Field& f, const PlacedWall& wall) : table(wall.laws_of_kinds, f.kinds) {}
+    GRAINSWEEP_LANES Laws of(const Field& f, const Place* particle) const {
+        std::int32_t row[width];
+        for (int q = 0; q < width; ++q) row[q] = f.kind[particle[q] / places_per_index];
+        return table.at(load(row));
+    }
+    LawTable<Laws> table;
+};
+
 /// The laws at the packed contacts: forces on the particles, new memories, and where asked for the wall's sums.
-template <class Kernel, bool summed>
-GRAINSWEEP_PHASE void press(const Field& f, const typename Kernel::Laws& laws, WallTile& t, int batches,
+template <class Kernel, bool summed, bool several>
+GRAINSWEEP_PHASE void press(const Field& f, const WallLaws<Kernel, several>& laws, WallTile& t, int batches,
                             float& wall_overlap, WallSums& sums) {
     F largest_overlap = broadcast(wall_overlap);
     LaneSums lanes{zero_vector(), zero_vector(), broadcast(0.0f)};
@@ -84,7 +105,7 @@ GRAINSWEEP_PHASE void press(const Field& f, const typename Kernel::Laws& laws, W
         }
         F memory[Kernel::histories + 1];
         for (int a = 0; a < Kernel::histories; ++a) memory[a] = load(t.memory[a] + at);
-        const auto [force, turn, rolling] = respond(laws, m, memory);
+        const auto [force, turn, rolling] = respond(laws.of(f, particle), m, memory);
         for (int a = 0; a < Kernel::histories; ++a) store(t.memory[a] + at, memory[a]);
         largest_overlap = max(keep(m.touching, m.overlap * inverse(radius + radius)), largest_overlap);
         if constexpr (summed) {
@@ -146,7 +167,7 @@ GRAINSWEEP_LANES void return_touches(const Field& f, std::int32_t from, int coun
         for (int q = 0; q < count; ++q) f.touch_memory[a][from + q] = t.memory[a][q];
 }
 
-template <class Kernel>
+template <class Kernel, bool several>
 void walls(const Field& f, Tally& tally) {
     const auto denormals = flush_denormals();
     WallTile t;
@@ -157,12 +178,12 @@ void walls(const Field& f, Tally& tally) {
         const auto [begin, end] = find != nullptr ? f.segments[w] : f.touched[w];
         f.wall_sums[w] = {};
         if (begin == end) continue;
-        const typename Kernel::Laws laws(wall.laws);
+        const WallLaws<Kernel, several> laws(f, wall);
         WallSums sums{};
         const auto press_packed = [&](int packed) {
             if (packed == 0) return;
             fill_up<Kernel>(f, t, packed);
-            const auto press_all = wall.summed != 0 ? press<Kernel, true> : press<Kernel, false>;
+            const auto press_all = wall.summed != 0 ? press<Kernel, true, several> : press<Kernel, false, several>;
             press_all(f, laws, t, (packed + width - 1) / width, tally.wall_overlap, sums);
         };
         if (find != nullptr) {

@@ -78,7 +78,7 @@ std::vector<Wall> read_walls(Reader& archive) {
 }  // namespace
 
 Walls::Walls(const std::vector<Wall>& walls, const Domain& domain, const Scale& scale, std::int32_t combination,
-             std::span<const Material> materials)
+             const ContactTable& table, std::span<const Material> materials)
     : scale_(scale), placed_(walls.size()), sums_(walls.size()), pivot_(walls.size()), work_(walls.size()) {
     std::vector<Material> together(materials.begin(), materials.end());
     together.emplace_back();
@@ -86,15 +86,23 @@ Walls::Walls(const std::vector<Wall>& walls, const Domain& domain, const Scale& 
     double furthest = 0;
     for (const Material& m : materials) furthest = std::max(furthest, beyond(m));
     for (std::size_t w = 0; w < walls.size(); ++w) {
-        const Material& surface = together.back() = at_surface(materials.front(), walls[w].surface);
-        if (!fits(combination, together))
-            throw std::invalid_argument("the surface of a wall has friction or cohesion that nothing at the start had");
-        if (beyond(surface) > furthest)
-            throw std::invalid_argument("the surface of a wall attracts from further than anything at the start did");
+        laws_.emplace_back();
+        constants_.emplace_back(table.kinds() * constants_at_most);
+        for (std::size_t kind = 0; kind < table.kinds(); ++kind) {
+            const Material& surface = together.back() = table.at_wall(walls[w], kind);
+            if (!fits(combination, together))
+                throw std::invalid_argument(
+                    "the surface of a wall has friction or cohesion that nothing at the start had");
+            if (beyond(surface) > furthest)
+                throw std::invalid_argument(
+                    "the surface of a wall attracts from further than anything at the start did");
+            laws_.back().push_back(make_contact(combination, surface));
+            write_law_constants(combination, surface, scale, constants_.back().data() + kind * constants_at_most);
+        }
+        std::copy_n(constants_.back().data(), constants_at_most, placed_[w].laws);
+        placed_[w].laws_of_kinds = constants_.back().data();
         moving_.emplace_back(walls[w], geometry::Domain{domain.low, domain.high, domain.periodic}, 0.5 * scale.length);
         single_.push_back(std::visit([]<class S>(const S&) { return Vectorised<S>; }, walls[w].shape));
-        laws_.push_back(make_contact(combination, surface));
-        write_law_constants(combination, surface, scale, placed_[w].laws);
         placed_[w].shape = static_cast<std::int32_t>(walls[w].shape.index());
         write_pose(moving_[w], scale, placed_[w]);
         write_twist(moving_[w].twist(), scale, placed_[w]);
@@ -173,8 +181,8 @@ void Walls::save(Writer& archive) const {
 }
 
 Walls Walls::restored(Reader& archive, const Domain& domain, const Scale& scale, std::int32_t combination,
-                      std::span<const Material> materials) {
-    Walls walls(read_walls(archive), domain, scale, combination, materials);
+                      const ContactTable& table, std::span<const Material> materials) {
+    Walls walls(read_walls(archive), domain, scale, combination, table, materials);
     const std::size_t count = walls.count();
     archive.list(walls.sums_);
     archive.list(walls.work_);

@@ -10,6 +10,7 @@
 #include "solver/dem/fast/checkpoint.hpp"
 #include "solver/dem/fast/layout.hpp"
 #include "solver/dem/fast/scale.hpp"
+#include "solver/dem/kinds.hpp"
 #include "solver/dem/laws/any_contact.hpp"
 #include "solver/dem/laws/compiled.hpp"
 #include "solver/dem/walls/moving_wall.hpp"
@@ -20,15 +21,15 @@ class Walls {
 public:
     /// `materials`: all there were at the start. Throws std::invalid_argument with one sentence on what cannot be.
     Walls(const std::vector<Wall>& walls, const Domain& domain, const Scale& scale, std::int32_t combination,
-          std::span<const Material> materials);
+          const ContactTable& table, std::span<const Material> materials);
 
     [[nodiscard]] std::size_t count() const { return moving_.size(); }
     [[nodiscard]] const MovingWall& operator[](std::size_t w) const { return moving_[w]; }
     [[nodiscard]] std::span<const MovingWall> all() const { return moving_; }
     /// Whether a wall is touched in one place at most, and found over lanes.
     [[nodiscard]] bool is_single(std::size_t w) const { return single_[w]; }
-    /// Of a wall's surface, in SI.
-    [[nodiscard]] const AnyContact& laws(std::size_t w) const { return *laws_[w]; }
+    /// Of a wall's contacts with a kind of particles, in SI.
+    [[nodiscard]] const AnyContact& laws(std::size_t w, std::size_t kind) const { return *laws_[w][kind]; }
 
     /// Lets them stand where, and move as, they do at `time` after they were set, s.
     void place(double time);
@@ -48,12 +49,14 @@ public:
     void save(Writer& archive) const;
     /// Walls as they were saved; place() completes them.
     [[nodiscard]] static Walls restored(Reader& archive, const Domain& domain, const Scale& scale,
-                                        std::int32_t combination, std::span<const Material> materials);
+                                        std::int32_t combination, const ContactTable& table,
+                                        std::span<const Material> materials);
 
 private:
     Scale scale_;
     std::vector<MovingWall> moving_;
-    std::vector<std::unique_ptr<const AnyContact>> laws_;
+    std::vector<std::vector<std::unique_ptr<const AnyContact>>> laws_;
+    std::vector<std::vector<double>> constants_;  // of them, a row of constants_at_most each
     std::vector<bool> single_;
     std::vector<PlacedWall> placed_;
     std::vector<WallSums> sums_;  // of the last step

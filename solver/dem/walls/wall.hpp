@@ -1,6 +1,7 @@
 // A wall is a shape, motions that are added up, and a surface that may differ from the powder's.
 #pragma once
 
+#include "solver/dem/material.hpp"
 #include "solver/geometry/motion.hpp"
 #include "solver/geometry/shapes.hpp"
 
@@ -41,6 +42,7 @@ struct Wall {
     Shape shape;
     std::vector<geometry::Motion> motions;
     Surface surface;
+    std::vector<Material> materials;  ///< of its contacts with each kind of spheres, where there are several
 
     Wall() = default;
     template <class S>

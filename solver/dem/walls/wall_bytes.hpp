@@ -17,6 +17,17 @@ void for_each_part(Of& surface, Visit&& visit) {
         visit(*part);
 }
 
+/// Calls visit(number) for every number of a material, its words as numbers.
+template <class Of, class Visit>
+void for_each_number(Of& m, Visit&& visit) {
+    for (auto* part : {&m.youngs_modulus, &m.poisson_ratio, &m.density, &m.restitution, &m.friction,
+                         &m.rolling_friction, &m.rolling_damping, &m.cohesion, &m.surface_energy})
+        visit(*part);
+    visit(m.rolling_law);
+    visit(m.cohesion_law);
+    visit(m.friction_limit);
+}
+
 /// put(value) writes a number or an array of numbers.
 template <class Put>
 void write_wall(const Wall& wall, Put&& put) {
@@ -31,6 +42,12 @@ void write_wall(const Wall& wall, Put&& put) {
         put(static_cast<std::uint64_t>(part.has_value()));
         put(part.value_or(0));
     });
+    put(static_cast<std::uint64_t>(wall.materials.size()));
+    for (const Material& m : wall.materials) {
+        for_each_number(m, put);
+        put(static_cast<std::uint64_t>(m.partner.has_value()));
+        put(m.partner.value_or(Elasticity{}));
+    }
 }
 
 /// The alternative with this number, to be filled.
@@ -66,6 +83,16 @@ template <class Get>
         get(given), get(value);
         if (given != 0) part = value;
     });
+    std::uint64_t materials = 0;
+    get(materials);
+    for (std::uint64_t k = 0; k < materials; ++k) {
+        Material& m = wall.materials.emplace_back();
+        for_each_number(m, get);
+        std::uint64_t given = 0;
+        Elasticity partner;
+        get(given), get(partner);
+        if (given != 0) m.partner = partner;
+    }
     return wall;
 }
 

@@ -1,0 +1,40 @@
+// Which material two touching bodies have: by the kinds of spheres, and by walls.
+#pragma once
+
+#include "solver/dem/engine.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace grainsweep::dem {
+
+/// Kinds are those of the Setup. Where it has none but frozen spheres whose contacts differ, frozen spheres are a
+/// second kind.
+class ContactTable {
+public:
+    explicit ContactTable(const Setup& setup);
+
+    [[nodiscard]] std::size_t kinds() const { return kinds_; }
+    [[nodiscard]] std::uint8_t kind_of(const Sphere& sphere) const {
+        return frozen_differ_ ? (sphere.mobile ? 0 : 1) : sphere.kind;
+    }
+    /// Of contacts of each pair, at place_of_pair().
+    [[nodiscard]] const std::vector<Material>& pairs() const { return pairs_; }
+    /// Of a sphere's contact with a wall. Throws std::invalid_argument where the wall lacks the material.
+    [[nodiscard]] Material at_wall(const Wall& wall, std::size_t kind) const;
+
+private:
+    std::size_t kinds_ = 1;
+    bool frozen_differ_ = false;
+    std::vector<Material> pairs_;
+};
+
+/// Materials of all contacts that a setup may have: between particles, then wall by wall.
+[[nodiscard]] std::vector<Material> materials_of(const Setup& setup);
+/// Density of a sphere, kg/m3.
+[[nodiscard]] double density_of(const Setup& setup, const Sphere& sphere);
+/// Whether masses of equal spheres are equal.
+[[nodiscard]] bool equally_dense(const Setup& setup);
+
+}  // namespace grainsweep::dem
