@@ -11,7 +11,7 @@ namespace grainsweep::dem::fast {
 namespace {
 
 template <class K, bool several = false>
-constexpr Kernels compiled{width,       sweep<K, several>,  advance<K>,         walls<K, several>,
+constexpr Kernels compiled{width,       sweep<K, several>,  advance<K>,         walls<K>,
                            find_pieces, search<K::unequal>, refresh<K::unequal>};
 template <class K>
 GRAINSWEEP_LANES const Kernels& holding(const Needs& n) {

@@ -4,7 +4,6 @@
 // Included by the files of the instruction paths; internal linkage on purpose.
 #pragma once
 
-#include "solver/dem/fast/law_table.hpp"
 #include "solver/dem/fast/wall_places.hpp"
 
 namespace grainsweep::dem::fast {
@@ -53,29 +52,9 @@ GRAINSWEEP_LANES void fill_up(const Field& f, WallTile& t, int packed) {
     for (int a = 0; a < Kernel::histories; ++a) store(t.memory[a] + packed, zero);
 }
 
-/// The laws of a wall: the same of all particles, or by their kinds.
-template <class Kernel, bool several>
-struct WallLaws {
-    using Laws = typename Kernel::Laws;
-    WallLaws(const Field&, const PlacedWall& wall) : all(wall.laws) {}
-    GRAINSWEEP_LANES const Laws& of(const Field&, const Place*) const { return all; }
-    Laws all;
-};
-template <class Kernel>
-struct WallLaws<Kernel, true> {
-    using Laws = typename Kernel::Laws;
-    WallLaws(const Field& f, const PlacedWall& wall) : table(wall.laws_of_kinds, f.kinds) {}
-    GRAINSWEEP_LANES Laws of(const Field& f, const Place* particle) const {
-        std::int32_t row[width];
-        for (int q = 0; q < width; ++q) row[q] = f.kind[particle[q] / places_per_index];
-        return table.at(load(row));
-    }
-    LawTable<Laws> table;
-};
-
 /// The laws at the packed contacts: forces on the particles, new memories, and where asked for the wall's sums.
-template <class Kernel, bool summed, bool several>
-GRAINSWEEP_PHASE void press(const Field& f, const WallLaws<Kernel, several>& laws, WallTile& t, int batches,
+template <class Kernel, bool summed>
+GRAINSWEEP_PHASE void press(const Field& f, const typename Kernel::Laws& laws, WallTile& t, int batches,
                             float& wall_overlap, WallSums& sums) {
     F largest_overlap = broadcast(wall_overlap);
     LaneSums lanes{zero_vector(), zero_vector(), broadcast(0.0f)};
@@ -105,7 +84,7 @@ GRAINSWEEP_PHASE void press(const Field& f, const WallLaws<Kernel, several>& law
         }
         F memory[Kernel::histories + 1];
         for (int a = 0; a < Kernel::histories; ++a) memory[a] = load(t.memory[a] + at);
-        const auto [force, turn, rolling] = respond(laws.of(f, particle), m, memory);
+        const auto [force, turn, rolling] = respond(laws, m, memory);
         for (int a = 0; a < Kernel::histories; ++a) store(t.memory[a] + at, memory[a]);
         largest_overlap = max(keep(m.touching, m.overlap * inverse(radius + radius)), largest_overlap);
         if constexpr (summed) {
@@ -131,6 +110,37 @@ GRAINSWEEP_PHASE void press(const Field& f, const WallLaws<Kernel, several>& law
     add_to(sums.force, lanes.force);
     add_to(sums.torque, lanes.torque);
     sums.power += sum_of(lanes.power);
+}
+
+/// Several kinds of particles have laws of their own at a wall: one kind after the other.
+template <class Kernel>
+void press_by_kinds(const Field& f, const PlacedWall& wall, WallTile& t, int packed, float& wall_overlap,
+                    WallSums& sums) {
+    const auto press_all = wall.summed != 0 ? press<Kernel, true> : press<Kernel, false>;
+    WallTile of_kind;
+    int from[wall_tile + 2 * width];
+    for (std::int32_t kind = 0; kind < f.kinds; ++kind) {
+        int count = 0;
+        for (int q = 0; q < packed; ++q)
+            if (f.kind[t.particle[q] / places_per_index] == kind) from[count++] = q;
+        if (count == 0) continue;
+        for (int k = 0; k < count; ++k) {
+            const int q = from[k];
+            of_kind.particle[k] = t.particle[q];
+            of_kind.overlap[k] = t.overlap[q];
+            for (int a = 0; a < 3; ++a) {
+                of_kind.normal[a][k] = t.normal[a][q];
+                of_kind.velocity[a][k] = t.velocity[a][q];
+                of_kind.lever[a][k] = t.lever[a][q];
+            }
+            for (int a = 0; a < Kernel::histories; ++a) of_kind.memory[a][k] = t.memory[a][q];
+        }
+        fill_up<Kernel>(f, of_kind, count);
+        const typename Kernel::Laws laws(wall.laws_of_kinds + kind * constants_at_most);
+        press_all(f, laws, of_kind, (count + width - 1) / width, wall_overlap, sums);
+        for (int k = 0; k < count; ++k)
+            for (int a = 0; a < Kernel::histories; ++a) t.memory[a][from[k]] = of_kind.memory[a][k];
+    }
 }
 
 /// Memories back to the list; those of particles that do not touch end.
@@ -167,7 +177,7 @@ GRAINSWEEP_LANES void return_touches(const Field& f, std::int32_t from, int coun
         for (int q = 0; q < count; ++q) f.touch_memory[a][from + q] = t.memory[a][q];
 }
 
-template <class Kernel, bool several>
+template <class Kernel>
 void walls(const Field& f, Tally& tally) {
     const auto denormals = flush_denormals();
     WallTile t;
@@ -178,12 +188,13 @@ void walls(const Field& f, Tally& tally) {
         const auto [begin, end] = find != nullptr ? f.segments[w] : f.touched[w];
         f.wall_sums[w] = {};
         if (begin == end) continue;
-        const WallLaws<Kernel, several> laws(f, wall);
+        const typename Kernel::Laws laws(wall.laws);
         WallSums sums{};
         const auto press_packed = [&](int packed) {
             if (packed == 0) return;
+            if (f.kinds > 1) return press_by_kinds<Kernel>(f, wall, t, packed, tally.wall_overlap, sums);
             fill_up<Kernel>(f, t, packed);
-            const auto press_all = wall.summed != 0 ? press<Kernel, true, several> : press<Kernel, false, several>;
+            const auto press_all = wall.summed != 0 ? press<Kernel, true> : press<Kernel, false>;
             press_all(f, laws, t, (packed + width - 1) / width, tally.wall_overlap, sums);
         };
         if (find != nullptr) {
