@@ -80,7 +80,7 @@ TEST(DemSettling, FollowsLiggghtsParticleByParticle) {
     const auto table = tests::read_table(tests::reference("spreading/mini_settle.csv"));
     dem::Method method;
     method.skin = reference_skin;
-    dem::clear::ClearEngine engine(setup, method, std::make_unique<Lasting>(setup.material), true);
+    dem::clear::ClearEngine engine(setup, method, Lasting(setup.material), true);
     dem::State state;
     // A disturbance of 1e-16 m grows to 8e-13, 4e-12 and 2e-10 diameters in the reference itself; the bounds leave room
     // for another rounding order.
