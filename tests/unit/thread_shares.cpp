@@ -97,20 +97,21 @@ TEST(ThreadPool, KnowsWhichPartsEndLate) {
     EXPECT_TRUE(pool.lateness(1).empty());
     pool.run([](int) {});
     EXPECT_TRUE(pool.lateness(1).empty()) << "a round that is not compared";
-    // Each part waits for the other, so that two threads do them; the second goes on for a while after the first.
-    for (int round = 0; round < 50; ++round) {
+    // Each part waits for the other, so that two threads do them; the second goes on for longer than a busy machine
+    // keeps the first one waiting.
+    for (int round = 0; round < 25; ++round) {
         std::atomic<bool> first_goes = false, second_goes = false;
         pool.run_compared([&](int part) {
             (part == 0 ? first_goes : second_goes) = true;
             while (!first_goes || !second_goes) std::this_thread::yield();
-            if (part == 1) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            if (part == 1) std::this_thread::sleep_for(std::chrono::milliseconds(20));
         });
     }
-    const std::vector<double> late = pool.lateness(40);  // of the last round a thread may still be counting
+    const std::vector<double> late = pool.lateness(20);  // of the last round a thread may still be counting
     ASSERT_EQ(late.size(), 2U);
     EXPECT_LT(late[0], -0.5);
     EXPECT_GT(late[1], 0.5);
-    EXPECT_TRUE(pool.lateness(40).empty()) << "counted twice";
+    EXPECT_TRUE(pool.lateness(20).empty()) << "counted twice";
 }
 
 }  // namespace grainsweep::tests::thread_shares_test
