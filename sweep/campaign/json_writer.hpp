@@ -53,7 +53,9 @@ public:
     JsonText(const std::optional<T>& value) : JsonText(value ? JsonText(*value) : JsonText()) {}
     /// A list.
     template <std::ranges::input_range Values>
-    requires(!std::convertible_to<const Values&, std::string_view>) JsonText(const Values& values)
+    requires(!std::convertible_to<const Values&, std::string_view> &&
+             !std::same_as<std::remove_cvref_t<std::ranges::range_reference_t<const Values>>, Values>)
+        JsonText(const Values& values)
         : JsonText(list(values, std::identity())) {}
     /// An object.
     JsonText(std::initializer_list<Member> members);
