@@ -35,7 +35,7 @@ std::int64_t integer(const Cell& cell) {
     return value == nullptr ? 0 : *value;
 }
 
-/// A level as it is shown; a file by its name.
+/// Returns a level's text; of a file, its name.
 std::string column_level(const Cell& cell) {
     if (const auto* word = std::get_if<std::string>(&cell)) {
         const auto file = file_word(*word);
@@ -44,8 +44,7 @@ std::string column_level(const Cell& cell) {
     return fmt::format("{:.6g}", number_of(cell));
 }
 
-/// What makes two levels the same, whichever type a view or an identity gives them: numbers by value, files by
-/// contents.
+/// Equal for equal levels of any type in a view or an identity: numbers by value, files by contents.
 std::string key_of_level(std::string_view word) {
     const auto number = any_number_in(word);
     return number ? campaign::shortest(*number) : std::string(word);
@@ -174,6 +173,7 @@ void find_settled(Responses& responses) {
         responses.settled = static_cast<std::size_t>(end - responses.points.begin());
         return;
     }
+    if (!responses.ordered_sample()) bring_settled_forward(responses);
     const auto open = std::ranges::find_if_not(responses.outcomes, has_final_outcome);
     responses.settled = static_cast<std::size_t>(open - responses.outcomes.begin());
     if (!responses.ordered_sample()) {
@@ -322,7 +322,6 @@ Responses read_responses(const store::Store& store, const store::CampaignRecord&
     for (auto& factor : factors) responses.factors.push_back(factor.take());
 
     responses.candidates = std::max(record.stored.candidates, campaign::points_of(record).value_or(0));
-    if (!responses.ordered_sample() && !record.stopped_at) bring_settled_forward(responses);
     find_settled(responses);
     return responses;
 }
@@ -343,7 +342,6 @@ Responses read_response(const store::Store& store, const store::CampaignRecord& 
         response.values.push_back(placed.value);
     }
     responses.observables.push_back(std::move(response));
-    if (!responses.ordered_sample() && !record.stopped_at) bring_settled_forward(responses);
     find_settled(responses);
     return responses;
 }
@@ -363,10 +361,9 @@ std::vector<store::CampaignRecord> find_campaigns(const store::Store& store, std
 
 std::vector<std::pair<std::string, std::int64_t>> count_outcomes(const Responses& responses) {
     std::vector<std::pair<std::string, std::int64_t>> counts;
-    for (const auto outcome : campaign::outcomes) {
+    for (const auto outcome : campaign::outcomes)
         counts.emplace_back(campaign::to_string(outcome),
                             std::ranges::count(responses.outcomes, std::optional(outcome)));
-    }
     counts.emplace_back("not yet", std::ranges::count(responses.outcomes, std::optional<campaign::Outcome>{}));
     return counts;
 }
