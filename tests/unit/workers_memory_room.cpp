@@ -1,28 +1,24 @@
 // Memory that a process can have, read from a folder that stands for the machine.
 #include "sweep/workers/memory_room.hpp"
+#include "tests/support/process.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 
 namespace grainsweep::tests::workers_memory_room_test {
 
-namespace fs = std::filesystem;
-
 class MemoryRoom : public testing::Test {
 protected:
-    MemoryRoom() { fs::remove_all(root_); }
-    ~MemoryRoom() override { fs::remove_all(root_); }
     void put(const std::string& path, const std::string& text) const {
-        fs::create_directories((root_ / path).parent_path());
-        std::ofstream(root_ / path) << text;
+        std::filesystem::create_directories((root_ / path).parent_path());
+        root_.write(path, text);
     }
-    [[nodiscard]] double room() const { return workers::memory_room(root_.string()); }
+    [[nodiscard]] double room() const { return workers::memory_room(root_.path().string()); }
 
 private:
-    fs::path root_ = fs::path(testing::TempDir()) / "memory_room";
+    Folder root_;
 };
 
 TEST_F(MemoryRoom, IsTheMachinesMemory) {
