@@ -1,8 +1,7 @@
-// What main program and host (host.hpp) write to each other, on one page. A frame is a line of words. A frame with a
-// length is followed by its bytes and a newline. SUM, the last word, is the CRC of cksum(1) over the line without SUM,
-// a newline, and the bytes. A frame with another CRC is refused. Numbers of workers are the main program's and
-// never used twice. What workers and main program say to each other (message.hpp) travels in pieces, as it comes out of
-// a pipe: the host knows no line of it.
+// The protocol of main program and host (host.hpp), on one page. A frame is a line of words. The bytes and a newline
+// follow a frame with a length. SUM, the last word, is the CRC of cksum(1) over the line without SUM, a newline, and
+// the bytes. The host refuses a frame with another CRC. The main program numbers workers and never reuses a number.
+// Messages of workers (message.hpp) travel in the pieces that a pipe delivers: the host does not read them.
 //
 //   main program                     host
 //          start 7 SUM                      grainsweep host 2    first; the number of this protocol
