@@ -25,8 +25,8 @@ ConvergenceSettings plain(ConvergenceSettings settings) {
 
 AssistedConvergence::AssistedConvergence(ConvergenceSettings settings, ModelSpace space)
     : settings_(std::move(settings)), space_(std::move(space)) {
-    if (settings_.rule != ConvergenceRule::assisted) throw std::invalid_argument("the rule is not 'assisted'");
-    if (settings_.sequences < 4)
+    if (!settings_.traits().of_model) throw std::invalid_argument("the rule is not 'assisted'");
+    if (settings_.sequences < fewest_sequences)
         throw std::invalid_argument("the rule 'assisted' needs at least 4 random sequences, not " +
                                     std::to_string(settings_.sequences));
     if (std::ranges::find(settings_.gates, Statistic::skewness) != settings_.gates.end())

@@ -29,9 +29,6 @@ struct ModelSpace {
     std::size_t scramblings = 8;
 };
 
-/// Fewest points of a check, and the share by which the next one is larger at least: 1 in 5.
-inline constexpr std::int64_t fewest_assisted_points = 104, assisted_growth = 5;
-
 class AssistedConvergence {
 public:
     /// Throws std::invalid_argument: another rule than `assisted`, a design of fewer than 4 sequences, no gate,

@@ -12,8 +12,6 @@
 namespace grainsweep::stats {
 namespace {
 
-constexpr std::array<std::string_view, 4> rule_names = {"replicates", "any_change", "all_change", "assisted"};
-constexpr std::int64_t fewest_sequences = 4;
 constexpr std::int64_t fewest_values = 4;  // of each sequence, for an error of anything but the mean
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -55,16 +53,6 @@ Decay fit_decay(std::span<const std::pair<double, double>> history) {
 
 }  // namespace
 
-std::string_view to_string(ConvergenceRule rule) {
-    return rule_names[static_cast<std::size_t>(rule)];
-}
-
-std::optional<ConvergenceRule> convergence_rule_named(std::string_view word) {
-    const auto found = std::ranges::find(rule_names, word);
-    if (found == rule_names.end()) return std::nullopt;
-    return static_cast<ConvergenceRule>(found - rule_names.begin());
-}
-
 bool median_is_unsound(double zero_share) {
     return std::abs(zero_share - 0.5) <= 0.05;
 }
@@ -81,11 +69,11 @@ double measure_of(Statistic statistic, double error, double value) {
 }
 
 void compare_with_tolerance(Checkpoint& now, const ConvergenceSettings& settings) {
-    const bool any = settings.rule == ConvergenceRule::any_change;
+    const bool any = settings.traits().one_gate;
     const auto passes = [&](Statistic gate) { return now.of(gate).measure < settings.tolerance; };
     now.passes = any ? std::ranges::any_of(settings.gates, passes) : std::ranges::all_of(settings.gates, passes);
     if (now.passes) return;
-    // One gate is enough for any_change: there the nearest decides.
+    // Where one gate is enough the nearest decides.
     const auto distance = [&](Statistic gate) {
         const double measure = now.of(gate).measure;
         return std::isnan(measure) ? std::numeric_limits<double>::infinity() : measure;
@@ -96,7 +84,7 @@ void compare_with_tolerance(Checkpoint& now, const ConvergenceSettings& settings
 
 double points_for_tolerance(const ConvergenceSettings& settings, std::span<const Checkpoint> before,
                             const Checkpoint& now) {
-    const bool any = settings.rule == ConvergenceRule::any_change;
+    const bool any = settings.traits().one_gate;
     double needed = any ? std::numeric_limits<double>::infinity() : 0;
     for (const Statistic gate : settings.gates) {
         std::vector<std::pair<double, double>> history;
@@ -127,9 +115,9 @@ Middle SortedSample::middle() {
 }
 
 Convergence::Convergence(ConvergenceSettings settings) : settings_(std::move(settings)) {
-    if (settings_.rule == ConvergenceRule::assisted)
+    if (settings_.traits().of_model)
         throw std::invalid_argument("the rule 'assisted' is judged with a model of the response");
-    if (settings_.rule == ConvergenceRule::replicates && settings_.sequences < fewest_sequences)
+    if (settings_.traits().of_sequences && settings_.sequences < fewest_sequences)
         throw std::invalid_argument("the rule 'replicates' needs at least 4 random sequences, not " +
                                     std::to_string(settings_.sequences));
     if (settings_.gates.empty()) throw std::invalid_argument("convergence needs at least one gate");
@@ -202,7 +190,7 @@ void Convergence::find_measures(Checkpoint& now) const {
     for (const Statistic statistic : statistics) {
         Estimate& estimate = now.estimates[static_cast<std::size_t>(statistic)];
         double error = estimate.error;
-        if (settings_.rule != ConvergenceRule::replicates)
+        if (!settings_.traits().of_sequences)
             error = checkpoints_.empty() ? nan : std::abs(estimate.value - checkpoints_.back().of(statistic).value);
         const bool unsound = statistic == Statistic::skewness && median_is_unsound(now.zero_share);
         const bool unknown = now.all_equal || now.fresh == 0 || unsound;
@@ -213,7 +201,7 @@ void Convergence::find_measures(Checkpoint& now) const {
 void Convergence::judge(Checkpoint& now) const {
     compare_with_tolerance(now, settings_);
     now.converged = now.passes;
-    if (settings_.rule == ConvergenceRule::replicates)
+    if (settings_.traits().of_sequences)
         now.converged = now.passes && !checkpoints_.empty() && checkpoints_.back().passes;
     now.points_needed = predict(now);
 }
@@ -226,7 +214,7 @@ std::optional<std::int64_t> Convergence::predict(const Checkpoint& now) const {
     // The first check not yet made that reaches `needed`; `replicates` wants the one after it, too.
     const auto reached = static_cast<std::int64_t>(std::ceil(needed / static_cast<double>(block))) * block;
     const std::int64_t first = now.passes ? now.points : std::max(reached, now.points + block);
-    return settings_.rule == ConvergenceRule::replicates ? first + block : first;
+    return settings_.traits().of_sequences ? first + block : first;
 }
 
 std::vector<Checkpoint> judge_convergence(const ConvergenceSettings& settings, std::span<const std::int64_t> points,

@@ -21,6 +21,7 @@
 // while between 45 and 55 % of the values are zero: there the median jumps between zero and the rest.
 #pragma once
 
+#include "stats/convergence_rule.hpp"
 #include "stats/moments.hpp"
 #include "stats/stretches.hpp"
 
@@ -35,17 +36,14 @@
 
 namespace grainsweep::stats {
 
-enum class ConvergenceRule { replicates, any_change, all_change, assisted };
-
-[[nodiscard]] std::string_view to_string(ConvergenceRule rule);
-[[nodiscard]] std::optional<ConvergenceRule> convergence_rule_named(std::string_view word);
-
 struct ConvergenceSettings {
     ConvergenceRule rule = ConvergenceRule::replicates;
     std::vector<Statistic> gates = {Statistic::mean, Statistic::sd, Statistic::kurtosis, Statistic::g1};
     double tolerance = 0.01;
     std::int64_t block = 400;    ///< points between two checks
     std::int64_t sequences = 1;  ///< R of the design
+
+    [[nodiscard]] const RuleInfo& traits() const { return info_of(rule); }
 };
 
 struct Estimate {

@@ -22,12 +22,6 @@ constexpr std::size_t most_points = 100;   // of a curve, each with a response m
 constexpr std::size_t most_targets = 200;  // in all
 constexpr double largest = 1e100;          // whose square, and the sum of such squares, is a number
 
-std::vector<std::string> names_of(const SceneInfo& scene) {
-    std::vector<std::string> names;
-    for (const auto& observable : scene.observables) names.push_back(observable.name);
-    return names;
-}
-
 /// The level of a condition's value; a value that is new becomes one.
 std::size_t level_of(ParameterSpace& space, const std::string& name, Value value) {
     auto found = std::ranges::find(space.factors, name, &Factor::name);
@@ -109,7 +103,7 @@ std::vector<designs::MeasuredTarget> read_target(const Cursor& element, Campaign
     const Section section(element, target_keys());
     const auto& scene = campaign.scene();
     designs::MeasuredTarget target;
-    target.observable = section.at("observable").word(names_of(scene));
+    target.observable = section.at("observable").word(names_of(scene.observables));
     const bool scalar = scene.find_observable(target.observable)->shape == Shape::scalar;
     const auto value = section.find("value"), file = section.find("file");
     if (scalar && (file || !value))

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "solver/scenes/scene.hpp"
+#include "stats/convergence_rule.hpp"
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/cases.hpp"
 #include "sweep/designs/design.hpp"
@@ -56,12 +57,15 @@ struct ParameterSpace {
 
 struct Convergence {
     std::string observable;
-    std::string rule = "replicates";  ///< replicates | assisted | any_change | all_change
+    std::string rule = "replicates";  ///< one of stats::convergence_rules
     std::vector<std::string> gates = {"mean", "sd", "kurtosis", "g1"};
     double tolerance = 0.01;
     std::int64_t block = 400;  ///< points between two checks
     bool stop = true;
     bool operator==(const Convergence&) const = default;
+
+    /// Throws std::invalid_argument for a rule that this program does not know.
+    [[nodiscard]] const stats::RuleInfo& traits() const;
 };
 
 /// Checks that a campaign is divided into where it does not give a block, and the longest such block.
@@ -69,11 +73,8 @@ inline constexpr std::int64_t checks_by_default = 8, longest_default_block = 400
 /// Points between two checks where a campaign does not say: an eighth of its design at most, a multiple of its
 /// independent sequences, 400 at most and no less than `least`.
 [[nodiscard]] std::int64_t default_block(std::int64_t points, std::int64_t sequences, std::int64_t least);
-/// Fewest points of a block: 4 for each sequence under the rules 'replicates' and 'assisted', else 4.
-[[nodiscard]] std::int64_t least_block(std::string_view rule, std::int64_t sequences);
-
-/// The rule 'assisted' checks 104 points or more first, and always a fifth more or more next: each check fits models.
-inline constexpr std::int64_t fewest_assisted_points = 104, assisted_growth = 5;
+/// Fewest points of a block: 4, and under a rule that compares sequences 4 for each.
+[[nodiscard]] std::int64_t least_block(const stats::RuleInfo& rule, std::int64_t sequences);
 
 struct Limits {
     double wall_seconds = 0;  ///< per attempt; 0: none

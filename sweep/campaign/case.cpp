@@ -8,6 +8,8 @@
 #include <charconv>
 #include <cmath>
 #include <iterator>
+#include <limits>
+#include <utility>
 
 namespace grainsweep::campaign {
 
@@ -25,6 +27,30 @@ std::optional<Outcome> outcome_named(std::string_view word) {
     const auto found = std::ranges::find(outcome_words, word);
     if (found == outcome_words.end()) return std::nullopt;
     return outcomes[static_cast<std::size_t>(found - outcome_words.begin())];
+}
+
+CaseResult unanswered(const Attempt& attempt, Outcome outcome, std::string reason, double seconds) {
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    CaseResult result;
+    result.attempt = attempt;
+    result.outcome = outcome;
+    result.message = std::move(reason);
+    result.cost.wall_seconds = seconds;
+    result.cost.cpu_seconds = unknown;
+    result.cost.particle_steps = unknown;
+    return result;
+}
+
+std::string undeclared(const Observations& observations, std::span<const ObservableSpec> declared) {
+    const auto is_declared = [&](const std::string& name, bool scalar) {
+        const auto found = std::ranges::find(declared, name, &ObservableSpec::name);
+        return found != declared.end() && (found->shape == Shape::scalar) == scalar;
+    };
+    for (const auto& [name, value] : observations.scalars)
+        if (!is_declared(name, true)) return name;
+    for (const auto& [name, samples] : observations.series)
+        if (!is_declared(name, false)) return name;
+    return {};
 }
 
 std::string shortest(double x) {

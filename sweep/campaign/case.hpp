@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -90,6 +91,11 @@ struct CaseResult {
     Cost cost;
     std::optional<ProgramFacts> program = {};  ///< none: the scene is of the solver
 };
+
+/// What the main program knows of an attempt that brought no answer: how long it took, not what it cost.
+[[nodiscard]] CaseResult unanswered(const Attempt& attempt, Outcome outcome, std::string reason, double seconds);
+/// An observable that is not among those declared, or has another shape there; empty: there is none.
+[[nodiscard]] std::string undeclared(const Observations& observations, std::span<const ObservableSpec> declared);
 
 /// scene, revision, every input that differs from its default, seed: name=value, sorted, doubles in
 /// shortest round-trip form, -0 as 0, a file by the hash of its contents.  `defaults` are the scene's.

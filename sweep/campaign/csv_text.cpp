@@ -1,7 +1,7 @@
 #include "sweep/campaign/csv_text.hpp"
 
-#include "sweep/campaign/whole_file.hpp"
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/files/whole_file.hpp"
 
 #include <fmt/format.h>
 
@@ -23,7 +23,7 @@ std::string read_csv_text(const Cursor& file, const fs::path& path) {
     if (!fs::is_regular_file(path, error)) file.refuse("there is no such file beside the campaign file");
     if (fs::file_size(path, error) > largest_table || error)
         file.refuse("the file must be readable and at most 256 MiB");
-    std::string text = whole_file(path, error);
+    std::string text = files::whole_file(path, error);
     if (error)  // what was read is a part, and would pass for a shorter list
         file.refuse(fmt::format("'{}' cannot be read beyond line {}: {}", path.string(),
                                 1 + std::ranges::count(text, '\n'), error.message()));

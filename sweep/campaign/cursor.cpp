@@ -1,12 +1,12 @@
 #include "sweep/campaign/cursor.hpp"
 
 #include "sweep/campaign/case.hpp"
-#include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 namespace grainsweep::campaign {
 
@@ -42,7 +42,7 @@ std::string Cursor::text() const {
     return value_->get<std::string>();
 }
 
-std::string Cursor::word(std::span<const std::string> words) const {
+std::string Cursor::word(const WordList& words) const {
     const std::string rule = fmt::format("must be {}", in_words(words));
     if (!value_->is_string()) refuse(rule);
     const auto& word = value_->get_ref<const std::string&>();
@@ -65,15 +65,14 @@ Section::Section(Cursor place, std::span<const Key> keys) : place_(std::move(pla
         if (name == notes_key) {
             check_notes(here);
         } else if (std::ranges::find(keys_, name, &Key::name) == keys_.end()) {
-            std::vector<std::string> known;
-            for (const auto& key : keys_) known.push_back(key.name);
-            known.emplace_back(notes_key);
+            WordList known(std::views::transform(keys_, &Key::name));
+            known.push_back(notes_key);
             throw wrong_question(here.path(), "", fmt::format("unknown key; {} has {}", place_.path(), in_words(known)),
                                  nearest_word(name, known));
         }
     }
     for (const auto& key : keys_) {
-        if (key.required && !place_.json().contains(key.name)) {
+        if (key.required && !find(key.name)) {
             throw wrong_question(place_.path(), "", fmt::format("key '{}' is missing: {}", key.name, key.meaning));
         }
     }
@@ -164,7 +163,7 @@ std::string in_words(const Interval& bounds) {
     return words;
 }
 
-std::string in_words(std::span<const std::string> words) {
+std::string in_words(const WordList& words) {
     std::string list;
     for (std::size_t k = 0; k < words.size(); ++k) {
         if (k > 0) list += k + 1 == words.size() ? " or " : ", ";

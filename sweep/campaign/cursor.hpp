@@ -3,6 +3,7 @@
 
 #include "sweep/campaign/json_text.hpp"
 #include "sweep/campaign/keys.hpp"
+#include "sweep/campaign/wrong_question.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -36,7 +37,7 @@ public:
     /// Any non-empty text.
     [[nodiscard]] std::string text() const;
     /// One of the words.
-    [[nodiscard]] std::string word(std::span<const std::string> words) const;
+    [[nodiscard]] std::string word(const WordList& words) const;
     /// A list; refuses everything else.
     [[nodiscard]] std::vector<Cursor> elements() const;
 
@@ -77,6 +78,6 @@ void check_notes(const Cursor& notes);
 /// "a number from 0 to 1", "a number above 0": the interval in words.
 [[nodiscard]] std::string in_words(const Interval& bounds);
 /// "'a', 'b' or 'c'".
-[[nodiscard]] std::string in_words(std::span<const std::string> words);
+[[nodiscard]] std::string in_words(const WordList& words);
 
 }  // namespace grainsweep::campaign

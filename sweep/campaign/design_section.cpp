@@ -17,8 +17,7 @@ using designs::OptionValue;
 
 const designs::DesignInfo& read_kind(const Cursor& place) {
     if (!place.json().is_object()) place.refuse("must be an object with a \"kind\"");
-    std::vector<std::string> known;
-    for (const auto& design : designs::design_catalogue()) known.push_back(design.name);
+    const auto known = names_of(designs::design_catalogue());
     if (!place.json().contains("kind")) {
         throw wrong_question(place.path(), "", fmt::format("key 'kind' is missing: {}", in_words(known)));
     }

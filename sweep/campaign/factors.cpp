@@ -53,13 +53,12 @@ Levels read_levels(const Section& factor, const ParameterSpec& parameter, const 
 }  // namespace
 
 const ParameterSpec& read_parameter(const Cursor& name, const SceneInfo& scene) {
-    std::vector<std::string> known;
-    for (const auto& parameter : scene.parameters) known.push_back(parameter.name);
     const auto* parameter = name.json().is_string() ? scene.find_parameter(name.json().get<std::string>()) : nullptr;
     if (parameter != nullptr) return *parameter;
-    name.refuse(fmt::format("scene '{}' has no parameter of this name (grainsweep scenes {} lists them)", scene.name,
-                            scene.name),
-                name.json().is_string() ? nearest_word(name.json().get<std::string>(), known) : "");
+    name.refuse(
+        fmt::format("scene '{}' has no parameter of this name (grainsweep scenes {} lists them)", scene.name,
+                    scene.name),
+        name.json().is_string() ? nearest_word(name.json().get<std::string>(), names_of(scene.parameters)) : "");
 }
 
 std::vector<Factor> read_factors(const Cursor& place, const SceneInfo& scene, const std::filesystem::path& folder) {
@@ -98,13 +97,11 @@ Inputs read_fixed(const Cursor& place, const ParameterSpace& space, const std::f
         }
         const auto* parameter = space.scene->find_parameter(key);
         if (parameter == nullptr) {
-            std::vector<std::string> known;
-            for (const auto& one : space.scene->parameters) known.push_back(one.name);
             throw wrong_question(
                 here.path(), "",
                 fmt::format("scene '{}' has no parameter of this name (grainsweep scenes {} lists them)",
                             space.scene->name, space.scene->name),
-                nearest_word(key, known));
+                nearest_word(key, names_of(space.scene->parameters)));
         }
         if (std::ranges::find(space.factors, key, &Factor::name) != space.factors.end()) {
             here.refuse(fmt::format("'{}' is also a factor; it is either varied or fixed", key));

@@ -1,9 +1,9 @@
 #include "sweep/campaign/forecast.hpp"
 
 #include "sweep/campaign/program.hpp"
-#include "sweep/campaign/whole_file.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/designs/calibration.hpp"
+#include "sweep/files/whole_file.hpp"
 
 #include <fmt/format.h>
 
@@ -34,7 +34,7 @@ public:
         for (const auto& [name, word] : words) {
             const std::string path(file_word(word)->path);
             std::error_code error;
-            files.emplace(name, whole_file(path, error));
+            files.emplace(name, files::whole_file(path, error));
             if (error) throw std::invalid_argument(fmt::format("{}: cannot read {}: {}", name, path, error.message()));
         }
         files_ = std::move(files);

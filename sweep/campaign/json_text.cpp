@@ -1,5 +1,6 @@
 #include "sweep/campaign/json_text.hpp"
 
+#include "sweep/campaign/json_builder.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
@@ -8,7 +9,6 @@
 #include <cctype>
 #include <optional>
 #include <utility>
-#include <vector>
 
 namespace grainsweep::campaign {
 
@@ -90,36 +90,16 @@ std::optional<Dialect> dialect_at(std::string_view text, std::size_t byte) {
     return std::nullopt;
 }
 
-/// Builds the document and knows where it stands.
-class Builder final : public nlohmann::json_sax<Json> {
+/// Names places by JSON paths, and by line and column.
+class CampaignJson final : public JsonBuilder {
 public:
-    explicit Builder(std::string_view text) : text_(text) {}
+    explicit CampaignJson(std::string_view text) : JsonBuilder(deepest), text_(text) {}
 
-    bool null() override { return place(nullptr); }
-    bool boolean(bool value) override { return place(value); }
-    bool number_integer(number_integer_t value) override { return place(value); }
-    bool number_unsigned(number_unsigned_t value) override { return place(value); }
-    bool number_float(number_float_t value, const string_t&) override { return place(value); }
-    bool binary(binary_t&) override { return false; }
     bool string(string_t& value) override {
-        if (value.find('\0') != std::string::npos) {
+        if (value.find('\0') != std::string::npos)
             throw wrong_question(here(), shown(value), "a text must not contain the NUL character");
-        }
-        return place(std::move(value));
+        return JsonBuilder::string(value);
     }
-
-    bool start_object(std::size_t) override { return open(Json::object()); }
-    bool start_array(std::size_t) override { return open(Json::array()); }
-    bool end_object() override { return close(); }
-    bool end_array() override { return close(); }
-    bool key(string_t& name) override {
-        if (stack_.back().value.contains(name)) {
-            throw wrong_question(path_of(here_without_key(), name), "", "this key is there twice; keep one");
-        }
-        stack_.back().key = std::move(name);
-        return true;
-    }
-
     bool parse_error(std::size_t position, const std::string& token,
                      const nlohmann::detail::exception& error) override {
         const std::string complaint = complaint_of(error.what());
@@ -139,49 +119,19 @@ public:
         throw wrong_question(place_of(text_, start), shown(word), rule);
     }
 
-    Json result;
-
 private:
-    struct Frame {
-        Json value;
-        std::string key;
-    };
-
-    bool place(Json value) {
-        if (stack_.empty()) {
-            result = std::move(value);
-        } else if (stack_.back().value.is_object()) {
-            stack_.back().value[stack_.back().key] = std::move(value);
-        } else {
-            stack_.back().value.push_back(std::move(value));
-        }
-        return true;
+    void refuse_twice() const override { throw wrong_question(here(), "", "this key is there twice; keep one"); }
+    void refuse_depth() const override {
+        throw wrong_question(here(), "", fmt::format("nested deeper than {} levels; a campaign needs 6", deepest));
     }
-    bool open(Json value) {
-        if (stack_.size() == deepest) {
-            throw wrong_question(here(), "", fmt::format("nested deeper than {} levels; a campaign needs 6", deepest));
-        }
-        stack_.push_back({std::move(value), {}});
-        return true;
-    }
-    bool close() {
-        Json value = std::move(stack_.back().value);
-        stack_.pop_back();
-        return place(std::move(value));
-    }
-
-    std::string here_without_key() const {
+    [[nodiscard]] std::string here() const {
         std::string path = "$";
-        for (std::size_t k = 0; k + 1 < stack_.size(); ++k) path = step(path, stack_[k]);
+        for (const auto& frame : frames())
+            path = frame.value.is_object() ? path_of(path, frame.key) : path_of(path, frame.value.size());
         return path;
-    }
-    std::string here() const { return stack_.empty() ? "$" : step(here_without_key(), stack_.back()); }
-    static std::string step(std::string_view path, const Frame& frame) {
-        return frame.value.is_object() ? path_of(path, frame.key) : path_of(path, frame.value.size());
     }
 
     std::string_view text_;
-    std::vector<Frame> stack_;
 };
 
 }  // namespace
@@ -195,7 +145,7 @@ Json parse_json(std::string_view text) {
     if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) {
         throw wrong_question("line 1, column 1", "nothing", "a campaign file is one JSON object");
     }
-    Builder builder(text);
+    CampaignJson builder(text);
     Json::sax_parse(text.begin(), text.end(), &builder);
     return std::move(builder.result);
 }

@@ -1,9 +1,9 @@
 #include "sweep/campaign/keys.hpp"
 
-#include "sweep/campaign/campaign.hpp"
+#include "stats/convergence_rule.hpp"
 
-#include <fmt/format.h>
-
+#include <algorithm>
+#include <array>
 #include <limits>
 
 namespace grainsweep::campaign {
@@ -17,36 +17,44 @@ constexpr Interval not_negative{0, std::numeric_limits<double>::infinity(), fals
 constexpr Interval counts{1, 1e6};
 constexpr Interval measurable{-1e100, 1e100};  // squares of it, and sums of them, are numbers
 
-std::string json_word(std::string_view word) {
-    return fmt::format("\"{}\"", word);
-}
+constexpr std::array<std::string_view, 4> accuracy_words = {"survey", "fast", "balanced", "reference"};
+constexpr std::array<std::string_view, 2> scale_words = {"linear", "log"};
+constexpr std::array<std::string_view, 5> gate_words = {"mean", "sd", "skewness", "g1", "kurtosis"};
+constexpr std::array<std::string_view, 1> thread_words = {"auto"};
+constexpr auto rule_words = [] {
+    std::array<std::string_view, stats::convergence_rules.size()> words{};
+    std::ranges::transform(stats::convergence_rules, words.begin(), &stats::RuleInfo::name);
+    return words;
+}();
 
-std::string json_list(std::span<const std::string> words) {
-    std::string list;
-    for (const auto& word : words) list += (list.empty() ? "" : ", ") + json_word(word);
-    return "[" + list + "]";
-}
-
+/// Without its default.
 Key key_of(const designs::OptionSpec& option) {
     using OptionKind = designs::OptionSpec::Kind;
-    Key key{option.name, option.meaning, Kind::whole, !option.default_value.has_value(), {}, {}, {}};
+    Key key{option.name, Kind::whole, option.meaning};
+    key.required = !option.default_value && option.kind != OptionKind::rows;
     key.bounds = {static_cast<double>(option.minimum), static_cast<double>(option.maximum)};
-    if (option.kind == OptionKind::word) {
-        key.kind = Kind::word;
-        key.words = option.words;
-        if (!key.required) key.standard = json_word(std::get<std::string>(*option.default_value));
-    } else if (option.kind == OptionKind::factor || option.kind == OptionKind::observable) {
-        key.kind = Kind::text;
-    } else if (option.kind == OptionKind::number) {
-        key.kind = Kind::number;
-        key.bounds = option.bounds;
-        if (!key.required) key.standard = shortest(std::get<double>(*option.default_value));
-    } else if (option.kind == OptionKind::count) {
-        if (!key.required) key.standard = std::to_string(std::get<std::int64_t>(*option.default_value));
-    } else {
+    switch (option.kind) {
+        case OptionKind::count:
+            break;
+        case OptionKind::word:
+            key.kind = Kind::word;
+            key.words = option.words;
+            break;
+        case OptionKind::factor:
+        case OptionKind::observable:
+            key.kind = Kind::text;
+            break;
+        case OptionKind::number:
+            key.kind = Kind::number;
+            key.bounds = option.bounds;
+            break;
         // A single count may stand for a list of equal ones, and a file for rows: the design section reads both.
-        key.kind = option.kind == OptionKind::counts ? Kind::value : Kind::array;
-        if (option.kind == OptionKind::rows) key.required = false;
+        case OptionKind::counts:
+            key.kind = Kind::value;
+            break;
+        case OptionKind::rows:
+            key.kind = Kind::array;
+            break;
     }
     return key;
 }
@@ -54,307 +62,192 @@ Key key_of(const designs::OptionSpec& option) {
 }  // namespace
 
 std::span<const Key> campaign_keys() {
-    static const std::vector<Key> keys = {
-        {"campaign", "name of the campaign and of its view in the database", Kind::text, true, {}, {}, {}},
-        {"scene", "the experiment every case runs", Kind::word, true, {}, {}, {}},
-        {"factors", "what varies; their order fixes the dimensions of the design", Kind::array, true, {}, {}, {}},
-        {"fixed", "parameters held at a value other than their default", Kind::object, false, {}, {}, "{}"},
-        {"where",
-         "SQL expression over parameters: a point for which it is not true is left out",
-         Kind::text,
-         false,
-         {},
-         {},
-         {}},
-        {"design",
-         "which points of the factor space are asked; needed unless there is a calibration",
-         Kind::object,
-         false,
-         {},
-         {},
-         {}},
-        {"calibration",
-         "in place of a design: measurements, and waves of points towards the settings that reproduce them",
-         Kind::object,
-         false,
-         {},
-         {},
-         {}},
-        {"replicates", "repeats of each point with other seeds", Kind::whole, false, counts, {}, "1"},
-        {"seed", "seed of the design's scrambling and of every case", Kind::whole, false, {0, largest_seed}, {}, "1"},
-        {"convergence", "when the statistics are good enough", Kind::object, false, {}, {}, {}},
-        {"accuracy",
-         "a named set of numerical inputs of the scene",
-         Kind::word,
-         false,
-         {},
-         {"survey", "fast", "balanced", "reference"},
-         {}},
-        {"model", "how responses are learned from the cases; changes no result", Kind::object, false, {}, {}, {}},
-        {"program", "with \"scene\": \"program\": the command that answers a case", Kind::object, false, {}, {}, {}},
-        {"limits", "what one case may cost", Kind::object, false, {}, {}, {}},
-        {"execution", "how the cases run; changes no result", Kind::object, false, {}, {}, {}},
-    };
+    static constexpr auto keys = std::to_array<Key>({
+        needed({"campaign", Kind::text, "name of the campaign and of its view in the database"}),
+        needed({"scene", Kind::word, "the experiment every case runs"}),
+        needed({"factors", Kind::array, "what varies; their order fixes the dimensions of the design"}),
+        {"fixed", Kind::object, "parameters held at a value other than their default", "{}"},
+        {"where", Kind::text, "SQL expression over parameters: a point for which it is not true is left out"},
+        {"design", Kind::object, "which points of the factor space are asked; needed unless there is a calibration"},
+        {"calibration", Kind::object,
+         "in place of a design: measurements, and waves of points towards the settings that reproduce them"},
+        {"replicates", Kind::whole, "repeats of each point with other seeds", "1", counts},
+        {"seed", Kind::whole, "seed of the design's scrambling and of every case", "1", {0, largest_seed}},
+        {"convergence", Kind::object, "when the statistics are good enough"},
+        {"accuracy", Kind::word, "a named set of numerical inputs of the scene", {}, {}, accuracy_words},
+        {"model", Kind::object, "how responses are learned from the cases; changes no result"},
+        {"program", Kind::object, "with \"scene\": \"program\": the command that answers a case"},
+        {"limits", Kind::object, "what one case may cost"},
+        {"execution", Kind::object, "how the cases run; changes no result"},
+    });
     return keys;
 }
 
 std::span<const Key> factor_keys() {
-    static const std::vector<Key> keys = {
-        {"name", "a parameter of the scene", Kind::word, true, {}, {}, {}},
-        {"between", "[low, high] of a real parameter", Kind::array, false, {}, {}, {}},
-        {"levels", "the values it takes, numbers or words", Kind::array, false, {}, {}, {}},
-        {"scale",
-         "linear: low + u (high - low); log: low (high/low)^u",
-         Kind::word,
-         false,
-         {},
-         {"linear", "log"},
-         json_word("linear")},
-    };
+    static constexpr auto keys = std::to_array<Key>({
+        needed({"name", Kind::word, "a parameter of the scene"}),
+        {"between", Kind::array, "[low, high] of a real parameter"},
+        {"levels", Kind::array, "the values it takes, numbers or words"},
+        {"scale", Kind::word, "linear: low + u (high - low); log: low (high/low)^u", "\"linear\"", {}, scale_words},
+    });
     return keys;
 }
 
 std::span<const Key> convergence_keys() {
-    static const Convergence standard;
-    static const std::vector<Key> keys = {
-        {"observable", "a scalar observable of the scene", Kind::word, true, {}, {}, {}},
+    static constexpr auto keys = std::to_array<Key>({
+        needed({"observable", Kind::word, "a scalar observable of the scene"}),
         {"rule",
-         "replicates: 95 % half-widths over the random sequences below the tolerance at two consecutive checks; "
-         "assisted: the same with a model of the response as control variate, which needs fewer points; "
-         "any_change, all_change: any or all statistics changed by less than the tolerance between two blocks",
          Kind::word,
-         false,
+         "replicates: 95 % half-widths over the random sequences below the tolerance at two consecutive checks; "
+         "assisted: the same with a model of the response as control variate, which needs fewer points; any_change, "
+         "all_change: any or all statistics changed by less than the tolerance between two blocks",
+         "\"replicates\"",
          {},
-         {"replicates", "assisted", "any_change", "all_change"},
-         json_word(standard.rule)},
-        {"gates",
-         "the statistics that are judged",
-         Kind::words,
-         false,
-         {},
-         {"mean", "sd", "skewness", "g1", "kurtosis"},
-         json_list(standard.gates)},
-        {"tolerance", "relative", Kind::number, false, {0, 1, true, true}, {}, fmt::format("{}", standard.tolerance)},
+         rule_words},
+        {"gates", Kind::words, "the statistics that are judged", R"(["mean", "sd", "kurtosis", "g1"])", {}, gate_words},
+        {"tolerance", Kind::number, "relative", "0.01", {0, 1, true, true}},
         {"block",
+         Kind::whole,
          "points between two checks; without it an eighth of the design's points, at most 400, a multiple of the "
          "random sequences with at least 4 points for each",
-         Kind::whole,
-         false,
-         {4, 1e9},
          {},
-         {}},
-        {"stop", "whether a converged campaign starts no further case", Kind::flag, false, {}, {}, "true"},
-    };
+         {4, 1e9}},
+        {"stop", Kind::flag, "whether a converged campaign starts no further case", "true"},
+    });
     return keys;
 }
 
 std::span<const Key> model_keys() {
-    static const std::vector<Key> keys = {
-        {"features",
-         "what a response model sees of a case: SQL expressions over factors, e.g. log(diameter), gap/diameter; "
-         "without "
-         "it every factor, its logarithm where the range spans a factor of 2.5 or more",
-         Kind::words,
-         true,
-         {},
-         {},
-         {}},
-    };
+    static constexpr auto keys = std::to_array<Key>({
+        needed({"features", Kind::words,
+                "what a response model sees of a case: SQL expressions over factors, e.g. log(diameter), gap/diameter; "
+                "without it every factor, its logarithm where the range spans a factor of 2.5 or more"}),
+    });
     return keys;
 }
 
 std::span<const Key> calibration_keys() {
-    static const std::vector<Key> keys = {
-        {"targets", "what was measured, one entry each", Kind::array, true, {}, {}, {}},
-        {"discrepancy",
-         "of each observable measured: how far the simulation itself may be from the experiment, as a standard "
-         "deviation",
-         Kind::object,
-         true,
-         {},
-         {},
-         {}},
-        {"waves", "waves of points at most", Kind::whole, false, {1, 100}, {}, "4"},
-        {"points_per_wave",
-         "settings of a wave; each is run under every condition",
-         Kind::whole,
-         false,
-         {12, 10'000},
-         {},
-         "40"},
-        {"checks",
-         "settings drawn from the posterior that are run to check it",
-         Kind::whole,
-         false,
-         {1, 1000},
-         {},
-         "8"},
-        {"stop", "when the waves end early", Kind::object, false, {}, {}, {}},
-    };
+    static constexpr auto keys = std::to_array<Key>({
+        needed({"targets", Kind::array, "what was measured, one entry each"}),
+        needed({"discrepancy", Kind::object,
+                "of each observable measured: how far the simulation itself may be from the experiment, as a standard "
+                "deviation"}),
+        {"waves", Kind::whole, "waves of points at most", "4", {1, 100}},
+        {"points_per_wave", Kind::whole, "settings of a wave; each is run under every condition", "40", {12, 10'000}},
+        {"checks", Kind::whole, "settings drawn from the posterior that are run to check it", "8", {1, 1000}},
+        {"stop", Kind::object, "when the waves end early"},
+    });
     return keys;
 }
 
 std::span<const Key> target_keys() {
-    static const std::vector<Key> keys = {
-        {"observable", "an observable of the scene", Kind::word, true, {}, {}, {}},
-        {"value", "of a scalar: what was measured, in its unit", Kind::number, false, measurable, {}, {}},
-        {"file",
+    static constexpr auto keys = std::to_array<Key>({
+        needed({"observable", Kind::word, "an observable of the scene"}),
+        {"value", Kind::number, "of a scalar: what was measured, in its unit", {}, measurable},
+        {"file", Kind::text,
          "of a series or profile: CSV file of a measured curve, a header and lines of where, value and, where it "
-         "differs from line to line, error",
-         Kind::text,
-         false,
-         {},
-         {},
-         {}},
+         "differs from line to line, error"},
         {"error",
-         "standard error of the measurement; of a curve that of every line without one of its own",
          Kind::number,
-         false,
-         Interval{0, measurable.high},
+         "standard error of the measurement; of a curve that of every line without one of its own",
          {},
-         {}},
-        {"inputs", "the condition it was measured under: parameters of the scene", Kind::object, false, {}, {}, {}},
-    };
+         {0, measurable.high}},
+        {"inputs", Kind::object, "the condition it was measured under: parameters of the scene"},
+    });
     return keys;
 }
 
 std::span<const Key> stop_keys() {
-    static const std::vector<Key> keys = {
+    static constexpr auto keys = std::to_array<Key>({
         {"shrink",
-         "a wave that rules out less than this share of what was kept is the last",
          Kind::number,
-         false,
-         {0, 1},
-         {},
-         "0.02"},
-    };
+         "a wave that rules out less than this share of what was kept is the last",
+         "0.02",
+         {0, 1}},
+    });
     return keys;
 }
 
 std::span<const Key> limits_keys() {
-    static const std::vector<Key> keys = {
-        {"wall_seconds",
-         fmt::format("time an attempt may take, s; at least {}, or 0: no limit", shortest_limit),
-         Kind::number,
-         false,
-         not_negative,
-         {},
-         "0"},
-        {"attempts",
-         "tries of a case that crashes or runs out of time",
-         Kind::whole,
-         false,
-         {1, 1000},
-         {},
-         std::to_string(Limits{}.attempts)},
-    };
+    static constexpr auto keys = std::to_array<Key>({
+        {"wall_seconds", Kind::number, "time an attempt may take, s; at least 0.1, or 0: no limit", "0", not_negative},
+        {"attempts", Kind::whole, "tries of a case that crashes or runs out of time", "3", {1, 1000}},
+    });
     return keys;
 }
 
 std::span<const Key> execution_keys() {
-    static const std::vector<Key> keys = {
-        {"workers", "worker processes; 0: one per core of the job", Kind::whole, false, {0, 100'000}, {}, "0"},
-        {"launcher",
+    static constexpr auto keys = std::to_array<Key>({
+        {"workers", Kind::whole, "worker processes; 0: one per core of the job", "0", {0, 100'000}},
+        {"launcher", Kind::words,
          "argument vector put before a worker, or before a host, e.g. srun -N1 -n1 --exact; {host} in a word is the "
          "number of the host, from 1 on",
-         Kind::words,
-         false,
-         {},
-         {},
          "[]"},
         {"hosts",
+         Kind::whole,
          "processes on other nodes, each started by one call of the launcher, that run the workers; 0: the launcher "
          "starts every worker",
-         Kind::whole,
-         false,
-         {0, 10'000},
-         {},
-         "0"},
+         "0",
+         {0, 10'000}},
         {"workers_per_host",
-         "workers that each host runs; 0: one per core that the main program's job has on its node",
          Kind::whole,
-         false,
-         {0, 4096},
-         {},
-         "0"},
+         "workers that each host runs; 0: one per core that the main program's job has on its node",
+         "0",
+         {0, 4096}},
         {"threads",
+         Kind::whole,
          "threads of a case, which change no bit of it; \"auto\": one, and where fewer cases are left than cores, the "
          "cores left over go to those that run; a number: so many for every case, and by default so many times fewer "
          "workers",
-         Kind::whole,
-         false,
+         "\"auto\"",
          {1, 1024},
-         {"auto"},
-         json_word("auto")},
-        {"walltime",
-         fmt::format("time that the main program may take, s; at least {}, or 0: until SLURM_JOB_END_TIME where that "
-                     "is set",
-                     shortest_limit),
-         Kind::number,
-         false,
-         not_negative,
-         {},
-         "0"},
-        {"start_seconds",
-         fmt::format("a worker that is not ready after so long is replaced, s; at least {}, or 0: no limit",
-                     shortest_limit),
-         Kind::number,
-         false,
-         not_negative,
-         {},
-         fmt::format("{}", Execution{}.start_seconds)},
-        {"silence_seconds",
-         fmt::format("a worker that computes and gives no sign of life for so long is replaced, s (a sign comes every "
-                     "second); at least {}, or 0: no limit",
-                     shortest_silence),
-         Kind::number,
-         false,
-         not_negative,
-         {},
-         fmt::format("{}", Execution{}.silence_seconds)},
-    };
+         thread_words},
+        {"walltime", Kind::number,
+         "time that the main program may take, s; at least 0.1, or 0: until SLURM_JOB_END_TIME where that is set", "0",
+         not_negative},
+        {"start_seconds", Kind::number,
+         "a worker that is not ready after so long is replaced, s; at least 0.1, or 0: no limit", "300", not_negative},
+        {"silence_seconds", Kind::number,
+         "a worker that computes and gives no sign of life for so long is replaced, s (a sign comes every second); at "
+         "least 3, or 0: no limit",
+         "60", not_negative},
+    });
     return keys;
 }
 
 std::vector<Key> design_keys(const designs::DesignInfo& design) {
-    std::vector<Key> keys = {{"kind", design.summary, Kind::word, true, {}, {design.name}, {}}};
+    std::vector<Key> keys = {needed({"kind", Kind::word, design.summary})};
     for (const auto& option : design.options) {
         keys.push_back(key_of(option));
-        if (option.kind == designs::OptionSpec::Kind::rows) {
-            keys.push_back({"file",
-                            "CSV beside the campaign file, one column per factor, its header the names",
-                            Kind::text,
-                            false,
-                            {},
-                            {},
-                            {}});
-        }
+        if (option.kind == designs::OptionSpec::Kind::rows)
+            keys.push_back(
+                {"file", Kind::text, "CSV beside the campaign file, one column per factor, its header the names"});
     }
     return keys;
 }
 
-std::span<const std::string> reserved_names() {
-    static const std::vector<std::string> names = {"campaign",
-                                                   "sim_case",
-                                                   "case_input",
-                                                   "campaign_case",
-                                                   "attempt",
-                                                   "observable",
-                                                   "observation",
-                                                   "convergence",
-                                                   "provenance",
-                                                   "series",
-                                                   "convergence_history",
-                                                   "parameter",
-                                                   "inputs",
-                                                   "json_each",
-                                                   "json_tree",
-                                                   "attempt_computer",
-                                                   "table_checksum",
-                                                   "file_checksum",
-                                                   "program",
-                                                   "program_content",
-                                                   "attempt_program"};  // json_ ...: SQLite's own
+std::span<const std::string_view> reserved_names() {
+    static constexpr auto names = std::to_array<std::string_view>({"campaign",
+                                                                   "sim_case",
+                                                                   "case_input",
+                                                                   "campaign_case",
+                                                                   "attempt",
+                                                                   "observable",
+                                                                   "observation",
+                                                                   "convergence",
+                                                                   "provenance",
+                                                                   "series",
+                                                                   "convergence_history",
+                                                                   "parameter",
+                                                                   "inputs",
+                                                                   "json_each",
+                                                                   "json_tree",
+                                                                   "attempt_computer",
+                                                                   "table_checksum",
+                                                                   "file_checksum",
+                                                                   "program",
+                                                                   "program_content",
+                                                                   "attempt_program"});  // json_ ...: SQLite's own
     return names;
 }
 

@@ -15,14 +15,20 @@ namespace grainsweep::campaign {
 
 struct Key {
     enum class Kind { text, word, words, whole, number, flag, value, object, array };
-    std::string name;
-    std::string meaning;
+    std::string_view name;
     Kind kind = Kind::text;
+    std::string_view meaning;
+    std::string_view standard = {};  ///< JSON text of the default; empty: none
+    Interval bounds = {};            ///< of whole and number
+    /// Of word and words; of whole: words that may stand in its place.
+    std::span<const std::string_view> words = {};
     bool required = false;
-    Interval bounds{};               ///< of whole and number
-    std::vector<std::string> words;  ///< of word and words; of whole: words that may stand in its place
-    std::string standard;            ///< JSON text of the default; empty: none
 };
+
+[[nodiscard]] constexpr Key needed(Key key) {
+    key.required = true;
+    return key;
+}
 
 /// Allowed in every object and ignored: a text or a list of texts.
 inline constexpr std::string_view notes_key = "notes";
@@ -36,7 +42,7 @@ inline constexpr std::string_view notes_key = "notes";
 [[nodiscard]] std::span<const Key> stop_keys();
 [[nodiscard]] std::span<const Key> limits_keys();
 [[nodiscard]] std::span<const Key> execution_keys();
-/// "kind", the design's options and, where it takes rows, "file".
+/// "kind", the design's options without their defaults and, where it takes rows, "file".
 [[nodiscard]] std::vector<Key> design_keys(const designs::DesignInfo& design);
 
 /// Limits of time below these would end every worker before it can answer, s.
@@ -50,6 +56,6 @@ inline constexpr std::size_t most_features = 30;
 inline constexpr std::size_t longest_campaign_name = 128;
 
 /// Names a campaign cannot have: the tables and views of the database are called so.
-[[nodiscard]] std::span<const std::string> reserved_names();
+[[nodiscard]] std::span<const std::string_view> reserved_names();
 
 }  // namespace grainsweep::campaign

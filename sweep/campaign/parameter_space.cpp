@@ -1,4 +1,5 @@
 #include "sweep/campaign/campaign.hpp"
+#include "sweep/campaign/wrong_question.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -68,9 +69,8 @@ Inputs ParameterSpace::at(std::span<const Value> row) const {
 }
 
 std::vector<std::string> filter_names(const Campaign& campaign) {
-    std::vector<std::string> names;
-    for (const auto& parameter : campaign.scene().parameters) names.push_back(parameter.name);
-    return names;
+    const auto names = names_of(campaign.scene().parameters);
+    return {names.begin(), names.end()};
 }
 
 }  // namespace grainsweep::campaign

@@ -1,8 +1,8 @@
 // One value of one parameter: its type, its bounds, its words, its file.
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/sections.hpp"
-#include "sweep/campaign/whole_file.hpp"
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/files/whole_file.hpp"
 
 #include <fmt/format.h>
 
@@ -38,7 +38,7 @@ Value read_file_word(const Cursor& place, const Words& words, const fs::path& fo
     }
     if (fs::file_size(path, error) > largest_named_file || error)
         place.refuse("the file must be readable and at most 1 GiB");
-    const std::string contents = whole_file(path, error);
+    const std::string contents = files::whole_file(path, error);
     if (error) place.refuse(fmt::format("the file cannot be read: {}", error.message()));
     if (words.check_file) {
         try {

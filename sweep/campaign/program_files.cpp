@@ -2,8 +2,8 @@
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/program_file_name.hpp"
 #include "sweep/campaign/program_section.hpp"
-#include "sweep/campaign/whole_file.hpp"
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/files/whole_file.hpp"
 
 #include <fmt/format.h>
 
@@ -51,7 +51,7 @@ void read_file(const Cursor& place, const fs::path& folder, bool is_template, Pr
     if (error || size > (is_template ? largest_template : largest_file))
         place.refuse(fmt::format("has at most {} MiB; larger data are named by an absolute path in the command",
                                  (is_template ? largest_template : largest_file) >> 20U));
-    file.contents = whole_file(path, error);
+    file.contents = files::whole_file(path, error);
     if (error) place.refuse(fmt::format("the file cannot be read: {}", error.message()));
     if (file.contents.size() != size) place.refuse("the file changed while it was read");
     if (is_template && file.contents.find('\0') != std::string::npos)

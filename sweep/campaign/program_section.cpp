@@ -141,8 +141,6 @@ void read_parameter_notes(const Section& section, const Given& given, Program& p
     const auto all = section.find("parameters");
     if (!all) return;
     if (!all->json().is_object()) all->refuse("must be an object of names and what is known of each");
-    std::vector<std::string> known;
-    for (const auto& parameter : program.parameters) known.push_back(parameter.name);
     for (const auto& [name, value] : all->json().items()) {
         const Cursor here(value, path_of(all->path(), name));
         if (name == notes_key) {
@@ -151,7 +149,8 @@ void read_parameter_notes(const Section& section, const Given& given, Program& p
         }
         const auto found = std::ranges::find(program.parameters, name, &ProgramParameter::name);
         if (found == program.parameters.end())
-            throw wrong_question(here.path(), "", "is neither a factor nor a fixed value", nearest_word(name, known));
+            throw wrong_question(here.path(), "", "is neither a factor nor a fixed value",
+                                 nearest_word(name, names_of(program.parameters)));
         const Section told(here, program_parameter_keys());
         if (const auto unit = told.find("unit")) found->unit = unit->text();
         if (const auto meaning = told.find("meaning")) found->meaning = meaning->text();

@@ -4,8 +4,8 @@
 #include "sweep/campaign/program_section.hpp"
 #include "sweep/campaign/relevance.hpp"
 #include "sweep/campaign/sections.hpp"
-#include "sweep/campaign/whole_file.hpp"
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/files/whole_file.hpp"
 
 #include <fmt/format.h>
 
@@ -88,7 +88,7 @@ std::string read_text(const fs::path& file) {
                              nearest_word(file.filename().string(), beside));
     }
     if (fs::is_directory(file, error)) throw wrong_question(shown_name, "", "is a folder, not a campaign file");
-    std::string text = whole_file(file, error, largest_text);
+    std::string text = files::whole_file(file, error, largest_text);
     if (error == std::errc::file_too_large)
         throw wrong_question(shown_name, "", "a campaign file has at most 64 MiB; give long lists as a CSV file");
     if (error) throw wrong_question(shown_name, "", fmt::format("the file cannot be read: {}", error.message()));

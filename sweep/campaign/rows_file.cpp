@@ -19,8 +19,7 @@ using Record = CsvRecord;
 
 /// For each factor the column that holds it.
 std::vector<std::size_t> columns_of(const Cursor& file, const Record& header, const ParameterSpace& space) {
-    std::vector<std::string> names;
-    for (const auto& factor : space.factors) names.push_back(factor.name);
+    const auto names = names_of(space.factors);
     for (std::size_t k = 0; k < header.size(); ++k) {
         if (std::ranges::find(names, header[k]) == names.end()) {
             file.refuse(

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace grainsweep::campaign {
 
@@ -34,7 +35,8 @@ void add_bounds(OrderedJson& schema, const Interval& bounds) {
 }
 
 OrderedJson schema_of(const Key& key) {
-    OrderedJson schema = {{"description", key.meaning}};
+    const std::vector<std::string> words(key.words.begin(), key.words.end());
+    OrderedJson schema = {{"description", std::string(key.meaning)}};
     switch (key.kind) {
         case Key::Kind::text:
             schema["type"] = "string";
@@ -42,21 +44,21 @@ OrderedJson schema_of(const Key& key) {
             break;
         case Key::Kind::word:
             schema["type"] = "string";
-            if (!key.words.empty()) schema["enum"] = key.words;
+            if (!words.empty()) schema["enum"] = words;
             break;
         case Key::Kind::words:
             schema["type"] = "array";
             schema["items"] = {{"type", "string"}};
-            if (!key.words.empty()) schema["items"]["enum"] = key.words;
+            if (!words.empty()) schema["items"]["enum"] = words;
             break;
         case Key::Kind::whole:
-            if (key.words.empty()) {
+            if (words.empty()) {
                 schema["type"] = "integer";
                 add_bounds(schema, key.bounds);
             } else {
                 OrderedJson number = {{"type", "integer"}};
                 add_bounds(number, key.bounds);
-                schema["anyOf"] = {{{"enum", key.words}}, number};
+                schema["anyOf"] = {{{"enum", words}}, number};
             }
             break;
         case Key::Kind::number:
@@ -84,8 +86,8 @@ OrderedJson section(std::span<const Key> keys) {
     OrderedJson schema = {{"type", "object"}, {"properties", OrderedJson::object()}};
     OrderedJson required = OrderedJson::array();
     for (const auto& key : keys) {
-        schema["properties"][key.name] = schema_of(key);
-        if (key.required) required.push_back(key.name);
+        schema["properties"][std::string(key.name)] = schema_of(key);
+        if (key.required) required.push_back(std::string(key.name));
     }
     schema["properties"][std::string(notes_key)] = notes_schema();
     if (!required.empty()) schema["required"] = required;
@@ -165,6 +167,11 @@ OrderedJson design_schema(const designs::DesignInfo& design) {
     schema["properties"]["kind"] = {{"const", design.name}, {"description", design.summary}};
     for (const auto& option : design.options) {
         auto& property = schema["properties"][option.name];
+        if (option.default_value && option.kind != designs::OptionSpec::Kind::counts) {
+            if (const auto* count = std::get_if<std::int64_t>(&*option.default_value)) property["default"] = *count;
+            if (const auto* word = std::get_if<std::string>(&*option.default_value)) property["default"] = *word;
+            if (const auto* real = std::get_if<double>(&*option.default_value)) property["default"] = number_of(*real);
+        }
         if (option.kind == designs::OptionSpec::Kind::counts) {
             OrderedJson count = {{"type", "integer"}};
             add_bounds(count, {static_cast<double>(option.minimum), static_cast<double>(option.maximum)});

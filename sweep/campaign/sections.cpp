@@ -12,8 +12,6 @@ namespace grainsweep::campaign {
 
 namespace {
 
-constexpr std::int64_t fewest_sequences = 4;  // fewer give no usable error bar
-
 std::string read_observable(const Cursor& place, const SceneInfo& scene) {
     std::vector<std::string> scalars;
     for (const auto& observable : scene.observables) {
@@ -31,22 +29,21 @@ void check_rule(const Section& section, const Convergence& convergence, const Ca
     const std::string path = path_of(section.place().path(), "rule");
     const std::string got = fmt::format("\"{}\"{}", convergence.rule, section.find("rule") ? "" : " by default");
     const std::int64_t sequences = designs::independent_sequences(campaign.design, campaign.request);
-    const bool over_sequences = convergence.rule == "replicates" || convergence.rule == "assisted";
-    if (!over_sequences) {
+    if (!convergence.traits().of_sequences) {
         if (designs::design_named(campaign.design).beginning != designs::Beginning::corner) return;
         throw wrong_question(path, got,
                              fmt::format("the points of a {0} come in no useful order, so blocks of them mean nothing; "
                                          "compare campaigns of that design or take a halton design",
                                          campaign.design));
     }
-    if (sequences < fewest_sequences) {
+    if (sequences < stats::fewest_sequences) {
         throw wrong_question(
             path, got,
             fmt::format("this rule needs a halton or sobol design with \"scramble\": \"random\" and "
                         "\"sequences\" of at least {} (8 is good); any_change and all_change need none",
-                        fewest_sequences));
+                        stats::fewest_sequences));
     }
-    if (section.find("block") && convergence.block < least_block(convergence.rule, sequences)) {
+    if (section.find("block") && convergence.block < least_block(convergence.traits(), sequences)) {
         throw wrong_question(path_of(section.place().path(), "block"), std::to_string(convergence.block),
                              fmt::format("must give each of the {} sequences at least 4 points", sequences));
     }
@@ -59,7 +56,7 @@ std::int64_t block_by_default(const Convergence& convergence, const Campaign& ca
         points = candidates_of(campaign);
     } catch (const std::invalid_argument&) {  // unfolding the design says what is wrong with it
     }
-    return default_block(points, sequences, least_block(convergence.rule, sequences));
+    return default_block(points, sequences, least_block(convergence.traits(), sequences));
 }
 
 /// Seconds that are a limit, or 0 where there is none.
@@ -90,7 +87,7 @@ Convergence read_convergence(const Cursor& place, const Campaign& campaign) {
     }
     check_rule(section, convergence, campaign);
     for (std::size_t k = 0; k < convergence.gates.size(); ++k) {
-        if (convergence.rule == "assisted" && convergence.gates[k] == "skewness")
+        if (convergence.traits().of_model && convergence.gates[k] == "skewness")
             section.at("gates")[k].refuse(
                 "Pearson's skewness is made of a median, which has no model-assisted estimate: take g1, or the rule "
                 "\"replicates\"");

@@ -146,9 +146,15 @@ std::int64_t candidates_of(const Campaign& campaign) {
     return designs::design_named(campaign.design).size(campaign.request);
 }
 
-std::int64_t least_block(std::string_view rule, std::int64_t sequences) {
+const stats::RuleInfo& Convergence::traits() const {
+    const auto* const found = stats::find_rule(rule);
+    if (found == nullptr) throw std::invalid_argument("no convergence rule is called '" + rule + "'");
+    return *found;
+}
+
+std::int64_t least_block(const stats::RuleInfo& rule, std::int64_t sequences) {
     constexpr std::int64_t fewest = 4;
-    return rule == "replicates" || rule == "assisted" ? fewest * sequences : fewest;
+    return rule.of_sequences ? fewest * sequences : fewest;
 }
 
 std::int64_t default_block(std::int64_t points, std::int64_t sequences, std::int64_t least) {
@@ -158,19 +164,18 @@ std::int64_t default_block(std::int64_t points, std::int64_t sequences, std::int
 
 namespace {
 
-/// Checks of the rule `assisted` are fewer, see stats/assisted_convergence.hpp (features are not known here: four at
-/// most ask for no later first check).
-std::string never_converges_assisted(const Campaign& campaign, std::int64_t points) {
-    const std::int64_t block = campaign.convergence->block;
+/// Checks with a model are fewer, see stats/assisted_convergence.hpp (features are not known here: four at most ask for
+/// no later first check).
+std::string never_converges_with_model(const Convergence& convergence, std::int64_t points) {
+    const std::int64_t block = convergence.block;
     const auto next = [&](std::int64_t least) { return (least + block - 1) / block * block; };
-    const std::int64_t first = next(fewest_assisted_points);
-    const std::int64_t second = next(first + std::max<std::int64_t>(1, first / assisted_growth));
+    const std::int64_t first = next(stats::fewest_assisted_points);
+    const std::int64_t second = next(first + std::max<std::int64_t>(1, first / stats::assisted_growth));
     if (second <= points) return {};
     return fmt::format(
-        "convergence can never be found: the rule 'assisted' needs two checks, the first at {} points and the second "
-        "at "
-        "{} or more with a block of {}, and the design has {}",
-        first, second, block, points);
+        "convergence can never be found: the rule '{}' needs two checks, the first at {} points and the second at {} "
+        "or more with a block of {}, and the design has {}",
+        convergence.rule, first, second, block, points);
 }
 
 }  // namespace
@@ -178,8 +183,9 @@ std::string never_converges_assisted(const Campaign& campaign, std::int64_t poin
 std::string never_converges(const Campaign& campaign) {
     if (!campaign.convergence) return {};
     const std::int64_t points = candidates_of(campaign);
-    const auto& [observable, rule, gates, tolerance, block, stop] = *campaign.convergence;
-    if (rule == "assisted") return never_converges_assisted(campaign, points);
+    const auto& convergence = *campaign.convergence;
+    if (convergence.traits().of_model) return never_converges_with_model(convergence, points);
+    const std::int64_t block = convergence.block;
     if (block > points)
         return fmt::format("convergence can never be checked: a block is {} points, and the design has {}", block,
                            points);
@@ -187,7 +193,7 @@ std::string never_converges(const Campaign& campaign) {
         return fmt::format(
             "convergence can never be found: the rule '{}' needs two checks, and with a block of {} the {} points of "
             "the design give one",
-            rule, block, points);
+            convergence.rule, block, points);
     return {};
 }
 

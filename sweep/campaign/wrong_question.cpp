@@ -41,11 +41,11 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 /// The only candidate of which `word` is one of the parts between underscores; empty where there is none or several.
-std::string named_by_a_part(std::string_view word, std::span<const std::string> candidates) {
+std::string named_by_a_part(std::string_view word, const WordList& candidates) {
     std::string only;
-    for (const auto& candidate : candidates) {
-        const std::string parts = "_" + candidate + "_";
-        if (parts.find("_" + std::string(word) + "_") == std::string::npos) continue;
+    for (const auto candidate : candidates) {
+        const std::string parts = fmt::format("_{}_", candidate);
+        if (parts.find(fmt::format("_{}_", word)) == std::string::npos) continue;
         if (!only.empty()) return {};
         only = candidate;
     }
@@ -90,18 +90,16 @@ WrongQuestion wrong_question(std::string_view where, std::string_view value, std
     return WrongQuestion(single_line(sentence));
 }
 
-std::string listed(std::span<const std::string> names) {
-    std::string text;
-    for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
-    return text.empty() ? "none" : text;
+std::string listed(const WordList& names) {
+    return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::string nearest_word(std::string_view word, std::span<const std::string> candidates) {
+std::string nearest_word(std::string_view word, const WordList& candidates) {
     if (word.empty() || word.size() > longest_word) return {};
     std::string nearest = synonym_of(word, candidates);
     if (!nearest.empty()) return nearest;
     std::size_t smallest = std::numeric_limits<std::size_t>::max();
-    for (const auto& candidate : candidates) {
+    for (const auto candidate : candidates) {
         const std::size_t distance = edit_distance(word, candidate);
         const std::size_t tolerated = std::max<std::size_t>(1, std::max(word.size(), candidate.size()) / 3);
         if (distance < smallest && distance <= tolerated) {

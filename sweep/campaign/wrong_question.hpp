@@ -2,7 +2,8 @@
 #pragma once
 
 #include <filesystem>
-#include <span>
+#include <iterator>
+#include <ranges>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -29,11 +30,25 @@ auto asked_in(const std::filesystem::path& file, const Ask& ask) {
     }
 }
 
+/// Names that somebody else holds, for the length of a call.
+class WordList : public std::vector<std::string_view> {
+public:
+    template <class Range>
+    WordList(const Range& range)  // NOLINT(google-explicit-constructor)
+        : vector(std::begin(range), std::end(range)) {}
+};
+
+/// Those of things that have one.
+template <class Things>
+[[nodiscard]] WordList names_of(const Things& things) {
+    return std::views::transform(things, [](const auto& thing) { return std::string_view(thing.name); });
+}
+
 /// The names, separated by commas; "none" where there are none.
-[[nodiscard]] std::string listed(std::span<const std::string> names);
+[[nodiscard]] std::string listed(const WordList& names);
 
 /// What to suggest for `word`: the candidate it is a synonym of (synonyms.hpp), else the one with the smallest edit
 /// distance, else the only one that has `word` between its underscores; empty where none is near.
-[[nodiscard]] std::string nearest_word(std::string_view word, std::span<const std::string> candidates);
+[[nodiscard]] std::string nearest_word(std::string_view word, const WordList& candidates);
 
 }  // namespace grainsweep::campaign

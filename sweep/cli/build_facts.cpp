@@ -1,7 +1,7 @@
 #include "sweep/cli/build_facts.hpp"
 
 #include "solver/scenes/scene.hpp"
-#include "sweep/campaign/whole_file.hpp"
+#include "sweep/files/whole_file.hpp"
 
 #include <grainsweep_version.hpp>
 
@@ -83,8 +83,7 @@ std::string build_id() {
     ::dl_iterate_phdr(look_for_build_id, &text);
     if (!text.empty()) return text;
     std::error_code ignored;
-    return campaign::content_hash(
-        campaign::whole_file("/proc/self/exe", ignored));  // a linker that leaves no such note
+    return campaign::content_hash(files::whole_file("/proc/self/exe", ignored));  // a linker that leaves no such note
 }
 
 campaign::Computer this_computer() {

@@ -28,10 +28,8 @@ Cell text_or_none(const std::string& text) {
     return text.empty() ? Cell{} : Cell{text};
 }
 
-std::string alternatives(const std::vector<std::string>& words) {
-    std::string list;
-    for (const auto& word : words) list += (list.empty() ? "" : " | ") + word;
-    return list;
+std::string alternatives(const auto& words) {
+    return fmt::format("{}", fmt::join(words, " | "));
 }
 
 std::string condition_text(const Relevance& condition) {
@@ -175,9 +173,10 @@ store::Table program_table() {
     const auto add = [&](const char* object, std::span<const campaign::Key> keys) {
         for (const auto& key : keys) {
             const auto one_of = key.words.empty() ? "" : "; one of " + alternatives(key.words);
-            table.rows.push_back({std::string(object), key.name,
-                                  key.required ? Cell{std::string("required")} : text_or_none(key.standard),
-                                  key.meaning + one_of});
+            table.rows.push_back(
+                {std::string(object), std::string(key.name),
+                 key.required ? Cell{std::string("required")} : text_or_none(std::string(key.standard)),
+                 std::string(key.meaning) + one_of});
         }
     };
     add("program", campaign::program_keys());

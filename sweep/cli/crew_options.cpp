@@ -4,6 +4,7 @@
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/workers/job_cores.hpp"
+#include "sweep/workers/process_start.hpp"
 
 #include <algorithm>
 #include <vector>
@@ -60,14 +61,13 @@ workers::PoolOptions pool_options(const campaign::Campaign& campaign, const Work
     if (campaign::is_program(campaign.scene().name) && options.limits.wall > 0)
         options.limits.wall += time_to_end_a_program;
     options.expected.program = this_computer();
-    for (const auto& observable : campaign.scene().observables)
-        options.expected.measured.emplace(observable.name, observable.shape);
+    options.expected.measured = campaign.scene().observables;
     return options;
 }
 
 void refuse_launcher_that_is_not_there(const campaign::Campaign& campaign, const std::filesystem::path& config) {
     const auto& launcher = campaign.execution.launcher;
-    if (launcher.empty() || workers::Pool::can_start(launcher.front())) return;
+    if (launcher.empty() || !workers::find_program(launcher.front()).empty()) return;
     throw campaign::wrong_question(config.string() + ": $.execution.launcher[0]", launcher.front(),
                                    "this launcher program does not exist");
 }

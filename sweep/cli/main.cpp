@@ -36,7 +36,7 @@ int flushed(int code) {
     std::cout.flush();
     if (!std::cout || std::fflush(stdout) != 0) {
         const std::string why = errno == 0 ? "" : std::string(": ") + std::strerror(errno);  // lost in an earlier write
-        throw store::BrokenWorld("standard output cannot be written" + why + ".");
+        throw BrokenWorld("standard output cannot be written" + why + ".");
     }
     return code;
 }

@@ -106,10 +106,10 @@ std::string keys_section() {
     const auto add = [&text](std::string_view title, std::span<const campaign::Key> keys) {
         text += fmt::format(".SS {}\n", title);
         for (const auto& key : keys) {
-            std::string meaning = key.meaning;
+            std::string meaning(key.meaning);
             if (key.required) meaning += " (required)";
             if (!key.standard.empty()) meaning += fmt::format(" (default {})", key.standard);
-            text += item(bold(key.name), plain(meaning) + ".");
+            text += item(bold(std::string(key.name)), plain(meaning) + ".");
         }
     };
     add("The campaign", campaign::campaign_keys());

@@ -1,8 +1,8 @@
 #include "sweep/cli/page_file.hpp"
 
 #include "sweep/campaign/wrong_question.hpp"
-#include "sweep/store/aside_file.hpp"
-#include "sweep/store/broken_world.hpp"
+#include "sweep/files/aside_file.hpp"
+#include "sweep/files/broken_world.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -14,7 +14,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <span>
 #include <system_error>
 
 namespace grainsweep::cli {
@@ -54,11 +53,11 @@ void write_page_file(const std::string& output, const std::string& page) {
         errno = 0;
         std::ofstream stream(output, std::ios::binary);
         stream << page << std::flush;
-        if (!stream) throw store::BrokenWorld(fmt::format("'{}': cannot be written: {}", output, std::strerror(errno)));
+        if (!stream) throw BrokenWorld(fmt::format("'{}': cannot be written: {}", output, std::strerror(errno)));
         return;
     }
-    store::AsideFile file(fs::weakly_canonical(output));  // through links: the page is where the link points
-    file.write(std::as_bytes(std::span(page)));
+    files::AsideFile file(fs::weakly_canonical(output));  // through links: the page is where the link points
+    file.write(page);
     file.take_place();
 }
 

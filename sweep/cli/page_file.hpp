@@ -11,7 +11,7 @@ namespace grainsweep::cli {
 void check_page_file(std::string_view option, const std::string& output, const std::string& database);
 
 /// The page in its place when whole, so that a failure leaves what was there; straight into what is no file.
-/// Throws store::BrokenWorld.
+/// Throws BrokenWorld.
 void write_page_file(const std::string& output, const std::string& page);
 
 }  // namespace grainsweep::cli

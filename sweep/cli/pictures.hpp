@@ -34,7 +34,7 @@ public:
     ~Pictures();
 
     /// Takes what is asked for, nothing where nothing is. Throws WrongQuestion on its first frame where the scene shows
-    /// nothing, store::BrokenWorld where a file cannot be written.
+    /// nothing, BrokenWorld where a file cannot be written.
     [[nodiscard]] workers::Camera camera();
     /// Writes the page.
     void finish(const campaign::CaseResult& result);

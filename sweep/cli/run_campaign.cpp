@@ -9,11 +9,11 @@
 #include "sweep/cli/program_campaign.hpp"
 #include "sweep/cli/progress.hpp"
 #include "sweep/cli/walltime.hpp"
+#include "sweep/files/artefacts.hpp"
 #include "sweep/schedule/growth.hpp"
 #include "sweep/schedule/judge.hpp"
 #include "sweep/schedule/plan.hpp"
 #include "sweep/schedule/scheduler.hpp"
-#include "sweep/store/artefacts.hpp"
 #include "sweep/store/campaign_name.hpp"
 #include "sweep/store/expression.hpp"
 #include "sweep/store/recorder.hpp"
@@ -158,7 +158,7 @@ std::unique_ptr<schedule::Judge> make_judge(const campaign::Campaign& campaign, 
     }
     const auto sequences = designs::independent_sequences(campaign.design, campaign.request);
     std::optional<schedule::ModelView> view;
-    if (campaign.convergence->rule == "assisted")
+    if (campaign.convergence->traits().of_model)
         view = study::model_view(campaign, placement.candidates,
                                  store::make_filter(campaign.where, campaign::filter_names(campaign)));
     return std::make_unique<schedule::Judge>(*campaign.convergence, placed, static_cast<std::size_t>(sequences),
@@ -218,7 +218,7 @@ schedule::Rules rules_of(const campaign::Campaign& campaign, const RunRequest& r
 
 /// The lock is held: what dead processes left half written belongs to no run. A checkpoint is of no use once its case
 /// is settled; those of other builds and instruction paths are found by their contents alone.
-void sweep(const store::ArtefactFolder& folder, const store::Store& store) {
+void sweep(const files::ArtefactFolder& folder, const store::Store& store) {
     folder.sweep([&](std::string_view key) {
         const auto id = workers::checkpointed_case(key);
         return id && store.is_settled(*id);
@@ -233,7 +233,7 @@ void say_first(ProgressLine& line, const campaign::Campaign& campaign, const cam
 }
 
 void refuse_what_cannot_start(const campaign::Campaign& campaign, const RunRequest& request, const fs::path& database) {
-    if (request.calibrates && campaign.design != "calibration")
+    if (request.calibrates && !designs::design_named(campaign.design).calibrates)
         throw campaign::wrong_question(
             request.config.string() + ": $", "",
             "key 'calibration' with the measurements is missing; for a campaign with a design use run");
@@ -359,7 +359,7 @@ private:
         const auto cases = folder_beside(request_.artefacts.empty() ? database_ : artefacts_, of_cases);
         const StagedProgram staged(campaign::known_program(campaign_.scene().name), cases);
         workers::Pool pool(pool_options(campaign_, {artefacts_, cases}, workers_, request_.path));
-        store::ArtefactFolder folder(artefacts_);
+        files::ArtefactFolder folder(artefacts_);
         sweep(folder, *store_);
         schedule::Watchers watchers;
         watchers.progress = [&](const schedule::Progress& progress) { line_->update(progress); };

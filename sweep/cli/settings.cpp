@@ -1,8 +1,8 @@
 #include "sweep/cli/settings.hpp"
 
 #include "sweep/campaign/csv_table.hpp"
-#include "sweep/campaign/whole_file.hpp"
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/files/whole_file.hpp"
 
 #include <fmt/format.h>
 
@@ -68,7 +68,7 @@ std::string text_of(const std::filesystem::path& file) {
         throw campaign::wrong_question("--points", file.string(), "there is no such file");
     if (std::filesystem::file_size(file, none) > largest_file)
         throw campaign::wrong_question("--points", file.string(), "the file must have at most 256 MiB");
-    std::string text = campaign::whole_file(file, none);
+    std::string text = files::whole_file(file, none);
     if (none)
         throw campaign::wrong_question("--points", file.string(),
                                        fmt::format("the file cannot be read: {}", none.message()));

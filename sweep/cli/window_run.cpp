@@ -1,8 +1,8 @@
 #include "sweep/cli/window_run.hpp"
 
-#include "sweep/campaign/whole_file.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/cli/run_campaign.hpp"
+#include "sweep/files/whole_file.hpp"
 #include "sweep/store/campaign_name.hpp"
 
 #include <fmt/format.h>
@@ -27,8 +27,7 @@ class BatchFile {
 public:
     BatchFile(const std::string& name, const std::string& text) : path_(name + ".json") {
         std::error_code error;
-        if (const std::string found = campaign::whole_file(path_, error);
-            error != std::errc::no_such_file_or_directory) {
+        if (const std::string found = files::whole_file(path_, error); error != std::errc::no_such_file_or_directory) {
             if (error || found != text)
                 throw campaign::wrong_question(
                     "--run", path_.string(), "a file of this name exists; the batch's campaign file would replace it");

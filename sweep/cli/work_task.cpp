@@ -8,8 +8,8 @@
 #include "sweep/cli/progress.hpp"
 #include "sweep/cli/walltime.hpp"
 #include "sweep/designs/design.hpp"
+#include "sweep/files/artefacts.hpp"
 #include "sweep/spool/task.hpp"
-#include "sweep/store/artefacts.hpp"
 #include "sweep/store/expression.hpp"
 #include "sweep/study/features.hpp"
 #include "sweep/workers/memory_room.hpp"
@@ -128,7 +128,7 @@ WorkReport work_on(const WorkRequest& request) {
     for (const auto& warning : campaign::warnings_of(campaign, forecast)) line.note("warning: " + warning);
 
     spool::TaskRules rules{share, campaign.limits.attempts, request.lease, walltime_of(campaign)};
-    store::ArtefactFolder artefacts(spool.artefacts());
+    files::ArtefactFolder artefacts(spool.artefacts());
     spool::Task::Watchers watchers;
     watchers.progress = [&](const spool::Task::Tally& tally, std::size_t running) {
         schedule::Progress progress;

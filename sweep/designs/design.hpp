@@ -38,7 +38,7 @@ struct OptionSpec {
     std::optional<OptionValue> default_value = {};  ///< none: required
     std::int64_t minimum = 1;                       ///< of a count
     std::int64_t maximum = 1'000'000'000'000;
-    std::vector<std::string> words = {};  ///< of a word
+    std::vector<std::string_view> words = {};  ///< of a word
     /// Says how much of the design is asked, not which design it is: the same campaign may ask for more of it where
     /// the design extends.
     bool extent = false;
@@ -116,6 +116,7 @@ struct DesignInfo {
     /// follow from what is known.
     bool grows = false;
     bool calibrates = false;  ///< looks for the settings that agree with what was measured, its option "targets"
+    bool brackets = false;    ///< looks for where an answer passes a threshold, its option "threshold"
     /// The observables whose answers these are, or places along their curves (curve_place.hpp).
     std::function<std::vector<std::string>(const DesignRequest&)> rests_on = {};
     Beginning beginning = Beginning::sample;

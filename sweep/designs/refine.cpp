@@ -245,6 +245,7 @@ DesignInfo refine_design() {
                      .default_value = std::int64_t{1},
                      .maximum = most_repeats}},
         .grows = true,
+        .brackets = true,
         .rests_on = [](const DesignRequest& request) { return std::vector{request.word("observable")}; },
         .beginning = Beginning::corner,
         .size =

@@ -1,14 +1,13 @@
 #include "sweep/report/vtk_series.hpp"
 
-#include "sweep/campaign/whole_file.hpp"
+#include "sweep/files/aside_file.hpp"
+#include "sweep/files/broken_world.hpp"
+#include "sweep/files/whole_file.hpp"
 #include "sweep/report/vtk_file.hpp"
-#include "sweep/store/aside_file.hpp"
-#include "sweep/store/broken_world.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <span>
 #include <string_view>
 #include <system_error>
 
@@ -20,9 +19,9 @@ constexpr std::string_view particles = "particles";
 void write_file(const std::filesystem::path& path, const std::string& bytes) {
     std::error_code none;
     if (std::filesystem::is_symlink(std::filesystem::symlink_status(path, none)))
-        throw store::BrokenWorld("'" + path.string() + "' is a symbolic link; a picture does not replace it");
-    store::AsideFile file(path);
-    file.write(std::as_bytes(std::span(bytes)));
+        throw BrokenWorld("'" + path.string() + "' is a symbolic link; a picture does not replace it");
+    files::AsideFile file(path);
+    file.write(bytes);
     file.take_place();
 }
 
@@ -43,8 +42,8 @@ std::string VtkSeries::file_of(std::string_view what, std::string_view extension
 void VtkSeries::begin() {
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
-    if (error) throw store::BrokenWorld(fmt::format("cannot make {}: {}", folder_.string(), error.message()));
-    const std::string older = campaign::whole_file(collection(), error);  // none there, as a rule
+    if (error) throw BrokenWorld(fmt::format("cannot make {}: {}", folder_.string(), error.message()));
+    const std::string older = files::whole_file(collection(), error);  // none there, as a rule
     constexpr std::string_view before = "file=\"";
     for (std::size_t at = older.find(before); at != std::string::npos; at = older.find(before, at)) {
         at += before.size();

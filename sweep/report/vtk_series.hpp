@@ -19,7 +19,7 @@ public:
     /// Writes the moment's files, then NAME.pvd anew, which names all so far: particles as NAME_0000.vtp,
     /// NAME_0001.vtp, ..., a wall as NAME_WALL_0000.vtp, numbered like the moment since which it stands as it is (one
     /// that never moves is one file), a flow as NAME_FIELD_0000.vti or .vtr. Makes the folder where there is none; the
-    /// first moment takes away an older series of this name. Throws store::BrokenWorld where it cannot.
+    /// first moment takes away an older series of this name. Throws BrokenWorld where it cannot.
     void add(const Snapshot& snapshot, double time);
     [[nodiscard]] std::size_t size() const { return moments_; }
     [[nodiscard]] std::filesystem::path collection() const { return folder_ / (name_ + ".pvd"); }

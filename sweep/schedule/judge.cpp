@@ -11,15 +11,6 @@
 namespace grainsweep::schedule {
 namespace {
 
-using stats::ConvergenceRule;
-static_assert(campaign::fewest_assisted_points == stats::fewest_assisted_points &&
-              campaign::assisted_growth == stats::assisted_growth);
-
-/// Whether the rule compares what changed since the check before.
-bool of_changes(const stats::ConvergenceSettings& settings) {
-    return settings.rule == ConvergenceRule::any_change || settings.rule == ConvergenceRule::all_change;
-}
-
 std::string percent(double share) {
     return share < 1 ? fmt::format("{:.2g} %", 100 * share) : fmt::format("{:.0f} %", 100 * share);
 }
@@ -27,7 +18,7 @@ std::string percent(double share) {
 /// What the rule compares, by its name: "kurtosis" or "change of kurtosis".
 std::string measure_name(stats::Statistic statistic, const stats::ConvergenceSettings& settings) {
     const auto name = stats::to_string(statistic);
-    return of_changes(settings) ? fmt::format("change of {}", name) : std::string(name);
+    return settings.traits().of_sequences ? std::string(name) : fmt::format("change of {}", name);
 }
 
 std::string points_left(const stats::Checkpoint& check, std::int64_t candidates) {
@@ -46,9 +37,7 @@ std::size_t independent_sequences(std::string_view design, std::size_t sequences
 
 stats::ConvergenceSettings settings_of(const campaign::Convergence& wanted, std::size_t sequences) {
     stats::ConvergenceSettings settings;
-    const auto rule = stats::convergence_rule_named(wanted.rule);
-    if (!rule) throw std::invalid_argument("no convergence rule is called '" + wanted.rule + "'");
-    settings.rule = *rule;
+    settings.rule = wanted.traits().rule;
     settings.gates.clear();
     for (const auto& word : wanted.gates) {
         const auto gate = stats::statistic_named(word);
@@ -90,12 +79,12 @@ std::string verdict_of(const stats::Checkpoint& check, const stats::ConvergenceS
             text += fmt::format("{}{} {}", text.empty() ? "" : ", ", measure_name(gate, settings), percent(measure));
         }
         text = fmt::format("{} < {}", text, percent(settings.tolerance));
-        if (settings.rule == ConvergenceRule::assisted && check.excluded > 0)
+        if (settings.traits().of_model && check.excluded > 0)
             text += fmt::format(", of the whole box, extrapolated into the settings of {} cases without a value",
                                 check.excluded);
         return text;
     }
-    if (settings.rule == ConvergenceRule::assisted && std::isnan(check.of(settings.gates.front()).measure))
+    if (settings.traits().of_model && std::isnan(check.of(settings.gates.front()).measure))
         return fmt::format("nothing is decided at {} points: {}", check.points,
                            check.remark.empty() ? "the model of the response was refused" : check.remark);
     if (check.passes || !check.held_back) {
@@ -108,7 +97,7 @@ std::string verdict_of(const stats::Checkpoint& check, const stats::ConvergenceS
                            percent(settings.tolerance), points_left(check, candidates),
                            check.remark.empty() ? "" : "; " + check.remark);
     }
-    const bool first_of_changes = of_changes(settings) && check.points <= settings.block;
+    const bool first_of_changes = !settings.traits().of_sequences && check.points <= settings.block;
     if (first_of_changes) return fmt::format("{} points, nothing to compare with yet", check.points);
     if (check.all_equal)
         return fmt::format("all values are equal after {} points ({} values): their scatter is unknown", check.points,
@@ -134,8 +123,8 @@ Judge::Judge(const campaign::Convergence& wanted, campaign::Cases placed, std::s
     assert(values_.size() == placed_.size());
     if (candidates) candidates_ = std::max(candidates_, *candidates);
     std::int64_t first = wanted.block;
-    if (settings_.rule == ConvergenceRule::assisted) {
-        if (!view) throw std::invalid_argument("the rule 'assisted' needs what a model sees of a case");
+    if (settings_.traits().of_model) {
+        if (!view) throw std::invalid_argument("a rule with a model needs what the model sees of a case");
         assisted_ = std::make_unique<AssistedJudge>(settings_, std::move(*view), placed_, wanted.stop);
         first = assisted_->first_check();
     } else {

@@ -94,8 +94,6 @@ public:
     [[nodiscard]] bool over() const { return under_way_.empty() && !next_predicted(); }
     /// Length of the longest prefix of the placed cases all of whose questions are decided.
     [[nodiscard]] std::size_t settled_prefix();
-    /// Whether the question of placed case i is settled or given up.
-    [[nodiscard]] bool decided(std::size_t placed) const { return decided_[question_at(placed)]; }
 
     struct Tally {
         std::size_t questions = 0;

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <limits>
 #include <utility>
 
 namespace grainsweep::schedule {
@@ -13,20 +12,8 @@ namespace {
 
 using campaign::Outcome;
 using campaign::Overloaded;
+using campaign::unanswered;
 using namespace std::chrono_literals;
-
-/// What the main program knows of an attempt that brought no answer: how long it took, not what it cost.
-campaign::CaseResult unanswered(const campaign::Attempt& attempt, Outcome outcome, std::string reason, double seconds) {
-    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    campaign::CaseResult result;
-    result.attempt = attempt;
-    result.outcome = outcome;
-    result.message = std::move(reason);
-    result.cost.wall_seconds = seconds;
-    result.cost.cpu_seconds = unknown;
-    result.cost.particle_steps = unknown;
-    return result;
-}
 
 }  // namespace
 
@@ -58,7 +45,7 @@ Ending Scheduler::run() {
     }
     recorder_.drain();
     show();
-    if (broken_) throw store::BrokenWorld(*broken_);
+    if (broken_) throw BrokenWorld(*broken_);
     return ending();
 }
 

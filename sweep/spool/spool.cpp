@@ -2,8 +2,9 @@
 
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/wrong_question.hpp"
-#include "sweep/store/aside_file.hpp"
-#include "sweep/store/broken_world.hpp"
+#include "sweep/files/aside_file.hpp"
+#include "sweep/files/broken_world.hpp"
+#include "sweep/files/descriptor.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -16,7 +17,6 @@
 #include <chrono>
 #include <cstring>
 #include <random>
-#include <span>
 #include <utility>
 
 namespace grainsweep::spool {
@@ -29,23 +29,12 @@ constexpr double touches_per_lease = 5;
 constexpr off_t largest_file = off_t{32} << 20U;  // an answer is two lines of messages, of at most 16 MB
 
 [[noreturn]] void broken(const fs::path& file, std::string_view what, int number = errno) {
-    throw store::BrokenWorld(fmt::format("'{}': cannot be {}: {}", file.string(), what, std::strerror(number)));
+    throw BrokenWorld(fmt::format("'{}': cannot be {}: {}", file.string(), what, std::strerror(number)));
 }
 
-/// Closed when it goes out of scope.
-class Descriptor {
-public:
-    Descriptor(const fs::path& file, int flags) : number_(::open(file.c_str(), flags | O_CLOEXEC, 0666)) {}
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    ~Descriptor() { (void)close(); }
-    [[nodiscard]] bool is_open() const { return number_ >= 0; }
-    [[nodiscard]] int number() const { return number_; }
-    [[nodiscard]] bool close() { return number_ < 0 || ::close(std::exchange(number_, -1)) == 0; }
-
-private:
-    int number_;
-};
+files::Descriptor opened(const fs::path& file, int flags) {
+    return files::Descriptor(::open(file.c_str(), flags | O_CLOEXEC, 0666));
+}
 
 /// Files of a spool are regular, and opening anything else must neither wait nor follow a link.
 constexpr int to_read = O_RDONLY | O_NONBLOCK | O_NOFOLLOW | O_NOCTTY;
@@ -57,7 +46,7 @@ struct Contents {
 
 /// Nothing where there is no such file.
 std::optional<Contents> contents_of_file(const fs::path& file) {
-    const Descriptor stream(file, to_read);
+    const auto stream = opened(file, to_read);
     if (!stream.is_open()) {
         if (errno == ENOENT || errno == ESTALE) return std::nullopt;
         if (errno == ELOOP) return Contents{{}, "it is a link"};
@@ -83,27 +72,11 @@ std::optional<Contents> contents_of_file(const fs::path& file) {
     }
 }
 
-bool write_all(const Descriptor& file, std::string_view text) {
-    while (!text.empty()) {
-        const auto length = ::write(file.number(), text.data(), text.size());
-        if (length < 0 && errno == EINTR) continue;
-        if (length < 0) return false;
-        text.remove_prefix(static_cast<std::size_t>(length));
-    }
-    return true;
-}
-
-/// A renamed file is on disk when its folder is.
-void sync_folder(const fs::path& folder) {
-    const Descriptor stream(folder, O_RDONLY | O_DIRECTORY);
-    if (!stream.is_open() || (::fsync(stream.number()) != 0 && errno != EINVAL)) broken(folder, "synced");
-}
-
 void put_in_place(const fs::path& file, std::string_view text) {
-    store::AsideFile aside(file);
-    aside.write(std::as_bytes(std::span(text)));
+    files::AsideFile aside(file);
+    aside.write(text);
     aside.take_place();
-    sync_folder(file.parent_path());
+    files::sync_folder(file.parent_path());
 }
 
 std::string asked_text(const Asked& asked) {
@@ -127,23 +100,10 @@ std::optional<Asked> asked_of(std::string_view text) {
 
 /// ns; nothing where the file is gone. Opened, so that a network file system asks its server.
 std::optional<std::int64_t> modified(const fs::path& file) {
-    const Descriptor stream(file, to_read);
+    const auto stream = opened(file, to_read);
     struct stat seen {};
     if (!stream.is_open() || ::fstat(stream.number(), &seen) != 0 || !S_ISREG(seen.st_mode)) return std::nullopt;
     return std::int64_t{seen.st_mtim.tv_sec} * 1'000'000'000 + seen.st_mtim.tv_nsec;
-}
-
-/// What its scene does not declare so; empty: all is declared.
-std::string undeclared_by(const SceneInfo& scene, const Observations& observations) {
-    const auto declared = [&](const std::string& name, bool scalar) {
-        const auto* observable = scene.find_observable(name);
-        return observable != nullptr && (observable->shape == Shape::scalar) == scalar;
-    };
-    for (const auto& [name, value] : observations.scalars)
-        if (!declared(name, true)) return name;
-    for (const auto& [name, samples] : observations.series)
-        if (!declared(name, false)) return name;
-    return {};
 }
 
 }  // namespace
@@ -156,7 +116,7 @@ std::optional<Entry> entry_of(const fs::path& file, const campaign::Attempt& nam
     const auto* answer = std::get_if<Answer>(&entry);
     if (answer == nullptr) return entry;
     if (answer->result.attempt != named) return Damaged{"it answers another attempt than its name says"};
-    if (const auto name = undeclared_by(scene, answer->result.observations); !name.empty())
+    if (const auto name = campaign::undeclared(answer->result.observations, scene.observables); !name.empty())
         return Damaged{fmt::format("it measured '{}', which its scene does not declare so", name)};
     return entry;
 }
@@ -168,8 +128,7 @@ Asked Spool::asked_in(const fs::path& folder) {
                                        "is no spool: 'grainsweep work CONFIG --spool DIR' makes one");
     auto asked = asked_of(text->text);
     if (!asked || !text->fault.empty())
-        throw store::BrokenWorld(
-            fmt::format("'{}': is damaged, or no spool of this program", (folder / "campaign").string()));
+        throw BrokenWorld(fmt::format("'{}': is damaged, or no spool of this program", (folder / "campaign").string()));
     return std::move(*asked);
 }
 
@@ -193,10 +152,10 @@ fs::path Spool::file_of(const campaign::Attempt& attempt) const {
 
 bool Spool::claim(const campaign::Attempt& attempt, const std::string& task) const {
     const auto path = file_of(attempt);
-    Descriptor file(path, O_WRONLY | O_CREAT | O_EXCL);
+    auto file = opened(path, O_WRONLY | O_CREAT | O_EXCL);
     if (!file.is_open() && errno == EEXIST) return false;
     if (!file.is_open()) broken(path, "made");
-    if (!write_all(file, text_of(Claim{task})) || !file.close()) broken(path, "written");
+    if (!files::write_all(file.number(), text_of(Claim{task})) || !file.close()) broken(path, "written");
     return true;
 }
 
@@ -225,7 +184,7 @@ TaskFile::~TaskFile() {
 }
 
 void TaskFile::touch() {
-    Descriptor file(file_, O_WRONLY | O_CREAT);
+    auto file = opened(file_, O_WRONLY | O_CREAT);
     if (!file.is_open() || ::futimens(file.number(), nullptr) != 0 || !file.close()) broken(file_, "written");
 }
 

@@ -1,13 +1,12 @@
 #include "sweep/spool/task.hpp"
 
 #include "sweep/campaign/overloaded.hpp"
-#include "sweep/store/broken_world.hpp"
+#include "sweep/files/broken_world.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -15,6 +14,8 @@ namespace grainsweep::spool {
 namespace {
 
 using campaign::Outcome;
+using campaign::Overloaded;
+using campaign::unanswered;
 using schedule::Ending;
 using namespace std::chrono_literals;
 
@@ -25,21 +26,6 @@ constexpr int most_vanished = 3;
 
 double running_time() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-using campaign::Overloaded;
-
-campaign::CaseResult without_answer(const campaign::Attempt& attempt, Outcome outcome, const std::string& reason,
-                                    double seconds) {
-    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    campaign::CaseResult result;
-    result.attempt = attempt;
-    result.outcome = outcome;
-    result.message = reason;
-    result.cost.wall_seconds = seconds;
-    result.cost.cpu_seconds = unknown;
-    result.cost.particle_steps = unknown;
-    return result;
 }
 
 }  // namespace
@@ -95,10 +81,10 @@ Ending Task::run() {
         crew_.retire();
     for (const auto& [id, one] : running_)  // ended with the crew
         spool_.answer(
-            {without_answer({id, known_[one.place].next}, Outcome::abandoned, "its task was ended", 0), one.computer});
+            {unanswered({id, known_[one.place].next}, Outcome::abandoned, "its task was ended", 0), one.computer});
     tally_.elsewhere = elsewhere_.size();
     watchers_.progress(tally_, 0);
-    if (broken_) throw store::BrokenWorld(*broken_);
+    if (broken_) throw BrokenWorld(*broken_);
     return ending();
 }
 
@@ -275,7 +261,7 @@ void Task::fail(const campaign::Attempt& attempt, Outcome outcome, const std::st
     const auto found = running_.find(attempt.case_id);
     const auto one = found->second;
     running_.erase(found);
-    spool_.answer({without_answer(attempt, outcome, reason, seconds), one.computer});
+    spool_.answer({unanswered(attempt, outcome, reason, seconds), one.computer});
     auto& known = known_[one.place];
     ++known.next;
     const bool again = ++known.failures < rules_.attempts;
@@ -292,7 +278,7 @@ void Task::give_back(const campaign::Attempt& attempt, const std::string& reason
     const auto one = found->second;
     running_.erase(found);
     // A file of its own for every attempt that was begun: the next one looks for a checkpoint.
-    spool_.answer({without_answer(attempt, Outcome::abandoned, reason, seconds), one.computer});
+    spool_.answer({unanswered(attempt, Outcome::abandoned, reason, seconds), one.computer});
     auto& known = known_[one.place];
     ++known.next;
     const bool again = ++known.given_back < most_given_back;

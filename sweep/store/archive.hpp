@@ -99,6 +99,11 @@ struct KnownCampaign {
 [[nodiscard]] std::optional<std::int64_t> match_campaign(const Store::Impl& archive,
                                                          const campaign::Campaign& campaign);
 
+/// The key of a scalar, or of a series or profile, of a campaign. Throws WrongQuestion with the nearest name where
+/// there is none.
+[[nodiscard]] std::int64_t measured_key(const Connection& db, std::int64_t campaign_key, std::string_view campaign,
+                                        std::string_view observable, bool scalar);
+
 [[nodiscard]] CaseState stored_state(const Connection& db, std::int64_t key);
 /// Checks every case of the file, forgets damaged answers of these and brings their states up to date. Returns whether
 /// all others are sound.

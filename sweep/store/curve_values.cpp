@@ -1,8 +1,5 @@
 // Values at one place along the curves of a campaign: what a measured curve is compared with.
-#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/store/archive.hpp"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -58,26 +55,12 @@ Curve curve_of(std::vector<Sample> samples) {
     return curve;
 }
 
-std::int64_t curve_key(const Connection& db, std::int64_t campaign_key, std::string_view campaign,
-                       std::string_view observable) {
-    auto rows = db.ask(
-        "SELECT b.name, b.observable_id FROM observable AS b NOT INDEXED JOIN campaign AS g NOT INDEXED ON b.scene = "
-        "g.scene AND b.revision = g.revision WHERE g.campaign_id = ? AND b.shape <> 'scalar' ORDER BY b.observable_id",
-        campaign_key);
-    std::vector<std::string> curves;
-    while (rows.next()) {
-        curves.push_back(rows.get<std::string>(0));
-        if (curves.back() == observable) return rows.get<std::int64_t>(1);
-    }
-    throw campaign::wrong_question(
-        "observable", observable,
-        fmt::format("the series and profiles of '{}' are {}", campaign, campaign::listed(curves)),
-        campaign::nearest_word(observable, curves));
-}
-
 /// Calls `each` for every case of the campaign, by point and replicate, with its curve.
-void for_each_curve(const Connection& db, std::int64_t campaign_key, std::int64_t observable_key,
+void for_each_curve(const Store::Impl& archive, std::string_view campaign, std::string_view observable,
                     const std::function<void(PlacedValue, const Curve&)>& each) {
+    const auto& db = archive.db;
+    const std::int64_t campaign_key = archive.campaign_key(campaign);
+    const std::int64_t observable_key = measured_key(db, campaign_key, campaign, observable, false);
     auto rows = db.ask(
         "SELECT p.point, p.sequence, p.replicate, c.outcome, o.time, o.bin, o.value, o.sample, p.case_key FROM "
         "campaign_case AS p JOIN sim_case AS c ON c.case_key = p.case_key LEFT JOIN observation AS o ON o.case_key = "
@@ -93,13 +76,12 @@ void for_each_curve(const Connection& db, std::int64_t campaign_key, std::int64_
         const auto point = rows.get<std::int64_t>(0), replicate = rows.get<std::int64_t>(2);
         if (!placed || placed->point != point || placed->replicate != replicate) {
             close();
-            placed = {
-                .point = point,
-                .sequence = rows.get<std::int64_t>(1),
-                .replicate = replicate,
-                .case_key = rows.get<std::int64_t>(8),
-                .outcome = rows.is_null(3) ? std::nullopt : campaign::outcome_named(rows.get<std::string_view>(3)),
-                .value = none};
+            placed = {.point = point,
+                      .sequence = rows.get<std::int64_t>(1),
+                      .replicate = replicate,
+                      .case_key = rows.get<std::int64_t>(8),
+                      .outcome = outcome_at(rows, 3),
+                      .value = none};
         }
         if (!rows.is_null(7)) samples.push_back({rows.get<double>(4), rows.get<double>(5), rows.get<double>(6)});
     }
@@ -110,10 +92,8 @@ void for_each_curve(const Connection& db, std::int64_t campaign_key, std::int64_
 
 std::vector<PlacedValue> Store::values_along(std::string_view campaign, std::string_view observable, double at) const {
     impl_->require_sound();
-    const auto& db = impl_->db;
-    const std::int64_t key = impl_->campaign_key(campaign);
     std::vector<PlacedValue> values;
-    for_each_curve(db, key, curve_key(db, key, campaign, observable), [&](PlacedValue placed, const Curve& curve) {
+    for_each_curve(*impl_, campaign, observable, [&](PlacedValue placed, const Curve& curve) {
         placed.value = curve.value_at(at);
         values.push_back(placed);
     });
@@ -122,10 +102,8 @@ std::vector<PlacedValue> Store::values_along(std::string_view campaign, std::str
 
 std::vector<CurveExtent> Store::curve_extents(std::string_view campaign, std::string_view observable) const {
     impl_->require_sound();
-    const auto& db = impl_->db;
-    const std::int64_t key = impl_->campaign_key(campaign);
     std::vector<CurveExtent> extents;
-    for_each_curve(db, key, curve_key(db, key, campaign, observable), [&](PlacedValue placed, const Curve& curve) {
+    for_each_curve(*impl_, campaign, observable, [&](PlacedValue placed, const Curve& curve) {
         if (!curve.places.empty()) extents.push_back({placed.point, curve.places.front(), curve.places.back()});
     });
     return extents;

@@ -8,7 +8,7 @@
 #pragma once
 
 #include "solver/scenes/values.hpp"
-#include "sweep/store/broken_world.hpp"
+#include "sweep/files/broken_world.hpp"
 
 #include <cstddef>
 #include <cstdint>

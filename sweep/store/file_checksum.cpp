@@ -1,5 +1,7 @@
 #include "sweep/store/file_checksum.hpp"
 
+#include "sweep/store/soundness.hpp"
+
 #include <xxhash.h>
 
 #include <algorithm>
@@ -67,10 +69,7 @@ bool log_waits(const std::filesystem::path& file) {
 
 bool is_as_remembered(const Connection& db, const std::filesystem::path& file) {
     std::optional<FileSum> stored;
-    {
-        auto tables = db.ask("SELECT 1 FROM sqlite_schema WHERE name = 'file_checksum'");
-        if (!tables.next()) return false;
-    }
+    if (!has_table(db, "file_checksum")) return false;
     {
         auto rows = db.ask("SELECT pages, checksum FROM file_checksum");
         if (rows.next()) stored = {rows.get<std::int64_t>(0), static_cast<std::uint64_t>(rows.get<std::int64_t>(1))};

@@ -17,11 +17,8 @@ namespace {
 constexpr std::int64_t rows_worth_a_search = 8;
 
 CaseState state_at(const Rows& rows, int first) {
-    CaseState state{static_cast<std::int32_t>(rows.get<std::int64_t>(first)),
-                    static_cast<std::int32_t>(rows.get<std::int64_t>(first + 1)),
-                    {}};
-    if (!rows.is_null(first + 2)) state.outcome = campaign::outcome_named(rows.get<std::string_view>(first + 2));
-    return state;
+    return {static_cast<std::int32_t>(rows.get<std::int64_t>(first)),
+            static_cast<std::int32_t>(rows.get<std::int64_t>(first + 1)), outcome_at(rows, first + 2)};
 }
 
 std::int64_t highest_key(const Connection& db) {
@@ -51,6 +48,10 @@ void read_all(const Connection& db, const campaign::Cases& cases, KnownCases& kn
 }
 
 }  // namespace
+
+std::optional<campaign::Outcome> outcome_at(const Rows& rows, int column) {
+    return rows.is_null(column) ? std::nullopt : campaign::outcome_named(rows.get<std::string_view>(column));
+}
 
 CaseState stored_state(const Connection& db, std::int64_t key) {
     auto rows = db.ask("SELECT attempts, failures, outcome FROM sim_case WHERE case_key = ?", key);

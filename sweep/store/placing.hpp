@@ -33,6 +33,9 @@ struct KnownCases {
 };
 [[nodiscard]] KnownCases known_cases(const Connection& db, const campaign::Cases& cases);
 
+/// None where the column is NULL.
+[[nodiscard]] std::optional<campaign::Outcome> outcome_at(const Rows& rows, int column);
+
 class Placing {
 public:
     Placing(campaign::Cases cases, std::vector<std::int64_t> keys, std::vector<DeclaredParameter> parameters,

@@ -45,8 +45,7 @@ std::vector<std::pair<std::string, std::string>> definitions(const Connection& d
 }  // namespace
 
 bool has_programs(const Connection& db) {
-    auto rows = db.ask("SELECT 1 FROM sqlite_schema WHERE name = 'attempt_program'");
-    return rows.next();
+    return has_table(db, "attempt_program");
 }
 
 void enter_programs(const Connection& db) {

@@ -17,10 +17,6 @@ using campaign::Outcome;
 
 namespace {
 
-std::optional<Outcome> outcome_at(const Rows& rows, int column) {
-    return rows.is_null(column) ? std::nullopt : campaign::outcome_named(rows.get<std::string_view>(column));
-}
-
 std::vector<std::string> words_of(std::string_view text) {
     std::vector<std::string> words;
     std::istringstream stream{std::string(text)};
@@ -195,8 +191,7 @@ namespace {
 
 /// What computed an attempt; an archive of an older form knows only what ran the campaign, and not how many threads.
 std::string attempts_question(const Connection& db) {
-    auto tables = db.ask("SELECT 1 FROM sqlite_schema WHERE name = 'attempt_computer'");
-    const bool computers = tables.next();
+    const bool computers = has_table(db, "attempt_computer");
     return fmt::format(
         "SELECT number, outcome, coalesce(message, ''), wall_seconds, started, version, \"commit\", {}, "
         "instruction_path, processor, host, {} FROM attempt AS t JOIN {} WHERE case_key = ? ORDER BY number",
@@ -281,28 +276,29 @@ std::optional<campaign::CaseResult> Store::result(std::string_view case_id) cons
     return result;
 }
 
+std::int64_t measured_key(const Connection& db, std::int64_t campaign_key, std::string_view campaign,
+                          std::string_view observable, bool scalar) {
+    auto rows = db.ask(
+        "SELECT b.name, b.observable_id FROM observable AS b NOT INDEXED JOIN campaign AS g NOT INDEXED ON b.scene = "
+        "g.scene AND b.revision = g.revision WHERE g.campaign_id = ? AND (b.shape = 'scalar') = ? ORDER BY "
+        "b.observable_id",
+        campaign_key, scalar);
+    std::vector<std::string> names;
+    while (rows.next()) {
+        names.push_back(rows.get<std::string>(0));
+        if (names.back() == observable) return rows.get<std::int64_t>(1);
+    }
+    throw campaign::wrong_question("observable", observable,
+                                   fmt::format("the {} of '{}' are {}", scalar ? "scalars" : "series and profiles",
+                                               campaign, campaign::listed(names)),
+                                   campaign::nearest_word(observable, names));
+}
+
 std::vector<PlacedValue> Store::values(std::string_view campaign, std::string_view observable) const {
     impl_->require_sound();
     const auto& db = impl_->db;
     const std::int64_t key = impl_->campaign_key(campaign);
-    std::int64_t observable_key = 0;
-    std::vector<std::string> scalars;
-    {
-        auto rows = db.ask(
-            "SELECT b.name, b.observable_id FROM observable AS b NOT INDEXED JOIN campaign AS g NOT INDEXED ON b.scene "
-            "= g.scene AND "
-            "b.revision = g.revision WHERE g.campaign_id = ? AND b.shape = 'scalar' ORDER BY b.observable_id",
-            key);
-        while (rows.next()) {
-            scalars.push_back(rows.get<std::string>(0));
-            if (scalars.back() == observable) observable_key = rows.get<std::int64_t>(1);
-        }
-    }
-    if (observable_key == 0) {
-        throw campaign::wrong_question("observable", observable,
-                                       fmt::format("the scalars of '{}' are {}", campaign, campaign::listed(scalars)),
-                                       campaign::nearest_word(observable, scalars));
-    }
+    const std::int64_t observable_key = measured_key(db, key, campaign, observable, true);
     std::vector<PlacedValue> values;
     auto rows = db.ask(
         "SELECT p.point, p.sequence, p.replicate, p.case_key, c.outcome, (SELECT o.value FROM observation AS o WHERE "

@@ -9,6 +9,8 @@
 namespace grainsweep::store {
 namespace {
 
+using campaign::Overloaded;
+
 // A group is as large as what arrived while the last one was being synced, within these bounds.
 constexpr std::size_t group_rows = 256;
 constexpr auto idle_look = std::chrono::seconds(1);
@@ -21,8 +23,6 @@ constexpr std::size_t first_piece = 8192, largest_piece = 131'072;
 
 // Entries and samples that may wait, some 25 MB: more than a disk that works leaves behind.
 constexpr std::size_t most_waiting = 250'000;
-
-using campaign::Overloaded;
 
 std::size_t weight_of(const Recorder::Entry& entry) {
     constexpr std::size_t of_an_entry = 8;

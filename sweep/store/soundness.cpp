@@ -116,6 +116,11 @@ bool has_threads(const Connection& db) {
     return has_column(db, "attempt", "threads");
 }
 
+bool has_table(const Connection& db, std::string_view table) {
+    auto rows = db.ask("SELECT 1 FROM sqlite_schema WHERE name = ?", table);
+    return rows.next();
+}
+
 // The statement, not the function pragma_table_info(): a view of that name would stand before it.
 bool has_column(const Connection& db, std::string_view table, std::string_view column) {
     auto rows = db.prepare(fmt::format("PRAGMA table_info({})", quoted_name(table)));

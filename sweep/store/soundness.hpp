@@ -35,6 +35,7 @@ struct DamagedTable {
 [[nodiscard]] bool has_checksums(const Connection& db);
 /// Whether attempts have a column `threads`: an archive that is only read may be of an older form.
 [[nodiscard]] bool has_threads(const Connection& db);
+[[nodiscard]] bool has_table(const Connection& db, std::string_view table);
 [[nodiscard]] bool has_column(const Connection& db, std::string_view table, std::string_view column);
 
 /// Among the cases with these keys, in order of key. Rows of cases that are not there are counted in `strays`.

@@ -47,9 +47,7 @@ Table Store::status() const {
                 row[waiting + static_cast<std::size_t>(column) - 2] = rows.cell(column);
         }
         if (rows.is_null(outcome_column + 1)) continue;  // a campaign without cases
-        const auto outcome = rows.is_null(outcome_column)
-                                 ? std::nullopt
-                                 : campaign::outcome_named(rows.get<std::string_view>(outcome_column));
+        const auto outcome = outcome_at(rows, outcome_column);
         table.rows.back()[outcome ? first_outcome + static_cast<std::size_t>(*outcome) : waiting] =
             rows.cell(outcome_column + 1);
     }

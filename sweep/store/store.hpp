@@ -10,7 +10,7 @@
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/identity.hpp"
 #include "sweep/campaign/program.hpp"
-#include "sweep/store/broken_world.hpp"
+#include "sweep/files/broken_world.hpp"
 
 #include <cstdint>
 #include <filesystem>

@@ -1,7 +1,7 @@
 #include "sweep/store/writer_lock.hpp"
 
 #include "sweep/campaign/wrong_question.hpp"
-#include "sweep/store/broken_world.hpp"
+#include "sweep/files/broken_world.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -32,24 +32,17 @@ constexpr off_t locked_byte = off_t{1} << 61U;
 // process, and those of one kind never release those of the other. The descriptor outlives the connection to the
 // database, because closing it would release what SQLite holds.
 std::optional<WriterLock> WriterLock::take(const std::filesystem::path& database) {
-    const int descriptor = open(database.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-    if (descriptor < 0) fail_to(database, "cannot be opened to write", errno);
+    files::Descriptor descriptor(open(database.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
+    if (!descriptor.is_open()) fail_to(database, "cannot be opened to write", errno);
     struct flock range {};
     range.l_type = F_WRLCK;
     range.l_whence = SEEK_SET;
     range.l_start = locked_byte;
     range.l_len = 1;
-    if (fcntl(descriptor, F_OFD_SETLK, &range) == 0) return WriterLock(descriptor);
+    if (fcntl(descriptor.number(), F_OFD_SETLK, &range) == 0) return WriterLock(std::move(descriptor));
     const int number = errno;
-    close(descriptor);
     if (number == EAGAIN || number == EACCES) return std::nullopt;
     fail_to(database, "this file system gives no locks; keep the database on one that does", number);
-}
-
-WriterLock::WriterLock(WriterLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-
-WriterLock::~WriterLock() {
-    if (descriptor_ >= 0) close(descriptor_);
 }
 
 std::string_view network_file_system(long magic) {

@@ -2,6 +2,8 @@
 // however the holder dies, and leaves no file behind. All names of a file (links, other paths) share it.
 #pragma once
 
+#include "sweep/files/descriptor.hpp"
+
 #include <filesystem>
 #include <optional>
 #include <string_view>
@@ -13,13 +15,10 @@ public:
     /// Takes the lock, making an empty file where there is none; nothing where another one holds it. Throws
     /// BrokenWorld where the file cannot be opened to write or its file system gives no locks.
     [[nodiscard]] static std::optional<WriterLock> take(const std::filesystem::path& database);
-    WriterLock(WriterLock&& other) noexcept;
-    WriterLock& operator=(WriterLock&&) = delete;
-    ~WriterLock();
 
 private:
-    explicit WriterLock(int descriptor) : descriptor_(descriptor) {}
-    int descriptor_ = -1;
+    explicit WriterLock(files::Descriptor descriptor) : descriptor_(std::move(descriptor)) {}
+    files::Descriptor descriptor_;
 };
 
 /// The magic number of statfs(2) of the file system on which the file lies, or would; 0: not known.

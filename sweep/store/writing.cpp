@@ -73,7 +73,7 @@ std::optional<OpenAttempt> case_of(const Connection& db, const campaign::Attempt
     open.key = rows.get<std::int64_t>(0);
     open.scene = rows.get<std::string>(1);
     open.revision = rows.get<std::int64_t>(2);
-    if (!rows.is_null(3)) open.before = campaign::outcome_named(rows.get<std::string_view>(3));
+    open.before = outcome_at(rows, 3);
     begun = rows.get<std::int64_t>(4);
     return open;
 }

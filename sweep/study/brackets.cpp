@@ -11,7 +11,8 @@
 namespace grainsweep::study {
 
 std::optional<Brackets> brackets_of(const store::Store& store, const store::CampaignRecord& record) {
-    if (record.design != "refine") return std::nullopt;
+    if (const auto* design = designs::find_design(record.design); design == nullptr || !design->brackets)
+        return std::nullopt;
     auto request = campaign::request_of(record);
     Brackets brackets;
     brackets.factor = request.word("factor");

@@ -196,10 +196,10 @@ double TargetCheck::z() const {
 }
 
 std::optional<CalibrationReport> calibration_report(const store::Store& store, const store::CampaignRecord& record) {
-    if (record.design != "calibration") return std::nullopt;
+    const auto* design = designs::find_design(record.design);
+    if (design == nullptr || !design->calibrates) return std::nullopt;
     auto request = campaign::request_of(record);
-    const auto& design = designs::design_named(record.design);
-    request.answers = schedule::known_answers(store, record, design.rests_on(request));
+    request.answers = schedule::known_answers(store, record, design->rests_on(request));
     CalibrationReport report{designs::calibration_of(request), {}, {}, {}};
     const auto followed = followed_points(report.found, read_responses(store, record));
     const bool by_another_program = followed < report.found.points.size();

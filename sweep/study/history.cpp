@@ -34,14 +34,14 @@ stats::ConvergenceSettings settings_for(const Responses& responses, const Respon
         *record.convergence,
         schedule::independent_sequences(record.design, static_cast<std::size_t>(record.sequences)));
     // Other observables than the judged one have no model: their plain errors are shown.
-    if (settings.rule == ConvergenceRule::assisted && response.name != record.convergence->observable)
+    if (settings.traits().of_model && response.name != record.convergence->observable)
         settings.rule = ConvergenceRule::replicates;
     return settings;
 }
 
 /// What a rule with models is shown with beside them.
 stats::ConvergenceSettings plain(stats::ConvergenceSettings settings) {
-    if (settings.rule == ConvergenceRule::assisted) settings.rule = ConvergenceRule::replicates;
+    if (settings.traits().of_model) settings.rule = ConvergenceRule::replicates;
     return settings;
 }
 
@@ -109,11 +109,11 @@ std::optional<stats::Checkpoint> check_of_finished(const Responses& responses, c
 
 void warn(History& history, const Responses& responses, const ResponseColumn& response) {
     const auto& record = responses.campaign;
-    if (history.has_rule && history.settings.rule == ConvergenceRule::any_change) {
+    if (history.has_rule && history.settings.traits().one_gate) {
         history.warnings.emplace_back(
             "the rule any_change stops too early in about half of all campaigns: quote the errors, not the verdict");
     }
-    if (history.has_rule && history.settings.rule == ConvergenceRule::assisted) {
+    if (history.has_rule && history.settings.traits().of_model) {
         history.warnings.emplace_back(
             "checks and measures use estimates with a response model, as judged in the run; values and errors over "
             "all points are plain estimates");
@@ -171,8 +171,8 @@ void warn(History& history, const Responses& responses, const ResponseColumn& re
 }
 
 std::int64_t first_check(const stats::ConvergenceSettings& settings) {
-    if (settings.rule != ConvergenceRule::assisted) return settings.block;
-    return (campaign::fewest_assisted_points + settings.block - 1) / settings.block * settings.block;
+    if (!settings.traits().of_model) return settings.block;
+    return (stats::fewest_assisted_points + settings.block - 1) / settings.block * settings.block;
 }
 
 std::string verdict_of(const History& history, const Responses& responses) {
@@ -229,7 +229,7 @@ History figures_of(const Responses& responses, const ResponseColumn& response) {
 
 History history_of(const Responses& responses, const ResponseColumn& response) {
     History history = figures_of(responses, response);
-    if (history.settings.rule == ConvergenceRule::assisted) {
+    if (history.settings.traits().of_model) {
         history.checks = judged_in_the_run(responses, history.settings);
     } else if (responses.ordered_sample()) {
         history.checks = stats::judge_convergence(history.settings, judged_points(responses),

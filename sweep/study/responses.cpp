@@ -281,7 +281,7 @@ bool repeats(const Responses& responses) {
 namespace {
 
 std::vector<store::ConvergenceRow> judged_checks(const store::Store& store, const store::CampaignRecord& record) {
-    if (!record.convergence || record.convergence->rule != "assisted") return {};
+    if (!record.convergence || !record.convergence->traits().of_model) return {};
     return store.convergence(record.name, record.convergence->observable);
 }
 

@@ -1,21 +1,19 @@
 #include "sweep/workers/compute.hpp"
 
-#include "sweep/store/broken_world.hpp"
+#include "sweep/files/broken_world.hpp"
+#include "sweep/files/whole_file.hpp"
 
 #include <fmt/format.h>
 #include <time.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <variant>
 
@@ -163,19 +161,10 @@ bool drive(Scene& scene, const Watch& watch, const Camera& camera, Mean& used) {
 
 /// Nothing where there is no such file. One that is there and cannot be read is no matter of the case: BrokenWorld.
 std::optional<std::string> contents_of(const std::string& path) {
-    const auto broken = [&](int number) {
-        return store::BrokenWorld(fmt::format("'{}': cannot be read: {}", path, std::strerror(number)));
-    };
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(path.c_str(), "rb"), std::fclose);
-    if (!stream && errno == ENOENT) return std::nullopt;
-    if (!stream) throw broken(errno);
-    std::string text;
-    std::array<char, 65536> part{};
-    for (std::size_t got = 1; got > 0;) {
-        got = std::fread(part.data(), 1, part.size(), stream.get());
-        text.append(part.data(), got);
-    }
-    if (std::ferror(stream.get()) != 0) throw broken(errno);
+    std::error_code error;
+    auto text = files::whole_file(path, error);
+    if (error == std::errc::no_such_file_or_directory) return std::nullopt;
+    if (error) throw BrokenWorld(fmt::format("'{}': cannot be read: {}", path, error.message()));
     return text;
 }
 
@@ -196,21 +185,6 @@ std::variant<Files, std::string> read_files(const Inputs& inputs) {
         files.emplace(name, std::move(contents));
     }
     return files;
-}
-
-/// The name of an observable that the scene does not declare, or declares otherwise; empty: none.
-std::string undeclared(const SceneInfo& scene, const Observations& observations) {
-    const auto declared = [&](const std::string& name, bool scalar) {
-        const auto* observable = scene.find_observable(name);
-        return observable != nullptr && (observable->shape == Shape::scalar) == scalar;
-    };
-    for (const auto& [name, value] : observations.scalars) {
-        if (!declared(name, true)) return name;
-    }
-    for (const auto& [name, samples] : observations.series) {
-        if (!declared(name, false)) return name;
-    }
-    return {};
 }
 
 bool all_finite(const Observations& observations) {
@@ -277,7 +251,7 @@ std::optional<campaign::CaseResult> compute(const campaign::Case& question, std:
     } catch (const std::invalid_argument& error) {
         return close(campaign::Outcome::rejected, error.what());
     }
-    if (const std::string name = undeclared(*info, result.observations); !name.empty()) {
+    if (const auto name = campaign::undeclared(result.observations, info->observables); !name.empty()) {
         result.observations = {};
         return close(campaign::Outcome::rejected,
                      fmt::format("it measured '{}', which its scene does not declare so", name));

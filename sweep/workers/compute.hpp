@@ -25,7 +25,7 @@ struct Camera {
 /// Computes the case: skipped when its answer is proven, rejected when the scene cannot be made from its
 /// inputs or a file among them has changed, unstable when its state became untrustworthy, completed otherwise.
 /// `resume`, where given, is the checkpoint to continue from (one that does not fit is ignored: the case starts anew).
-/// `watch` returning false gives nullopt. Throws store::BrokenWorld where a file among the inputs is there and cannot
+/// `watch` returning false gives nullopt. Throws BrokenWorld where a file among the inputs is there and cannot
 /// be read.
 [[nodiscard]] std::optional<campaign::CaseResult> compute(const campaign::Case& question, std::int64_t attempt,
                                                           Artefacts& artefacts, const std::optional<Bytes>& resume,

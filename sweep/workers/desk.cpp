@@ -1,6 +1,8 @@
 #include "sweep/workers/desk.hpp"
 
 #include "solver/scenes/scene.hpp"
+#include "sweep/files/descriptor.hpp"
+#include "sweep/workers/asking_signals.hpp"
 #include "sweep/workers/line_buffer.hpp"
 #include "sweep/workers/worker_state.hpp"
 
@@ -24,14 +26,6 @@ namespace {
 
 constexpr int main_program_is_gone = 3;
 constexpr int nonsense_was_written = 2;
-constexpr std::array asking_signals = {SIGTERM, SIGINT, SIGHUP, SIGUSR1, SIGUSR2};
-
-sigset_t asking_set() {
-    sigset_t set;
-    sigemptyset(&set);
-    for (const int signal : asking_signals) sigaddset(&set, signal);
-    return set;
-}
 
 /// What no main program writes ends the worker: what it would compute is not known to be what was asked.
 [[noreturn]] void refuse(std::string_view line, std::string_view why) {
@@ -44,9 +38,7 @@ sigset_t asking_set() {
 }  // namespace
 
 Desk::Desk(const Limits& limits) : limits_(limits), progress_(std::numeric_limits<double>::quiet_NaN()) {
-    for (const int signal : asking_signals) std::signal(signal, SIG_DFL);  // an ignored one would not be waited for
-    const sigset_t set = asking_set();
-    ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
+    hold_asking_signals();
     ::pthread_getcpuclockid(::pthread_self(), &computing_);
 }
 
@@ -57,7 +49,13 @@ void Desk::open(const campaign::Computer& computer) {
         flush();
     }
     std::thread([this] { read(); }).detach();
-    std::thread([this] { attend(); }).detach();
+    std::thread([this] {
+        const auto asked = [this](int signal) {
+            end(Ending::signal,
+                fmt::format("its worker was asked to end by signal {} ({})", signal, ::strsignal(signal)));
+        };
+        attend(asked, [this] { tick(); });
+    }).detach();
 }
 
 std::optional<Run> Desk::next() {
@@ -173,28 +171,6 @@ void Desk::take(std::string_view line) {
 
 // ---- signals and time ------------------------------------------------------------------------------------------
 
-// Counts its own seconds and looks at no clock: a process that is stopped (Ctrl-Z, a suspended machine) could not hear
-// its main program, which was stopped with it.
-void Desk::attend() {
-    const sigset_t set = asking_set();
-    auto until = std::chrono::steady_clock::now() + std::chrono::seconds(1);
-    while (true) {
-        const auto left =
-            std::chrono::duration_cast<std::chrono::nanoseconds>(until - std::chrono::steady_clock::now());
-        if (left.count() <= 0) {
-            tick();
-            until = std::chrono::steady_clock::now() + std::chrono::seconds(1);
-            continue;
-        }
-        const timespec timeout{static_cast<time_t>(left.count() / 1'000'000'000),
-                               static_cast<long>(left.count() % 1'000'000'000)};
-        const int signal = ::sigtimedwait(&set, nullptr, &timeout);
-        if (signal > 0)
-            end(Ending::signal,
-                fmt::format("its worker was asked to end by signal {} ({})", signal, ::strsignal(signal)));
-    }
-}
-
 void Desk::tick() {
     if (++silence_ > limits_.lease_seconds)
         end(Ending::silence, "its worker got no message from the main program for too long");
@@ -226,13 +202,7 @@ void Desk::write(const ToBoss& message) {
 }
 
 void Desk::flush() {
-    std::string_view rest = outgoing_;
-    while (!rest.empty()) {
-        const auto length = ::write(STDOUT_FILENO, rest.data(), rest.size());
-        if (length < 0 && errno == EINTR) continue;
-        if (length < 0) std::_Exit(main_program_is_gone);
-        rest.remove_prefix(static_cast<std::size_t>(length));
-    }
+    if (!files::write_all(STDOUT_FILENO, outgoing_)) std::_Exit(main_program_is_gone);
     outgoing_.clear();
 }
 

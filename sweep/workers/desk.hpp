@@ -52,7 +52,6 @@ public:
 private:
     void read();
     void take(std::string_view line);
-    void attend();
     void tick();
     void end(Ending why, std::string reason);
     [[noreturn]] void leave();  // with mutex_ held

@@ -1,11 +1,12 @@
 #include "sweep/workers/host.hpp"
 
+#include "sweep/files/descriptor.hpp"
+#include "sweep/workers/asking_signals.hpp"
 #include "sweep/workers/child.hpp"
 #include "sweep/workers/host_frame.hpp"
 #include "sweep/workers/worker_state.hpp"
 
 #include <fmt/format.h>
-#include <pthread.h>
 #include <sys/prctl.h>
 #include <unistd.h>
 
@@ -26,22 +27,13 @@
 namespace grainsweep::workers {
 namespace {
 
-namespace asio = boost::asio;
 using namespace std::chrono_literals;
 using frames::WorkerNumber;
 
 constexpr int no_main_program = 3;
-constexpr std::array passed_on = {SIGTERM, SIGINT, SIGHUP, SIGUSR1, SIGUSR2};
 constexpr std::size_t most_unwritten = std::size_t{1} << 20U;  // before workers are no longer read from
 constexpr auto look_at_ends_every = 50ms;
 constexpr auto grace_of_orphans = 2s;
-
-sigset_t passed_on_set() {
-    sigset_t set;
-    sigemptyset(&set);
-    for (const int signal : passed_on) sigaddset(&set, signal);
-    return set;
-}
 
 /// The process groups of the workers that run, for the thread that passes signals on.
 class ProcessGroups {
@@ -71,18 +63,15 @@ public:
     explicit Relay(const HostOptions& options) : options_(options) {}
 
     int run() {
-        for (const int signal : passed_on) std::signal(signal, SIG_DFL);  // an ignored one would not be waited for
-        const sigset_t set = passed_on_set();
-        ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
+        hold_asking_signals();
         std::signal(SIGPIPE, SIG_IGN);
         frames::add_hello(outgoing_);
         flush();
         std::thread([this] { read(); }).detach();
-        std::thread([this] { attend(); }).detach();
-        const auto work = asio::make_work_guard(io_);
+        std::thread([this] { attend([this](int signal) { pass_on(signal); }, [this] { tick(); }); }).detach();
         while (!gone_ && !(asked_ && workers_.empty())) {
-            io_.run_one_for(look_at_ends_every);
-            while (!gone_ && outgoing_.size() < most_unwritten && io_.poll_one() > 0) {
+            loop_.run_one_for(look_at_ends_every);
+            while (!gone_ && outgoing_.size() < most_unwritten && loop_.poll_one()) {
             }
             look_at_ends();
             if (beat_.exchange(false)) outgoing_ += frames::alive_frame;
@@ -103,7 +92,7 @@ private:
             if (length < 0 && errno == EINTR) continue;
             silence_ = 0;
             std::promise<void> taken;
-            asio::post(io_, [&] {
+            loop_.post([&] {
                 if (length <= 0) {
                     gone_ = true;
                 } else {
@@ -116,29 +105,17 @@ private:
         }
     }
 
-    void attend() {
-        const sigset_t set = passed_on_set();
-        auto until = std::chrono::steady_clock::now() + 1s;
-        while (true) {
-            const auto left =
-                std::chrono::duration_cast<std::chrono::nanoseconds>(until - std::chrono::steady_clock::now());
-            if (left.count() <= 0) {
-                until = std::chrono::steady_clock::now() + 1s;
-                beat_ = true;
-                // Its workers had no word either, and end by themselves; a write that hangs must not keep this process.
-                if (++silence_ > options_.lease_seconds) {
-                    groups_.signal(SIGKILL);
-                    std::_Exit(no_main_program);
-                }
-                continue;
-            }
-            const timespec timeout{static_cast<time_t>(left.count() / 1'000'000'000),
-                                   static_cast<long>(left.count() % 1'000'000'000)};
-            const int signal = ::sigtimedwait(&set, nullptr, &timeout);
-            if (signal <= 0) continue;
-            asked_ = signal;
-            groups_.signal(signal);
-        }
+    void tick() {
+        beat_ = true;
+        // Its workers had no word either, and end by themselves; a write that hangs must not keep this process.
+        if (++silence_ <= options_.lease_seconds) return;
+        groups_.signal(SIGKILL);
+        std::_Exit(no_main_program);
+    }
+
+    void pass_on(int signal) {
+        asked_ = signal;
+        groups_.signal(signal);
     }
 
     // ---- the main program's frames ---------------------------------------------------------------------------
@@ -178,7 +155,7 @@ private:
     void start_worker(WorkerNumber number) {
         if (asked_) return frames::add_ended(outgoing_, number, asked_, "its host was asked to end");
         std::error_code error;
-        const auto child = Child::start(io_, options_.command, error);
+        const auto child = Child::start(loop_, options_.command, error);
         if (child == nullptr)
             return frames::add_ended(outgoing_, number, 127 << 8, "it cannot be started: " + error.message());
         workers_.emplace(number, child);
@@ -228,22 +205,15 @@ private:
 
     /// Blocks while the main program does not read: workers are then not read from either.
     void flush() {
-        std::string_view rest = outgoing_;
-        while (!rest.empty()) {
-            const auto length = ::write(STDOUT_FILENO, rest.data(), rest.size());
-            if (length < 0 && errno == EINTR) continue;
-            if (length < 0) {
-                gone_ = true;
-                code_ = no_main_program;
-                break;
-            }
-            rest.remove_prefix(static_cast<std::size_t>(length));
+        if (!files::write_all(STDOUT_FILENO, outgoing_)) {
+            gone_ = true;
+            code_ = no_main_program;
         }
         outgoing_.clear();
     }
 
     const HostOptions& options_;
-    asio::io_context io_;
+    EventLoop loop_;
     frames::Reader reader_{frames::Reader::Side::host};
     std::map<WorkerNumber, std::shared_ptr<Child>> workers_;
     std::vector<WorkerNumber> closed_;

@@ -3,8 +3,8 @@
 #include <boost/crc.hpp>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
+#include <initializer_list>
 #include <optional>
 
 namespace grainsweep::workers::frames {
@@ -14,16 +14,6 @@ constexpr std::string_view hello_word = "grainsweep host ";
 // A launcher may greet; one that floods is no launcher.
 constexpr std::size_t most_greeting_bytes = std::size_t{64} << 10U;
 constexpr std::size_t longest_head = 100;  // four numbers and a word
-
-void add_numbers(std::string& to, std::initializer_list<std::uint64_t> numbers) {
-    bool first = to.empty() || to.back() == '\n';
-    for (const auto number : numbers) {
-        if (!first) to += ' ';
-        first = false;
-        std::array<char, 24> digits{};
-        to.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr);
-    }
-}
 
 /// The CRC that cksum(1) prints: of the bytes, then of their number, least significant byte first.
 class Sum {
@@ -43,11 +33,14 @@ private:
     std::size_t count_ = 0;
 };
 
-/// Ends a head, which is all of `to` from `begin` on, and appends its body.
-void add_sum(std::string& to, std::size_t begin, std::string_view body = {}) {
-    const auto sum = Sum().add(std::string_view(to).substr(begin)).add("\n").add(body).value();
-    to += ' ' + std::to_string(sum) + '\n';
-    to += body;
+/// A body, even an empty one, is followed by a line's end.
+void add_frame(std::string& to, std::string_view word, std::initializer_list<std::uint64_t> numbers,
+               std::optional<std::string_view> body = {}) {
+    std::string head(word);
+    for (const auto number : numbers) head += (head.empty() ? "" : " ") + std::to_string(number);
+    const auto sum = Sum().add(head).add("\n").add(body.value_or("")).value();
+    to += head + ' ' + std::to_string(sum) + '\n';
+    if (body) to.append(*body) += '\n';
 }
 
 /// Numbers and words of a line, taken one by one.
@@ -143,44 +136,27 @@ void add_hello(std::string& to) {
 }
 
 void add_start(std::string& to, WorkerNumber worker) {
-    const std::size_t begin = to.size();
-    to += "start";
-    add_numbers(to, {worker});
-    add_sum(to, begin);
+    add_frame(to, "start", {worker});
 }
 
 void add_piece(std::string& to, WorkerNumber worker, std::string_view bytes) {
-    while (!bytes.empty()) {
+    for (; !bytes.empty(); bytes.remove_prefix(std::min(bytes.size(), longest_piece))) {
         const auto part = bytes.substr(0, longest_piece);
-        const std::size_t begin = to.size();
-        add_numbers(to, {worker, part.size()});
-        add_sum(to, begin, part);
-        to += '\n';
-        bytes.remove_prefix(part.size());
+        add_frame(to, "", {worker, part.size()}, part);
     }
 }
 
 void add_signal(std::string& to, WorkerNumber worker, int number) {
-    const std::size_t begin = to.size();
-    to += "signal";
-    add_numbers(to, {worker, static_cast<std::uint64_t>(number)});
-    add_sum(to, begin);
+    add_frame(to, "signal", {worker, static_cast<std::uint64_t>(number)});
 }
 
 void add_close(std::string& to, WorkerNumber worker) {
-    const std::size_t begin = to.size();
-    to += "close";
-    add_numbers(to, {worker});
-    add_sum(to, begin);
+    add_frame(to, "close", {worker});
 }
 
 void add_ended(std::string& to, WorkerNumber worker, int status, std::string_view log) {
     log = log.substr(log.size() - std::min(log.size(), longest_piece));
-    const std::size_t begin = to.size();
-    to += "ended";
-    add_numbers(to, {worker, static_cast<std::uint64_t>(status), log.size()});
-    add_sum(to, begin, log);
-    to += '\n';
+    add_frame(to, "ended", {worker, static_cast<std::uint64_t>(status), log.size()}, log);
 }
 
 std::size_t Reader::parse(std::string_view text, Frame& frame) {

@@ -24,8 +24,8 @@ std::vector<std::string> with_host_number(std::vector<std::string> argv, std::si
 
 }  // namespace
 
-Hosts::Hosts(boost::asio::io_context& io, HostPlan plan, Listener listener)
-    : io_(io), plan_(std::move(plan)), listener_(std::move(listener)), fruitless_(plan_.argv) {}
+Hosts::Hosts(EventLoop& loop, HostPlan plan, Listener listener)
+    : loop_(loop), plan_(std::move(plan)), listener_(std::move(listener)), fruitless_(plan_.argv) {}
 
 std::shared_ptr<Process> Hosts::start_worker() {
     const bool more = hosts_.size() < plan_.hosts && !fruitless_.waits(listener_.clock());
@@ -38,7 +38,7 @@ std::shared_ptr<Process> Hosts::start_worker() {
 bool Hosts::launch() {
     const std::size_t number = free_number();
     std::error_code error;
-    auto child = Child::start(io_, with_host_number(plan_.argv, number), error);
+    auto child = Child::start(loop_, with_host_number(plan_.argv, number), error);
     const double now = listener_.clock();
     if (child == nullptr) {
         if (auto remark = fruitless_.not_launched(error.message(), hosts_.size(), now))
@@ -107,8 +107,7 @@ void Hosts::end_all(std::vector<std::shared_ptr<Process>> workers) {
     for (const auto until = Clock::now() + time_to_end_workers; Clock::now() < until;) {  // their ends are read
         std::erase_if(workers, [](const auto& worker) { return !worker->runs(); });
         if (workers.empty()) break;
-        io_.restart();
-        io_.run_one_for(std::chrono::milliseconds(50));
+        loop_.run_one_for(std::chrono::milliseconds(50));
     }
     std::vector<std::shared_ptr<Process>> processes;
     for (const auto& host : hosts_) {

@@ -29,7 +29,7 @@ public:
         std::function<void(std::string remark)> say;
     };
 
-    Hosts(boost::asio::io_context& io, HostPlan plan, Listener listener);
+    Hosts(EventLoop& loop, HostPlan plan, Listener listener);
 
     /// On the host with the fewest, a new one where there may be more; nullptr: none can be had now.
     [[nodiscard]] std::shared_ptr<Process> start_worker();
@@ -48,7 +48,7 @@ private:
     void gone(const std::shared_ptr<RemoteHost>& host, const std::string& reason);
     [[nodiscard]] std::size_t free_number() const;
 
-    boost::asio::io_context& io_;
+    EventLoop& loop_;
     HostPlan plan_;
     Listener listener_;
     std::vector<std::shared_ptr<RemoteHost>> hosts_;

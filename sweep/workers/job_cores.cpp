@@ -2,7 +2,7 @@
 
 #include "solver/own_cores.hpp"
 #include "solver/plain_text.hpp"
-#include "sweep/campaign/whole_file.hpp"
+#include "sweep/files/whole_file.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 std::vector<std::string> parts_of(const fs::path& file, std::string_view between) {
     std::error_code error;
     constexpr std::size_t longest = std::size_t{1} << 20U;
-    const std::string text = campaign::whole_file(file, error, longest);
+    const std::string text = files::whole_file(file, error, longest);
     if (error) return {};
     std::vector<std::string> parts(1);
     for (const char c : text) {

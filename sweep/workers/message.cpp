@@ -1,190 +1,163 @@
 #include "sweep/workers/message.hpp"
 
-#include "sweep/campaign/overloaded.hpp"
-#include "sweep/workers/message_form.hpp"
+#include "sweep/workers/json_line.hpp"
 
-#include <nlohmann/json.hpp>
-
-#include <limits>
+#include <charconv>
+#include <concepts>
 #include <optional>
 #include <stdexcept>
+#include <type_traits>
+#include <utility>
+
+// What each message holds: `it` writes or reads the members, which are sorted by name.
+namespace grainsweep::workers::json_line {
+
+template <class T, class Message>
+concept Of = std::same_as<std::remove_const_t<T>, Message>;
+
+void describe(auto& it, Of<Run> auto& run) {
+    it("attempt", run.attempt);
+    it("id", run.question.id);
+    it("inputs", run.question.inputs);
+    it("revision", run.question.revision);
+    it("scene", run.question.scene);
+    it("seed", run.question.seed);
+}
+
+void describe(auto& it, Of<Ready> auto& ready) {
+    auto& by = ready.computer;
+    it("build", by.build);
+    it("commit", by.commit);
+    it("host", by.host);
+    it("path", by.instruction_path);
+    it("processor", by.processor);
+    it("protocol", ready.protocol);
+    it("version", by.version);
+}
+
+void describe(auto& it, Of<Begun> auto& begun) {
+    it("attempt", begun.attempt.number);
+    it("id", begun.attempt.case_id);
+    it("resumed", begun.resumed);
+}
+
+void describe(auto& it, Of<Alive> auto& alive) {
+    it("attempt", alive.attempt.number);
+    it("id", alive.attempt.case_id);
+    it("progress", alive.progress);
+}
+
+void describe(auto& it, Of<GiveBack> auto& back) {
+    it("attempt", back.attempt.number);
+    it.maybe("broken", back.broken, back.broken);
+    it("id", back.attempt.case_id);
+    it("reason", back.reason);
+}
+
+void describe(auto& it, Of<Cost> auto& cost) {
+    it("cpu", cost.cpu_seconds);
+    it("phases", cost.phases);
+    it("steps", cost.particle_steps);
+    it.maybe("threads", cost.threads, true);  // a spool may hold older answers, without
+    it("wall", cost.wall_seconds);
+}
+
+void describe(auto& it, Of<Observations> auto& observations) {
+    it("scalars", observations.scalars);
+    it("series", observations.series);
+}
+
+void describe(auto& it, Of<campaign::ProgramFacts> auto& facts) {
+    it("memory", facts.peak_memory);
+    it("status", facts.exit_status);
+    it("version", facts.version);
+}
+
+void describe(auto& it, Of<Done> auto& done) {
+    auto& result = done.result;
+    it("attempt", result.attempt.number);
+    it("checkpointed", done.checkpointed);
+    it("cost", result.cost);
+    it("id", result.attempt.case_id);
+    it("message", result.message);
+    it("observations", result.observations);
+    it.word("outcome", result.outcome, campaign::to_string, campaign::outcome_named);
+    it.maybe("program", result.program, result.program.has_value());
+}
+
+}  // namespace grainsweep::workers::json_line
 
 namespace grainsweep::workers {
 namespace {
 
-using Json = nlohmann::json;
-
-using campaign::Overloaded;
-
-Inputs to_inputs(const Json& object) {
-    Inputs inputs;
-    for (const auto& [name, value] : object.items()) {
-        if (value.is_string()) {
-            inputs.emplace(name, value.get<std::string>());
-        } else if (value.is_number_integer()) {
-            inputs.emplace(name, value.get<std::int64_t>());
-        } else {
-            inputs.emplace(name, value.get<double>());
-        }
-    }
-    return inputs;
+/// What stands behind the word of a message.
+template <class Message>
+auto& body(Message& message) {
+    if constexpr (requires { message.set; })
+        return message.set;
+    else if constexpr (requires { message.count; })
+        return message.count;
+    else
+        return message;
 }
 
-double number_or_nan(const Json& value) {
-    return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+template <class... Messages>
+std::string encoded(const std::variant<Messages...>& message) {
+    json_line::Writer to;
+    to.line.reserve(512);
+    to.line = '{';
+    std::visit([&](const auto& one) { to(one.word, body(one)); }, message);
+    to.line += '}';
+    return std::move(to.line);
 }
 
-Observations to_observations(const Json& object) {
-    Observations observations;
-    for (const auto& [name, value] : object.at("scalars").items()) observations.scalars[name] = number_or_nan(value);
-    for (const auto& [name, rows] : object.at("series").items()) {
-        auto& samples = observations.series[name];
-        samples.reserve(rows.size());
-        for (const auto& row : rows) {
-            samples.push_back({number_or_nan(row.at(0)), number_or_nan(row.at(1)), number_or_nan(row.at(2))});
-        }
-    }
-    return observations;
+template <class... Messages>
+void decode(std::string_view line, std::variant<Messages...>& into) {
+    json_line::Reader from(line);
+    from.expect("{");
+    const auto takes = [&]<class Message>(std::in_place_type_t<Message>) {
+        if (!from.takes_member(Message::word)) return false;
+        from.get(body(into.template emplace<Message>()));
+        return true;
+    };
+    if (!(takes(std::in_place_type<Messages>) || ...)) throw std::invalid_argument("it is none of the messages");
+    from.expect("}");
+    if (!from.over()) throw std::invalid_argument("more follows the message");
 }
 
-Json from_attempt(const campaign::Attempt& attempt) {
-    return {{"id", attempt.case_id}, {"attempt", attempt.number}};
-}
-
-campaign::Attempt to_attempt(const Json& object) {
-    return {object.at("id").get<std::string>(), object.at("attempt").get<std::int64_t>()};
-}
-
-Done to_done(const Json& object) {
-    Done done;
-    done.result.attempt = to_attempt(object);
-    const auto outcome = campaign::outcome_named(object.at("outcome").get<std::string>());
-    if (!outcome) throw std::invalid_argument("unknown outcome");
-    done.result.outcome = *outcome;
-    done.result.message = object.at("message").get<std::string>();
-    done.result.observations = to_observations(object.at("observations"));
-    const Json& cost = object.at("cost");
-    done.result.cost = {number_or_nan(cost.at("wall")), number_or_nan(cost.at("cpu")), number_or_nan(cost.at("steps")),
-                        cost.at("phases").get<std::map<std::string, double, std::less<>>>()};
-    if (const auto threads = cost.find("threads"); threads != cost.end())
-        done.result.cost.threads = number_or_nan(*threads);  // a spool may hold older answers, without
-    done.checkpointed = object.at("checkpointed").get<bool>();
-    if (const auto program = object.find("program"); program != object.end()) {
-        auto& facts = done.result.program.emplace();
-        facts.version = program->at("version").get<std::string>();
-        facts.peak_memory = number_or_nan(program->at("memory"));
-        if (!program->at("status").is_null()) facts.exit_status = program->at("status").get<std::int64_t>();
-    }
-    return done;
-}
-
-Threads to_threads(const Json& value) {
-    if (!value.is_number_integer() || value < 1 || value > most_threads)
-        throw std::invalid_argument("no number of threads");
-    return {value.get<std::int64_t>()};
-}
-
-Json from_ready(const Ready& ready) {
-    const auto& by = ready.computer;
-    return {{"protocol", ready.protocol},  {"version", by.version},     {"commit", by.commit}, {"build", by.build},
-            {"path", by.instruction_path}, {"processor", by.processor}, {"host", by.host}};
-}
-
-// Of another protocol's Ready enough is understood to say what is wrong with it.
-Ready to_ready(const Json& object) {
-    const auto text = [&](const char* key) { return object.value(key, std::string()); };
-    return {object.value("protocol", std::int64_t{1}),
-            {text("version"), text("commit"), text("build"), text("path"), text("processor"), text("host")}};
-}
-
-// Invalid UTF-8 in a message (from a library's error text, say) must not lose the result.
-std::string line(const Json& object) {
-    return object.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-Json parse(std::string_view text) {
-    try {
-        return Json::parse(text);
-    } catch (const Json::exception& error) {
-        throw std::invalid_argument(error.what());
-    }
+/// The number of the protocol in a Ready that has another form; before there was one, 1.
+std::optional<std::int64_t> foreign_protocol(std::string_view line) {
+    constexpr std::string_view ready = "{\"ready\":", protocol = "\"protocol\":";
+    if (!line.starts_with(ready) || !line.ends_with("}}")) return std::nullopt;
+    std::int64_t number = 1;
+    if (const auto at = line.find(protocol); at != std::string_view::npos)
+        std::from_chars(line.data() + at + protocol.size(), line.data() + line.size(), number);
+    return number == protocol_number ? std::nullopt : std::optional(number);
 }
 
 }  // namespace
 
 std::string encode(const ToWorker& message) {
-    return std::visit(Overloaded{[](const Run& run) { return in_form(run); },
-                                 [](const Threads& threads) {
-                                     return line({{"threads", threads.count}});
-                                 },
-                                 [](const Lease&) {
-                                     return line({{"lease", true}});
-                                 },
-                                 [](const Stop&) {
-                                     return line({{"stop", true}});
-                                 }},
-                      message);
+    return encoded(message);
 }
 
 std::string encode(const ToBoss& message) {
-    return std::visit(Overloaded{[](const Ready& ready) {
-                                     return line({{"ready", from_ready(ready)}});
-                                 },
-                                 [](const Begun& begun) { return in_form(begun); },
-                                 [](const Alive& alive) {
-                                     Json object = from_attempt(alive.attempt);
-                                     object["progress"] = alive.progress;
-                                     return line({{"alive", std::move(object)}});
-                                 },
-                                 [](const Done& done) { return in_form(done); },
-                                 [](const GiveBack& back) {
-                                     Json object = from_attempt(back.attempt);
-                                     object["reason"] = back.reason;
-                                     if (back.broken) object["broken"] = true;
-                                     return line({{"give_back", std::move(object)}});
-                                 }},
-                      message);
+    return encoded(message);
 }
 
-ToWorker decode_to_worker(std::string_view text) {
-    if (auto run = run_in_form(text)) return std::move(*run);
-    const Json object = parse(text);
-    try {
-        if (object.contains("threads")) return to_threads(object.at("threads"));
-        if (object.contains("lease")) return Lease{};
-        if (object.contains("stop")) return Stop{};
-        const Json& run = object.at("run");
-        Run message;
-        message.attempt = run.at("attempt").get<std::int64_t>();
-        message.question = {run.at("id").get<std::string>(), run.at("scene").get<std::string>(),
-                            run.at("revision").get<int>(), to_inputs(run.at("inputs")),
-                            run.at("seed").get<std::uint64_t>()};
-        return message;
-    } catch (const Json::exception& error) {
-        throw std::invalid_argument(error.what());
-    }
+ToWorker decode_to_worker(std::string_view line) {
+    ToWorker message;
+    decode(line, message);
+    if (const auto* threads = std::get_if<Threads>(&message))
+        if (threads->count < 1 || threads->count > most_threads) throw std::invalid_argument("no number of threads");
+    return message;
 }
 
-ToBoss decode_to_boss(std::string_view text) {
-    if (auto begun = begun_in_form(text)) return std::move(*begun);
-    if (auto done = done_in_form(text)) return std::move(*done);
-    const Json object = parse(text);
-    try {
-        if (object.contains("done")) return to_done(object.at("done"));
-        if (object.contains("begun")) {
-            return Begun{to_attempt(object.at("begun")), object.at("begun").at("resumed").get<bool>()};
-        }
-        if (object.contains("alive")) {
-            return Alive{to_attempt(object.at("alive")), number_or_nan(object.at("alive").at("progress"))};
-        }
-        if (object.contains("give_back")) {
-            const Json& back = object.at("give_back");
-            return GiveBack{to_attempt(back), back.at("reason").get<std::string>(), back.value("broken", false)};
-        }
-        return to_ready(object.at("ready"));
-    } catch (const Json::exception& error) {
-        throw std::invalid_argument(error.what());
-    }
+ToBoss decode_to_boss(std::string_view line) {
+    ToBoss message;
+    if (const auto other = foreign_protocol(line)) return Ready{*other, {}};
+    decode(line, message);
+    return message;
 }
 
 }  // namespace grainsweep::workers

@@ -1,21 +1,22 @@
 // The protocol between main program and worker, on one page.
 //
-// One JSON object per line, at most longest_line bytes, flushed. The main program writes Run, Threads, Lease, Stop to
-// the worker's standard input; the worker writes Ready, Begun, Alive, Done, GiveBack to its standard output. End of file
-// in either direction means that the other side is gone. Heartbeats stay short: some launchers delay lines above 1 kB.
+// One JSON object per line, its members sorted by name, at most longest_line bytes, flushed. The main program writes
+// Run, Threads, Lease, Stop to the worker's standard input; the worker writes Ready, Begun, Alive, Done, GiveBack to
+// its standard output. End of file in either direction means that the other side is gone. Heartbeats stay short: some
+// launchers delay lines above 1 kB.
 //
 //   main program
-//          {"run": {"attempt": 2, "id": "...", "scene": "...", "revision": 1, "seed": 7, "inputs": {...}}}
-//          {"threads": 2}       so many may compute the case from its next slice on, and those after it; at first 1
-//          {"lease": true}      it lives; a worker that gets no message for long gives back what it has and ends
-//          {"stop": true}       no more cases; finish soon or give back, then end
+//          {"run":{"attempt":2,"id":"...","inputs":{...},"revision":1,"scene":"...","seed":7}}
+//          {"threads":2}        so many may compute the case from its next slice on, and those after it; at first 1
+//          {"lease":true}       it lives; a worker that gets no message for long gives back what it has and ends
+//          {"stop":true}        no more cases; finish soon or give back, then end
 //   worker
-//          {"ready": {"protocol": 3, "version": "...", "commit": "...", "build": "...", "path": "avx2", ...}}
-//          {"begun": {"id": "...", "attempt": 2, "resumed": false}}     the next of the cases it was given
-//          {"alive": {"id": "...", "attempt": 2, "progress": 0.4}}      every second that the case makes headway
-//          {"done": {"id": "...", "attempt": 2, "outcome": "completed", ...}}
-//          {"give_back": {"id": "...", "attempt": 2, "reason": "..."}}  unfinished; a checkpoint may exist.
-//                               With "broken": true: a file could not be written, and no other case would fare better
+//          {"ready":{"build":"...","commit":"...","host":"...","path":"avx2",...,"protocol":3,"version":"..."}}
+//          {"begun":{"attempt":2,"id":"...","resumed":false}}     the next of the cases it was given
+//          {"alive":{"attempt":2,"id":"...","progress":0.4}}      every second that the case makes headway
+//          {"done":{"attempt":2,"checkpointed":false,"cost":{...},"id":"...",...,"outcome":"completed"}}
+//          {"give_back":{"attempt":2,"id":"...","reason":"..."}}  unfinished; a checkpoint may exist.
+//                               With "broken":true: a file could not be written, and no other case would fare better
 //
 // The worker as the main program sees it (worker_state.hpp). Whatever has no arrow is answered by `dismissed`:
 //
@@ -65,33 +66,46 @@ inline constexpr std::size_t longest_line = std::size_t{16} << 20U;
 inline constexpr std::int64_t most_threads = 4096;
 
 struct Run {
+    static constexpr std::string_view word = "run";
     std::int64_t attempt = 1;
     campaign::Case question;
 };
 struct Threads {
+    static constexpr std::string_view word = "threads";
     std::int64_t count = 1;
 };
-struct Lease {};
-struct Stop {};
+struct Lease {
+    static constexpr std::string_view word = "lease";
+    bool set = true;
+};
+struct Stop {
+    static constexpr std::string_view word = "stop";
+    bool set = true;
+};
 using ToWorker = std::variant<Run, Threads, Lease, Stop>;
 
 struct Ready {
+    static constexpr std::string_view word = "ready";
     std::int64_t protocol = protocol_number;
     campaign::Computer computer;
 };
 struct Begun {
+    static constexpr std::string_view word = "begun";
     campaign::Attempt attempt;
     bool resumed = false;  ///< from a checkpoint
 };
 struct Alive {
+    static constexpr std::string_view word = "alive";
     campaign::Attempt attempt;
     double progress = 0;  ///< 0 to 1; NaN: not known yet
 };
 struct Done {
+    static constexpr std::string_view word = "done";
     campaign::CaseResult result;
     bool checkpointed = false;  ///< a checkpoint file of the case exists and may now be removed
 };
 struct GiveBack {
+    static constexpr std::string_view word = "give_back";
     campaign::Attempt attempt;
     std::string reason;
     bool broken = false;  ///< a file could not be written: the run ends

@@ -10,6 +10,7 @@
 #include "sweep/workers/line_buffer.hpp"
 #include "sweep/workers/message.hpp"
 #include "sweep/workers/pool_worker.hpp"
+#include "sweep/workers/process_start.hpp"
 
 #include <fmt/format.h>
 
@@ -22,7 +23,6 @@
 namespace grainsweep::workers {
 namespace {
 
-namespace asio = boost::asio;
 using namespace std::chrono_literals;
 using Phase = WorkerState::Phase;
 using Worker = PoolWorker;
@@ -62,30 +62,25 @@ struct Pool::Impl {
     explicit Impl(PoolOptions o)
         : options(std::move(o)),
           argv(command_of(options)),
-          signals(io, SIGINT, SIGTERM, SIGUSR1),
           sharing(options.threads, cores_of_a_node(options)),
           fruitless(argv) {
-        await_signal();
+        loop.on_signals({SIGINT, SIGTERM, SIGUSR1}, [this](int number) { interrupt(number); });
         if (options.hosts == 0) return;
         HostPlan plan{options.launcher, options.hosts, options.workers / options.hosts, options.limits};
         plan.argv.insert(plan.argv.end(), options.host_command.begin(), options.host_command.end());
         hosts.emplace(
-            io, std::move(plan),
+            loop, std::move(plan),
             Hosts::Listener{[this] { return clock.now(); }, [this](const std::string& line) { remark_on_banner(line); },
                             [this](std::string remark) { events.emplace_back(Remark{std::move(remark)}); }});
     }
 
     // ---- reading -----------------------------------------------------------------------------------------
 
-    void await_signal() {
-        signals.async_wait([this](const boost::system::error_code& error, int number) {
-            if (error) return;
-            // What ends a job may signal every process of it, and the job's script pass the signal on besides.
-            const bool repeated = number != SIGINT && clock.now() - interrupted < one_request;
-            if (!repeated) events.emplace_back(Interrupted{interruptions++ > 0, number != SIGINT});
-            interrupted = clock.now();
-            await_signal();
-        });
+    void interrupt(int signal) {
+        // What ends a job may signal every process of it, and the job's script pass the signal on besides.
+        const bool repeated = signal != SIGINT && clock.now() - interrupted < one_request;
+        if (!repeated) events.emplace_back(Interrupted{interruptions++ > 0, signal != SIGINT});
+        interrupted = clock.now();
     }
 
     void read(const std::shared_ptr<Worker>& worker, std::string_view piece) {
@@ -195,7 +190,7 @@ struct Pool::Impl {
         if (hosts) {
             child = hosts->start_worker();
             if (child == nullptr) return false;
-        } else if ((child = Child::start(io, argv, error)) == nullptr) {
+        } else if ((child = Child::start(loop, argv, error)) == nullptr) {
             say(fruitless.not_launched(error.message(), workers.size(), clock.now()));
             return false;
         }
@@ -281,8 +276,7 @@ struct Pool::Impl {
 
     PoolOptions options;
     std::vector<std::string> argv;  // of a worker, with its launcher
-    asio::io_context io;
-    asio::signal_set signals;
+    EventLoop loop;
     std::vector<std::shared_ptr<Worker>> workers;
     Departures leaving;
     std::deque<PoolEvent> events;
@@ -351,7 +345,7 @@ std::optional<PoolEvent> Pool::wait(std::chrono::milliseconds at_most) {
     // What has come is read before the clock is looked at: after events_at_once events, and no more than gives as many.
     if (impl_->events.empty() || --impl_->events_before_reading <= 0) {
         impl_->events_before_reading = events_at_once;
-        for (int k = 0; k < events_at_once && impl_->io.poll_one() > 0; ++k) {
+        for (int k = 0; k < events_at_once && impl_->loop.poll_one(); ++k) {
         }
         impl_->keep_time();
     }
@@ -359,8 +353,7 @@ std::optional<PoolEvent> Pool::wait(std::chrono::milliseconds at_most) {
         if (const auto& why = impl_->why_none(); !why.empty()) throw std::runtime_error(why);
         const auto left = until - Clock::now();
         if (left <= 0s) return std::nullopt;
-        impl_->io.restart();
-        impl_->io.run_one_for(std::min<Clock::duration>(left, 100ms));
+        impl_->loop.run_one_for(std::min(std::chrono::ceil<std::chrono::milliseconds>(left), 100ms));
         impl_->keep_time();
     }
     PoolEvent event = std::move(impl_->events.front());
@@ -372,10 +365,6 @@ void Pool::retire() {
     impl_->retired = true;
     if (impl_->hosts) impl_->hosts->retire();
     for (const auto& worker : impl_->workers) impl_->send_stop(worker);
-}
-
-bool Pool::can_start(const std::string& program) {
-    return Child::can_start(program);
 }
 
 // Workers that were retired and have nothing left to do end by themselves.

@@ -34,8 +34,6 @@ public:
     /// not be started in a row while others work. expect() and wait() throw std::runtime_error where no worker can be
     /// had at all.
     explicit Pool(PoolOptions options);
-    /// Whether there is such a program, on the search path where the word is no path.
-    [[nodiscard]] static bool can_start(const std::string& program);
     ~Pool() override;
 
     void expect(std::size_t cases) override;

@@ -1,6 +1,6 @@
 #include "sweep/workers/program_answerer.hpp"
 
-#include "sweep/store/broken_world.hpp"
+#include "sweep/files/broken_world.hpp"
 #include "sweep/workers/program_lines.hpp"
 #include "sweep/workers/program_process.hpp"
 #include "sweep/workers/program_results.hpp"
@@ -95,37 +95,22 @@ void take(ProgramReply&& reply, CaseResult& result) {
 std::string crash_sentence(int status, const ProgramFolder& folder) {
     auto log = folder.end_of("stderr.txt", log_bytes);
     if (log.empty()) log = folder.end_of("stdout.txt", log_bytes);
-    return fmt::format("the program {}{}{}", end_in_words(status), log.empty() ? "" : "; it wrote: ", log);
+    return fmt::format("{}{}{}", describe_end("the program", status), log.empty() ? "" : "; it wrote: ", log);
 }
-
-/// A descriptor that is open for a moment.
-class Open {
-public:
-    explicit Open(int descriptor) : descriptor_(descriptor) {}
-    Open(const Open&) = delete;
-    Open& operator=(const Open&) = delete;
-    ~Open() { ::close(descriptor_); }
-    [[nodiscard]] int get() const { return descriptor_; }
-
-private:
-    int descriptor_;
-};
 
 std::unique_ptr<ProgramProcess> start_case(const Program& program, const campaign::Case& question,
                                            const ProgramFolder& folder, ProgramGuard& guard) {
-    ProgramStart start;
-    start.argv = program_argv(program, &question);
+    ProcessStart start{program_argv(program, &question)};
     start.environment = program_environment(program, &question);
     start.folder = folder.descriptor();
-    const Open out(folder.create("stdout.txt")), err(folder.create("stderr.txt"));
-    start.out = out.get();
-    start.err = err.get();
+    const auto out = folder.create("stdout.txt"), err = folder.create("stderr.txt");
+    start.streams = {-1, out.number(), err.number()};
     start.memory = program.memory;
     start.file = program.disk;
     try {
         return std::make_unique<ProgramProcess>(start, guard);
     } catch (const std::runtime_error& why) {
-        throw store::BrokenWorld(why.what());
+        throw BrokenWorld(why.what());
     }
 }
 
@@ -147,12 +132,12 @@ void ProgramAnswerer::check_version() {
     if (program_->version_command.empty() || std::exchange(version_checked_, true)) return;
     try {
         if (const auto here = ask_version(*program_, guard_); here != program_->version)
-            throw store::BrokenWorld(fmt::format("{} is version {} here, and the campaign was read with version {}",
-                                                 program_->version_command.front(), here, program_->version));
-    } catch (const store::BrokenWorld&) {
+            throw BrokenWorld(fmt::format("{} is version {} here, and the campaign was read with version {}",
+                                          program_->version_command.front(), here, program_->version));
+    } catch (const BrokenWorld&) {
         throw;
     } catch (const std::runtime_error& why) {
-        throw store::BrokenWorld(
+        throw BrokenWorld(
             fmt::format("the version of {} cannot be asked: {}", program_->version_command.front(), why.what()));
     }
 }

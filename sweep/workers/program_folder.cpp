@@ -1,6 +1,6 @@
 #include "sweep/workers/program_folder.hpp"
 
-#include "sweep/store/broken_world.hpp"
+#include "sweep/files/broken_world.hpp"
 
 #include <dirent.h>
 #include <fcntl.h>
@@ -21,28 +21,13 @@ namespace grainsweep::workers {
 namespace {
 
 namespace fs = std::filesystem;
+using files::Descriptor;
 
 constexpr std::int64_t most_files_counted = 1'000'000;
 
 [[noreturn]] void broken(const fs::path& what, int number) {
-    throw store::BrokenWorld(fmt::format("'{}': cannot be written: {}", what.string(), std::strerror(number)));
+    throw BrokenWorld(fmt::format("'{}': cannot be written: {}", what.string(), std::strerror(number)));
 }
-
-/// A descriptor, closed in the end.
-class Held {
-public:
-    explicit Held(int descriptor) : descriptor_(descriptor) {}
-    Held(const Held&) = delete;
-    Held& operator=(const Held&) = delete;
-    ~Held() {
-        if (descriptor_ >= 0) ::close(descriptor_);
-    }
-    [[nodiscard]] int get() const { return descriptor_; }
-    [[nodiscard]] int release() { return std::exchange(descriptor_, -1); }
-
-private:
-    int descriptor_;
-};
 
 struct CloseDir {
     void operator()(DIR* folder) const { ::closedir(folder); }
@@ -51,9 +36,9 @@ using Entries = std::unique_ptr<DIR, CloseDir>;
 
 /// A folder within another, no link; empty where it cannot be opened.
 Entries entries_of(int parent, const char* name) {
-    const int at = ::openat(parent, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-    Entries entries(at < 0 ? nullptr : ::fdopendir(at));
-    if (!entries && at >= 0) ::close(at);
+    Descriptor at(::openat(parent, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+    Entries entries(at.is_open() ? ::fdopendir(at.number()) : nullptr);
+    if (entries) (void)at.release();
     return entries;
 }
 
@@ -127,15 +112,6 @@ void measure(const Entries& entries, int depth, std::int64_t most, ProgramFolder
     }
 }
 
-void write_all(int file, std::string_view contents, const fs::path& name) {
-    while (!contents.empty()) {
-        const auto length = ::write(file, contents.data(), contents.size());
-        if (length < 0 && errno == EINTR) continue;
-        if (length < 0) broken(name, errno);
-        contents.remove_prefix(static_cast<std::size_t>(length));
-    }
-}
-
 }  // namespace
 
 ProgramFolder::ProgramFolder(fs::path path) : path_(std::move(path)) {
@@ -145,102 +121,104 @@ ProgramFolder::ProgramFolder(fs::path path) : path_(std::move(path)) {
         fs::create_directories(path_.parent_path(), error);
         if (::mkdir(path_.c_str(), 0777) != 0) broken(path_, errno);
     }
-    folder_ = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (folder_ < 0) broken(path_, errno);
+    folder_ = Descriptor(::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (!folder_.is_open()) broken(path_, errno);
 }
 
 ProgramFolder::~ProgramFolder() {
-    if (folder_ >= 0) ::close(folder_);
+    (void)folder_.close();
     if (!kept_) clear_away(path_);
 }
 
 /// The folder that the last part of a name lies in, without following a link.
-int ProgramFolder::parent_of(const std::string& name, std::string& leaf) const {
-    int at = ::fcntl(folder_, F_DUPFD_CLOEXEC, 0);
+Descriptor ProgramFolder::parent_of(const std::string& name, std::string& leaf) const {
+    Descriptor at(::fcntl(folder_.number(), F_DUPFD_CLOEXEC, 0));
     std::string_view rest = name;
-    for (auto slash = rest.find('/'); slash != std::string_view::npos && at >= 0; slash = rest.find('/')) {
+    for (auto slash = rest.find('/'); slash != std::string_view::npos && at.is_open(); slash = rest.find('/')) {
         const std::string part(rest.substr(0, slash));
-        const int next = ::openat(at, part.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+        Descriptor next(::openat(at.number(), part.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
         const int number = errno;
-        ::close(at);
+        at = std::move(next);
+        (void)next.close();
         errno = number;
-        at = next;
         rest.remove_prefix(slash + 1);
     }
     leaf = rest;
     return at;
 }
 
-int ProgramFolder::create(const std::string& name) const {
+Descriptor ProgramFolder::create(const std::string& name) const {
     std::string leaf;
     if (name.find('/') != std::string::npos) {
         std::error_code error;
-        fs::create_directories((path_ / name).parent_path(),
-                               error);  // the program has not begun: nothing is a link yet
+        // The program has not begun: nothing is a link yet.
+        fs::create_directories((path_ / name).parent_path(), error);
     }
-    const Held parent(parent_of(name, leaf));
-    const int file = ::openat(parent.get(), leaf.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (file < 0) broken(path_ / name, errno);
+    const auto parent = parent_of(name, leaf);
+    Descriptor file(::openat(parent.number(), leaf.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    if (!file.is_open()) broken(path_ / name, errno);
     return file;
 }
 
 void ProgramFolder::write(const std::string& name, std::string_view contents, bool executable) const {
-    const Held file(create(name));
-    write_all(file.get(), contents, path_ / name);
-    if (executable) ::fchmod(file.get(), 0777);
+    const auto file = create(name);
+    if (!files::write_all(file.number(), contents)) broken(path_ / name, errno);
+    if (executable) ::fchmod(file.number(), 0777);
 }
 
 void ProgramFolder::copy(const std::string& name, const fs::path& from, bool executable) const {
-    const Held source(::open(from.c_str(), O_RDONLY | O_CLOEXEC));
-    if (source.get() < 0)
-        throw store::BrokenWorld(fmt::format("'{}': cannot be read: {}", from.string(), std::strerror(errno)));
-    const Held file(create(name));
-    if (executable) ::fchmod(file.get(), 0777);
-    if (::ioctl(file.get(), FICLONE, source.get()) == 0) return;  // where the disk can share the blocks
+    const Descriptor source(::open(from.c_str(), O_RDONLY | O_CLOEXEC));
+    const auto unreadable = [&] {
+        return BrokenWorld(fmt::format("'{}': cannot be read: {}", from.string(), std::strerror(errno)));
+    };
+    if (!source.is_open()) throw unreadable();
+    const auto file = create(name);
+    if (executable) ::fchmod(file.number(), 0777);
+    if (::ioctl(file.number(), FICLONE, source.number()) == 0) return;  // where the disk can share the blocks
     std::array<char, 65536> piece{};
     while (true) {
-        const auto length = ::read(source.get(), piece.data(), piece.size());
+        const auto length = ::read(source.number(), piece.data(), piece.size());
         if (length < 0 && errno == EINTR) continue;
-        if (length < 0)
-            throw store::BrokenWorld(fmt::format("'{}': cannot be read: {}", from.string(), std::strerror(errno)));
+        if (length < 0) throw unreadable();
         if (length == 0) return;
-        write_all(file.get(), {piece.data(), static_cast<std::size_t>(length)}, path_ / name);
+        if (!files::write_all(file.number(), {piece.data(), static_cast<std::size_t>(length)}))
+            broken(path_ / name, errno);
     }
 }
 
-int ProgramFolder::open(const std::string& name, std::string& why) const {
+Descriptor ProgramFolder::open(const std::string& name, std::string& why) const {
     std::string leaf;
-    const Held parent(parent_of(name, leaf));
+    const auto parent = parent_of(name, leaf);
     const auto missing = [&](int number) {
         why = number == ELOOP || number == ENOTDIR ? "is a link, or lies behind one, and those are not followed"
               : number == ENOENT                   ? "was not written"
                                                    : fmt::format("cannot be read: {}", std::strerror(number));
-        return -1;
+        return Descriptor();
     };
-    if (parent.get() < 0) return missing(errno);
-    Held file(::openat(parent.get(), leaf.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
-    if (file.get() < 0) return missing(errno);
+    if (!parent.is_open()) return missing(errno);
+    Descriptor file(::openat(parent.number(), leaf.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+    if (!file.is_open()) return missing(errno);
     struct stat status {};
-    if (::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) {
+    if (::fstat(file.number(), &status) != 0 || !S_ISREG(status.st_mode)) {
         why = "is no regular file";
-        return -1;
+        return {};
     }
-    return file.release();
+    return file;
 }
 
 std::optional<std::string> ProgramFolder::read(const std::string& name, std::size_t most_bytes,
                                                std::string& why) const {
-    const Held file(open(name, why));
-    if (file.get() < 0) return std::nullopt;
+    const auto file = open(name, why);
+    if (!file.is_open()) return std::nullopt;
     struct stat status {};
-    if (::fstat(file.get(), &status) != 0 || static_cast<std::size_t>(status.st_size) > most_bytes) {
+    if (::fstat(file.number(), &status) != 0 || static_cast<std::size_t>(status.st_size) > most_bytes) {
         why = fmt::format("has {} MB, and at most {} are read", status.st_size / 1'000'000, most_bytes / 1'000'000);
         return std::nullopt;
     }
     std::string text(static_cast<std::size_t>(status.st_size), '\0');
     std::size_t have = 0;
     while (have < text.size()) {
-        const auto length = ::read(file.get(), text.data() + have, text.size() - have);
+        const auto length = ::read(file.number(), text.data() + have, text.size() - have);
         if (length < 0 && errno == EINTR) continue;
         if (length <= 0) break;
         have += static_cast<std::size_t>(length);
@@ -251,17 +229,17 @@ std::optional<std::string> ProgramFolder::read(const std::string& name, std::siz
 
 bool ProgramFolder::has(const std::string& name) const {
     struct stat status {};
-    return ::fstatat(folder_, name.c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0;
+    return ::fstatat(folder_.number(), name.c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0;
 }
 
 std::string ProgramFolder::end_of(const std::string& name, std::size_t bytes) const {
     std::string why;
-    const Held file(open(name, why));
-    if (file.get() < 0) return {};
-    const off_t size = ::lseek(file.get(), 0, SEEK_END);
+    const auto file = open(name, why);
+    if (!file.is_open()) return {};
+    const off_t size = ::lseek(file.number(), 0, SEEK_END);
     const off_t from = std::max<off_t>(0, size - static_cast<off_t>(bytes));
     std::string text(static_cast<std::size_t>(size - from), '\0');
-    const auto got = ::pread(file.get(), text.data(), text.size(), from);
+    const auto got = ::pread(file.number(), text.data(), text.size(), from);
     text.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
     if (from > 0) text.erase(0, std::min(text.find('\n'), text.size() - 1) + 1);
     while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
@@ -270,7 +248,7 @@ std::string ProgramFolder::end_of(const std::string& name, std::size_t bytes) co
 
 ProgramFolder::Size ProgramFolder::size(std::int64_t most) const {
     Size total;
-    measure(entries_of(folder_, "."), 1, most, total);
+    measure(entries_of(folder_.number(), "."), 1, most, total);
     return total;
 }
 

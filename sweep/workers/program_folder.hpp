@@ -1,6 +1,8 @@
 // The folder of one case: made empty, filled with the program's files, read within its own bounds, kept or removed.
 #pragma once
 
+#include "sweep/files/descriptor.hpp"
+
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -19,21 +21,21 @@ public:
     ~ProgramFolder();
 
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-    [[nodiscard]] int descriptor() const { return folder_; }
+    [[nodiscard]] int descriptor() const { return folder_.number(); }
 
     /// A file of its own for the case, with the folders that its name says. Throws BrokenWorld.
     void write(const std::string& name, std::string_view contents, bool executable) const;
     void copy(const std::string& name, const std::filesystem::path& from, bool executable) const;
-    /// A descriptor to write a new file by.
-    [[nodiscard]] int create(const std::string& name) const;
+    /// A new file, to write to.
+    [[nodiscard]] files::Descriptor create(const std::string& name) const;
 
     /// A file that the program left: a regular one, reached without links, of at most so many bytes. Else why not, in
     /// words that follow the file's name, and nothing.
     [[nodiscard]] std::optional<std::string> read(const std::string& name, std::size_t most_bytes,
                                                   std::string& why) const;
     [[nodiscard]] bool has(const std::string& name) const;
-    /// The same as a descriptor; -1: why not.
-    [[nodiscard]] int open(const std::string& name, std::string& why) const;
+    /// The same, to read from; not open: why not.
+    [[nodiscard]] files::Descriptor open(const std::string& name, std::string& why) const;
     /// The last bytes of a file, from the beginning of a line where there is one.
     [[nodiscard]] std::string end_of(const std::string& name, std::size_t bytes) const;
 
@@ -48,10 +50,10 @@ public:
     void keep_as(const std::string& name);
 
 private:
-    [[nodiscard]] int parent_of(const std::string& name, std::string& leaf) const;
+    [[nodiscard]] files::Descriptor parent_of(const std::string& name, std::string& leaf) const;
 
     std::filesystem::path path_;
-    int folder_ = -1;
+    files::Descriptor folder_;
     bool kept_ = false;
 };
 

@@ -1,6 +1,6 @@
 #include "sweep/workers/program_lines.hpp"
 
-#include "sweep/store/broken_world.hpp"
+#include "sweep/files/broken_world.hpp"
 #include "sweep/workers/program_answerer.hpp"
 #include "sweep/workers/worker_state.hpp"
 
@@ -29,15 +29,15 @@ struct Pipe {
     Pipe() {
         std::array<int, 2> ends{};
         if (::pipe2(ends.data(), O_CLOEXEC) != 0)
-            throw store::BrokenWorld(fmt::format("no pipe to a program: {}", std::strerror(errno)));
-        from = ends[0];
-        to = ends[1];
+            throw BrokenWorld(fmt::format("no pipe to a program: {}", std::strerror(errno)));
+        from = files::Descriptor(ends[0]);
+        to = files::Descriptor(ends[1]);
     }
-    int from = -1, to = -1;
+    files::Descriptor from, to;
 };
 
-void do_not_wait(int descriptor) {
-    ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) | O_NONBLOCK);
+void add_flag(const files::Descriptor& descriptor, int flag) {
+    ::fcntl(descriptor.number(), F_SETFL, ::fcntl(descriptor.number(), F_GETFL) | flag);
 }
 
 }  // namespace
@@ -46,42 +46,29 @@ ProgramLines::ProgramLines(const campaign::Program& program, const std::filesyst
     : folder_(cases / fmt::format("alive.{}{}", ::getpid(), running_suffix)) {
     std::signal(SIGPIPE, SIG_IGN);  // a write to one that ended is an error code
     fill_folder(folder_, program, nullptr);
-    ProgramStart start;
-    start.argv = program_argv(program, nullptr);
+    ProcessStart start{program_argv(program, nullptr)};
     start.environment = program_environment(program, nullptr);
     start.folder = folder_.descriptor();
     log_ = folder_.create("stderr.txt");
-    ::fcntl(log_, F_SETFL, ::fcntl(log_, F_GETFL) | O_APPEND);  // it is cut now and then
-    const Pipe question, reply;
-    in_ = question.to;
-    out_ = reply.from;
-    start.in = question.from;
-    start.out = reply.to;
-    start.err = log_;
+    add_flag(log_, O_APPEND);  // it is cut now and then
+    Pipe question, reply;
+    start.streams = {question.from.number(), reply.to.number(), log_.number()};
     start.memory = program.memory;
     start.file = program.disk;
-    std::string why;
     try {
         process_ = std::make_unique<ProgramProcess>(start, guard);
     } catch (const std::runtime_error& error) {
-        why = error.what();
+        throw BrokenWorld(error.what());
     }
-    ::close(question.from);
-    ::close(reply.to);
-    if (!why.empty()) throw store::BrokenWorld(why);
-    do_not_wait(in_);
-    do_not_wait(out_);
-    status_ = ::open(fmt::format("/proc/{}/status", process_->id()).c_str(), O_RDONLY | O_CLOEXEC);
-}
-
-ProgramLines::~ProgramLines() {
-    process_.reset();
-    for (const int descriptor : {in_, out_, status_, log_})
-        if (descriptor >= 0) ::close(descriptor);
+    in_ = std::move(question.to);
+    out_ = std::move(reply.from);
+    add_flag(in_, O_NONBLOCK);
+    add_flag(out_, O_NONBLOCK);
+    status_ = files::Descriptor(::open(fmt::format("/proc/{}/status", process_->id()).c_str(), O_RDONLY | O_CLOEXEC));
 }
 
 void ProgramLines::end() {
-    ::close(std::exchange(in_, -1));
+    (void)in_.close();
     if (!process_->wait(0.05)) process_->end();
 }
 
@@ -102,16 +89,17 @@ bool ProgramLines::take_line() {
 
 /// Writes what the pipe takes, reads what it has.
 std::optional<ProgramLines::Heard> ProgramLines::exchange(std::string_view& rest, int milliseconds) {
-    std::array<pollfd, 2> ends = {pollfd{out_, POLLIN, 0}, pollfd{rest.empty() ? -1 : in_, POLLOUT, 0}};
+    std::array<pollfd, 2> ends = {pollfd{out_.number(), POLLIN, 0},
+                                  pollfd{rest.empty() ? -1 : in_.number(), POLLOUT, 0}};
     if (::poll(ends.data(), ends.size(), milliseconds) <= 0) return std::nullopt;
     if (ends[1].revents != 0) {
-        const auto length = ::write(in_, rest.data(), rest.size());
+        const auto length = ::write(in_.number(), rest.data(), rest.size());
         if (length > 0) rest.remove_prefix(static_cast<std::size_t>(length));
         if (length < 0 && errno != EAGAIN && errno != EINTR) rest = {};  // it has ended, or closed its input
     }
     if (ends[0].revents == 0) return std::nullopt;
     std::array<char, 65536> piece{};
-    const auto length = ::read(out_, piece.data(), piece.size());
+    const auto length = ::read(out_.number(), piece.data(), piece.size());
     if (length == 0) return Heard::end;
     if (length < 0) return errno == EAGAIN || errno == EINTR ? std::nullopt : std::optional(Heard::end);
     received_.append(piece.data(), static_cast<std::size_t>(length));
@@ -138,12 +126,12 @@ ProgramLines::Heard ProgramLines::ask(const std::string& question, const std::fu
 }
 
 void ProgramLines::shorten_log() const {
-    if (::lseek(log_, 0, SEEK_END) > longest_log) (void)!::ftruncate(log_, 0);
+    if (::lseek(log_.number(), 0, SEEK_END) > longest_log) (void)!::ftruncate(log_.number(), 0);
 }
 
 double ProgramLines::peak_memory() const {
     std::array<char, 4096> text{};
-    const auto length = ::pread(status_, text.data(), text.size() - 1, 0);
+    const auto length = ::pread(status_.number(), text.data(), text.size() - 1, 0);
     if (length <= 0) return std::numeric_limits<double>::quiet_NaN();
     const std::string_view all(text.data(), static_cast<std::size_t>(length));
     constexpr std::string_view name = "VmHWM:";

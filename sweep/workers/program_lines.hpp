@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sweep/campaign/program.hpp"
+#include "sweep/files/descriptor.hpp"
 #include "sweep/workers/program_folder.hpp"
 #include "sweep/workers/program_process.hpp"
 
@@ -23,7 +24,6 @@ public:
     ProgramLines(const campaign::Program& program, const std::filesystem::path& cases, ProgramGuard& guard);
     ProgramLines(const ProgramLines&) = delete;
     ProgramLines& operator=(const ProgramLines&) = delete;
-    ~ProgramLines();
 
     /// Writes the question and waits for its line, without its end in line(). `look` is called about ten times a
     /// second. `ended_before`: it had ended when it was asked.
@@ -47,8 +47,8 @@ private:
     void shorten_log() const;
 
     ProgramFolder folder_;
-    std::unique_ptr<ProgramProcess> process_;
-    int in_ = -1, out_ = -1, status_ = -1, log_ = -1;
+    files::Descriptor in_, out_, status_, log_;
+    std::unique_ptr<ProgramProcess> process_;  // ended before its pipes are closed
     std::string received_, line_;
     std::size_t searched_ = 0;  ///< of received_, without a line end
 };

@@ -1,8 +1,8 @@
 // What a program finds: its command, environment and files for a case; and how workers find the program itself.
 #include "sweep/campaign/output_pattern.hpp"
 #include "sweep/campaign/placeholders.hpp"
-#include "sweep/campaign/whole_file.hpp"
-#include "sweep/store/broken_world.hpp"
+#include "sweep/files/broken_world.hpp"
+#include "sweep/files/whole_file.hpp"
 #include "sweep/workers/program_answerer.hpp"
 #include "sweep/workers/program_process.hpp"
 #include "sweep/workers/worker_state.hpp"
@@ -34,7 +34,7 @@ std::string value_named(std::string_view name, const Program& program, const cam
     if (name == "seed31") return std::to_string(1 + question->seed % most_of_31_bits);
     if (name == "case") return question->id;
     const auto input = question->inputs.find(name);
-    if (input == question->inputs.end()) throw store::BrokenWorld(fmt::format("the case has no '{}'", name));
+    if (input == question->inputs.end()) throw BrokenWorld(fmt::format("the case has no '{}'", name));
     return campaign::program_value(input->second);
 }
 
@@ -44,8 +44,8 @@ fs::path place_of(std::string_view scene, const fs::path& cases) {
 
 std::string text_of(const fs::path& file) {
     std::error_code error;
-    std::string text = campaign::whole_file(file, error);
-    if (error) throw store::BrokenWorld(fmt::format("'{}': cannot be read: {}", file.string(), error.message()));
+    std::string text = files::whole_file(file, error);
+    if (error) throw BrokenWorld(fmt::format("'{}': cannot be read: {}", file.string(), error.message()));
     return text;
 }
 
@@ -56,7 +56,7 @@ void put(const fs::path& file, std::string_view text) {
     stream.close();
     std::error_code error;
     if (stream) fs::rename(aside, file, error);
-    if (!stream || error) throw store::BrokenWorld(fmt::format("'{}': cannot be written", file.string()));
+    if (!stream || error) throw BrokenWorld(fmt::format("'{}': cannot be written", file.string()));
 }
 
 }  // namespace
@@ -67,8 +67,7 @@ std::vector<std::string> program_argv(const Program& program, const campaign::Ca
     for (const auto& word : program.command) argv.push_back(campaign::filled_command(word, value));
     if (argv.front().find('/') != std::string::npos) return argv;  // its own file, or where the user says
     auto path = find_program(argv.front());
-    if (path.empty())
-        throw store::BrokenWorld(fmt::format("there is no program '{}' on the search path", argv.front()));
+    if (path.empty()) throw BrokenWorld(fmt::format("there is no program '{}' on the search path", argv.front()));
     argv.front() = std::move(path);
     return argv;
 }
@@ -119,18 +118,17 @@ std::string ask_version(const Program& program, ProgramGuard& guard) {
             return files;
         }(),
         nullptr);
-    ProgramStart start;
-    start.argv = program.version_command;
+    ProcessStart start{program.version_command};
     if (start.argv.front().find('/') == std::string::npos) start.argv.front() = find_program(start.argv.front());
     if (start.argv.front().empty())
         throw std::runtime_error(fmt::format("there is no program '{}'", program.version_command.front()));
     start.folder = folder.descriptor();
-    start.out = start.err = folder.create("stdout.txt");
+    const auto answer = folder.create("stdout.txt");
+    start.streams = {-1, answer.number(), answer.number()};
     start.file = program.disk;  // some libraries make files of their own elsewhere
     std::string text, why;
     {
         ProgramProcess process(start, guard);
-        ::close(start.out);
         if (!process.wait(version_seconds)) throw std::runtime_error("it did not say its version within 20 s");
         text = folder.read("stdout.txt", longest_answer + 1, why).value_or("");
     }
@@ -156,7 +154,7 @@ void stage_program(const Program& program, const fs::path& cases) {
     const auto folder = place_of(campaign::program_scene_name(program), cases);
     std::error_code error;
     fs::create_directories(folder, error);
-    if (error) throw store::BrokenWorld(fmt::format("'{}': cannot be made: {}", folder.string(), error.message()));
+    if (error) throw BrokenWorld(fmt::format("'{}': cannot be made: {}", folder.string(), error.message()));
     for (const auto& file : program.files) {
         if (!file.path.empty() && fs::equivalent(file.path, folder / file.hash, error)) continue;
         put(folder / file.hash, file.path.empty() ? file.contents : text_of(file.path));
@@ -170,14 +168,14 @@ std::shared_ptr<const Program> staged_program(std::string_view scene, const fs::
     try {
         *program = campaign::program_in(text_of(folder / "definition.json"));
     } catch (const std::invalid_argument& why) {
-        throw store::BrokenWorld(fmt::format("'{}': {}", (folder / "definition.json").string(), why.what()));
+        throw BrokenWorld(fmt::format("'{}': {}", (folder / "definition.json").string(), why.what()));
     }
     if (campaign::program_scene_name(*program) != scene)
-        throw store::BrokenWorld(fmt::format("'{}': is not as it was written", (folder / "definition.json").string()));
+        throw BrokenWorld(fmt::format("'{}': is not as it was written", (folder / "definition.json").string()));
     for (auto& file : program->files) {
         auto contents = text_of(folder / file.hash);
         if (campaign::content_hash(contents) != file.hash)
-            throw store::BrokenWorld(fmt::format("'{}': is not as it was written", (folder / file.hash).string()));
+            throw BrokenWorld(fmt::format("'{}': is not as it was written", (folder / file.hash).string()));
         if (contents.size() > largest_in_memory)
             file.path = folder / file.hash;
         else

@@ -156,8 +156,8 @@ double last_in_output(const ProgramFolder& folder, const std::string& pattern) {
     auto found = known.find(pattern);
     if (found == known.end()) found = known.emplace(pattern, campaign::output_pattern(pattern)).first;
     std::string why;
-    const int file = folder.open("stdout.txt", why);
-    if (file < 0) throw std::invalid_argument("standard output " + why);
+    const auto file = folder.open("stdout.txt", why);
+    if (!file.is_open()) throw std::invalid_argument("standard output " + why);
     std::optional<std::string> last, behind;
     std::string line;
     std::smatch parts;
@@ -171,11 +171,9 @@ double last_in_output(const ProgramFolder& folder, const std::string& pattern) {
     const auto began = std::chrono::steady_clock::now();
     std::array<char, 65536> piece{};
     for (ssize_t length = 0;
-         (length = ::read(file, piece.data(), piece.size())) > 0 || (length < 0 && errno == EINTR);) {
-        if (std::chrono::steady_clock::now() - began > longest_search) {
-            ::close(file);
+         (length = ::read(file.number(), piece.data(), piece.size())) > 0 || (length < 0 && errno == EINTR);) {
+        if (std::chrono::steady_clock::now() - began > longest_search)
             throw std::invalid_argument(fmt::format("standard output: to search for '{}' takes too long", pattern));
-        }
         for (ssize_t k = 0; k < length; ++k) {
             const char c = piece[static_cast<std::size_t>(k)];
             if (c == '\n')
@@ -184,7 +182,6 @@ double last_in_output(const ProgramFolder& folder, const std::string& pattern) {
                 line += c;
         }
     }
-    ::close(file);
     if (!line.empty()) search();
     if (!last) throw std::invalid_argument(fmt::format("standard output has no line with '{}'", pattern));
     if (const auto cut = exponent_behind(*behind))

@@ -1,6 +1,7 @@
 #include "sweep/workers/remote_host.hpp"
 
 #include "sweep/workers/host.hpp"
+#include "sweep/workers/process_start.hpp"
 
 #include <fmt/format.h>
 #include <sys/wait.h>

@@ -1,7 +1,7 @@
 #include "sweep/workers/worker.hpp"
 
-#include "sweep/store/artefacts.hpp"
-#include "sweep/store/broken_world.hpp"
+#include "sweep/files/artefacts.hpp"
+#include "sweep/files/broken_world.hpp"
 #include "sweep/workers/answerer.hpp"
 #include "sweep/workers/compute.hpp"
 #include "sweep/workers/desk.hpp"
@@ -42,7 +42,7 @@ std::string binding(const campaign::Computer& program) {
 /// must be to the last bit the one that would be computed.
 class OwnArtefacts final : public Artefacts {
 public:
-    OwnArtefacts(store::ArtefactFolder* folder, const campaign::Computer& program)
+    OwnArtefacts(files::ArtefactFolder* folder, const campaign::Computer& program)
         : folder_(folder), suffix_("\n" + binding(program)) {}
     [[nodiscard]] std::optional<Bytes> get(std::string_view key) override {
         return folder_ != nullptr ? folder_->get(std::string(key) + suffix_) : std::nullopt;
@@ -52,7 +52,7 @@ public:
     }
 
 private:
-    store::ArtefactFolder* folder_;
+    files::ArtefactFolder* folder_;
     std::string suffix_;
 };
 
@@ -60,7 +60,7 @@ private:
 /// attempt: every attempt follows the same path bit for bit, so any attempt may continue any other's.
 class Checkpoints {
 public:
-    Checkpoints(store::ArtefactFolder* folder, const campaign::CaseId& id, const campaign::Computer& program)
+    Checkpoints(files::ArtefactFolder* folder, const campaign::CaseId& id, const campaign::Computer& program)
         : folder_(folder), key_(checkpoint_key(id, program)) {}
 
     std::optional<Bytes> load() {
@@ -78,7 +78,7 @@ public:
     bool exists() const { return exists_; }
 
 private:
-    store::ArtefactFolder* folder_;
+    files::ArtefactFolder* folder_;
     std::string key_;
     bool exists_ = false;
 };
@@ -146,7 +146,7 @@ public:
 private:
     const WorkerOptions& options_;
     Desk& desk_;
-    std::optional<store::ArtefactFolder> folder_;
+    std::optional<files::ArtefactFolder> folder_;
     std::string damage_;  ///< met while computing the present case
     std::optional<Checkpoints> checkpoints_;
     std::optional<Bytes> resume_;
@@ -191,7 +191,7 @@ void answer(const Run& run, Answerer& answerer, Desk& desk) {
     std::optional<campaign::CaseResult> result;
     try {
         result = answerer.answer(run);
-    } catch (const store::BrokenWorld& broken) {  // not the case's fault, and the next would meet it, too
+    } catch (const BrokenWorld& broken) {  // not the case's fault, and the next would meet it, too
         desk.break_off(
             fmt::format("what its cases need cannot be read or written: {}; mend that, free some space for "
                         "one, and run again to resume",

@@ -106,8 +106,9 @@ WorkerState::Meaning WorkerState::understand(Done& done) {
     auto& result = done.result;
     if (!is_running(result.attempt)) return Complaint{"the worker answered a case it had not begun"};
     if (result.outcome == campaign::Outcome::abandoned) return Complaint{"the worker answered 'abandoned'"};
-    if (const auto name = undeclared(result.observations))
-        return Complaint{fmt::format("the worker measured '{}', which its scene does not declare so", *name)};
+    if (const auto name = campaign::undeclared(result.observations, expected_->measured); !name.empty())
+        return Complaint{
+            fmt::format("the worker measured '{}', which its scene does not declare so", shortened(name, 100))};
     const bool measured =
         result.outcome == campaign::Outcome::completed || result.outcome == campaign::Outcome::skipped;
     if (!measured) result.observations = {};  // numbers of a failure are no answer
@@ -128,20 +129,6 @@ WorkerState::Meaning WorkerState::understand(GiveBack& back, double now) {
         waiting_.erase(found);
     phase_ = Phase::leaving;
     return event;
-}
-
-std::optional<std::string> WorkerState::undeclared(const Observations& observations) const {
-    const auto declared = [&](const std::string& name, bool scalar) {
-        const auto found = expected_->measured.find(name);
-        return found != expected_->measured.end() && (found->second == Shape::scalar) == scalar;
-    };
-    for (const auto& [name, value] : observations.scalars) {
-        if (!declared(name, true)) return shortened(name, 100);
-    }
-    for (const auto& [name, samples] : observations.series) {
-        if (!declared(name, false)) return shortened(name, 100);
-    }
-    return std::nullopt;
 }
 
 bool WorkerState::is_running(const campaign::Attempt& attempt) const {

@@ -9,7 +9,6 @@
 
 #include <cstddef>
 #include <deque>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,8 +20,8 @@ namespace grainsweep::workers {
 
 /// What a worker must be, and may measure.
 struct Expected {
-    campaign::Computer program;                          ///< version, commit and build count, where it runs does not
-    std::map<std::string, Shape, std::less<>> measured;  ///< observables of the scene
+    campaign::Computer program;            ///< version, commit and build count, where it runs does not
+    std::vector<ObservableSpec> measured;  ///< observables of the scene
 };
 
 /// Seconds; 0: no limit.
@@ -85,7 +84,6 @@ private:
     [[nodiscard]] Meaning understand(const Alive& alive, double now);
     [[nodiscard]] Meaning understand(Done& done);
     [[nodiscard]] Meaning understand(GiveBack& back, double now);
-    [[nodiscard]] std::optional<std::string> undeclared(const Observations& observations) const;
     [[nodiscard]] bool is_running(const campaign::Attempt& attempt) const;
 
     const Expected* expected_;

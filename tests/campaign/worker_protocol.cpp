@@ -37,7 +37,7 @@ TEST(WorkerProtocol, AnswersOfAnotherBuildAreNotStored) {
 TEST(WorkerProtocol, AnswersWithoutReadyAreNotStored) {
     const ScriptedCampaign campaign(R"(read -t 0.3 -r line
 [[ $line =~ \"id\":\"([0-9a-f]+)\" ]] && id=${BASH_REMATCH[1]}
-attempt="\"id\":\"$id\",\"attempt\":1"
+number=1; attempt="\"attempt\":1,\"id\":\"$id\""
 begun; done_with completed '"y":2'; sleep 100)");
     const auto run = campaign.run();
     EXPECT_EQ(run.code, 3) << run.err;

@@ -24,7 +24,7 @@ template <class Question>
 auto asked(Question&& question) -> std::optional<decltype(question())> {
     try {
         return question();
-    } catch (const store::BrokenWorld&) {
+    } catch (const BrokenWorld&) {
     } catch (const campaign::WrongQuestion&) {
     }
     return std::nullopt;

@@ -43,7 +43,7 @@ Finding ask_everything(const WholeCampaign& whole, const std::filesystem::path& 
         }
         if (mode == Store::Mode::create) store.enrol(whole.campaign, whole.cases, here());
         return Finding::answered;
-    } catch (const store::BrokenWorld&) {
+    } catch (const BrokenWorld&) {
     } catch (const campaign::WrongQuestion&) {
     }
     return Finding::refused;

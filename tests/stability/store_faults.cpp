@@ -58,7 +58,7 @@ TEST_P(StoreFaults, EveryFaultIsReportedAndSurvived) {
         std::int64_t shown = -1;
         try {
             whole.run(file, [&](std::size_t settled) { shown = static_cast<std::int64_t>(settled); });
-        } catch (const store::BrokenWorld& broken) {
+        } catch (const BrokenWorld& broken) {
             ++reported;
             EXPECT_TRUE(is_sentence_of(broken.what(), failing)) << broken.what();
         }

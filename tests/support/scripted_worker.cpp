@@ -13,7 +13,7 @@ next() {
         [[ $line == *'"run"'* ]] || continue
         [[ $line =~ \"attempt\":([0-9]+) ]] && number=${BASH_REMATCH[1]}
         [[ $line =~ \"id\":\"([0-9a-f]+)\" ]] && id=${BASH_REMATCH[1]}
-        attempt="\"id\":\"$id\",\"attempt\":$number"
+        attempt="\"attempt\":$number,\"id\":\"$id\""
         return
     done
     exit 0
@@ -21,7 +21,7 @@ next() {
 begun() { say "{\"begun\":{$attempt,\"resumed\":false}}"; }
 give_back() { say "{\"give_back\":{$attempt,\"reason\":\"by the script\"}}"; }
 done_with() {
-    say "{\"done\":{$attempt,\"outcome\":\"$1\",\"message\":\"by the script\",\"observations\":{\"scalars\":{$2},\"series\":{}},\"cost\":{\"wall\":0,\"cpu\":0,\"steps\":0,\"phases\":{}},\"checkpointed\":false}}"
+    say "{\"done\":{\"attempt\":$number,\"checkpointed\":false,\"cost\":{\"cpu\":0,\"phases\":{},\"steps\":0,\"wall\":0},\"id\":\"$id\",\"message\":\"by the script\",\"observations\":{\"scalars\":{$2},\"series\":{}},\"outcome\":\"$1\"}}"
 }
 )";
 

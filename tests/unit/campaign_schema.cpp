@@ -24,9 +24,9 @@ std::set<std::string> keys_of(const json& object) {
     return keys;
 }
 
-std::set<std::string> names_of(std::span<const Key> keys) {
+std::set<std::string> key_names(std::span<const Key> keys) {
     std::set<std::string> names = {std::string(notes_key)};
-    for (const auto& key : keys) names.insert(key.name);
+    for (const auto& key : keys) names.emplace(key.name);
     return names;
 }
 
@@ -62,14 +62,14 @@ TEST(Schema, IsDraft2020AndRefusesUnknownKeysEverywhere) {
 
 TEST(Schema, HasTheKeysOfTheReader) {
     const auto& properties = schema()["properties"];
-    EXPECT_EQ(keys_of(properties), names_of(campaign_keys()));
-    EXPECT_EQ(keys_of(properties["convergence"]["properties"]), names_of(convergence_keys()));
-    EXPECT_EQ(keys_of(properties["limits"]["properties"]), names_of(limits_keys()));
-    EXPECT_EQ(keys_of(properties["execution"]["properties"]), names_of(execution_keys()));
+    EXPECT_EQ(keys_of(properties), key_names(campaign_keys()));
+    EXPECT_EQ(keys_of(properties["convergence"]["properties"]), key_names(convergence_keys()));
+    EXPECT_EQ(keys_of(properties["limits"]["properties"]), key_names(limits_keys()));
+    EXPECT_EQ(keys_of(properties["execution"]["properties"]), key_names(execution_keys()));
     const auto designs = designs::design_catalogue();
     ASSERT_EQ(properties["design"]["oneOf"].size(), designs.size());
     for (std::size_t k = 0; k < designs.size(); ++k) {
-        EXPECT_EQ(keys_of(properties["design"]["oneOf"][k]["properties"]), names_of(design_keys(designs[k])));
+        EXPECT_EQ(keys_of(properties["design"]["oneOf"][k]["properties"]), key_names(design_keys(designs[k])));
     }
 }
 
@@ -79,8 +79,8 @@ TEST(Schema, RefusesTheNamesTheReaderRefuses) {
     std::vector<std::string> names = {"trial",   "seriess", "my_series", "SQLite_x",
                                       "sqlitex", "2nd",     "a-b",       "Case_Input"};
     for (const auto& name : reserved_names()) {
-        names.push_back(name);
-        names.push_back(static_cast<char>(name.front() - 'a' + 'A') + name.substr(1));
+        names.emplace_back(name);
+        names.push_back(static_cast<char>(name.front() - 'a' + 'A') + std::string(name.substr(1)));
     }
     for (const auto& name : names) {
         json named = sound;
@@ -126,7 +126,7 @@ TEST(Schema, EveryKeyItHasIsReadAndEveryOtherRefused) {
     }
     for (const auto& key : campaign_keys()) {
         json without = sound;
-        without.erase(key.name);
+        without.erase(std::string(key.name));
         const bool needed = key.required || key.name == "design";  // or a calibration in its place
         EXPECT_EQ(reads(without), !needed) << key.name;
     }

@@ -2,8 +2,8 @@
 #include "sweep/campaign/campaign.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/relevance.hpp"
-#include "sweep/campaign/whole_file.hpp"
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/files/whole_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -300,19 +300,19 @@ TEST(WholeFile, HoldsEveryByteOrSaysWhyNot) {
     std::ofstream(folder / "bytes", std::ios::binary) << bytes;
     std::ofstream(folder / "nothing");
     std::error_code error = std::make_error_code(std::errc::interrupted);
-    EXPECT_EQ(whole_file(folder / "bytes", error), bytes);
+    EXPECT_EQ(files::whole_file(folder / "bytes", error), bytes);
     EXPECT_FALSE(error);
-    EXPECT_EQ(whole_file(folder / "bytes", error, bytes.size()), bytes);
+    EXPECT_EQ(files::whole_file(folder / "bytes", error, bytes.size()), bytes);
     EXPECT_FALSE(error);
-    EXPECT_EQ(whole_file(folder / "nothing", error), "");
+    EXPECT_EQ(files::whole_file(folder / "nothing", error), "");
     EXPECT_FALSE(error);
-    (void)whole_file(folder / "bytes", error, bytes.size() - 1);
+    (void)files::whole_file(folder / "bytes", error, bytes.size() - 1);
     EXPECT_EQ(error, std::errc::file_too_large);
-    EXPECT_EQ(whole_file(folder, error), "");
+    EXPECT_EQ(files::whole_file(folder, error), "");
     EXPECT_EQ(error, std::errc::is_a_directory);
-    EXPECT_EQ(whole_file(folder / "none", error), "");
+    EXPECT_EQ(files::whole_file(folder / "none", error), "");
     EXPECT_EQ(error, std::errc::no_such_file_or_directory);
-    EXPECT_EQ(whole_file("/proc/self/mem", error), "");
+    EXPECT_EQ(files::whole_file("/proc/self/mem", error), "");
     EXPECT_EQ(error, std::errc::io_error);
     std::filesystem::remove_all(folder);
 }

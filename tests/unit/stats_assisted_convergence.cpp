@@ -124,7 +124,6 @@ TEST(AssistedConvergence, WrongSettingsAreRefused) {
     refused([](auto& s, auto&) { s.tolerance = 0; });
     refused([](auto&, auto& what) { what.dimensions = 0; });
     EXPECT_THROW(Convergence{settings(0.01)}, std::invalid_argument);
-    EXPECT_EQ(convergence_rule_named("assisted"), ConvergenceRule::assisted);
 }
 
 }  // namespace grainsweep::tests::stats_assisted_convergence_test

@@ -283,8 +283,11 @@ TEST(Convergence, WrongSettingsAreRefused) {
     EXPECT_THROW(Convergence{replicates({}, 0.01)}, std::invalid_argument);
     EXPECT_THROW(Convergence{replicates({Statistic::mean}, 0.0)}, std::invalid_argument);
     EXPECT_THROW(Convergence{replicates({Statistic::mean}, 0.01, 0)}, std::invalid_argument);
-    for (const auto rule : {ConvergenceRule::replicates, ConvergenceRule::any_change, ConvergenceRule::all_change})
-        EXPECT_EQ(convergence_rule_named(to_string(rule)), rule);
+    for (const auto& rule : convergence_rules) {
+        EXPECT_EQ(&info_of(rule.rule), &rule);
+        EXPECT_EQ(find_rule(rule.name), &rule);
+    }
+    EXPECT_EQ(find_rule("no rule"), nullptr);
 }
 
 }  // namespace grainsweep::tests::stats_convergence_test

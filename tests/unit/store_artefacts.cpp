@@ -1,6 +1,6 @@
 // Keyed files: whole or absent, whatever happened to them and however many processes write them at once.
-#include "sweep/store/artefacts.hpp"
-#include "sweep/store/broken_world.hpp"
+#include "sweep/files/artefacts.hpp"
+#include "sweep/files/broken_world.hpp"
 #include "tests/support/archive.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 
 namespace grainsweep::tests::store_artefacts_test {
 
-using store::ArtefactFolder;
+using files::ArtefactFolder;
 
 Bytes bytes(std::size_t count, unsigned first = 0) {
     Bytes contents(count);
@@ -224,7 +224,7 @@ TEST_F(StoreArtefacts, WhatIsOverIsSweptByItsKey) {
 TEST_F(StoreArtefacts, AFolderThatCannotBeMadeIsABrokenWorld) {
     write(folder / "file", "in the way");
     ArtefactFolder impossible(folder.path() / "file" / "artefacts");
-    EXPECT_THROW(impossible.put("key", bytes(3)), store::BrokenWorld);
+    EXPECT_THROW(impossible.put("key", bytes(3)), BrokenWorld);
     EXPECT_FALSE(impossible.get("key"));
 }
 

@@ -13,7 +13,6 @@
 namespace grainsweep::tests::store_checksums_test {
 
 using campaign::Outcome;
-using store::BrokenWorld;
 using store::Store;
 using testing::HasSubstr;
 

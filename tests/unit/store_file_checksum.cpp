@@ -11,7 +11,6 @@
 namespace grainsweep::tests::store_file_checksum_test {
 
 using campaign::Outcome;
-using store::BrokenWorld;
 using store::Store;
 
 bool remembered(const std::filesystem::path& file) {

@@ -19,7 +19,6 @@
 namespace grainsweep::tests::store_files_test {
 
 using campaign::WrongQuestion;
-using store::BrokenWorld;
 using store::Store;
 using testing::ElementsAre;
 using testing::HasSubstr;

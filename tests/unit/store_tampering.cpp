@@ -19,7 +19,6 @@
 namespace grainsweep::tests::store_tampering_test {
 
 using campaign::Outcome;
-using store::BrokenWorld;
 using store::Store;
 using testing::AllOf;
 using testing::HasSubstr;

@@ -23,7 +23,7 @@ class Worker : public testing::Test {
 protected:
     Worker()
         : expected{{"1.0", "abc", "feed", "avx2", "its processor", "its host"},
-                   {{"y", Shape::scalar}, {"s", Shape::series}}} {}
+                   {{"y", "", "", Shape::scalar}, {"s", "", "", Shape::series}}} {}
 
     WorkerState::Meaning say(const ToBoss& message, double now = 0) { return state.receive(encode(message), now); }
     std::string complaint(const ToBoss& message) {

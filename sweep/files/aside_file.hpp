@@ -1,13 +1,13 @@
 // A file written beside its final place and put there whole: readers see the old one or the new one, never a part.
 #pragma once
 
-#include <cstddef>
+#include "sweep/files/descriptor.hpp"
+
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string_view>
 
-namespace grainsweep::store {
+namespace grainsweep::files {
 
 /// A file being written aside: gone unless it becomes what it was meant for. Errors are BrokenWorld.
 class AsideFile {
@@ -18,7 +18,7 @@ public:
     AsideFile& operator=(const AsideFile&) = delete;
     ~AsideFile();
 
-    void write(std::span<const std::byte> bytes);
+    void write(std::string_view bytes);
     /// Syncs the file and renames it to the target, over what is there.
     void take_place();
 
@@ -29,7 +29,7 @@ public:
 
 private:
     std::filesystem::path target_, file_;
-    int descriptor_ = -1;
+    Descriptor descriptor_;
 };
 
-}  // namespace grainsweep::store
+}  // namespace grainsweep::files

@@ -3,11 +3,11 @@
 
 #include <stdexcept>
 
-namespace grainsweep::store {
+namespace grainsweep {
 
 class BrokenWorld : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
 
-}  // namespace grainsweep::store
+}  // namespace grainsweep

@@ -8,11 +8,11 @@
 #include <string>
 #include <system_error>
 
-namespace grainsweep::campaign {
+namespace grainsweep::files {
 
 /// What could be read; `error` says why that is not all: no such file, no permission, a folder, a failing disk, more
 /// than `most` bytes (file_too_large).
 [[nodiscard]] std::string whole_file(const std::filesystem::path& file, std::error_code& error,
                                      std::size_t most = std::numeric_limits<std::size_t>::max());
 
-}  // namespace grainsweep::campaign
+}  // namespace grainsweep::files

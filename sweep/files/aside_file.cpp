@@ -1,7 +1,7 @@
-#include "sweep/store/aside_file.hpp"
+#include "sweep/files/aside_file.hpp"
 
-#include "sweep/campaign/whole_file.hpp"
-#include "sweep/store/broken_world.hpp"
+#include "sweep/files/broken_world.hpp"
+#include "sweep/files/whole_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -18,7 +18,7 @@
 #include <system_error>
 #include <utility>
 
-namespace grainsweep::store {
+namespace grainsweep::files {
 namespace {
 
 [[noreturn]] void failed(const std::filesystem::path& file, std::string_view what) {
@@ -35,7 +35,7 @@ std::string own_host() {
 bool runs(pid_t process) {
     if (kill(process, 0) != 0) return errno != ESRCH;
     std::error_code error;
-    const std::string line = campaign::whole_file(fmt::format("/proc/{}/stat", process), error);
+    const std::string line = whole_file(fmt::format("/proc/{}/stat", process), error);
     if (error == std::errc::no_such_process) return false;  // it ended between opening and reading
     const auto name_end = line.rfind(") ");                 // the name before it may hold anything
     return name_end == std::string::npos || line.compare(name_end + 2, 1, "Z") != 0;
@@ -50,12 +50,12 @@ std::filesystem::path aside_of(const std::filesystem::path& target) {
 }  // namespace
 
 AsideFile::AsideFile(std::filesystem::path target) : target_(std::move(target)), file_(aside_of(target_)) {
-    descriptor_ = open(file_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor_ < 0) failed(target_, "made");
+    descriptor_ = Descriptor(open(file_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    if (!descriptor_.is_open()) failed(target_, "made");
 }
 
 AsideFile::~AsideFile() {
-    if (descriptor_ >= 0) close(descriptor_);
+    (void)descriptor_.close();
     if (!file_.empty()) unlink(file_.c_str());
 }
 
@@ -70,20 +70,15 @@ std::optional<bool> AsideFile::writer_runs(const std::filesystem::path& file) {
     return runs(process);
 }
 
-void AsideFile::write(std::span<const std::byte> bytes) {
-    while (!bytes.empty()) {
-        const auto written = ::write(descriptor_, bytes.data(), bytes.size());
-        if (written < 0 && errno == EINTR) continue;
-        if (written < 0) failed(target_, "written");
-        bytes = bytes.subspan(static_cast<std::size_t>(written));
-    }
+void AsideFile::write(std::string_view bytes) {
+    if (!write_all(descriptor_.number(), bytes)) failed(target_, "written");
 }
 
 void AsideFile::take_place() {
-    if (fsync(descriptor_) != 0) failed(target_, "synced");
-    if (close(std::exchange(descriptor_, -1)) != 0) failed(target_, "closed");
+    if (fsync(descriptor_.number()) != 0) failed(target_, "synced");
+    if (!descriptor_.close()) failed(target_, "closed");
     if (rename(file_.c_str(), target_.c_str()) != 0) failed(target_, "put in place");
     file_.clear();
 }
 
-}  // namespace grainsweep::store
+}  // namespace grainsweep::files

@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-namespace grainsweep::store {
+namespace grainsweep::files {
 
 /// Files named by the hash of their key in one folder (created at the first put). Any number of processes may
 /// use one folder at once. What a full or failing disk does throws BrokenWorld; get() never throws for it.
@@ -38,4 +38,4 @@ private:
     bool swept_ = false;  ///< leftovers of killed writers looked for
 };
 
-}  // namespace grainsweep::store
+}  // namespace grainsweep::files

@@ -1,22 +1,17 @@
 // One file per key: magic, length of the key, length of the contents, XXH3 128-bit of both, key, contents.
-#include "sweep/store/artefacts.hpp"
+#include "sweep/files/artefacts.hpp"
 
-#include "sweep/campaign/case.hpp"
-#include "sweep/store/aside_file.hpp"
-#include "sweep/store/broken_world.hpp"
+#include "sweep/files/aside_file.hpp"
+#include "sweep/files/broken_world.hpp"
+#include "sweep/files/descriptor.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 #include <xxhash.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <chrono>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -25,7 +20,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace grainsweep::store {
+namespace grainsweep::files {
 
 namespace {
 
@@ -51,20 +46,13 @@ std::array<std::uint64_t, 2> artefact_checksum(std::string_view key, std::span<c
     return {hash.low64, hash.high64};
 }
 
-[[noreturn]] void broken(const std::filesystem::path& file, std::string_view what) {
-    throw BrokenWorld(fmt::format("'{}': cannot be {}: {}", file.string(), what, std::strerror(errno)));
-}
-
-void sync_folder(const std::filesystem::path& folder) {
-    const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (descriptor < 0) broken(folder, "opened");
-    const bool synced = fsync(descriptor) == 0 || errno == EINVAL;  // EINVAL: a file system without folder syncs
-    close(descriptor);
-    if (!synced) broken(folder, "synced");
-}
-
 std::filesystem::path file_of(const std::filesystem::path& folder, std::string_view key) {
-    return folder / (campaign::content_hash(key) + ".artefact");
+    const auto hash = XXH3_128bits(key.data(), key.size());
+    return folder / fmt::format("{:016x}{:016x}.artefact", hash.high64, hash.low64);
+}
+
+std::string_view bytes_of(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 /// The key that a file says it is of.
@@ -163,17 +151,16 @@ void ArtefactFolder::put(std::string_view key, std::span<const std::byte> conten
     if (!std::filesystem::is_directory(folder_, error)) {
         std::filesystem::create_directories(folder_, error);
         if (error) throw BrokenWorld(fmt::format("folder '{}': cannot be made: {}", folder_.string(), error.message()));
-        const auto parent = std::filesystem::absolute(folder_).parent_path();
-        sync_folder(parent);
+        sync_folder(std::filesystem::absolute(folder_).parent_path());
     }
     if (!std::exchange(swept_, true))  // no file takes a day to write
         sweep_leftovers(folder_,
                         [](const std::filesystem::path&, auto silent) { return silent > std::chrono::hours(24); });
     const Header header{magic, key.size(), contents.size(), artefact_checksum(key, contents)};
     AsideFile aside(file_of(folder_, key));
-    aside.write(std::as_bytes(std::span(&header, 1)));
-    aside.write(std::as_bytes(std::span(key)));
-    aside.write(contents);
+    aside.write(bytes_of(std::as_bytes(std::span(&header, 1))));
+    aside.write(key);
+    aside.write(bytes_of(contents));
     aside.take_place();
     sync_folder(folder_);
 }
@@ -185,4 +172,4 @@ void ArtefactFolder::remove(std::string_view key) {
         throw BrokenWorld(fmt::format("'{}': cannot be removed: {}", file_of(folder_, key).string(), error.message()));
 }
 
-}  // namespace grainsweep::store
+}  // namespace grainsweep::files

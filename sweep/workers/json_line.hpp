@@ -1,0 +1,176 @@
+// JSON on one line, in one form: members in the order in which `describe` names them. Written and read without a
+// document in between, several times as fast as with one. What an object holds is described once, for both directions:
+// `describe(it, object)` calls it(name, value) for every member.
+#pragma once
+
+#include "solver/scenes/values.hpp"
+
+#include <array>
+#include <charconv>
+#include <concepts>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace grainsweep::workers::json_line {
+
+template <class T>
+using ByName = std::map<std::string, T, std::less<>>;
+
+class Writer {
+public:
+    template <class T>
+    void operator()(std::string_view name, const T& value) {
+        separate();
+        put(name);
+        line += ':';
+        put(value);
+    }
+    /// A member that is not always there.
+    template <class T>
+    void maybe(std::string_view name, const T& value, bool there) {
+        if (there) (*this)(name, value);
+    }
+
+    /// A member whose value has a word.
+    template <class T, class ToWord>
+    void word(std::string_view name, const T& value, ToWord to_word, const auto&) {
+        (*this)(name, to_word(value));
+    }
+
+    /// What is no UTF-8 (of a library's error text, say) is replaced.
+    void put(std::string_view text);
+    /// With ".0" where it is whole, so that the reader can tell a count from a real; what is not finite is null.
+    void put(double number);
+    void put(const Value& value);
+    void put(const Sample& sample);
+    void put(const std::string& text) { put(std::string_view(text)); }
+    void put(std::integral auto number) {
+        std::array<char, 24> digits{};
+        if constexpr (std::same_as<decltype(number), bool>)
+            line += number ? "true" : "false";
+        else
+            line.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr);
+    }
+    template <class T>
+    void put(const std::optional<T>& value) {
+        value ? put(*value) : void(line += "null");
+    }
+    template <class T>
+    void put(const std::vector<T>& list) {
+        line += '[';
+        for (const auto& value : list) separate(), put(value);
+        line += ']';
+    }
+    template <class T>
+    void put(const ByName<T>& values) {
+        line += '{';
+        for (const auto& [name, value] : values) (*this)(name, value);
+        line += '}';
+    }
+    template <class T>
+    requires std::is_class_v<T>
+    void put(const T& object) {
+        line += '{';
+        describe(*this, object);
+        line += '}';
+    }
+
+    std::string line;
+
+private:
+    void separate() {
+        if (line.back() != '{' && line.back() != '[') line += ',';
+    }
+};
+
+/// Blanks may stand between words. Every function throws std::invalid_argument where something else stands there.
+class Reader {
+public:
+    explicit Reader(std::string_view line) : rest_(line) {}
+
+    template <class T>
+    void operator()(std::string_view name, T& into) {
+        if (!takes_member(name)) refuse("a member is missing");
+        get(into);
+    }
+    template <class T>
+    void maybe(std::string_view name, T& into, bool) {
+        if (takes_member(name)) get(into);
+    }
+    template <class T, class Named>
+    void word(std::string_view name, T& into, const auto&, Named named) {
+        std::string text;
+        (*this)(name, text);
+        const auto known = named(text);
+        if (!known) refuse("it is an unknown word");
+        into = *known;
+    }
+    [[nodiscard]] bool takes_member(std::string_view name);
+
+    void get(std::string& text);
+    void get(double& number);  ///< NaN for null
+    void get(Value& value);
+    void get(Sample& sample);
+    void get(bool& set);
+    template <std::integral Whole>
+    void get(Whole& number) {
+        number_in(number_word(), number);
+    }
+    template <class T>
+    void get(std::optional<T>& value) {
+        if (!takes("null")) get(value.emplace());
+    }
+    template <class T>
+    void get(std::vector<T>& list) {
+        expect("[");
+        while (!takes("]")) separate('['), get(list.emplace_back());
+    }
+    template <class T>
+    void get(ByName<T>& values) {
+        expect("{");
+        std::string name;
+        while (!takes("}")) {
+            separate('{');
+            get(name);
+            expect(":");
+            get(values.emplace_hint(values.end(), name, T{})->second);
+        }
+    }
+    template <class T>
+    requires std::is_class_v<T>
+    void get(T& object) {
+        expect("{");
+        describe(*this, object);
+        expect("}");
+    }
+    void expect(std::string_view word);
+    /// Nothing but blanks is left.
+    [[nodiscard]] bool over();
+    [[noreturn]] static void refuse(const char* what);
+
+private:
+    [[nodiscard]] bool takes(std::string_view word);
+    /// Takes the comma between two values or members.
+    void separate(char opening) {
+        if (last_ != opening) expect(",");
+    }
+    [[nodiscard]] std::string_view number_word();
+    template <class Number>
+    static void number_in(std::string_view word, Number& number) {
+        if (!is_number(word)) refuse("it is no number");
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+        if (error != std::errc() || end != word.data() + word.size()) refuse("it is no such number");
+    }
+    [[nodiscard]] static bool is_number(std::string_view word);
+
+    std::string_view rest_;
+    char last_ = '\0';  ///< taken
+};
+
+}  // namespace grainsweep::workers::json_line
