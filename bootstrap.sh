@@ -22,6 +22,7 @@ program_packages=(
     zlib1g-dev=/usr/include/zlib.h nlohmann-json3-dev=/usr/include/nlohmann/json.hpp libfmt-dev=/usr/include/fmt/format.h
     libcli11-dev=/usr/include/CLI/CLI.hpp libxxhash-dev=/usr/include/xxhash.h
     libnlopt-dev=/usr/include/nlopt.h libhwy-dev=/usr/include/hwy/highway.h
+    libmuparser-dev=/usr/include/muParser.h libudunits2-dev=/usr/include/udunits2.h:libudunits2.so
     libjs-chart.js=/usr/share/javascript/chart.js/chart.min.js
 )
 test_packages=(

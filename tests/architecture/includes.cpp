@@ -133,6 +133,8 @@ const std::vector<Library>& libraries() {
           "sweep/workers/program_json."}},
         {"CLI/", {"sweep/cli/parser.cpp"}},
         {"Eigen/", {"solver/", "stats/"}},
+        {"muParser.h", {"sweep/campaign/formula.cpp"}},
+        {"udunits2.h", {"sweep/campaign/quantity.cpp"}},
         {"nlopt", {"stats/response/fit.cpp"}},
         {"hwy/", {"solver/dem/fast/lanes.hpp"}},
         {"immintrin.h", {}},  // vector instructions by Highway and by vector types of the compiler

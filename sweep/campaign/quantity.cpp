@@ -1,0 +1,317 @@
+#include "sweep/campaign/quantity.hpp"
+
+#include "sweep/campaign/wrong_question.hpp"
+
+#include <fmt/format.h>
+#include <udunits2.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <mutex>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+namespace grainsweep::campaign {
+
+namespace {
+
+constexpr std::size_t longest_quantity = 100;  // characters
+
+// Suggested in this order to whoever writes a unit that does not exist or does not fit.
+constexpr auto usual_units = std::to_array<std::string_view>(
+    {"um",    "mm",  "m",    "nm",    "cm",    "km",   "mm/s",  "m/s", "cm/s",  "km/h",  "m/s2",  "mm/s2", "s",
+     "ms",    "us",  "min",  "h",     "Hz",    "kHz",  "1/s",   "rpm", "1/min", "rad/s", "deg/s", "deg",   "rad",
+     "kg",    "g",   "mg",   "kg/m3", "g/cm3", "Pa",   "kPa",   "MPa", "GPa",   "bar",   "J/m3",  "kJ/m3", "J/m2",
+     "mJ/m2", "N/m", "mN/m", "N",     "mN",    "J",    "mJ",    "N m", "W",     "kg/s",  "g/s",   "kg/h",  "m3",
+     "cm3",   "mm3", "m2",   "mm2",   "%",     "Pa s", "mPa s", "K",   "degC",  "m3/s"});
+
+struct FreeUnit {
+    void operator()(ut_unit* unit) const { ut_free(unit); }
+};
+struct FreeConverter {
+    void operator()(cv_converter* converter) const { cv_free(converter); }
+};
+using Unit = std::unique_ptr<ut_unit, FreeUnit>;
+using Converter = std::unique_ptr<cv_converter, FreeConverter>;
+
+/// How often angle, time and anything else occur in a product of basic units.
+struct Powers {
+    const ut_unit* radian = nullptr;
+    const ut_unit* second = nullptr;
+    int angle = 0;
+    int time = 0;
+    bool others = false;
+
+    [[nodiscard]] bool pure_number() const { return angle == 0 && time == 0 && !others; }
+    [[nodiscard]] bool pure_angle() const { return angle == 1 && time == 0 && !others; }
+    [[nodiscard]] bool frequency() const { return angle == 0 && time == -1 && !others; }
+    [[nodiscard]] bool angular_speed() const { return angle == 1 && time == -1 && !others; }
+};
+
+ut_status add_basic(const ut_unit* unit, int power, Powers& powers) {
+    if (ut_compare(unit, powers.radian) == 0)
+        powers.angle += power;
+    else if (ut_compare(unit, powers.second) == 0)
+        powers.time += power;
+    else
+        powers.others = true;
+    return UT_SUCCESS;
+}
+
+const ut_visitor& powers_visitor() {
+    static const ut_visitor visitor = {
+        [](const ut_unit* unit, void* powers) { return add_basic(unit, 1, *static_cast<Powers*>(powers)); },
+        [](const ut_unit*, int count, const ut_unit* const* basic, const int* power, void* powers) {
+            for (int k = 0; k < count; ++k) add_basic(basic[k], power[k], *static_cast<Powers*>(powers));
+            return UT_SUCCESS;
+        },
+        [](const ut_unit*, double, const ut_unit* underlying, double, void* powers) {
+            return ut_accept_visitor(underlying, &powers_visitor(), powers);
+        },
+        [](const ut_unit*, const ut_unit*, double, void*) { return UT_MEANINGLESS; },  // a date
+        [](const ut_unit*, double, const ut_unit*, void*) { return UT_MEANINGLESS; },  // decibels
+    };
+    return visitor;
+}
+
+/// value = factor * number + offset.
+struct Conversion {
+    double factor = 1;
+    double offset = 0;
+};
+
+/// The units of UDUNITS-2. Its parser has a state of its own: one thread at a time.
+class UnitDatabase {
+public:
+    UnitDatabase() {
+        ut_set_error_message_handler(ut_ignore);
+        system_ = ut_read_xml(nullptr);
+        // A variable of the environment can name a file that is not there.
+        if (system_ == nullptr) system_ = ut_read_xml("/usr/share/xml/udunits/udunits2.xml");
+        if (system_ == nullptr) return;
+        name("deg", "degree");
+        name("rev", "turn");
+        name("‰", "0.001");
+        radian_.reset(ut_get_unit_by_name(system_, "radian"));
+        second_.reset(ut_get_unit_by_name(system_, "second"));
+        kelvin_.reset(ut_get_unit_by_name(system_, "kelvin"));
+        radian_per_second_ = parsed("rad/s");
+    }
+
+    [[nodiscard]] bool found() const { return radian_ && second_ && kelvin_ && radian_per_second_; }
+
+    [[nodiscard]] Unit parsed(std::string_view text) const {
+        return Unit(ut_parse(system_, std::string(text).c_str(), UT_UTF8));
+    }
+
+    /// None: a quantity in `from` is none in `to`.
+    [[nodiscard]] std::optional<Conversion> conversion(const ut_unit* from, const ut_unit* to) const {
+        const auto has = powers_of(from);
+        const auto wants = powers_of(to);
+        if (!has || !wants || has->pure_number() != wants->pure_number() || has->pure_angle() != wants->pure_angle())
+            return std::nullopt;
+        const Converter converter(ut_get_converter(const_cast<ut_unit*>(from), const_cast<ut_unit*>(to)));
+        if (!converter) return std::nullopt;
+        Conversion result;
+        result.offset = cv_convert_double(converter.get(), 0);
+        result.factor = cv_convert_double(converter.get(), 1) - result.offset;
+        if (result.offset != 0 && ut_are_convertible(from, kelvin_.get()) == 0) return std::nullopt;
+        if (has->angular_speed() && wants->frequency()) result.factor /= 2 * std::numbers::pi;
+        if (has->frequency() && wants->angular_speed()) {
+            if (in_radians(to)) return std::nullopt;
+            result.factor *= 2 * std::numbers::pi;
+        }
+        return result;
+    }
+
+private:
+    void name(const char* word, const char* meaning) const {
+        if (Unit unit = parsed(meaning)) ut_map_name_to_unit(word, UT_UTF8, unit.get());
+    }
+
+    [[nodiscard]] std::optional<Powers> powers_of(const ut_unit* unit) const {
+        Powers powers{radian_.get(), second_.get()};
+        if (ut_accept_visitor(unit, &powers_visitor(), &powers) != UT_SUCCESS) return std::nullopt;
+        return powers;
+    }
+
+    [[nodiscard]] bool in_radians(const ut_unit* speed) const;
+
+    ut_system* system_ = nullptr;  // lives as long as the process
+    Unit radian_, second_, kelvin_, radian_per_second_;
+};
+
+/// digits * 10^exponent.
+struct Decimal {
+    std::uint64_t digits = 1;
+    int exponent = 0;
+};
+
+/// The decimal of up to nine digits that a factor is but for its rounding errors.
+std::optional<Decimal> short_decimal(double factor) {
+    constexpr double rounding = 1e-14;  // relative: products of ten factors, each rounded
+    if (!(factor > 0) || !std::isfinite(factor)) return std::nullopt;
+    for (int behind = 0; behind < 9; ++behind) {
+        std::string text = fmt::format("{:.{}e}", factor, behind);
+        double back = 0;
+        std::from_chars(text.data(), text.data() + text.size(), back);
+        if (std::abs(back - factor) > rounding * factor) continue;
+        const auto e = text.find('e');
+        Decimal decimal;
+        decimal.exponent = std::atoi(text.c_str() + e + 1) - behind;
+        text.resize(e);
+        std::erase(text, '.');
+        std::from_chars(text.data(), text.data() + text.size(), decimal.digits);
+        return decimal;
+    }
+    return std::nullopt;
+}
+
+bool UnitDatabase::in_radians(const ut_unit* speed) const {
+    const Converter converter(ut_get_converter(const_cast<ut_unit*>(speed), radian_per_second_.get()));
+    const double factor = converter ? cv_convert_double(converter.get(), 1) : 0;
+    return short_decimal(factor) || short_decimal(1 / factor);
+}
+
+/// The double nearest to number * factor, where `number` is a decimal text. None: out of range.
+std::optional<double> product(std::string_view number, Decimal factor) {
+    std::string digits;
+    int exponent = factor.exponent;
+    const auto e = std::min(number.find_first_of("eE"), number.size());
+    bool behind_point = false;
+    for (const char c : number.substr(0, e)) {
+        if (c == '.')
+            behind_point = true;
+        else if (c != '-')
+            digits += c, exponent -= behind_point ? 1 : 0;
+    }
+    if (e < number.size()) {
+        const std::size_t start = e + (number[e + 1] == '+' ? 2 : 1);
+        int written = 0;
+        if (std::from_chars(number.data() + start, number.data() + number.size(), written).ec != std::errc())
+            return std::nullopt;
+        if (std::abs(written) > 1000) return std::nullopt;
+        exponent += written;
+    }
+    std::uint64_t carry = 0;  // long multiplication, the last digit first
+    for (auto digit = digits.rbegin(); digit != digits.rend(); ++digit) {
+        const std::uint64_t sum = factor.digits * static_cast<std::uint64_t>(*digit - '0') + carry;
+        *digit = static_cast<char>('0' + sum % 10);
+        carry = sum / 10;
+    }
+    const std::string text = fmt::format("{}{}{}e{}", number.starts_with('-') ? "-" : "", carry, digits, exponent);
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return value;
+}
+
+std::optional<double> converted(std::string_view number, double x, const Conversion& conversion) {
+    if (conversion.offset == 0) {
+        if (const auto factor = short_decimal(conversion.factor)) return product(number, *factor);
+        if (const auto divisor = short_decimal(1 / conversion.factor)) {
+            // 60, not 6 after a shift by ten, which would round once more.
+            const auto whole = divisor->exponent > 0 && divisor->exponent < 7;
+            const double by = static_cast<double>(divisor->digits) * (whole ? std::pow(10.0, divisor->exponent) : 1);
+            const auto shifted = product(number, {1, whole ? 0 : -divisor->exponent});
+            if (shifted) return *shifted / by;
+        }
+    }
+    const double value = conversion.factor * x + conversion.offset;
+    return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+/// What UDUNITS reads as another number within a unit ("mm 3"), as a date or as a logarithm is no unit here.
+bool sound_unit(std::string_view unit) {
+    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+    const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+    const auto at = [&](std::size_t k) { return k < unit.size() ? unit[k] : ' '; };
+    if (unit == "1") return true;
+    if (unit.find_first_of("@:,;\"'_\t\n") != std::string_view::npos) return false;
+    std::size_t k = unit.starts_with("1/") ? 1 : 0;
+    if (k == 0 && std::string_view(".+-*/^) ").find(at(0)) != std::string_view::npos) return false;
+    for (; k < unit.size(); ++k) {
+        if (!digit(unit[k])) continue;
+        const char before = k > 0 ? at(k - 1) : ' ';
+        const char further = k > 1 ? at(k - 2) : ' ';
+        const bool power = letter(before) || digit(before) || before == '^' || before == ')' ||
+                           ((before == '-' || before == '+') && (letter(further) || further == '^')) ||
+                           (before == '*' && further == '*');
+        if (!power) return false;
+    }
+    return true;
+}
+
+/// "; did you mean 'um'?" where one of the usual units that fit is near, else those that fit.
+std::string advice(const UnitDatabase& database, std::string_view unit, const ut_unit* place) {
+    std::vector<std::string_view> fitting;
+    for (const auto usual : usual_units) {
+        const Unit parsed = database.parsed(usual);
+        if (parsed && database.conversion(parsed.get(), place)) fitting.push_back(usual);
+    }
+    if (fitting.empty()) return {};
+    const auto known = std::ranges::find(fitting, unit) != fitting.end();
+    if (const auto nearest = known ? std::string() : nearest_word(unit, fitting); !nearest.empty())
+        return fmt::format(", the nearest that fits is '{}'", nearest);
+    if (fitting.size() > 4) fitting.resize(4);
+    return fmt::format(", these fit: {}", listed(fitting));
+}
+
+std::variant<double, std::string> with_unit(std::string_view number, double x, std::string_view given,
+                                            std::string_view unit) {
+    static std::mutex one_at_a_time;
+    const std::scoped_lock lock(one_at_a_time);
+    static const UnitDatabase database;
+    if (!database.found())
+        return "no unit can be read without the file udunits2.xml (package libudunits2-data; UDUNITS2_XML_PATH can "
+               "name the file)";
+    const Unit place = unit.empty() ? nullptr : database.parsed(unit);
+    if (!place || !sound_unit(unit)) {
+        return unit.empty() ? fmt::format("the parameter has no unit, and '{}' is one", given)
+                            : fmt::format("'{}' cannot be converted to '{}'", given, unit);
+    }
+    const Unit parsed = sound_unit(given) ? database.parsed(given) : nullptr;
+    if (!parsed) {
+        const bool comma = given.starts_with(',');
+        return comma ? "the decimal sign is a point"
+                     : fmt::format("'{}' is no unit{}", given, advice(database, given, place.get()));
+    }
+    const auto conversion = database.conversion(parsed.get(), place.get());
+    if (!conversion) {
+        return fmt::format("'{}' does not fit '{}'{}", given, unit, advice(database, given, place.get()));
+    }
+    if (const auto value = converted(number, x, *conversion)) return *value == 0 ? 0.0 : *value;
+    return fmt::format("the number in '{}' is beyond double precision", unit);
+}
+
+std::string_view without_blanks(std::string_view text) {
+    const auto first = std::min(text.find_first_not_of(' '), text.size());
+    return text.substr(first, text.find_last_not_of(' ') + 1 - first);
+}
+
+}  // namespace
+
+std::variant<double, std::string> in_si(std::string_view text, std::string_view unit) {
+    if (text.size() > longest_quantity) return fmt::format("a quantity has at most {} characters", longest_quantity);
+    text = without_blanks(text);
+    const bool plus = text.starts_with('+');
+    if (plus) text.remove_prefix(1);
+    const std::size_t sign = !plus && text.starts_with('-') ? 1 : 0;
+    const bool number = text.size() > sign && (text[sign] == '.' || (text[sign] >= '0' && text[sign] <= '9'));
+    double x = 0;
+    const char* const end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, x);
+    if (!number || error == std::errc::invalid_argument) return "a quantity begins with a number, as in \"60 um\"";
+    if (error != std::errc()) return "the number is beyond double precision";
+    const auto given = without_blanks({stop, static_cast<std::size_t>(end - stop)});
+    if (given.empty() || given == unit) return x == 0 ? 0.0 : x;
+    return with_unit(text.substr(0, static_cast<std::size_t>(stop - text.data())), x, given, unit);
+}
+
+}  // namespace grainsweep::campaign
