@@ -21,7 +21,7 @@
 
 namespace grainsweep::dem {
 
-/// One sphere at the start. Its index in Setup::spheres is its id for ever.
+/// One sphere at the start, or one that is added. At the start its index in Setup::spheres is its id for ever.
 struct Sphere {
     Vec3 position{};          ///< m
     Vec3 velocity{};          ///< m/s
@@ -57,6 +57,12 @@ struct Kinds {
     std::vector<Material> pairs;    ///< of their contacts, at place_of_pair(); the density in them counts for nothing
 };
 
+/// Mobile spheres that Engine::add may add: of one kind, within a range of radii.
+struct ToCome {
+    double smallest = 0, largest = 0;  ///< radius, m
+    std::uint8_t kind = 0;             ///< of Setup::kinds
+};
+
 struct Setup {
     Domain domain;
     Material material;  ///< of all spheres, unless there are kinds
@@ -65,6 +71,7 @@ struct Setup {
     Shaking shaking;
     double time_step = 1e-5;  ///< s
     std::vector<Sphere> spheres;
+    std::vector<ToCome> to_come;  ///< what is not announced here cannot be added
     std::vector<Wall> walls;
     Surface frozen;  ///< what differs from the material in contacts with frozen spheres; without kinds
 };
@@ -140,6 +147,16 @@ public:
     /// recomputed once without touching histories. Throws std::invalid_argument with one sentence on walls that cannot
     /// be, or whose surface has friction or rolling friction where nothing in the Setup had.
     virtual void set_walls(std::vector<Wall> walls) = 0;
+    /// The same bodies (shapes, surfaces and materials) with other motions and presence: wall time goes on, and so do
+    /// the work of each wall and the histories of contacts with walls that stay present; forces are recomputed once
+    /// without touching histories. Each wall that stays present must stand by its new motions where it stands now.
+    /// Throws std::invalid_argument with one sentence on other bodies or motions that cannot be.
+    virtual void change_walls(std::vector<Wall> walls) = 0;
+    /// Adds spheres: their ids follow all earlier ones, also those of particles that are gone, in order. Lists are made
+    /// anew and forces recomputed once without touching histories, so that one call for many costs less. A sphere
+    /// beyond an open face is gone at once; what it overlaps pushes it. Throws std::invalid_argument with one sentence
+    /// on a sphere that cannot be or that Setup::to_come does not announce. After a fault nothing is added.
+    virtual void add(std::span<const Sphere> spheres) = 0;
     /// Removes particles by id; absent ids are ignored.
     virtual void remove(std::span<const std::int32_t> ids) = 0;
 
@@ -165,6 +182,8 @@ public:
 
 /// Throws std::invalid_argument with one sentence on a setup that no engine computes.
 void require_possible(const Setup& setup);
+/// The same on spheres that were not announced, or too many to be numbered behind the `given` ids.
+void require_announced(const std::vector<ToCome>& to_come, std::span<const Sphere> spheres, std::size_t given);
 /// The same on a method that does not go with a possible setup.
 void require_possible(const Setup& setup, const Method& method);
 

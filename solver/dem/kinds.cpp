@@ -32,6 +32,15 @@ Material ContactTable::at_wall(const Wall& wall, std::size_t kind) const {
     return wall.materials[kind];
 }
 
+Radii radii_of(const Setup& setup) {
+    Radii radii;
+    for_each_extreme_sphere(setup, [&](const Sphere& sphere) {
+        radii.smallest = radii.largest > 0 ? std::min(radii.smallest, sphere.radius) : sphere.radius;
+        radii.largest = std::max(radii.largest, sphere.radius);
+    });
+    return radii;
+}
+
 std::vector<Material> materials_of(const Setup& setup) {
     const ContactTable table(setup);
     std::vector<Material> all = table.pairs();

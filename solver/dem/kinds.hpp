@@ -30,6 +30,23 @@ private:
     std::vector<Material> pairs_;
 };
 
+/// Calls visit(sphere) for each sphere of the start, and for the smallest and the largest of all that may be added.
+template <class Visit>
+void for_each_extreme_sphere(const Setup& setup, Visit&& visit) {
+    for (const Sphere& sphere : setup.spheres) visit(sphere);
+    for (const ToCome& range : setup.to_come)
+        for (const double radius : {range.smallest, range.largest}) {
+            const Sphere sphere{.radius = radius, .kind = range.kind};
+            visit(sphere);
+        }
+}
+/// Radius of the smallest and of the largest of them, m; 0 where there are none.
+struct Radii {
+    double smallest = 0, largest = 0;
+    [[nodiscard]] bool differ() const { return smallest != largest; }
+};
+[[nodiscard]] Radii radii_of(const Setup& setup);
+
 /// Materials of all contacts that a setup may have: between particles, then wall by wall.
 [[nodiscard]] std::vector<Material> materials_of(const Setup& setup);
 /// Density of a sphere, kg/m3.

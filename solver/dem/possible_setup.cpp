@@ -15,6 +15,8 @@ void require(bool holds, const std::string& sentence) {
     if (!holds) throw std::invalid_argument(sentence);
 }
 
+constexpr const char* too_many = "there are more particles than can be numbered";
+
 bool positive(double x) {
     return std::isfinite(x) && x > 0;
 }
@@ -42,28 +44,34 @@ void check(const Material& m) {
 
 void check_kinds(const Setup& setup) {
     const auto& [densities, pairs] = setup.kinds;
+    const std::size_t count = std::max<std::size_t>(densities.size(), 1);
+    for_each_extreme_sphere(
+        setup, [&](const Sphere& s) { require(s.kind < count, "a sphere is of a kind that there is not"); });
     if (densities.empty()) return require(pairs.empty(), "kinds of spheres need a density each");
-    const std::size_t count = densities.size();
     require(count <= kinds_at_most, "there are at most eight kinds of spheres");
     require(pairs.size() == place_of_pair(count - 1, count - 1) + 1, "every pair of kinds needs a material");
     for (const double density : densities) require(positive(density), "the density must be positive");
     for (const Material& m : pairs) check(m);
-    for (const Wall& wall : setup.walls) std::ranges::for_each(wall.materials, check);
-    for (const Sphere& s : setup.spheres) require(s.kind < count, "a sphere is of a kind that there is not");
+    for (const Wall& wall : setup.walls)
+        for (const Material& m : wall.materials) check(m);
     require(setup.frozen == Surface{}, "among several kinds frozen spheres are of a kind, and have no surface");
 }
 
+void check(const Sphere& s) {
+    require(positive(s.radius), "every radius must be positive");
+    require(geometry::finite(s.position) && geometry::finite(s.velocity) && geometry::finite(s.angular_velocity),
+            "every particle must start with finite position and velocities");
+    require(s.mobile || (s.velocity == Vec3{} && s.angular_velocity == Vec3{}), "a frozen particle cannot move");
+}
+
 void check_spheres(const Setup& setup) {
-    require(setup.spheres.size() < particles::Neighbour::most_particles,
-            "there are more particles than can be numbered");
-    double largest = 0;
-    for (const Sphere& s : setup.spheres) {
-        require(positive(s.radius), "every radius must be positive");
-        require(geometry::finite(s.position) && geometry::finite(s.velocity) && geometry::finite(s.angular_velocity),
-                "every particle must start with finite position and velocities");
-        require(s.mobile || (s.velocity == Vec3{} && s.angular_velocity == Vec3{}), "a frozen particle cannot move");
-        largest = std::max(largest, s.radius);
+    require(setup.spheres.size() < particles::Neighbour::most_particles, too_many);
+    for (const Sphere& s : setup.spheres) check(s);
+    for (const ToCome& range : setup.to_come) {
+        require(positive(range.smallest) && positive(range.largest), "every radius must be positive");
+        require(range.smallest <= range.largest, "of spheres to come the smallest radius must not exceed the largest");
     }
+    const double largest = radii_of(setup).largest;
     for (std::size_t k = 0; k < 3; ++k) {
         const double length = setup.domain.high[k] - setup.domain.low[k];
         require(positive(length), "the domain must have a finite extent along every axis");
@@ -92,6 +100,20 @@ void require_possible(const Setup& setup) {
     require(setup.shaking.frequency * setup.time_step <= 0.05, "a period of shaking must last at least twenty steps");
 }
 
+void require_announced(const std::vector<ToCome>& to_come, std::span<const Sphere> spheres, std::size_t given) {
+    require(given + spheres.size() < particles::Neighbour::most_particles, too_many);
+    for (const Sphere& s : spheres) {
+        check(s);
+        require(s.mobile, "a sphere that is added while a case runs must be mobile");
+        require(std::ranges::any_of(to_come,
+                                    [&](const ToCome& range) {
+                                        return range.kind == s.kind && range.smallest <= s.radius &&
+                                               s.radius <= range.largest;
+                                    }),
+                "a sphere that is added must be of a kind and radius that the setup announced");
+    }
+}
+
 void require_possible(const Setup& setup, const Method& method) {
     require(not_negative(method.skin), "the skin must not be negative");
     require(not_negative(method.rest_speed), "the rest speed must not be negative");
@@ -104,8 +126,7 @@ void require_possible(const Setup& setup, const Method& method) {
                     "powder among moving walls has no rest speed");
     }
     if (method.skin > 0) {
-        double largest = 0;
-        for (const Sphere& s : setup.spheres) largest = std::max(largest, s.radius);
+        const double largest = radii_of(setup).largest;
         for (std::size_t k = 0; k < 3; ++k)
             require(!setup.domain.periodic[k] ||
                         setup.domain.high[k] - setup.domain.low[k] > 2 * (2 * largest + method.skin),

@@ -4,12 +4,14 @@
 #include "solver/dem/clear/engine.hpp"
 #include "solver/dem/walls/wall_bytes.hpp"
 
+#include <algorithm>
+
 namespace grainsweep::dem::clear {
 
-inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'0008ULL;  // "grnscl", version 8
+inline constexpr std::uint64_t checkpoint_format = 0x6772'6e73'636c'0009ULL;  // "grnscl", version 9
 
 void ClearEngine::state(State& into) const {
-    std::vector<std::uint32_t> place(spheres_at_start_, particles::gone);
+    std::vector<std::uint32_t> place(ids(), particles::gone);
     for (std::uint32_t i = 0; i < p_.size(); ++i) place[static_cast<std::size_t>(p_.id[i])] = i;
     const std::size_t n = p_.size();
     into.id.resize(n);
@@ -35,6 +37,7 @@ void ClearEngine::state(State& into) const {
 template <class Self, class Visit>
 void ClearEngine::visit_state(Self& self, Visit&& visit) {
     particles::Particles::for_each_column(self.p_, visit);
+    visit(self.added_);
     visit(self.position_at_build_);
     visit(self.near_open_face_);
     visit(self.pairs_.value);
@@ -94,14 +97,16 @@ void ClearEngine::require_possible() const {
     constexpr auto require = ByteReader::require;
     constexpr std::int64_t most_steps = std::int64_t{1} << 53U;
     const std::size_t n = p_.size();
-    require(n <= spheres_at_start_);
+    require(n <= ids());
+    for (const std::uint8_t kind : added_) require(std::ranges::count(to_come_, kind, &ToCome::kind) > 0);
     particles::Particles::for_each_column(p_, [&](const auto& column) { require(column.size() == n); });
     require(position_at_build_.size() == n);
-    std::vector<bool> known(spheres_at_start_, false);
+    std::vector<bool> known(ids(), false);
     for (std::size_t i = 0; i < n; ++i) {
         const auto id = static_cast<std::size_t>(p_.id[i]);
-        require(p_.id[i] >= 0 && id < spheres_at_start_ && !known[id]);
+        require(p_.id[i] >= 0 && id < ids() && !known[id]);
         known[id] = true;
+        require(id < spheres_at_start_ || p_.kind[i] == added_[id - spheres_at_start_]);
         require(geometry::finite(p_.position[i]) && geometry::finite(p_.velocity[i]) &&
                 geometry::finite(position_at_build_[i]));
         for (std::size_t k = 0; k < 3; ++k)
@@ -169,11 +174,11 @@ void ClearEngine::restore(std::span<const std::byte> from) {
     expect(time_step_);
     expect(shaking_);
     visit_state(*this, [&in](auto& value) { in.get(value); });
-    const auto within = [&in](const std::vector<double>& column, const std::pair<double, double>& range) {
-        for (const double x : column) in.require(x >= range.first && x <= range.second);
+    const auto within = [&in](const std::vector<double>& column, double least, double most) {
+        for (const double x : column) in.require(x >= least && x <= most);
     };
-    within(p_.radius, radii_at_start_);
-    within(p_.inverse_mass, inverse_masses_at_start_);
+    within(p_.radius, radii_.smallest, radii_.largest);
+    within(p_.inverse_mass, inverse_masses_.first, inverse_masses_.second);
     for (const std::uint8_t kind : p_.kind) in.require(kind < table_.kinds());
     list_.restore(in, p_.size());
     restore_walls(in);

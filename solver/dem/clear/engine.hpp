@@ -43,6 +43,8 @@ public:
 
     void run(std::int64_t steps) override;
     void set_walls(std::vector<Wall> walls) override;
+    void change_walls(std::vector<Wall> walls) override;
+    void add(std::span<const Sphere> spheres) override;
     void remove(std::span<const std::int32_t> ids) override;
 
     [[nodiscard]] std::size_t size() const override { return p_.size(); }
@@ -81,6 +83,8 @@ private:
     [[nodiscard]] std::size_t pair(std::size_t i, std::size_t j) const { return place_of_pair(p_.kind[i], p_.kind[j]); }
     [[nodiscard]] const AnyContact& laws_of(std::size_t i, std::size_t j) const { return *laws_[pair(i, j)]; }
     [[nodiscard]] particles::Radii radii() const { return {0, p_.radius}; }
+    /// Ids given so far.
+    [[nodiscard]] std::size_t ids() const { return spheres_at_start_ + added_.size(); }
     /// Components of a contact's memory.
     [[nodiscard]] std::size_t memories() const { return pairs_.components(); }
 
@@ -102,6 +106,9 @@ private:
 
     // stepping.cpp
     void step();
+    [[nodiscard]] double inverse_mass_of(const Sphere& sphere) const;
+    void append(std::span<const Sphere> spheres, std::size_t id);
+    void restart_forces();
     void kick_and_drift();
     void kick();
     void shake();
@@ -142,12 +149,16 @@ private:
     Vec3 body_;  // acceleration of a free particle at the present step: gravity and shaking
     double time_step_;
     bool equal_;
-    double mass_ = 0;                                                     // of all particles, if equal_
-    std::pair<double, double> radii_at_start_, inverse_masses_at_start_;  // least and largest
+    double mass_ = 0;                           // of all particles, if equal_
+    Radii radii_;                               // of all spheres, those to come too
+    std::pair<double, double> inverse_masses_;  // least and largest of them
     double swing_factor_;  // dt^2 2 E*, of the first pair: times stiffest_ the square of a contact's phase per step
     double skin_;
     double beyond_pair_ = 0, beyond_wall_ = 0;  // how far contacts may last beyond touch, m
+    std::vector<double> densities_;             // of kinds of contact, kg/m3
+    std::vector<ToCome> to_come_;
     std::size_t spheres_at_start_;
+    std::vector<std::uint8_t> added_;  // kinds of the spheres added since
 
     particles::Particles p_;
     std::vector<Vec3> position_at_build_;

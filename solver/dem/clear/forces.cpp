@@ -76,7 +76,8 @@ void ClearEngine::evaluate(bool advance) {
     stiffest_ = 0;
     pair_contacts(advance);
     peak_overlap_ = std::max(peak_overlap_, largest_overlap_);
-    for (auto& wall : walls_) wall_contacts(wall, advance);
+    for (auto& contacts : walls_)
+        if (contacts.wall.present()) wall_contacts(contacts, advance);
     work_.pair_visits += static_cast<double>(list_.size());
     // Negated, so that a value that is not a number is reported too.
     const double swing2 = swing_factor_ * stiffest_;

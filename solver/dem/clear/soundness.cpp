@@ -47,7 +47,8 @@ void ClearEngine::set_speed_limit() {
         lightest = std::min(lightest, 1 / inverse_mass(i));
     }
     double wall = fastest(shaking_);
-    for (const auto& contacts : walls_) wall = std::max(wall, contacts.wall.fastest());
+    for (const auto& contacts : walls_)
+        if (contacts.wall.present()) wall = std::max(wall, contacts.wall.fastest());
     double fall = 0;  // through the domain; without limit along a periodic axis
     for (std::size_t k = 0; k < 3; ++k) {
         if (gravity_[k] == 0) continue;
@@ -69,6 +70,7 @@ void ClearEngine::judge_wall_speeds() {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < p_.size(); ++i) least = std::min(least, radius(i));
     for (std::size_t w = 0; w < walls_.size() && fault_.empty(); ++w) {
+        if (!walls_[w].wall.present()) continue;
         const double share = walls_[w].wall.fastest_surface() * time_step_ / least;
         char text[200];
         std::snprintf(text, sizeof text,

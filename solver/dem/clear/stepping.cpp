@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <unordered_set>
 
 namespace grainsweep::dem::clear {
@@ -19,11 +20,6 @@ constexpr double default_skin = 0.3;
 
 /// Steps between two checks of the energy: often enough to name the time, rare enough to cost nothing.
 constexpr std::int64_t energy_interval = 128;
-
-std::pair<double, double> range_of(const std::vector<double>& column) {
-    const auto [least, most] = std::ranges::minmax_element(column);
-    return column.empty() ? std::pair(0.0, 0.0) : std::pair(*least, *most);
-}
 
 /// Of a memory's components when its particles change places.
 std::vector<double> factors_of_exchange(const AnyContact& laws) {
@@ -48,25 +44,21 @@ ClearEngine::ClearEngine(const Setup& setup, const Method& method, const AnyCont
       body_(setup.gravity),
       time_step_(setup.time_step),
       equal_(equal),
+      radii_(radii_of(setup)),
       swing_factor_(2 * effective_modulus(table_.pairs().front()) * setup.time_step * setup.time_step),
       skin_(method.skin),
+      densities_(setup.kinds.densities),
+      to_come_(setup.to_come),
       spheres_at_start_(setup.spheres.size()),
       pairs_(factors_of_exchange(laws)) {
-    const std::size_t n = setup.spheres.size();
-    p_.resize(n);
-    for (std::size_t i = 0; i < n; ++i) {
-        const Sphere& s = setup.spheres[i];
-        p_.id[i] = static_cast<std::int32_t>(i);
-        p_.position[i] = s.position;
-        p_.velocity[i] = s.velocity;
-        p_.angular_velocity[i] = s.angular_velocity;
-        p_.radius[i] = s.radius;
-        p_.inverse_mass[i] = s.mobile ? 1 / sphere_mass(s.radius, density_of(setup, s)) : 0;
-        p_.kind[i] = table_.kind_of(s);
-    }
-    radii_at_start_ = range_of(p_.radius);
-    inverse_masses_at_start_ = range_of(p_.inverse_mass);
-    const auto [smallest, largest] = radii_at_start_;
+    if (densities_.empty()) densities_ = {setup.material.density};
+    append(setup.spheres, 0);
+    inverse_masses_.first = std::numeric_limits<double>::infinity();
+    for_each_extreme_sphere(setup, [this](const Sphere& s) {
+        inverse_masses_.first = std::min(inverse_masses_.first, inverse_mass_of(s));
+        inverse_masses_.second = std::max(inverse_masses_.second, inverse_mass_of(s));
+    });
+    const auto [smallest, largest] = radii_;
     for (const Material& m : materials_of(setup)) {
         const auto contact = laws.of(m);
         beyond_pair_ = std::max(beyond_pair_, contact->beyond(largest / 2));
@@ -76,8 +68,8 @@ ClearEngine::ClearEngine(const Setup& setup, const Method& method, const AnyCont
         laws_.push_back(laws.of(m));
         stiffness_.push_back(effective_modulus(m) / effective_modulus(table_.pairs().front()));
     }
-    mass_ = n > 0 ? sphere_mass(largest, density_of(setup, setup.spheres.front())) : 0;
-    if (skin_ <= 0 && n > 0) {
+    mass_ = sphere_mass(largest, densities_.front());
+    if (skin_ <= 0 && largest > 0) {
         skin_ = default_skin * 2 * smallest;
         // Two images of one particle must never reach the same partner.
         for (std::size_t k = 0; k < 3; ++k)
@@ -90,6 +82,26 @@ ClearEngine::ClearEngine(const Setup& setup, const Method& method, const AnyCont
     evaluate(false);
 }
 
+double ClearEngine::inverse_mass_of(const Sphere& s) const {
+    return s.mobile ? 1 / sphere_mass(s.radius, densities_[s.kind]) : 0;
+}
+
+/// Behind the particles there are; `id`: of the first.
+void ClearEngine::append(std::span<const Sphere> spheres, std::size_t id) {
+    std::size_t i = p_.size();
+    p_.resize(i + spheres.size());
+    for (const Sphere& s : spheres) {
+        p_.id[i] = static_cast<std::int32_t>(id++);
+        p_.position[i] = s.position;
+        p_.velocity[i] = s.velocity;
+        p_.angular_velocity[i] = s.angular_velocity;
+        p_.radius[i] = s.radius;
+        p_.inverse_mass[i] = inverse_mass_of(s);
+        p_.kind[i] = table_.kind_of(s);
+        ++i;
+    }
+}
+
 void ClearEngine::run(std::int64_t steps) {
     for (std::int64_t k = 0; k < steps && fault_.empty(); ++k) step();
 }
@@ -99,7 +111,8 @@ void ClearEngine::step() {
     kick_and_drift();
     ++wall_steps_;
     ++work_.steps;
-    for (auto& contacts : walls_) contacts.wall.place(wall_time());
+    for (auto& contacts : walls_)
+        if (contacts.wall.present()) contacts.wall.place(wall_time());
     if (shaken_) shake();
     if (list_is_stale()) {
         if (!sound()) return;
@@ -154,6 +167,7 @@ Vec3 ClearEngine::momentum() const {
 bool ClearEngine::list_is_stale() const {
     if (displaced_) return true;
     for (const auto& contacts : walls_) {
+        if (!contacts.wall.present()) continue;
         const Vec3 moved = contacts.wall.moved_since(contacts.pose_when_built);
         if (!(dot(moved, moved) <= skin_ * skin_ / 4)) return true;
     }
@@ -225,7 +239,7 @@ std::vector<double> ClearEngine::constants() const {
 std::vector<WallContacts> ClearEngine::make_walls(const std::vector<Wall>& walls) const {
     std::vector<Contacts> made;
     for (const Wall& wall : walls) {
-        Contacts contacts{MovingWall(wall, domain_, radii_at_start_.second), {}, {}, {}, 0, {}, {}, {}, {}, {}};
+        Contacts contacts{MovingWall(wall, domain_, radii_.largest), {}, {}, {}, 0, {}, {}, {}, {}, {}};
         for (std::size_t kind = 0; kind < table_.kinds(); ++kind) {
             const Material m = table_.at_wall(wall, kind);
             if (!laws_.front()->covers(m))
@@ -233,7 +247,7 @@ std::vector<WallContacts> ClearEngine::make_walls(const std::vector<Wall>& walls
                     "the surface of a wall has friction or cohesion that nothing at the start had");
             contacts.laws.push_back(laws_.front()->of(m));
             contacts.stiffness.push_back(effective_modulus(m) / effective_modulus(table_.pairs().front()));
-            if (contacts.laws.back()->beyond(radii_at_start_.second) > beyond_wall_)
+            if (contacts.laws.back()->beyond(radii_.largest) > beyond_wall_)
                 throw std::invalid_argument(
                     "the surface of a wall attracts from further than anything at the start did");
         }
@@ -251,6 +265,7 @@ void ClearEngine::list_walls(std::span<const std::uint32_t> fresh_index) {
     for (auto& contacts : walls_) {
         const auto before = std::move(contacts.near);
         contacts.near.clear();
+        if (!contacts.wall.present()) continue;
         contacts.wall.find(all, p_.position, radii(), skin_ + beyond_wall_, within);
         for (const WallTouch& touch : within)
             if (contacts.near.empty() || contacts.near.back() != all[touch.entry])
@@ -288,11 +303,40 @@ void ClearEngine::set_walls(std::vector<Wall> walls) {
     walls_ = make_walls(walls);
     wall_steps_ = 0;
     work_of_walls_ = 0;
+    restart_forces();
+}
+
+void ClearEngine::change_walls(std::vector<Wall> walls) {
+    if (walls.size() != walls_.size()) throw std::invalid_argument("walls that change keep their number");
+    std::vector<MovingWall> made;
+    for (std::size_t w = 0; w < walls.size(); ++w) made.push_back(walls_[w].wall.moving_as(walls[w], domain_));
+    for (std::size_t w = 0; w < walls.size(); ++w) {
+        Contacts& contacts = walls_[w];
+        contacts.wall = std::move(made[w]);
+        contacts.wall.place(wall_time());
+        if (contacts.wall.present()) continue;
+        contacts.touches.clear();
+        contacts.memory.clear();
+        contacts.load.force = contacts.load.torque = Vec3{};
+    }
+    restart_forces();
+}
+
+/// After a change of walls or particles.
+void ClearEngine::restart_forces() {
     balance_.restart();
     if (!fault_.empty()) return;
     rebuild();
     set_speed_limit();
     evaluate(false);
+}
+
+void ClearEngine::add(std::span<const Sphere> spheres) {
+    require_announced(to_come_, spheres, ids());
+    if (spheres.empty() || !fault_.empty()) return;
+    append(spheres, ids());
+    for (const Sphere& s : spheres) added_.push_back(table_.kind_of(s));
+    restart_forces();
 }
 
 void ClearEngine::remove(std::span<const std::int32_t> ids) {

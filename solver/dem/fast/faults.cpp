@@ -57,10 +57,10 @@ Depth deepest_at_walls(const FaultView& s) {
 
 SoundOverlaps sound_overlaps(const Setup& setup) {
     double radius = std::numeric_limits<double>::infinity(), density = radius, modulus = 0;
-    for (const Sphere& sphere : setup.spheres) {
+    for_each_extreme_sphere(setup, [&](const Sphere& sphere) {
         radius = std::min(radius, sphere.radius);
         density = std::min(density, density_of(setup, sphere));
-    }
+    });
     if (!std::isfinite(radius)) return {static_cast<float>(overlap_limit), static_cast<float>(overlap_limit)};
     const ContactTable table(setup);
     for (const Material& m : table.pairs()) modulus = std::max(modulus, effective_modulus(m));

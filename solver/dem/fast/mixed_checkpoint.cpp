@@ -12,6 +12,7 @@ namespace grainsweep::dem::fast {
 /// Everything that changes, in one order for writing and reading.
 template <class Self, class Archive>
 void MixedEngine::pass(Self& self, Archive& archive) {
+    archive.list(self.added_);
     archive.value(self.field_.count);
     archive.value(self.field_.inner_count);
     archive.value(self.field_.outer_count);
@@ -118,23 +119,25 @@ void MixedEngine::require_possible() const {
     constexpr std::int64_t most_steps = std::int64_t{1} << 53U;
     const std::int32_t n = field_.count, width = kernels_->width;
     const Columns& c = columns_;
-    require(n >= 0 && n <= spheres_at_start_);
+    require(n >= 0 && n <= ids());
+    for (const std::uint8_t kind : added_) require(std::ranges::count(to_come_, kind, &ToCome::kind) > 0);
     require(field_.outer_count >= 0 && field_.inner_count >= 0 && field_.inner_count % width == 0);
     require(space_.skin > 0 && space_.skin <= largest_skin_ && (!adapts_skin_ || space_.skin <= 1));
     require(drift_.steps >= 0 && drift_.steps < most_steps && wall_steps_ >= 0 && wall_steps_ < most_steps);
     require(work_.steps >= 0 && work_.steps < most_steps);
-    require(watch_.spheres() == static_cast<std::size_t>(spheres_at_start_));
+    require(watch_.spheres() == static_cast<std::size_t>(ids()));
     require(touches_.fits(c, walls_.count(), n));
     require(!resting_.wanted() || resting_.fits(n));
 
     constexpr float rounding = 1e-5F;
-    std::vector<bool> known(static_cast<std::size_t>(spheres_at_start_), false);
+    std::vector<bool> known(static_cast<std::size_t>(ids()), false);
     for (std::int32_t i = 0; i < n; ++i) {
         const auto k = static_cast<std::size_t>(i);
         const std::int32_t id = c.id[k];
-        require(id >= 0 && id < spheres_at_start_ && !known[static_cast<std::size_t>(id)]);
+        require(id >= 0 && id < ids() && !known[static_cast<std::size_t>(id)]);
         known[static_cast<std::size_t>(id)] = true;
-        require(c.kind[k] == kinds_[static_cast<std::size_t>(id)]);
+        require(c.kind[k] == (id < spheres_at_start_ ? kinds_[static_cast<std::size_t>(id)]
+                                                     : added_[static_cast<std::size_t>(id - spheres_at_start_)]));
         const Record& r = c.records[k];
         require(r.radius >= 0.5F * smallest_diameter_ * (1 - rounding) && r.radius <= 0.5F + rounding);
         require(r.inverse_mass >= 0 &&
@@ -211,6 +214,7 @@ void MixedEngine::restore(std::span<const std::byte> from) {
     columns_.hold_lists(static_cast<std::size_t>(std::max(field_.outer_count, field_.inner_count)) + spare);
     columns_.hold_wall_contacts(size());
     columns_.bind(field_);
+    suit_caches();
     tidy_spare_entries();
     place_fillers(field_);
     field_.fetch_ahead = distance_to_fetch(field_);

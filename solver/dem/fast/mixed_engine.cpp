@@ -28,6 +28,8 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
       needs_(make_needs(setup, rest_speed > 0)),
       rest_speed_(rest_speed),
       kernels_(&kernels_of(path, needs_)),
+      densities_(setup.kinds.densities),
+      to_come_(setup.to_come),
       table_(setup),
       materials_(materials_of(setup)),
       walls_(setup.walls, setup.domain, space_.scale, needs_.combination, table_, materials_),
@@ -36,7 +38,9 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
       resting_(setup, laws_, space_.scale, rest_speed),
       subdomains_(*kernels_, threads),
       threads_(threads),
-      adapts_skin_(!(skin > 0)) {
+      adapts_skin_(!(skin > 0)),
+      spheres_at_start_(static_cast<std::int32_t>(setup.spheres.size())) {
+    if (densities_.empty()) densities_ = {setup.material.density};
     for (std::size_t a = 0; a < 3; ++a)  // a pair must not meet across both ends of a period
         if (setup.domain.periodic[a]) {
             const double period = (setup.domain.high[a] - setup.domain.low[a]) / space_.scale.length;
@@ -67,40 +71,62 @@ void MixedEngine::write_pair_laws() {
     field_.laws_of_pairs = constants_.data();
 }
 
+float MixedEngine::single_radius(const Sphere& sphere) const {
+    return static_cast<float>(needs_.unequal ? sphere.radius / space_.scale.length : 0.5);
+}
+
+/// Over that of Scale::mass.
+double MixedEngine::relative_density(const Sphere& sphere) const {
+    return densities_[sphere.kind] / densities_.front();
+}
+
 void MixedEngine::load(const Setup& setup) {
-    const auto n = setup.spheres.size();
     columns_.residuals_apart = needs_.unequal;
+    field_.skips = needs_.skips ? 1 : 0;
+    const bool all_periodic = setup.domain.periodic[0] && setup.domain.periodic[1] && setup.domain.periodic[2];
+    box_includes_rest_ = !all_periodic || needs_.frozen || needs_.resting;
+    for_each_extreme_sphere(setup, [this](const Sphere& sphere) {
+        smallest_diameter_ = std::min(smallest_diameter_, 2 * single_radius(sphere));
+        lightest_ = std::max(lightest_, static_cast<float>(1 / relative_density(sphere)));
+    });
+    for (const Sphere& sphere : setup.spheres) kinds_.push_back(table_.kind_of(sphere));
+    append(setup.spheres, 0);
+}
+
+/// Changes no bit.
+void MixedEngine::suit_caches() {
+    field_.read_ahead = size() > many_particles ? 1 : 0;
+    field_.streams = size() > very_many_particles ? 1 : 0;
+}
+
+/// Behind the particles there are; `id`: of the first.
+void MixedEngine::append(std::span<const Sphere> spheres, std::int32_t id) {
+    auto i = static_cast<std::size_t>(field_.count);
+    const std::size_t n = i + spheres.size();
     columns_.hold_particles(n, walls_.count());
     columns_.hold_lists(8 * n);
     columns_.hold_wall_contacts(n);
     columns_.bind(field_);
-    field_.count = spheres_at_start_ = static_cast<std::int32_t>(n);
-    field_.skips = needs_.skips ? 1 : 0;
-    field_.read_ahead = n > many_particles ? 1 : 0;
-    field_.streams = n > very_many_particles ? 1 : 0;
+    field_.count = static_cast<std::int32_t>(n);
+    suit_caches();
     const Scale& s = space_.scale;
-    const bool all_periodic = setup.domain.periodic[0] && setup.domain.periodic[1] && setup.domain.periodic[2];
-    box_includes_rest_ = !all_periodic || needs_.frozen || needs_.resting;
-    for (std::size_t i = 0; i < n; ++i) {
+    for (const Sphere& sphere : spheres) {
         const auto k = static_cast<std::int32_t>(i);
-        const Sphere& sphere = setup.spheres[i];
-        Record& r = columns_.records[i];
+        Record& r = columns_.records[i] = {};
+        columns_.forces[i] = {};
         Residual residual{};
         const double radius = sphere.radius / s.length;
-        r.radius = static_cast<float>(needs_.unequal ? radius : 0.5);
+        r.radius = single_radius(sphere);
         if (needs_.unequal) r.rest[3] = r.radius;
         r.inverse_radius = 1 / r.radius;
-        const double density = density_of(setup, sphere) / reference_density(setup);
-        r.inverse_mass = sphere.mobile ? static_cast<float>(1 / (8 * radius * radius * radius * density)) : 0.0F;
-        lightest_ = std::max(lightest_, static_cast<float>(1 / density));
-        kinds_.push_back(table_.kind_of(sphere));
-        columns_.kind[i] = kinds_.back();
-        smallest_diameter_ = std::min(smallest_diameter_, 2 * r.radius);
-        columns_.id[i] = static_cast<std::int32_t>(i);
+        r.inverse_mass =
+            sphere.mobile ? static_cast<float>(1 / (8 * radius * radius * radius * relative_density(sphere))) : 0.0F;
+        columns_.kind[i] = table_.kind_of(sphere);
+        columns_.id[i++] = id++;
         for (int a = 0; a < 3; ++a) {
             const auto axis = static_cast<std::size_t>(a);
             double units = s.units(sphere.position[axis], axis);
-            if (setup.domain.periodic[axis])
+            if (space_.domain.periodic[axis])
                 units -= 4294967296.0 * std::nearbyint(units / 4294967296.0);
             else
                 units = std::clamp(units, -2147483000.0, 2147483000.0);  // outside: taken out by the first rebuild
@@ -121,8 +147,7 @@ void MixedEngine::load(const Setup& setup) {
 std::unique_ptr<Engine> make_mixed_engine(const Setup& setup, Method::Path path, double skin, double rest_speed,
                                           Threads threads) {
     require_possible(setup);
-    double diameter = 0;
-    for (const Sphere& s : setup.spheres) diameter = std::max(diameter, 2 * s.radius);
+    const double diameter = 2 * radii_of(setup).largest;
     for (std::size_t a = 0; a < 3; ++a)
         if (setup.domain.periodic[a] && setup.domain.high[a] - setup.domain.low[a] < 2.02 * diameter)
             throw std::invalid_argument("a period must be at least 2.02 of the largest diameters long");

@@ -7,6 +7,7 @@
 #include "solver/dem/fast/left_over.hpp"
 #include "solver/dem/fast/listed_pairs.hpp"
 #include "solver/dem/fast/mixed_engine.hpp"
+#include "solver/dem/fast/wall_lists.hpp"
 #include "solver/dem/shaking.hpp"
 
 namespace grainsweep::dem::fast {
@@ -270,6 +271,37 @@ void MixedEngine::set_walls(std::vector<Wall> walls) {
     columns_.bind(field_);
     for (std::size_t w = 0; w < walls_.count(); ++w) columns_.segments[w] = {0, 0};
     touches_.begin(field_, columns_, walls_, space_.scale);
+    watch_.forget_wall_work();
+    restart_forces();
+    set_limits();
+}
+
+void MixedEngine::change_walls(std::vector<Wall> walls) {
+    std::vector<MovingWall> changed = walls_.moving_as(walls, space_.domain);
+    full_step_velocities();
+    if (needs_.resting) resting_.advance_all(field_);
+    walls_.take(std::move(changed), wall_time());
+    restart_forces();
+    set_limits();
+}
+
+void MixedEngine::add(std::span<const Sphere> spheres) {
+    require_announced(to_come_, spheres, static_cast<std::size_t>(ids()));
+    if (spheres.empty() || !fault_.empty()) return;
+    join_lists();
+    full_step_velocities();
+    // What fills wall contacts up lies behind the particles; it must not become one of those added.
+    const std::int32_t before = field_.count;
+    const auto added = static_cast<std::int32_t>(spheres.size());
+    for (std::int32_t k = 0; k < wall_contacts(field_); ++k)
+        if (Place& place = field_.wall_particle[k]; index_at(place) >= before)
+            place = place_at(index_at(place) + added);
+    append(spheres, ids());
+    for (std::int32_t i = before; i < field_.count; ++i) {
+        watch_.begin(field_.records[i]);
+        added_.push_back(columns_.kind[static_cast<std::size_t>(i)]);
+    }
+    resting_.advance_also(spheres.size());
     restart_forces();
     set_limits();
 }

@@ -50,6 +50,8 @@ public:
     void run(std::int64_t steps) override;
     int set_threads(int count) override;
     void set_walls(std::vector<Wall> walls) override;
+    void change_walls(std::vector<Wall> walls) override;
+    void add(std::span<const Sphere> spheres) override;
     void remove(std::span<const std::int32_t> ids) override;
     [[nodiscard]] std::size_t size() const override { return static_cast<std::size_t>(field_.count); }
     [[nodiscard]] double wall_time() const override { return static_cast<double>(wall_steps_) * space_.scale.time; }
@@ -66,6 +68,10 @@ public:
 
 private:
     void load(const Setup& setup);
+    void append(std::span<const Sphere> spheres, std::int32_t id);
+    void suit_caches();
+    [[nodiscard]] float single_radius(const Sphere& sphere) const;
+    [[nodiscard]] double relative_density(const Sphere& sphere) const;
     void write_pair_laws();
     void stand_walls();
     void begin_tally();
@@ -93,6 +99,8 @@ private:
     }
     /// Of all pairs, over the smaller diameter; parked contacts keep theirs.
     [[nodiscard]] float overlap() const { return std::max(tally_.overlap, resting_.overlap()); }
+    /// Ids given so far.
+    [[nodiscard]] std::int32_t ids() const { return spheres_at_start_ + static_cast<std::int32_t>(added_.size()); }
     [[nodiscard]] bool is_frozen(std::int32_t particle) const { return !(field_.records[particle].inverse_mass > 0); }
     [[nodiscard]] bool is_resting(std::int32_t particle) const {
         return needs_.resting && resting_.holds(particle) && !is_frozen(particle);
@@ -113,9 +121,12 @@ private:
     Needs needs_;
     double rest_speed_;
     const Kernels* kernels_;
+    std::vector<double> densities_;  ///< of Setup::kinds, kg/m3
+    std::vector<ToCome> to_come_;
     ContactTable table_;
     PairContacts laws_;                ///< in SI, for what is no part of a step
-    std::vector<std::uint8_t> kinds_;  ///< of spheres by id
+    std::vector<std::uint8_t> kinds_;  ///< of spheres of the start by id
+    std::vector<std::uint8_t> added_;  ///< of those added since
     std::vector<double> constants_;    ///< of laws, see Field::laws_of_pairs
     std::vector<Material> materials_;  ///< of particles and walls at the start
     Walls walls_;

@@ -75,6 +75,12 @@ void Resting::advance_all(const Field& f) {
     std::ranges::fill(quiet_, std::uint16_t{0});
 }
 
+void Resting::advance_also(std::size_t count) {
+    if (!wanted()) return;
+    held_.resize(held_.size() + count, 0);
+    quiet_.resize(held_.size(), 0);
+}
+
 void Resting::compare_forces(const Field& f, std::int64_t steps) {
     steps_ = steps;
     const auto n = static_cast<std::size_t>(f.count);

@@ -38,6 +38,8 @@ public:
     [[nodiscard]] bool holds(std::int32_t particle) const { return held_[static_cast<std::size_t>(particle)] != 0; }
     /// All are advanced from the next rebuild on.
     void advance_all(const Field& f);
+    /// So are particles that were added behind the others.
+    void advance_also(std::size_t count);
     /// The parked contacts, by index of the records.
     [[nodiscard]] std::span<const ParkedContact> parked() const { return parked_; }
     /// Particles at rest.

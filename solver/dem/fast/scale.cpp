@@ -15,9 +15,7 @@ using std::numbers::pi;
 
 /// Of a setup without spheres: small beside its domain, so that nothing is refused that would have no effect.
 double largest_radius(const Setup& setup) {
-    double radius = 0;
-    for (const Sphere& s : setup.spheres) radius = std::max(radius, s.radius);
-    if (radius > 0) return radius;
+    if (const double radius = radii_of(setup).largest; radius > 0) return radius;
     double span = std::numeric_limits<double>::infinity();
     for (std::size_t a = 0; a < 3; ++a) span = std::min(span, setup.domain.high[a] - setup.domain.low[a]);
     return span > 0 && std::isfinite(span) ? 0.01 * span : 1;
@@ -85,11 +83,8 @@ Constants make_constants(const Setup& setup, const Scale& scale, const Needs& ne
 Needs make_needs(const Setup& setup, bool resting) {
     Needs n{};
     n.resting = resting;
-    n.unequal = !equally_dense(setup);
-    for (const Sphere& s : setup.spheres) {
-        n.unequal = n.unequal || s.radius != setup.spheres.front().radius;
-        n.frozen = n.frozen || !s.mobile;
-    }
+    n.unequal = !equally_dense(setup) || radii_of(setup).differ();
+    for (const Sphere& s : setup.spheres) n.frozen = n.frozen || !s.mobile;
     n.combination = choose_combination(materials_of(setup), [&](const CombinationFacts& facts) {
         return !n.unequal || facts.columns != dem::Columns::equal;
     });

@@ -78,7 +78,7 @@ Vec3 position_of(const Record& record, const Scale& scale) {
 void list_wall_contacts(Field& f, Columns& c, const Kernels& kernels, const ListSpace& space, const Walls& walls,
                         bool keep, const Parts& parts) {
     std::int32_t n = 0;
-    const std::int32_t old_count = keep && f.wall_count > 0 ? f.segments[f.wall_count - 1].end : 0;
+    const std::int32_t old_count = keep ? wall_contacts(f) : 0;
     const std::vector<Place> old_particle(f.wall_particle, f.wall_particle + old_count);
     const Mobile mobile(walls.count() > 0 ? f : Field{}, space.scale, parts);
     const double near = static_cast<double>(space.skin + f.constants.beyond_wall) * (1 + 1e-5) * space.scale.length;
@@ -93,7 +93,7 @@ void list_wall_contacts(Field& f, Columns& c, const Kernels& kernels, const List
             for (int a = 0; a < c.histories; ++a)
                 c.wall_history_next[a][k] = from == none ? 0 : c.wall_history[a][static_cast<std::size_t>(from)];
         };
-        if (walls.is_single(w))
+        if (walls.is_single(w) && walls[w].present())
             for (const std::uint32_t i : mobile.near(walls[w], near, parts)) add(i, old_slot[i]);
         while ((n - begin) % kernels.width != 0) add(static_cast<std::size_t>(f.count) + 2, none);
         f.segments[w] = {begin, n};

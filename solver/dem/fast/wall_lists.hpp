@@ -8,6 +8,11 @@
 
 namespace grainsweep::dem::fast {
 
+/// Entries of the list, with those that fill vectors up.
+inline std::int32_t wall_contacts(const Field& f) {
+    return f.wall_count > 0 ? f.segments[f.wall_count - 1].end : 0;
+}
+
 /// Walls that may be touched in one place; of the others wall_touches.hpp knows. `keep`: histories follow their
 /// contacts, by columns.place; else they start at zero.
 void list_wall_contacts(Field& field, Columns& columns, const Kernels& kernels, const ListSpace& space,

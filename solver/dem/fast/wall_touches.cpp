@@ -64,6 +64,7 @@ void WallTouches::list(const Field& f, const Walls& walls, const Scale& scale, d
         parts.run([&](int part) {
             Found& mine = found[static_cast<std::size_t>(part)];
             mine.particle.clear(), mine.first.clear(), mine.candidate.clear();
+            if (!wall.present()) return;
             const Range range = parts.share(part, f.count);
             if_pieced(wall, [&](const auto& shape) {
                 for (std::int32_t i = range.begin; i < range.end; ++i) {

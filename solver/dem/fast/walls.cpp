@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 
 #include "solver/dem/limits.hpp"
 #include "solver/dem/walls/wall_bytes.hpp"
@@ -104,29 +105,45 @@ Walls::Walls(const std::vector<Wall>& walls, const Domain& domain, const Scale& 
         moving_.emplace_back(walls[w], geometry::Domain{domain.low, domain.high, domain.periodic}, 0.5 * scale.length);
         single_.push_back(std::visit([]<class S>(const S&) { return Vectorised<S>; }, walls[w].shape));
         placed_[w].shape = static_cast<std::int32_t>(walls[w].shape.index());
-        write_pose(moving_[w], scale, placed_[w]);
-        write_twist(moving_[w].twist(), scale, placed_[w]);
-        pivot_[w] = moving_[w].twist().pivot;
+        place(w, 0);
     }
+}
+
+std::vector<MovingWall> Walls::moving_as(const std::vector<Wall>& walls, const Domain& domain) const {
+    if (walls.size() != count()) throw std::invalid_argument("walls that change keep their number");
+    std::vector<MovingWall> changed;
+    for (std::size_t w = 0; w < count(); ++w)
+        changed.push_back(moving_[w].moving_as(walls[w], {domain.low, domain.high, domain.periodic}));
+    return changed;
+}
+
+void Walls::take(std::vector<MovingWall> changed, double time) {
+    moving_ = std::move(changed);
+    for (std::size_t w = 0; w < count(); ++w) {
+        place(w, time);
+        if (!moving_[w].present()) sums_[w] = {};
+    }
+}
+
+void Walls::place(std::size_t w, double time) {
+    moving_[w].place(time);
+    write_pose(moving_[w], scale_, placed_[w]);
+    write_twist(moving_[w].twist(), scale_, placed_[w]);
+    pivot_[w] = moving_[w].twist().pivot;
 }
 
 void Walls::place(double time) {
-    for (std::size_t w = 0; w < count(); ++w) {
-        if (moving_[w].at_rest()) continue;
-        moving_[w].place(time);
-        write_pose(moving_[w], scale_, placed_[w]);
-        write_twist(moving_[w].twist(), scale_, placed_[w]);
-        pivot_[w] = moving_[w].twist().pivot;
-    }
+    for (std::size_t w = 0; w < count(); ++w)
+        if (moves(w)) place(w, time);
 }
 
 void Walls::sum_up(bool all) {
-    for (std::size_t w = 0; w < count(); ++w) placed_[w].summed = all || !moving_[w].at_rest() ? 1 : 0;
+    for (std::size_t w = 0; w < count(); ++w) placed_[w].summed = all || moves(w) ? 1 : 0;
 }
 
 void Walls::bound_velocities(double time, Tally& tally) const {
     for (const MovingWall& wall : moving_) {
-        if (wall.at_rest()) continue;
+        if (wall.at_rest() || !wall.present()) continue;
         Vec3 low, high;
         wall.surface_velocities(time, scale_.time, low, high);
         for (std::size_t a = 0; a < 3; ++a) {
@@ -138,6 +155,7 @@ void Walls::bound_velocities(double time, Tally& tally) const {
 
 std::string Walls::too_fast(double smallest_radius, std::int64_t steps) const {
     for (std::size_t w = 0; w < count(); ++w) {
+        if (!moving_[w].present()) continue;
         const double share = moving_[w].fastest_surface() * scale_.time / smallest_radius;
         if (share <= largest_sound_displacement) continue;
         char text[200];
@@ -149,11 +167,11 @@ std::string Walls::too_fast(double smallest_radius, std::int64_t steps) const {
     return {};
 }
 
-double Walls::book(const WallSums* sums, bool moves) {
+double Walls::book(const WallSums* sums, bool of_step) {
     double work = 0;
     for (std::size_t w = 0; w < count(); ++w) {
         sums_[w] = sums[w];
-        if (!moves || moving_[w].at_rest()) continue;
+        if (!of_step || !moves(w)) continue;
         work_[w] += sums[w].power;
         work += sums[w].power;
     }

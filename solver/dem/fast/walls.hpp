@@ -31,6 +31,11 @@ public:
     /// Of a wall's contacts with a kind of particles, in SI.
     [[nodiscard]] const AnyContact& laws(std::size_t w, std::size_t kind) const { return *laws_[w][kind]; }
 
+    /// The same bodies with other motions and presence, see Engine::change_walls.
+    [[nodiscard]] std::vector<MovingWall> moving_as(const std::vector<Wall>& walls, const Domain& domain) const;
+    /// Takes what moving_as() gave, `time` after the walls were set, s.
+    void take(std::vector<MovingWall> changed, double time);
+
     /// Lets them stand where, and move as, they do at `time` after they were set, s.
     void place(double time);
     /// Which of them are summed up from here on: all, or only those that move and do work.
@@ -41,9 +46,9 @@ public:
     /// The first that moves farther than a particle's radius (m) in a step, in one sentence; empty: none.
     [[nodiscard]] std::string too_fast(double smallest_radius, std::int64_t steps) const;
 
-    /// After a sweep over the walls: keeps its sums. `moves`: it was part of a step, and its work counts.
+    /// After a sweep over the walls: keeps its sums. `of_step`: it was part of a step, and its work counts.
     /// Returns the work of all walls on the particles in it, engine's units.
-    double book(const WallSums* sums, bool moves);
+    double book(const WallSums* sums, bool of_step);
     [[nodiscard]] WallLoad load(std::size_t w, const Vec3& about) const;
 
     void save(Writer& archive) const;
@@ -53,6 +58,9 @@ public:
                                         std::span<const Material> materials);
 
 private:
+    [[nodiscard]] bool moves(std::size_t w) const { return moving_[w].present() && !moving_[w].at_rest(); }
+    void place(std::size_t w, double time);
+
     Scale scale_;
     std::vector<MovingWall> moving_;
     std::vector<std::vector<std::unique_ptr<const AnyContact>>> laws_;

@@ -70,7 +70,8 @@ void Watch::set_limit(const Moment& now, std::span<const MovingWall> walls) {
         start = std::max({start, norm(m.velocity), radius * norm(m.spin)});
         lightest = std::min(lightest, now.space.scale.mass / static_cast<double>(r.inverse_mass));
     }
-    for (const MovingWall& w : walls) wall = std::max(wall, w.fastest());
+    for (const MovingWall& w : walls)
+        if (w.present()) wall = std::max(wall, w.fastest());
     for (std::size_t a = 0; a < 3; ++a)  // through the domain; without limit along a periodic axis
         if (gravity_[a] != 0)
             free_fall =
@@ -80,7 +81,6 @@ void Watch::set_limit(const Moment& now, std::span<const MovingWall> walls) {
     const double active = kinetic(now) + now.stored.squeezed;
     const double released = std::isfinite(lightest) ? std::sqrt(2 * active / lightest) : 0;
     speed_limit_ = largest_sound_speed_factor * (start + wall + shaking_speed_ + free_fall + released);
-    work_of_walls_ = 0;
     add_gravity_work(now);
     restart_balance();
 }

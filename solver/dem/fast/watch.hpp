@@ -41,8 +41,12 @@ class Watch {
 public:
     Watch(const Setup& setup, const Scale& scale);
 
-    /// Sets the largest speed that can occur, from the state of the start or with new walls.
+    /// Sets the largest speed that can occur, from the state of the start or after a change of walls or particles.
     void set_limit(const Moment& now, std::span<const MovingWall> walls);
+    /// A particle that was added: its id follows those before.
+    void begin(const Record& record) { seen_.push_back({record.position[0], record.position[1], record.position[2]}); }
+    /// Their work counts from here on.
+    void forget_wall_work() { work_of_walls_ = 0; }
     /// Adds a step by the largest component of its velocities, engine's units.
     void add_travel(double fastest);
     /// Adds work of the walls on the particles, engine's units.
@@ -56,7 +60,7 @@ public:
     /// What is wrong and with which particle; empty: the balance is sound.
     [[nodiscard]] std::string check(const Moment& now, std::int32_t& particle);
 
-    [[nodiscard]] std::size_t spheres() const { return seen_.size(); }  ///< at the start
+    [[nodiscard]] std::size_t spheres() const { return seen_.size(); }  ///< that there were so far
     [[nodiscard]] double speed_limit() const { return speed_limit_; }   ///< m/s
 
     /// Everything that changes.

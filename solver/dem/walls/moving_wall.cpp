@@ -74,19 +74,17 @@ void append(const S& shape, const Vec3& x, double reach, std::uint32_t entry, au
     }
 }
 
+void refuse_flaw(const std::string& flaw) {
+    if (!flaw.empty()) throw std::invalid_argument(flaw);
+}
+
 }  // namespace
 
 MovingWall::MovingWall(Wall wall, const geometry::Domain& domain, double largest) : wall_(std::move(wall)) {
-    const auto refuse_flaw = [](const std::string& flaw) {
-        if (!flaw.empty()) throw std::invalid_argument(flaw);
-    };
     refuse_flaw(std::visit([](const auto& s) { return s.flaw(); }, wall_.shape));
-    for (const Motion& m : wall_.motions) refuse_flaw(flaw(m));
+    take_motions(wall_.motions);
     refuse_flaw(flaw(wall_.surface, "a wall"));
-    std::erase_if(wall_.motions, geometry::is_still);
     single_contact_ = std::visit([](const auto& s) { return SingleContact<decltype(s)>; }, wall_.shape);
-    displacing_ = displacing(wall_.shape, wall_.motions);
-    switches_ = std::ranges::any_of(displacing_, switches);
     bounded_ = true;
     for (std::size_t k = 0; k < 3; ++k) {
         const Extent e = std::visit([k](const auto& s) { return s.extent(k); }, wall_.shape);
@@ -113,9 +111,32 @@ MovingWall::MovingWall(Wall wall, const geometry::Domain& domain, double largest
             low_[k] = domain.low[k] - 4 * largest;
             high_[k] = domain.high[k] + 4 * largest;
         }
+    bound_speeds();
+    place(0);
+}
+
+MovingWall MovingWall::moving_as(const Wall& other, const geometry::Domain& domain) const {
+    if (!same_body(wall_, other))
+        throw std::invalid_argument("walls that change keep their shape, surface and materials");
+    MovingWall made = *this;
+    made.wall_.present = other.present;
+    made.take_motions(other.motions);
+    made.require_possible(domain);
+    made.bound_speeds();
+    return made;
+}
+
+void MovingWall::take_motions(std::vector<Motion> motions) {
+    for (const Motion& m : motions) refuse_flaw(flaw(m));
+    std::erase_if(motions, geometry::is_still);
+    displacing_ = displacing(wall_.shape, motions);
+    switches_ = std::ranges::any_of(displacing_, switches);
+    wall_.motions = std::move(motions);
+}
+
+void MovingWall::bound_speeds() {
     fastest_ = bound_of_speed(wall_.motions);
     fastest_surface_ = bound_of_speed(displacing_);
-    place(0);
 }
 
 void MovingWall::require_possible(const geometry::Domain& domain) const {

@@ -38,6 +38,10 @@ public:
     /// `largest`: radius of the largest particle. Throws std::invalid_argument with one sentence on what cannot be.
     MovingWall(Wall wall, const geometry::Domain& domain, double largest);
 
+    /// The same body with the motions and presence of `other`; place() completes it. Throws as the constructor does,
+    /// and where `other` is another body.
+    [[nodiscard]] MovingWall moving_as(const Wall& other, const geometry::Domain& domain) const;
+
     /// Lets it stand where, and move as, it does at `time` after the walls were set, s. What has several contacts
     /// starts from rest: it has no velocity yet at time 0, before the first step, so that powder that rests on it is
     /// not pushed by a dashpot before anything has slipped (LIGGGHTS has moving meshes so). What has one contact moves
@@ -60,6 +64,8 @@ public:
     [[nodiscard]] double fastest() const { return fastest_; }
     [[nodiscard]] double fastest_surface() const { return fastest_surface_; }
     [[nodiscard]] bool at_rest() const { return wall_.motions.empty(); }
+    /// Whether anything can touch it; one that is absent need not be placed.
+    [[nodiscard]] bool present() const { return wall_.present; }
 
     /// The particles of `list` nearer than their radius plus `beyond`, with the places, in the order of the list.
     void find(std::span<const std::uint32_t> list, std::span<const Vec3> position, const particles::Radii& radii,
@@ -77,6 +83,8 @@ public:
     [[nodiscard]] bool passed(const geometry::Pose& before, const Vec3& from, const Vec3& to) const;
 
 private:
+    void take_motions(std::vector<geometry::Motion> motions);
+    void bound_speeds();
     void require_possible(const geometry::Domain& domain) const;
     [[nodiscard]] Shape with_images(const geometry::Domain& domain) const;
     [[nodiscard]] std::array<Vec3, 8> corners(const geometry::Pose& pose) const;

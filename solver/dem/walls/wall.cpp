@@ -1,6 +1,10 @@
 #include "solver/dem/walls/wall.hpp"
 
+#include "solver/bytes.hpp"
+#include "solver/dem/walls/wall_bytes.hpp"
+
 #include <cmath>
+#include <cstddef>
 
 namespace grainsweep::dem {
 
@@ -17,6 +21,16 @@ std::string flaw(const Surface& s, std::string_view whom) {
     if (negative(s.cohesion)) return complaint("cohesion energy density", " must not be negative");
     if (negative(s.surface_energy)) return complaint("surface energy", " must not be negative");
     return {};
+}
+
+bool same_body(const Wall& one, const Wall& other) {
+    const auto bytes = [](const Wall& wall) {
+        std::vector<std::byte> all;
+        ByteWriter out(all);
+        write_body(wall, [&out](const auto& value) { out.put(value); });
+        return all;
+    };
+    return bytes(one) == bytes(other);
 }
 
 Blade::operator Wall() const {

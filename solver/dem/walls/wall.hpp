@@ -43,6 +43,7 @@ struct Wall {
     std::vector<geometry::Motion> motions;
     Surface surface;
     std::vector<Material> materials;  ///< of its contacts with each kind of spheres, where there are several
+    bool present = true;              ///< false: nothing touches it until Engine::change_walls makes it present
 
     Wall() = default;
     template <class S>
@@ -50,6 +51,9 @@ struct Wall {
         Wall(S&& of, std::vector<geometry::Motion> in_motion = {}, Surface with = {})  // NOLINT: a shape is a wall
         : shape(std::forward<S>(of)), motions(std::move(in_motion)), surface(with) {}
 };
+
+/// Whether two walls are the same but for motions and presence.
+[[nodiscard]] bool same_body(const Wall& one, const Wall& other);
 
 /// A bar that moves with x velocity `speed` and the vertical displacement amplitude sin(2 pi frequency t): the blade
 /// that spreads powder. A sphere touches its closest point, once.

@@ -21,23 +21,24 @@ void for_each_part(Of& surface, Visit&& visit) {
 template <class Of, class Visit>
 void for_each_number(Of& m, Visit&& visit) {
     for (auto* part : {&m.youngs_modulus, &m.poisson_ratio, &m.density, &m.restitution, &m.friction,
-                         &m.rolling_friction, &m.rolling_damping, &m.cohesion, &m.surface_energy})
+                       &m.rolling_friction, &m.rolling_damping, &m.cohesion, &m.surface_energy})
         visit(*part);
     visit(m.rolling_law);
     visit(m.cohesion_law);
     visit(m.friction_limit);
 }
 
-/// put(value) writes a number or an array of numbers.
+/// Writes a shape or a motion; put(value) writes a number or an array of numbers.
+template <class Variant, class Put>
+void write_alternative(const Variant& alternatives, Put&& put) {
+    put(static_cast<std::uint64_t>(alternatives.index()));
+    std::visit([&](const auto& one) { one.fields(one, put); }, alternatives);
+}
+
+/// Writes all but motions and presence.
 template <class Put>
-void write_wall(const Wall& wall, Put&& put) {
-    const auto write = [&](const auto& alternatives) {
-        put(static_cast<std::uint64_t>(alternatives.index()));
-        std::visit([&](const auto& one) { one.fields(one, put); }, alternatives);
-    };
-    write(wall.shape);
-    put(static_cast<std::uint64_t>(wall.motions.size()));
-    for (const geometry::Motion& motion : wall.motions) write(motion);
+void write_body(const Wall& wall, Put&& put) {
+    write_alternative(wall.shape, put);
     for_each_part(wall.surface, [&](const std::optional<double>& part) {
         put(static_cast<std::uint64_t>(part.has_value()));
         put(part.value_or(0));
@@ -48,6 +49,14 @@ void write_wall(const Wall& wall, Put&& put) {
         put(static_cast<std::uint64_t>(m.partner.has_value()));
         put(m.partner.value_or(Elasticity{}));
     }
+}
+
+template <class Put>
+void write_wall(const Wall& wall, Put&& put) {
+    write_body(wall, put);
+    put(wall.present);
+    put(static_cast<std::uint64_t>(wall.motions.size()));
+    for (const geometry::Motion& motion : wall.motions) write_alternative(motion, put);
 }
 
 /// The alternative with this number, to be filled.
@@ -70,13 +79,6 @@ template <class Get>
     };
     Wall wall;
     read(wall.shape);
-    std::uint64_t motions = 0;
-    get(motions);
-    for (std::uint64_t k = 0; k < motions; ++k) {
-        geometry::Motion motion;
-        read(motion);
-        wall.motions.push_back(motion);
-    }
     for_each_part(wall.surface, [&](std::optional<double>& part) {
         std::uint64_t given = 0;
         double value = 0;
@@ -92,6 +94,14 @@ template <class Get>
         Elasticity partner;
         get(given), get(partner);
         if (given != 0) m.partner = partner;
+    }
+    get(wall.present);
+    std::uint64_t motions = 0;
+    get(motions);
+    for (std::uint64_t k = 0; k < motions; ++k) {
+        geometry::Motion motion;
+        read(motion);
+        wall.motions.push_back(motion);
     }
     return wall;
 }
