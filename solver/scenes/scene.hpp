@@ -88,6 +88,7 @@ struct CostEstimate {
 struct SceneInfo {
     std::string name;
     std::string summary;
+    std::string label = {};  ///< shown instead of the name, where that is a hash; empty: the name
     int revision = 1;  ///< part of every case id; grows whenever results or defaults change on purpose
     std::vector<ParameterSpec> parameters;
     std::vector<ObservableSpec> observables;
@@ -114,6 +115,7 @@ struct SceneInfo {
                                               const Files& files = {}) const {
         return maker(inputs, seed, artefacts, files);
     }
+    [[nodiscard]] const std::string& shown() const { return label.empty() ? name : label; }
     [[nodiscard]] const ParameterSpec* find_parameter(std::string_view parameter) const;
     [[nodiscard]] const ObservableSpec* find_observable(std::string_view observable) const;
     [[nodiscard]] Inputs defaults() const;

@@ -77,6 +77,7 @@ std::span<const Key> campaign_keys() {
         {"accuracy", Kind::word, "a named set of numerical inputs of the scene", {}, {}, accuracy_words},
         {"model", Kind::object, "how responses are learned from the cases; changes no result"},
         {"program", Kind::object, "with \"scene\": \"program\": the command that answers a case"},
+        {"machine", Kind::value, "with \"scene\": \"machine\": a machine file beside the campaign file, or its object"},
         {"limits", Kind::object, "what one case may cost"},
         {"execution", Kind::object, "how the cases run; changes no result"},
     });
@@ -247,7 +248,8 @@ std::span<const std::string_view> reserved_names() {
                                                                    "file_checksum",
                                                                    "program",
                                                                    "program_content",
-                                                                   "attempt_program"});  // json_ ...: SQLite's own
+                                                                   "attempt_program",
+                                                                   "machine"});  // json_ ...: SQLite's own
     return names;
 }
 

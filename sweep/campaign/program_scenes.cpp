@@ -1,4 +1,5 @@
 // The scenes of programs, as far as this process has met them.
+#include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/program.hpp"
 
 #include <map>
@@ -66,6 +67,7 @@ std::string why_absent(std::string_view scene, std::string_view observable) {
 std::vector<std::string> scene_words() {
     std::vector<std::string> words;
     for (const auto& scene : scene_catalogue()) words.push_back(scene.name);
+    words.emplace_back(machine_word);
     words.emplace_back(program_word);
     return words;
 }

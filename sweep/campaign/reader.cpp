@@ -1,5 +1,6 @@
 #include "sweep/campaign/reader.hpp"
 
+#include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/program_section.hpp"
 #include "sweep/campaign/relevance.hpp"
@@ -44,9 +45,32 @@ std::string read_name(const Cursor& place) {
     return name;
 }
 
+/// "machine": the name of a file, or the object itself, whose files lie beside the campaign file.
+std::shared_ptr<const Machine> machine_of(const Section& top, const fs::path& folder) {
+    const auto place = top.find("machine");
+    if (!place)
+        throw wrong_question("$", "",
+                             "key 'machine' is missing: with \"scene\": \"machine\" a machine file or its object");
+    if (!place->json().is_string()) return make_machine(place->json(), place->path(), beside(folder));
+    const fs::path file = folder / place->text();
+    std::error_code none;
+    if (!fs::is_regular_file(file, none)) {
+        std::vector<std::string> others;
+        for (const auto& entry : fs::directory_iterator(file.parent_path().empty() ? "." : file.parent_path(), none))
+            if (entry.path().extension() == ".json") others.push_back(entry.path().filename().string());
+        place->refuse("there is no such machine file beside the campaign file",
+                      nearest_word(file.filename().string(), others));
+    }
+    return read_machine(file);
+}
+
 const SceneInfo& read_scene(const Section& top, const fs::path& folder) {
     const auto word = top.at("scene").word(scene_words());
     if (word == program_word) return enter_program(read_program(top, folder));
+    if (word == machine_word) return enter_machine(machine_of(top, folder));
+    if (const auto machine = top.find("machine"))
+        throw wrong_question(machine->path(), "",
+                             fmt::format("belongs to \"scene\": \"machine\", and this is {}", word));
     if (const auto program = top.find("program"))
         throw wrong_question(program->path(), "",
                              fmt::format("belongs to \"scene\": \"program\", and this is {}", word));

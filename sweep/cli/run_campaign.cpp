@@ -23,6 +23,7 @@
 #include "sweep/study/model_view.hpp"
 #include "sweep/workers/memory_room.hpp"
 #include "sweep/workers/pool.hpp"
+#include "sweep/workers/staged_machine.hpp"
 #include "sweep/workers/worker.hpp"
 
 #include <fmt/format.h>
@@ -361,6 +362,7 @@ private:
         workers::Pool pool(pool_options(campaign_, {artefacts_, cases}, workers_, request_.path));
         files::ArtefactFolder folder(artefacts_);
         sweep(folder, *store_);
+        workers::stage_machine(campaign_.scene().name, folder);
         schedule::Watchers watchers;
         watchers.progress = [&](const schedule::Progress& progress) { line_->update(progress); };
         watchers.note = [&](const std::string& text) { line_->note(text); };

@@ -129,6 +129,14 @@ void store_program_facts(Connection& db, std::int64_t key, std::int64_t number, 
 /// What of programs is not as it was written, a sentence each.
 [[nodiscard]] std::vector<std::string> damaged_programs(const Connection& db);
 
+// machines.cpp
+/// Makes the machines of the archive known to this process, as far as they are as written.
+void enter_machines(const Connection& db);
+/// Stores the machine of a campaign, and the contents of its files; nothing where the scene is another one.
+void store_machine(Connection& db, const campaign::Campaign& campaign);
+/// Returns what of machines is not as it was written, a sentence each.
+[[nodiscard]] std::vector<std::string> damaged_machines(const Connection& db);
+
 /// Creates or renews the view that bears the campaign's name; where a view of ours was dropped or altered, all of them.
 void make_views(Store::Impl& archive, const campaign::Campaign& campaign, std::int64_t campaign_key);
 

@@ -232,6 +232,7 @@ std::unique_ptr<Store::Impl> open_to_write(const std::filesystem::path& file, St
     if (!empty && !as_remembered) check_structure(db, file);
     migrate(db, file);
     enter_programs(db);
+    enter_machines(db);
     auto archive = std::make_unique<Store::Impl>(file, std::move(lock), std::move(db));
     archive->as_remembered = as_remembered || empty;
     archive->version = version;
@@ -249,6 +250,7 @@ std::unique_ptr<Store::Impl> open_to_read(const std::filesystem::path& file) {
     // An older schema is read as it is, and brought up to date by the next run: what a migration added is asked for
     // only where it is (keeps_extents).
     enter_programs(db);
+    enter_machines(db);
     return std::make_unique<Store::Impl>(file, std::nullopt, std::move(db));
 }
 

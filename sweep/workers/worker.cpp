@@ -1,5 +1,8 @@
 #include "sweep/workers/worker.hpp"
 
+#include "sweep/campaign/machine.hpp"
+#include "sweep/workers/staged_machine.hpp"
+
 #include "sweep/files/artefacts.hpp"
 #include "sweep/files/broken_world.hpp"
 #include "sweep/workers/answerer.hpp"
@@ -127,6 +130,8 @@ public:
     }
     bool prepare(const Run& run) override {
         damage_.clear();
+        if (folder_ && campaign::is_machine(run.question.scene) && find_scene(run.question.scene) == nullptr)
+            enter_staged_machine(run.question.scene, *folder_);
         checkpoints_.emplace(folder_ ? &*folder_ : nullptr, run.question.id, options_.computer);
         // Looking for a checkpoint costs a failed open; only a case tried before can have one.
         resume_ = run.attempt > 1 ? checkpoints_->load() : std::nullopt;

@@ -1,0 +1,17 @@
+// What a machine will probably take, and what its user should know before it runs.
+#pragma once
+
+#include "solver/machine/spec.hpp"
+#include "solver/scenes/scene.hpp"
+
+#include <vector>
+
+namespace grainsweep::machine {
+
+/// Particles that fillings and feeds ask for, times steps of all phases; phases that may end early count for half.
+[[nodiscard]] CostEstimate cost_of(const Spec& spec);
+/// Warns of particles too soft for the fall, walls that move too far in a step, feeds that cannot keep up, phases whose
+/// powder is still falling.
+[[nodiscard]] std::vector<Warning> warnings_of(const Spec& spec);
+
+}  // namespace grainsweep::machine

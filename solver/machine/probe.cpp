@@ -1,0 +1,11 @@
+#include "solver/machine/probe.hpp"
+
+#include "solver/particles/size_distribution.hpp"
+
+namespace grainsweep::machine {
+
+double Sight::volume(std::size_t i) const {
+    return particles::sphere_volume(2 * state.radius[i]);
+}
+
+}  // namespace grainsweep::machine

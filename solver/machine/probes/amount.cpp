@@ -1,0 +1,42 @@
+// Number, mass and solid volume of the particles whose centres lie in a region.
+#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/selection.hpp"
+
+namespace grainsweep::machine::probes {
+namespace {
+
+enum class Amount { count, mass, volume };
+
+template <Amount of>
+class AmountProbe final : public machine::Probe {
+public:
+    explicit AmountProbe(const Options& options) : selection_(options) {}
+    double look(const Sight& sight) override {
+        double sum = 0;
+        selection_.each(sight, [&](std::size_t i) {
+            sum += of == Amount::count ? 1 : of == Amount::mass ? sight.mass(i) : sight.volume(i);
+        });
+        return sum;
+    }
+
+private:
+    Selection selection_;
+};
+
+constexpr std::array amount_options = {of_option, in_option};
+
+template <Amount of>
+std::unique_ptr<machine::Probe> make_amount(const Options& given) {
+    return std::make_unique<AmountProbe<of>>(given);
+}
+
+}  // namespace
+
+const ProbeInfo amount_count{"count", "1", "number of particles in a region", amount_options,
+                             make_amount<Amount::count>};
+const ProbeInfo amount_mass{"mass", "kg", "mass of the particles in a region", amount_options,
+                            make_amount<Amount::mass>};
+const ProbeInfo amount_volume{"volume", "m3", "solid volume of the particles in a region", amount_options,
+                              make_amount<Amount::volume>};
+
+}  // namespace grainsweep::machine::probes

@@ -1,0 +1,52 @@
+// Lean of a bed: the angle by which its centre of volume is turned about an axis from straight below, right hand. For a
+// bed that is a segment of a circle it is the slope of the surface.
+#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/selection.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace grainsweep::machine::probes {
+namespace {
+
+using geometry::cross;
+using geometry::dot;
+using geometry::norm;
+using geometry::operator-;
+using geometry::operator+=;
+using geometry::operator*;
+
+class BedAngleProbe final : public machine::Probe {
+public:
+    explicit BedAngleProbe(const Options& options)
+        : selection_(options), axis_(options.vector("axis")), through_(options.vector("through", {})) {}
+    double look(const Sight& sight) override {
+        Vec3 moment{};
+        double volume = 0;
+        selection_.each(sight, [&](std::size_t i) {
+            moment += sight.volume(i) * (sight.state.position[i] - through_);
+            volume += sight.volume(i);
+        });
+        const Vec3 down = sight.gravity - dot(sight.gravity, axis_) * axis_;
+        if (!(volume > 0 && norm(down) > 0)) return undefined;
+        const Vec3 below = (1 / norm(down)) * down;
+        return std::atan2(dot(moment, cross(axis_, below)), dot(moment, below)) * 180 / std::numbers::pi;
+    }
+
+private:
+    Selection selection_;
+    Vec3 axis_, through_;
+};
+
+constexpr std::array bed_angle_options = {
+    of_option, in_option,
+    OptionSpec{"axis", OptionSpec::Kind::direction, "", "the axis that the bed is raised about", true},
+    OptionSpec{"through", OptionSpec::Kind::vector, "m", "a point on the axis; default: the origin"}};
+
+}  // namespace
+
+const ProbeInfo bed_angle{
+    "bed_angle", "deg", "angle of the centre of volume from straight below, about an axis", bed_angle_options,
+    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<BedAngleProbe>(given); }};
+
+}  // namespace grainsweep::machine::probes

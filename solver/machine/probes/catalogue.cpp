@@ -1,0 +1,32 @@
+#include "solver/machine/probes/probes.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace grainsweep::machine {
+
+std::span<const ProbeInfo> probe_catalogue() {
+    static const auto all = [] {
+        std::array rows = {
+            probes::amount_count,    probes::amount_mass, probes::amount_volume,
+            probes::bed_angle,       probes::centre,      probes::coordination,
+            probes::flow_mass,       probes::flow_number, probes::granular_temperature,
+            probes::height_of_share, probes::mean_height, probes::kinetic_energy,
+            probes::lacey,           probes::mass_share,  probes::momentum,
+            probes::overlap,         probes::profile,     probes::radius,
+            probes::solid_fraction,  probes::velocity,    probes::wall_force,
+            probes::wall_pressure,   probes::wall_torque, probes::wall_work,
+        };
+        std::ranges::sort(rows, {}, &ProbeInfo::name);
+        return rows;
+    }();
+    return all;
+}
+
+const ProbeInfo* find_probe(std::string_view name) {
+    const auto all = probe_catalogue();
+    const auto found = std::ranges::find(all, name, &ProbeInfo::name);
+    return found == all.end() ? nullptr : &*found;
+}
+
+}  // namespace grainsweep::machine

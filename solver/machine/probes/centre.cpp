@@ -1,0 +1,39 @@
+// Mean position of particles along a direction, weighted by volume, from a point: the place of an intruder, the centre
+// of a bed.
+#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/selection.hpp"
+
+namespace grainsweep::machine::probes {
+namespace {
+
+using geometry::operator-;
+
+class CentreProbe final : public machine::Probe {
+public:
+    explicit CentreProbe(const Options& options)
+        : selection_(options), along_(options.vector("along")), from_(options.vector("from", {})) {}
+    double look(const Sight& sight) override {
+        double moment = 0, volume = 0;
+        selection_.each(sight, [&](std::size_t i) {
+            moment += sight.volume(i) * geometry::dot(sight.state.position[i] - from_, along_);
+            volume += sight.volume(i);
+        });
+        return volume > 0 ? moment / volume : undefined;
+    }
+
+private:
+    Selection selection_;
+    Vec3 along_, from_;
+};
+
+constexpr std::array centre_options = {
+    of_option, in_option, OptionSpec{"along", OptionSpec::Kind::direction, "", "the direction of the coordinate", true},
+    OptionSpec{"from", OptionSpec::Kind::vector, "m", "the point from which it counts; default: the origin"}};
+
+}  // namespace
+
+const ProbeInfo centre{
+    "centre", "m", "mean position along a direction, weighted by volume", centre_options,
+    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<CentreProbe>(given); }};
+
+}  // namespace grainsweep::machine::probes

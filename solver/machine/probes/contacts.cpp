@@ -1,0 +1,54 @@
+// What contacts say of a bed: the mean number of partners, and the deepest overlap.
+#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/selection.hpp"
+
+namespace grainsweep::machine::probes {
+namespace {
+
+class Coordination final : public machine::Probe {
+public:
+    explicit Coordination(const Options& options) : selection_(options) {}
+    double look(const Sight& sight) override {
+        std::vector<char> counts(sight.species.size(), 0);
+        double particles = 0, partners = 0;
+        selection_.each(sight, [&](std::size_t i) {
+            counts[sight.id(i)] = 1;
+            ++particles;
+        });
+        for (const auto& contact : sight.contacts) {
+            if (contact.second < 0) continue;
+            partners +=
+                counts[static_cast<std::size_t>(contact.first)] + counts[static_cast<std::size_t>(contact.second)];
+        }
+        return particles > 0 ? partners / particles : undefined;
+    }
+
+private:
+    Selection selection_;
+};
+
+class Overlap final : public machine::Probe {
+public:
+    explicit Overlap(const Options&) {}
+    double look(const Sight& sight) override { return sight.engine.largest_overlap(); }
+};
+
+constexpr std::array contacts_options = {of_option, in_option};
+
+}  // namespace
+
+const ProbeInfo coordination{
+    "coordination",
+    "1",
+    "mean number of other particles that a particle touches",
+    contacts_options,
+    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<Coordination>(given); },
+    true};
+const ProbeInfo overlap{
+    "overlap",
+    "1",
+    "deepest overlap of two particles over the diameter of the smaller one",
+    {},
+    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<Overlap>(given); }};
+
+}  // namespace grainsweep::machine::probes

@@ -1,0 +1,43 @@
+// Granular temperature: a third of the mean square of the velocity about its mean, weighted by mass.
+//
+//     T = sum m |v - u|^2/(3 sum m),   u = sum m v/sum m
+#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/selection.hpp"
+
+namespace grainsweep::machine::probes {
+namespace {
+
+using geometry::dot;
+using geometry::operator+=;
+using geometry::operator*;
+
+class GranularTemperatureProbe final : public machine::Probe {
+public:
+    explicit GranularTemperatureProbe(const Options& options) : selection_(options) {}
+    double look(const Sight& sight) override {
+        double mass = 0, squares = 0;
+        Vec3 momentum{};
+        selection_.each(sight, [&](std::size_t i) {
+            const Vec3& v = sight.state.velocity[i];
+            mass += sight.mass(i);
+            momentum += sight.mass(i) * v;
+            squares += sight.mass(i) * dot(v, v);
+        });
+        return mass > 0 ? (squares - dot(momentum, momentum) / mass) / (3 * mass) : undefined;
+    }
+
+private:
+    Selection selection_;
+};
+
+constexpr std::array granular_temperature_options = {of_option, in_option};
+
+}  // namespace
+
+const ProbeInfo granular_temperature{"granular_temperature", "m2/s2",
+                                     "a third of the mean square velocity about the mean", granular_temperature_options,
+                                     [](const Options& given) -> std::unique_ptr<machine::Probe> {
+                                         return std::make_unique<GranularTemperatureProbe>(given);
+                                     }};
+
+}  // namespace grainsweep::machine::probes

@@ -1,0 +1,104 @@
+// Heights against gravity, from a point: below which a share of the solid volume lies, and the mean.
+#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/selection.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace grainsweep::machine::probes {
+namespace {
+
+using geometry::dot;
+using geometry::norm;
+using geometry::operator-;
+using geometry::operator*;
+
+Vec3 up_of(const Sight& sight, const std::optional<Vec3>& along) {
+    if (along) return *along;
+    const double g = norm(sight.gravity);
+    return g > 0 ? (-1 / g) * sight.gravity : Vec3{0, 0, 1};
+}
+
+class HeightOfShare final : public machine::Probe {
+public:
+    explicit HeightOfShare(const Options& options)
+        : selection_(options),
+          share_(options.number("share", 0.95)),
+          from_(options.vector("from", {})),
+          along_(options.has("along") ? std::optional(options.vector("along")) : std::nullopt),
+          surface_(options.word("of_sphere", "top") == "top") {}
+    double look(const Sight& sight) override {
+        const Vec3 up = up_of(sight, along_);
+        std::vector<std::pair<double, double>> heights;
+        double volume = 0;
+        selection_.each(sight, [&](std::size_t i) {
+            heights.emplace_back(dot(sight.state.position[i] - from_, up) + (surface_ ? sight.state.radius[i] : 0),
+                                 sight.volume(i));
+            volume += sight.volume(i);
+        });
+        std::ranges::sort(heights);
+        double below = 0;
+        for (const auto& [height, of_it] : heights)
+            if ((below += of_it) >= share_ * volume) return height;
+        return undefined;
+    }
+
+private:
+    Selection selection_;
+    double share_;
+    Vec3 from_;
+    std::optional<Vec3> along_;
+    bool surface_;
+};
+
+class MeanHeight final : public machine::Probe {
+public:
+    explicit MeanHeight(const Options& options)
+        : selection_(options),
+          from_(options.vector("from", {})),
+          along_(options.has("along") ? std::optional(options.vector("along")) : std::nullopt) {}
+    double look(const Sight& sight) override {
+        const Vec3 up = up_of(sight, along_);
+        double moment = 0, volume = 0;
+        selection_.each(sight, [&](std::size_t i) {
+            moment += sight.volume(i) * dot(sight.state.position[i] - from_, up);
+            volume += sight.volume(i);
+        });
+        return volume > 0 ? moment / volume : undefined;
+    }
+
+private:
+    Selection selection_;
+    Vec3 from_;
+    std::optional<Vec3> along_;
+};
+
+constexpr std::array<std::string_view, 2> ends = {"top", "centre"};
+constexpr OptionSpec from_option{"from", OptionSpec::Kind::vector, "m",
+                                 "the point from which it counts; default: the origin"};
+constexpr OptionSpec along_option{"along", OptionSpec::Kind::direction, "", "upwards; default: against gravity"};
+constexpr std::array height_options = {
+    of_option,
+    in_option,
+    from_option,
+    along_option,
+    OptionSpec{"share",
+               OptionSpec::Kind::number,
+               "1",
+               "share of the solid volume below; default: 0.95",
+               false,
+               {0, 1, true, false}},
+    OptionSpec{
+        "of_sphere", OptionSpec::Kind::word, "", "'top' or 'centre' of the spheres; default: top", false, {}, ends}};
+constexpr std::array mean_height_options = {of_option, in_option, from_option, along_option};
+
+}  // namespace
+
+const ProbeInfo height_of_share{
+    "height", "m", "height below which a share of the solid volume lies: the top of a bed", height_options,
+    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<HeightOfShare>(given); }};
+const ProbeInfo mean_height{
+    "mean_height", "m", "mean height, weighted by volume", mean_height_options,
+    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<MeanHeight>(given); }};
+
+}  // namespace grainsweep::machine::probes

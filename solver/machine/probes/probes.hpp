@@ -1,0 +1,24 @@
+// The rows of the catalogue, one per probe; each is defined in the file of its name.
+#pragma once
+
+#include "solver/machine/probe.hpp"
+
+namespace grainsweep::machine::probes {
+
+extern const ProbeInfo amount_count, amount_mass, amount_volume;
+extern const ProbeInfo bed_angle;
+extern const ProbeInfo centre;
+extern const ProbeInfo coordination;
+extern const ProbeInfo flow_mass, flow_number;
+extern const ProbeInfo granular_temperature;
+extern const ProbeInfo height_of_share, mean_height;
+extern const ProbeInfo kinetic_energy;
+extern const ProbeInfo lacey, mass_share;
+extern const ProbeInfo overlap;
+extern const ProbeInfo profile;
+extern const ProbeInfo radius;
+extern const ProbeInfo solid_fraction;
+extern const ProbeInfo velocity, momentum;
+extern const ProbeInfo wall_force, wall_torque, wall_work, wall_pressure;
+
+}  // namespace grainsweep::machine::probes

@@ -1,0 +1,67 @@
+// Mean distance from an axis, weighted by volume: the axis of the machine, or one through the centre of the bed.
+#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/selection.hpp"
+
+namespace grainsweep::machine::probes {
+namespace {
+
+using geometry::dot;
+using geometry::norm;
+using geometry::operator-;
+using geometry::operator+=;
+using geometry::operator*;
+
+class RadiusProbe final : public machine::Probe {
+public:
+    explicit RadiusProbe(const Options& options)
+        : selection_(options),
+          axis_(options.vector("axis")),
+          through_(options.vector("through", {})),
+          about_bed_(options.word("about", "axis") == "bed") {}
+    double look(const Sight& sight) override {
+        const Vec3 origin = about_bed_ ? centre_of_bed(sight) : through_;
+        double moment = 0, volume = 0;
+        selection_.each(sight, [&](std::size_t i) {
+            const Vec3 x = sight.state.position[i] - origin;
+            moment += sight.volume(i) * norm(x - dot(x, axis_) * axis_);
+            volume += sight.volume(i);
+        });
+        return volume > 0 ? moment / volume : undefined;
+    }
+
+private:
+    static Vec3 centre_of_bed(const Sight& sight) {
+        Vec3 moment{};
+        double volume = 0;
+        for (std::size_t i = 0; i < sight.size(); ++i) {
+            moment += sight.volume(i) * sight.state.position[i];
+            volume += sight.volume(i);
+        }
+        return volume > 0 ? (1 / volume) * moment : moment;
+    }
+
+    Selection selection_;
+    Vec3 axis_, through_;
+    bool about_bed_;
+};
+
+constexpr std::array<std::string_view, 2> abouts = {"axis", "bed"};
+constexpr std::array radius_options = {
+    of_option, in_option, OptionSpec{"axis", OptionSpec::Kind::direction, "", "the direction of the axis", true},
+    OptionSpec{"through", OptionSpec::Kind::vector, "m", "a point on the axis; default: the origin"},
+    OptionSpec{
+        "about",
+        OptionSpec::Kind::word,
+        "",
+        "'axis': the axis through that point; 'bed': through the centre of volume of all particles; default: axis",
+        false,
+        {},
+        abouts}};
+
+}  // namespace
+
+const ProbeInfo radius{
+    "radius", "m", "mean distance from an axis, weighted by volume", radius_options,
+    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<RadiusProbe>(given); }};
+
+}  // namespace grainsweep::machine::probes

@@ -1,0 +1,88 @@
+// What the powder does to walls: force, torque, work, and the pressure of the normal component.
+//
+// Of several walls together. Work is that of the walls on the powder since the start.
+#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/selection.hpp"
+
+namespace grainsweep::machine::probes {
+namespace {
+
+using geometry::dot;
+
+struct Walls {
+    std::vector<std::size_t> numbers;
+
+    explicit Walls(const Options& options) : numbers(options.numbers("wall")) {}
+    template <class Of>
+    [[nodiscard]] double sum(const Sight& sight, const Vec3& about, Of&& of) const {
+        double total = 0;
+        for (const std::size_t w : numbers) total += of(sight.engine.wall_load(w, about));
+        return total;
+    }
+};
+
+class Force final : public machine::Probe {
+public:
+    explicit Force(const Options& options)
+        : walls_(options), along_(options.vector("along")), area_(options.number("area", 1)) {}
+    double look(const Sight& sight) override {
+        return walls_.sum(sight, {}, [this](const dem::WallLoad& load) { return dot(load.force, along_); }) / area_;
+    }
+
+private:
+    Walls walls_;
+    Vec3 along_;
+    double area_;
+};
+
+class Torque final : public machine::Probe {
+public:
+    explicit Torque(const Options& options)
+        : walls_(options), axis_(options.vector("axis")), about_(options.vector("about", {})) {}
+    double look(const Sight& sight) override {
+        return walls_.sum(sight, about_, [this](const dem::WallLoad& load) { return dot(load.torque, axis_); });
+    }
+
+private:
+    Walls walls_;
+    Vec3 axis_, about_;
+};
+
+class Work final : public machine::Probe {
+public:
+    explicit Work(const Options& options) : walls_(options) {}
+    double look(const Sight& sight) override {
+        return walls_.sum(sight, {}, [](const dem::WallLoad& load) { return load.work; });
+    }
+
+private:
+    Walls walls_;
+};
+
+constexpr OptionSpec wall_option{"wall", OptionSpec::Kind::walls, "", "the wall, or a list of walls", true};
+constexpr std::array force_options = {
+    wall_option, OptionSpec{"along", OptionSpec::Kind::direction, "", "the direction of the component", true}};
+constexpr std::array torque_options = {
+    wall_option, OptionSpec{"axis", OptionSpec::Kind::direction, "", "the axis, right hand", true},
+    OptionSpec{"about", OptionSpec::Kind::vector, "m", "a point on the axis; default: the origin"}};
+constexpr std::array work_options = {wall_option};
+constexpr std::array pressure_options = {
+    wall_option, OptionSpec{"along", OptionSpec::Kind::direction, "", "the direction of the component", true},
+    OptionSpec{"area", OptionSpec::Kind::number, "m2", "the area that carries it", true, {0, 1e6, true, false}}};
+
+}  // namespace
+
+const ProbeInfo wall_force{
+    "wall_force", "N", "force of the powder on walls, a component", force_options,
+    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<Force>(given); }};
+const ProbeInfo wall_pressure{
+    "wall_pressure", "Pa", "force of the powder on walls, a component, divided by an area", pressure_options,
+    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<Force>(given); }};
+const ProbeInfo wall_torque{
+    "wall_torque", "N m", "torque of the powder on walls about an axis", torque_options,
+    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<Torque>(given); }};
+const ProbeInfo wall_work{
+    "wall_work", "J", "work of walls on the powder since the start", work_options,
+    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<Work>(given); }};
+
+}  // namespace grainsweep::machine::probes

@@ -1,0 +1,99 @@
+#include "solver/machine/reduction.hpp"
+
+#include "solver/observables/layer.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace grainsweep::machine {
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t blocks = 10;
+
+double last_of(std::span<const Sample> samples) {
+    return samples.empty() ? unknown : samples.back().value;
+}
+
+double first_of(std::span<const Sample> samples) {
+    return samples.empty() ? unknown : samples.front().value;
+}
+
+double mean_of(std::span<const Sample> samples) {
+    double sum = 0;
+    for (const Sample& sample : samples) sum += sample.value;
+    return samples.empty() ? unknown : sum / static_cast<double>(samples.size());
+}
+
+double deviation_of(std::span<const Sample> samples) {
+    const double mean = mean_of(samples);
+    double squares = 0;
+    for (const Sample& sample : samples) squares += (sample.value - mean) * (sample.value - mean);
+    return samples.empty() ? unknown : std::sqrt(squares / static_cast<double>(samples.size()));
+}
+
+double least_of(std::span<const Sample> samples) {
+    return samples.empty() ? unknown : std::ranges::min_element(samples, {}, &Sample::value)->value;
+}
+
+double largest_of(std::span<const Sample> samples) {
+    return samples.empty() ? unknown : std::ranges::max_element(samples, {}, &Sample::value)->value;
+}
+
+/// Least squares over time.
+double slope_of(std::span<const Sample> samples) {
+    if (samples.size() < 2) return unknown;
+    const double n = static_cast<double>(samples.size());
+    double t = 0, x = 0;
+    for (const Sample& sample : samples) t += sample.time / n, x += sample.value / n;
+    double tt = 0, tx = 0;
+    for (const Sample& sample : samples) {
+        tt += (sample.time - t) * (sample.time - t);
+        tx += (sample.time - t) * (sample.value - x);
+    }
+    return tt > 0 ? tx / tt : unknown;
+}
+
+/// By trapezia over time.
+double integral_of(std::span<const Sample> samples) {
+    double sum = 0;
+    for (std::size_t k = 1; k < samples.size(); ++k)
+        sum += (samples[k].time - samples[k - 1].time) * (samples[k].value + samples[k - 1].value) / 2;
+    return samples.size() < 2 ? unknown : sum;
+}
+
+constexpr std::array all_reductions = {
+    ReductionInfo{"mean", "mean over the frames, with a standard error from ten blocks of them", Shape::scalar, mean_of,
+                  true},
+    ReductionInfo{"last", "value at the last frame", Shape::scalar, last_of},
+    ReductionInfo{"first", "value at the first frame", Shape::scalar, first_of},
+    ReductionInfo{"sd", "standard deviation over the frames", Shape::scalar, deviation_of},
+    ReductionInfo{"min", "least value over the frames", Shape::scalar, least_of},
+    ReductionInfo{"max", "largest value over the frames", Shape::scalar, largest_of},
+    ReductionInfo{"slope", "least-squares slope over time", Shape::scalar, slope_of, false, "/s"},
+    ReductionInfo{"integral", "integral over time, by trapezia", Shape::scalar, integral_of, false, " s"},
+    ReductionInfo{"series", "value at every frame", Shape::series},
+    ReductionInfo{"profile", "mean over the frames, bin by bin", Shape::profile},
+};
+
+}  // namespace
+
+std::span<const ReductionInfo> reduction_catalogue() {
+    return all_reductions;
+}
+
+const ReductionInfo* find_reduction(std::string_view name) {
+    const auto found = std::ranges::find(all_reductions, name, &ReductionInfo::name);
+    return found == all_reductions.end() ? nullptr : &*found;
+}
+
+double error_of_mean(std::span<const Sample> samples) {
+    std::vector<double> values;
+    for (const Sample& sample : samples) values.push_back(sample.value);
+    return observables::block_standard_error(values, blocks);
+}
+
+}  // namespace grainsweep::machine

@@ -1,0 +1,28 @@
+// What becomes of the values that a probe has given at the frames: one number, a series, or a profile.
+#pragma once
+
+#include "solver/scenes/values.hpp"
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace grainsweep::machine {
+
+struct ReductionInfo {
+    std::string_view name, meaning;
+    Shape shape = Shape::scalar;
+    /// Returns the number; NaN where it is undefined. Of a series nothing: the values are the answer.
+    double (*of)(std::span<const Sample>) = nullptr;
+    bool has_error = false;  ///< a standard error from blocks goes with it
+    /// What to append to the unit of the probe.
+    std::string_view unit = {};
+};
+
+[[nodiscard]] std::span<const ReductionInfo> reduction_catalogue();
+/// Returns nullptr where there is none of that name.
+[[nodiscard]] const ReductionInfo* find_reduction(std::string_view name);
+/// Returns the standard error of the mean of a correlated series, from ten blocks.
+[[nodiscard]] double error_of_mean(std::span<const Sample> samples);
+
+}  // namespace grainsweep::machine

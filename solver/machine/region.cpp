@@ -1,0 +1,174 @@
+#include "solver/machine/region.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace grainsweep::machine {
+
+using geometry::dot;
+using geometry::norm;
+using geometry::operator-;
+using geometry::operator+;
+using geometry::operator*;
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr Bounds everywhere{{-infinity, -infinity, -infinity}, {infinity, infinity, infinity}};
+
+double depth_in(const Region::Box& box, const Vec3& x) {
+    double depth = infinity;
+    for (std::size_t k = 0; k < 3; ++k) depth = std::min({depth, x[k] - box.low[k], box.high[k] - x[k]});
+    return depth;
+}
+
+double depth_in(const Region::Round& round, const Vec3& x) {
+    const double along = dot(x - round.base, round.axis);
+    const double from_axis = norm(x - round.base - along * round.axis);
+    const double depth = std::min({along, round.length - along, round.radius - from_axis});
+    return round.inner > 0 ? std::min(depth, from_axis - round.inner) : depth;
+}
+
+double depth_in(const Region::Ball& ball, const Vec3& x) {
+    return ball.radius - norm(x - ball.centre);
+}
+
+double depth_in(const Region::Half& half, const Vec3& x) {
+    return dot(x - half.point, half.normal);
+}
+
+double depth_in(const Region::All& all, const Vec3& x) {
+    double depth = infinity;
+    for (const Region& region : all.of) depth = std::min(depth, region.depth(x));
+    return depth;
+}
+
+double depth_in(const Region::Any& any, const Vec3& x) {
+    double depth = -infinity;
+    for (const Region& region : any.of) depth = std::max(depth, region.depth(x));
+    return depth;
+}
+
+double depth_in(const Region::Not& none, const Vec3& x) {
+    return 0 - none.of.front().depth(x);
+}
+
+Bounds bounds_of(const Region::Box& box) {
+    return {box.low, box.high};
+}
+
+Bounds bounds_of(const Region::Round& round) {
+    Bounds bounds;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double across = round.radius * std::sqrt(std::max(0.0, 1 - round.axis[k] * round.axis[k]));
+        const double end = round.base[k] + round.length * round.axis[k];
+        bounds.low[k] = std::min(round.base[k], end) - across;
+        bounds.high[k] = std::max(round.base[k], end) + across;
+    }
+    return bounds;
+}
+
+Bounds bounds_of(const Region::Ball& ball) {
+    const Vec3 reach{ball.radius, ball.radius, ball.radius};
+    return {ball.centre - reach, ball.centre + reach};
+}
+
+/// A half space across an axis bounds it on one side.
+Bounds bounds_of(const Region::Half& half) {
+    Bounds bounds = everywhere;
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (half.normal[k] == 1) bounds.low[k] = half.point[k];
+        if (half.normal[k] == -1) bounds.high[k] = half.point[k];
+    }
+    return bounds;
+}
+
+Bounds bounds_of(const Region::All& all) {
+    Bounds bounds = everywhere;
+    for (const Region& region : all.of) {
+        const Bounds one = region.bounds();
+        for (std::size_t k = 0; k < 3; ++k) {
+            bounds.low[k] = std::max(bounds.low[k], one.low[k]);
+            bounds.high[k] = std::min(bounds.high[k], one.high[k]);
+        }
+    }
+    return bounds;
+}
+
+Bounds bounds_of(const Region::Any& any) {
+    Bounds bounds{everywhere.high, everywhere.low};
+    for (const Region& region : any.of) {
+        const Bounds one = region.bounds();
+        for (std::size_t k = 0; k < 3; ++k) {
+            bounds.low[k] = std::min(bounds.low[k], one.low[k]);
+            bounds.high[k] = std::max(bounds.high[k], one.high[k]);
+        }
+    }
+    return bounds;
+}
+
+Bounds bounds_of(const Region::Not&) {
+    return everywhere;
+}
+
+bool is_unit(const Vec3& a) {
+    return std::abs(norm(a) - 1) < 1e-9;
+}
+
+const char* flaw_of(const Region::Box& box) {
+    for (std::size_t k = 0; k < 3; ++k)
+        if (!(box.low[k] < box.high[k])) return "\"low\" of a box must lie below \"high\" along every axis";
+    return "";
+}
+
+const char* flaw_of(const Region::Round& round) {
+    if (!is_unit(round.axis)) return "the axis of a cylinder must not be 0";
+    if (!(round.radius > 0 && round.length > 0)) return "a cylinder needs a radius and a length above 0";
+    return round.inner >= 0 && round.inner < round.radius ? "" : "\"inner\" of a cylinder is from 0 to its radius";
+}
+
+const char* flaw_of(const Region::Ball& ball) {
+    return ball.radius > 0 ? "" : "a ball needs a radius above 0";
+}
+
+const char* flaw_of(const Region::Half& half) {
+    return is_unit(half.normal) ? "" : "the normal of a half space must not be 0";
+}
+
+template <class Combined>
+const char* flaw_of(const Combined& combined) {
+    if (combined.of.empty()) return "a combination of regions needs one";
+    for (const Region& region : combined.of)
+        if (const char* flaw = region.flaw(); *flaw != '\0') return flaw;
+    return "";
+}
+
+}  // namespace
+
+double Region::depth(const Vec3& x) const {
+    return std::visit([&](const auto& region) { return depth_in(region, x); }, is);
+}
+
+Bounds Region::bounds() const {
+    return std::visit([](const auto& region) { return bounds_of(region); }, is);
+}
+
+std::optional<double> Region::volume() const {
+    if (const auto* box = std::get_if<Box>(&is)) {
+        const Vec3 size = box->high - box->low;
+        return size[0] * size[1] * size[2];
+    }
+    if (const auto* round = std::get_if<Round>(&is))
+        return std::numbers::pi * (round->radius * round->radius - round->inner * round->inner) * round->length;
+    if (const auto* ball = std::get_if<Ball>(&is))
+        return 4 * std::numbers::pi / 3 * ball->radius * ball->radius * ball->radius;
+    return std::nullopt;
+}
+
+const char* Region::flaw() const {
+    return std::visit([](const auto& region) { return flaw_of(region); }, is);
+}
+
+}  // namespace grainsweep::machine

@@ -1,0 +1,75 @@
+// A region of space: where particles are filled in, fed, or measured.
+//
+// A region answers one question, the depth of a point in it: at most the distance to the surface of the region,
+// positive inside. So a sphere of radius r lies in the region where the depth of its centre is at least r.
+#pragma once
+
+#include "solver/geometry/vector.hpp"
+
+#include <optional>
+#include <variant>
+#include <vector>
+
+namespace grainsweep::machine {
+
+using geometry::Vec3;
+
+struct Bounds {
+    Vec3 low{}, high{};
+};
+
+struct Region;
+
+struct BoxRegion {
+    Vec3 low{}, high{};
+};
+/// Solid or hollow cylinder between two planes across its axis.
+struct RoundRegion {
+    Vec3 base{};         ///< centre of the first end
+    Vec3 axis{0, 0, 1};  ///< unit
+    double radius = 0;   ///< m
+    double inner = 0;    ///< m
+    double length = 0;   ///< m
+};
+struct BallRegion {
+    Vec3 centre{};
+    double radius = 0;
+};
+/// The side of a plane that its normal points to.
+struct HalfRegion {
+    Vec3 point{};
+    Vec3 normal{0, 0, 1};  ///< unit
+};
+struct AllRegions {
+    std::vector<Region> of;
+};
+struct AnyRegion {
+    std::vector<Region> of;
+};
+/// Everything outside of the one region in it.
+struct NotRegion {
+    std::vector<Region> of;
+};
+
+struct Region {
+    using Box = BoxRegion;
+    using Round = RoundRegion;
+    using Ball = BallRegion;
+    using Half = HalfRegion;
+    using All = AllRegions;
+    using Any = AnyRegion;
+    using Not = NotRegion;
+    std::variant<Box, Round, Ball, Half, All, Any, Not> is;
+
+    /// Returns the depth of a point, m.
+    [[nodiscard]] double depth(const Vec3& x) const;
+    [[nodiscard]] bool contains(const Vec3& x) const { return depth(x) >= 0; }
+    /// Returns a box around it; infinite where the region is.
+    [[nodiscard]] Bounds bounds() const;
+    /// Returns its volume, m3; none of half spaces and combinations.
+    [[nodiscard]] std::optional<double> volume() const;
+    /// Returns what is wrong with its numbers, in one sentence; empty: nothing.
+    [[nodiscard]] const char* flaw() const;
+};
+
+}  // namespace grainsweep::machine

@@ -1,0 +1,323 @@
+#include "solver/machine/run.hpp"
+
+#include "solver/machine/reduction.hpp"
+#include "solver/scenes/dem_picture.hpp"
+#include "solver/scenes/kit/checkpoint.hpp"
+#include "solver/scenes/kit/slices.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace grainsweep::machine {
+namespace {
+
+using geometry::dot;
+using geometry::norm;
+
+constexpr std::uint64_t checkpoint_format = 0x6772'6e73'6d63'0001ULL;  // "grnsmc", version 1
+constexpr double calm = 1e-3;                                          // kinetic energy of a particle at rest, in m g d
+constexpr double checks = 0.25;                                        // interval of checks, in sqrt(d/g)
+constexpr double longest_check = 0.01;                                 // of the phase, without gravity
+
+double mean_diameter(const Spec& spec) {
+    double sum = 0;
+    for (const Species& species : spec.species) sum += species.diameter / static_cast<double>(spec.species.size());
+    return sum;
+}
+
+/// sqrt(d/g), s; infinite without gravity.
+double falling_time(const Spec& spec) {
+    return std::sqrt(mean_diameter(spec) / norm(spec.gravity));
+}
+
+}  // namespace
+
+Run::Run(Spec spec, std::uint64_t seed) : spec_(std::move(spec)), records_(spec_.measures.size()) {
+    const Filled start = filled(spec_, seed);
+    dem::Setup setup = setup_of(spec_, start);
+    for (const Feed& feed : spec_.feeds)
+        for (const auto& [number, share] : feed.mix) {
+            const Species& species = spec_.species[number];
+            setup.to_come.push_back({species.smallest() / 2, species.largest() / 2, species.material});
+        }
+    for (const std::uint8_t species : start.species) {
+        species_.push_back(species);
+        density_.push_back(spec_.densities[spec_.species[species].material]);
+    }
+    engine_ = dem::make_engine(setup, spec_.method);
+    for (const Measure& measure : spec_.measures) {
+        const ProbeInfo& probe = *find_probe(measure.probe);
+        probes_.push_back(probe.make(measure.options));
+        needs_contacts_ = needs_contacts_ || probe.contacts;
+    }
+    for (const Phase& phase : spec_.phases) {
+        const auto* passes = phase.until ? std::get_if<Passes>(&*phase.until) : nullptr;
+        const Measure* measure = passes != nullptr ? &spec_.measures[passes->measure] : nullptr;
+        watching_.push_back(measure != nullptr ? find_probe(measure->probe)->make(measure->options) : nullptr);
+    }
+    for (std::size_t k = 0; k < spec_.feeds.size(); ++k) feeders_.emplace_back(spec_, k, seed);
+    begin_phase();
+}
+
+std::int64_t Run::steps_in(double seconds) const {
+    return std::max<std::int64_t>(1, std::llround(std::ceil(seconds / spec_.time_step - 1e-6)));
+}
+
+std::int64_t Run::step_of_frame(std::int64_t frame) const {
+    const double share = static_cast<double>(frame) / static_cast<double>(phase().frames);
+    return phase_begin_ + std::llround(share * static_cast<double>(phase_steps()));
+}
+
+/// Steps between two checks whether the phase ends early.
+static std::int64_t check_steps(const Spec& spec, const Phase& phase) {
+    const double interval = std::min(checks * falling_time(spec), longest_check * phase.duration);
+    return std::max<std::int64_t>(1, std::llround(interval / spec.time_step));
+}
+
+std::int64_t Run::next_stop() const {
+    std::int64_t stop = phase_begin_ + phase_steps();
+    if (frame_ <= phase().frames) stop = std::min(stop, step_of_frame(frame_));
+    if (phase().until) stop = std::min(stop, phase_begin_ + (check_ + 1) * check_steps(spec_, phase()));
+    for (const Feed& feed : spec_.feeds)
+        if (holds(feed.during, phase_)) {
+            const std::int64_t every = steps_in(feed.interval);
+            stop = std::min(stop, phase_begin_ + ((step_ - phase_begin_) / every + 1) * every);
+        }
+    return stop;
+}
+
+void Run::advance(double until) {
+    while (!finished() && health().stable() && time() < until) {
+        const std::int64_t stop = next_stop();
+        step_ = kit::run_towards(*engine_, step_, stop, spec_.time_step, until);
+        if (health().stable() && step_ == stop) stop_here();
+    }
+}
+
+void Run::begin_phase() {
+    times_.begin.push_back(time());
+    phase_begin_ = step_;
+    frame_ = check_ = 0;
+    calm_since_ = time();
+    watched_ = undefined;
+    if (phase_ > 0) engine_->change_walls(walls_in(spec_, phase_, times_));
+    feed();
+    take_frame();
+}
+
+void Run::end_phase(bool early) {
+    times_.end.push_back(time());
+    ended_early_.push_back(early ? 1 : 0);
+    ++phase_;
+    if (!finished()) begin_phase();
+}
+
+void Run::stop_here() {
+    if (step_ > phase_begin_) feed();
+    if (frame_ <= phase().frames && step_ == step_of_frame(frame_)) take_frame();
+    bool early = false;
+    if (phase().until && step_ == phase_begin_ + (check_ + 1) * check_steps(spec_, phase())) {
+        ++check_;
+        early = ends_early();
+    }
+    if (early || step_ == phase_begin_ + phase_steps()) end_phase(early);
+}
+
+void Run::feed() {
+    for (std::size_t k = 0; k < feeders_.size(); ++k) {
+        if (!holds(spec_.feeds[k].during, phase_)) continue;
+        const std::int64_t every = steps_in(spec_.feeds[k].interval);
+        if ((step_ - phase_begin_) % every != 0) continue;
+        feeders_[k].owe(static_cast<double>(every) * spec_.time_step);
+        engine_->state(state_);
+        add(feeders_[k].batch(state_));
+    }
+}
+
+void Run::add(const Filled& added) {
+    if (added.spheres.empty()) return;
+    engine_->add(added.spheres);
+    for (const std::uint8_t species : added.species) {
+        species_.push_back(species);
+        density_.push_back(spec_.densities[spec_.species[species].material]);
+    }
+}
+
+Sight Run::look(bool contacts) {
+    engine_->state(state_);
+    contacts_.clear();
+    if (contacts) engine_->contacts(contacts_);
+    return {*engine_, state_, contacts_, species_, density_, spec_.domain, spec_.gravity, time()};
+}
+
+void Run::take_frame() {
+    const Sight sight = look(needs_contacts_);
+    for (std::size_t m = 0; m < probes_.size(); ++m) {
+        const Measure& measure = spec_.measures[m];
+        if (!holds(measure.during, phase_)) continue;
+        Record& record = records_[m];
+        const double value = probes_[m]->look(sight);
+        if (std::isfinite(value)) record.samples.push_back({.time = sight.time, .value = value});
+        if (find_probe(measure.probe)->over.empty()) continue;
+        std::vector<Sample> profile;
+        probes_[m]->profile(sight, profile);
+        record.sums.resize(profile.size(), 0.0), record.counts.resize(profile.size(), 0.0);
+        record.bins.resize(profile.size(), 0.0);
+        for (std::size_t b = 0; b < profile.size(); ++b) {
+            record.bins[b] = profile[b].bin;
+            if (!std::isfinite(profile[b].value)) continue;
+            record.sums[b] += profile[b].value;
+            record.counts[b] += 1;
+        }
+    }
+    ++frame_;
+}
+
+double Run::mass_in(const Region& region) {
+    const Sight sight = look(false);
+    double mass = 0;
+    for (std::size_t i = 0; i < sight.size(); ++i)
+        if (region.contains(state_.position[i])) mass += sight.mass(i);
+    return mass;
+}
+
+bool Run::ends_early() {
+    const Until& until = *phase().until;
+    if (std::holds_alternative<AtRest>(until)) {
+        const Sight sight = look(false);
+        double energy = 0, scale = 0;
+        for (std::size_t i = 0; i < sight.size(); ++i) {
+            energy += sight.mass(i) / 2 * dot(state_.velocity[i], state_.velocity[i]);
+            scale += sight.mass(i) * norm(spec_.gravity) * 2 * state_.radius[i];
+        }
+        if (!(energy < calm * scale)) calm_since_ = time();
+        return time() - calm_since_ >= falling_time(spec_);
+    }
+    if (const auto* empty = std::get_if<Empty>(&until)) return mass_in(empty->region) == 0;
+    if (const auto* flow = std::get_if<FlowStops>(&until)) {
+        const double mass = mass_in(flow->region);
+        if (mass != watched_) calm_since_ = time();
+        watched_ = mass;
+        return time() - calm_since_ >= flow->quiet;
+    }
+    const auto& passes = std::get<Passes>(until);
+    const double value = watching_[phase_]->look(look(find_probe(spec_.measures[passes.measure].probe)->contacts));
+    return passes.above ? value > passes.value : value < passes.value;
+}
+
+double Run::progress() const {
+    if (finished()) return 1;
+    double all = 0, done = 0;
+    for (std::size_t p = 0; p < spec_.phases.size(); ++p) {
+        all += spec_.phases[p].duration;
+        if (p < phase_) done += spec_.phases[p].duration;
+    }
+    done += phase().duration * static_cast<double>(step_ - phase_begin_) / static_cast<double>(phase_steps());
+    return std::min(done / all, 1 - 1e-9);
+}
+
+void Run::observe(const Measure& measure, const Record& record, Observations& into) const {
+    const ReductionInfo& reduction = *find_reduction(measure.reduction);
+    if (reduction.shape == Shape::profile) {
+        auto& profile = into.series[measure.name];
+        for (std::size_t b = 0; b < record.bins.size(); ++b)
+            if (record.counts[b] > 0)
+                profile.push_back({.bin = record.bins[b], .value = record.sums[b] / record.counts[b]});
+        return;
+    }
+    std::vector<Sample> samples;
+    for (const Sample& sample : record.samples) {
+        const double first = record.samples.front().value;
+        const bool counts = !measure.shares || (sample.value >= measure.shares->first * first &&
+                                                sample.value <= measure.shares->second * first);
+        if (counts) samples.push_back(sample);
+    }
+    if (reduction.shape == Shape::series) {
+        into.series[measure.name] = std::move(samples);
+        return;
+    }
+    if (const double value = reduction.of(samples); std::isfinite(value)) into.scalars[measure.name] = value;
+    if (!reduction.has_error) return;
+    if (const double error = error_of_mean(samples); std::isfinite(error))
+        into.scalars[measure.name + "_error"] = error;
+}
+
+void Run::observe(Observations& into) const {
+    into.scalars["particles"] = static_cast<double>(engine_->size());
+    into.scalars["lost"] = static_cast<double>(species_.size()) - static_cast<double>(engine_->size());
+    into.scalars["max_overlap"] = engine_->peak_overlap();
+    for (std::size_t k = 0; k < feeders_.size(); ++k) {
+        into.scalars[spec_.feeds[k].name + "_fed"] = feeders_[k].fed();
+        into.scalars[spec_.feeds[k].name + "_waiting"] = std::max(0.0, feeders_[k].waiting());
+    }
+    for (std::size_t p = 0; p < times_.end.size(); ++p) {
+        if (!spec_.phases[p].until) continue;
+        into.scalars[spec_.phases[p].name + "_time"] = times_.end[p] - times_.begin[p];
+        into.scalars[spec_.phases[p].name + "_ended"] = ended_early_[p];
+    }
+    for (std::size_t m = 0; m < spec_.measures.size(); ++m) observe(spec_.measures[m], records_[m], into);
+    for (const TimeOf& time_of : spec_.times)
+        for (const Sample& sample : records_[time_of.measure].samples)
+            if (time_of.above ? sample.value > time_of.value : sample.value < time_of.value) {
+                into.scalars[time_of.name] = sample.time;
+                break;
+            }
+    for (const Derived& derived : spec_.derived) {
+        const bool known =
+            std::ranges::all_of(derived.needs, [&](const auto& name) { return into.scalars.contains(name); });
+        if (!known) continue;
+        if (const double value = derived.value(into.scalars); std::isfinite(value)) into.scalars[derived.name] = value;
+    }
+}
+
+Snapshot Run::snapshot() const {
+    Snapshot picture = picture_of(*engine_);
+    auto& species = picture.scalars["species"];
+    for (const double id : picture.scalars["id"]) species.push_back(species_[static_cast<std::size_t>(id)]);
+    for (std::size_t k = 0; k < 3; ++k)
+        if (spec_.domain.periodic[k]) picture.periods[k] = spec_.domain.length(k);
+    if (finished()) return picture;
+    const auto walls = walls_in(spec_, phase_, times_);
+    for (std::size_t w = 0; w < walls.size(); ++w)
+        if (walls[w].present)
+            picture.walls.push_back(
+                surface_of(walls[w], spec_.walls[w].name, spec_.domain.low, spec_.domain.high, engine_->wall_time()));
+    return picture;
+}
+
+template <class State, class Visit>
+void Run::fields(State& run, Visit&& visit) {
+    visit(run.step_), visit(run.phase_), visit(run.phase_begin_), visit(run.frame_), visit(run.check_);
+    visit(run.calm_since_), visit(run.watched_), visit(run.times_.begin), visit(run.times_.end);
+    visit(run.ended_early_), visit(run.species_), visit(run.density_);
+    for (auto& record : run.records_)
+        visit(record.samples), visit(record.bins), visit(record.sums), visit(record.counts);
+}
+
+void Run::save(Bytes& into) const {
+    kit::write_checkpoint(into, checkpoint_format, *engine_, [this](ByteWriter& out) {
+        fields(*this, [&out](const auto& value) { out.put(value); });
+        for (const auto& feeder : feeders_) feeder.save(out);
+        for (const auto& probe : probes_) probe->save(out);
+        for (const auto& probe : watching_)
+            if (probe) probe->save(out);
+    });
+}
+
+void Run::restore(std::span<const std::byte> from) {
+    ByteReader in = kit::open_checkpoint(from, checkpoint_format);
+    fields(*this, [&in](auto& value) { in.get(value); });
+    for (auto& feeder : feeders_) feeder.restore(in);
+    for (auto& probe : probes_) probe->restore(in);
+    for (auto& probe : watching_)
+        if (probe) probe->restore(in);
+    in.require(phase_ <= spec_.phases.size() && times_.begin.size() == std::min(phase_ + 1, spec_.phases.size()) &&
+               times_.end.size() == phase_ && ended_early_.size() == phase_);
+    in.require(species_.size() == density_.size() &&
+               std::ranges::all_of(species_, [this](std::uint8_t s) { return s < spec_.species.size(); }));
+    engine_->restore(kit::engine_at_end(in));
+}
+
+}  // namespace grainsweep::machine

@@ -1,0 +1,82 @@
+// Any machine as it runs: phases one after the other, frames at which probes look, batches of feeds, checks whether a
+// phase ends early.
+//
+// All of this happens at steps that the spec fixes, so that slices of a caller, threads and resuming change no bit.
+#pragma once
+
+#include "solver/dem/engine.hpp"
+#include "solver/machine/feeding.hpp"
+#include "solver/machine/setup.hpp"
+#include "solver/machine/spec.hpp"
+#include "solver/scenes/scene.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace grainsweep::machine {
+
+class Run final : public Scene {
+public:
+    Run(Spec spec, std::uint64_t seed);
+
+    void advance(double until) override;
+    int use_threads(int count) override { return engine_->set_threads(count); }
+    void observe(Observations& into) const override;
+    [[nodiscard]] double time() const override { return spec_.time_step * static_cast<double>(step_); }
+    [[nodiscard]] bool finished() const override { return phase_ == spec_.phases.size(); }
+    [[nodiscard]] double progress() const override;
+    [[nodiscard]] Health health() const override { return {engine_->fault()}; }
+    [[nodiscard]] double particle_steps() const override { return engine_->work().particle_steps; }
+    void save(Bytes& into) const override;
+    void restore(std::span<const std::byte> from) override;
+    [[nodiscard]] Snapshot snapshot() const override;
+
+private:
+    /// Samples of a measurement so far.
+    struct Record {
+        std::vector<Sample> samples;
+        std::vector<double> bins, sums, counts;  // of a profile
+    };
+
+    [[nodiscard]] std::int64_t steps_in(double seconds) const;
+    [[nodiscard]] const Phase& phase() const { return spec_.phases[phase_]; }
+    [[nodiscard]] std::int64_t phase_steps() const { return steps_in(phase().duration); }
+    [[nodiscard]] std::int64_t step_of_frame(std::int64_t frame) const;
+    [[nodiscard]] std::int64_t next_stop() const;
+    void begin_phase();
+    void end_phase(bool early);
+    void stop_here();
+    void feed();
+    void take_frame();
+    [[nodiscard]] bool ends_early();
+    [[nodiscard]] Sight look(bool contacts);
+    [[nodiscard]] double mass_in(const Region& region);
+    void add(const Filled& filled);
+    void observe(const Measure& measure, const Record& record, Observations& into) const;
+    template <class State, class Visit>
+    static void fields(State& run, Visit&& visit);
+
+    Spec spec_;
+    std::vector<std::uint8_t> species_;  // by id
+    std::vector<double> density_;        // by id
+    std::unique_ptr<dem::Engine> engine_;
+    std::vector<std::unique_ptr<Probe>> probes_, watching_;  // of measures; those that end a phase
+    std::vector<Feeder> feeders_;
+    bool needs_contacts_ = false;
+
+    std::int64_t step_ = 0;
+    std::size_t phase_ = 0;
+    std::int64_t phase_begin_ = 0;  // step
+    std::int64_t frame_ = 0;        // next one of the phase
+    std::int64_t check_ = 0;        // next one of the phase, counted from 1
+    double calm_since_ = 0, watched_ = 0;
+    PhaseTimes times_;
+    std::vector<std::uint8_t> ended_early_;
+    std::vector<Record> records_;
+    dem::State state_;
+    std::vector<dem::ContactForce> contacts_;
+};
+
+}  // namespace grainsweep::machine

@@ -1,0 +1,38 @@
+// Which particles a probe counts: by species and by region, centres deciding.
+#pragma once
+
+#include "solver/machine/probe.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace grainsweep::machine {
+
+inline constexpr OptionSpec of_option{"of", OptionSpec::Kind::species, "", "the species that count; default: all"};
+inline constexpr OptionSpec in_option{"in", OptionSpec::Kind::region, "",
+                                      "the region in which centres count; default: everywhere"};
+
+class Selection {
+public:
+    explicit Selection(const Options& options) : of_(options.numbers("of")), in_(options.region("in")) {}
+
+    [[nodiscard]] bool species_counts(const Sight& sight, std::size_t i) const {
+        return of_.empty() || std::ranges::find(of_, sight.species_of(i)) != of_.end();
+    }
+    [[nodiscard]] bool holds(const Sight& sight, std::size_t i) const {
+        return species_counts(sight, i) && (!in_ || in_->contains(sight.state.position[i]));
+    }
+    /// Calls visit(i) for every particle that counts.
+    template <class Visit>
+    void each(const Sight& sight, Visit&& visit) const {
+        for (std::size_t i = 0; i < sight.size(); ++i)
+            if (holds(sight, i)) visit(i);
+    }
+    [[nodiscard]] const std::optional<Region>& region() const { return in_; }
+
+private:
+    std::vector<std::size_t> of_;
+    std::optional<Region> in_;
+};
+
+}  // namespace grainsweep::machine

@@ -1,0 +1,229 @@
+#include "solver/machine/setup.hpp"
+
+#include "solver/dem/time_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace grainsweep::machine {
+namespace {
+
+using geometry::dot;
+using geometry::Motion;
+using geometry::norm;
+using geometry::operator-;
+using geometry::operator+;
+using geometry::operator*;
+
+constexpr double never = std::numeric_limits<double>::infinity();
+constexpr int poses = 400;    // of a moving wall at which its extent is taken
+constexpr double margin = 2;  // largest diameters around the walls
+
+/// The motion as it acts where some phases have begun; none while its first one has not.
+std::optional<Motion> acting(const WallMotion& given, const PhaseTimes& times) {
+    Motion motion = given.motion;
+    if (!given.phases) return motion;
+    if (given.phases->first >= times.begin.size()) return std::nullopt;
+    const double start = times.begin[given.phases->first];
+    const double end = given.phases->last < times.end.size() ? times.end[given.phases->last] : never;
+    std::visit([&](auto& m) { m.start = start, m.end = end; }, motion);
+    return motion;
+}
+
+double largest_of(const Spec& spec) {
+    double largest = 0;
+    for (const Species& species : spec.species) largest = std::max(largest, species.largest());
+    return largest;
+}
+
+void widen(Bounds& all, const Vec3& x) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        all.low[k] = std::min(all.low[k], x[k]);
+        all.high[k] = std::max(all.high[k], x[k]);
+    }
+}
+
+/// The corners of a wall's extent, at poses of all times up to the end of the last phase.
+void widen_by(Bounds& all, const MachineWall& wall, const std::vector<Phase>& phases) {
+    PhaseTimes times;
+    double end = 0;
+    for (const Phase& phase : phases) {
+        times.begin.push_back(end);
+        times.end.push_back(end += phase.duration);
+    }
+    std::vector<Motion> motions;
+    for (const WallMotion& motion : wall.motions)
+        if (auto act = acting(motion, times)) motions.push_back(*act);
+    Bounds body;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto extent = std::visit([&](const auto& shape) { return shape.extent(k); }, wall.shape);
+        body.low[k] = extent.low, body.high[k] = extent.high;
+    }
+    const bool turns =
+        std::ranges::any_of(motions, [](const Motion& m) { return std::holds_alternative<geometry::Rotation>(m); });
+    for (int n = 0; n <= (motions.empty() ? 0 : poses); ++n) {
+        const auto pose = geometry::pose_at(motions, end * n / poses);
+        for (unsigned corner = 0; corner < 8; ++corner) {
+            Vec3 x{};
+            bool finite = true;
+            for (std::size_t k = 0; k < 3; ++k) {
+                x[k] = (corner >> k & 1U) != 0 ? body.high[k] : body.low[k];
+                finite = finite && std::isfinite(x[k]);
+            }
+            if (finite) widen(all, pose.from_body(x));
+        }
+        // What is without end along an axis bounds the others, as long as it is not turned.
+        if (!turns)
+            for (std::size_t k = 0; k < 3; ++k) {
+                if (std::isfinite(body.low[k])) all.low[k] = std::min(all.low[k], body.low[k] + pose.shift[k]);
+                if (std::isfinite(body.high[k])) all.high[k] = std::max(all.high[k], body.high[k] + pose.shift[k]);
+            }
+    }
+}
+
+/// A plane across an axis bounds it.
+void bound_by(Bounds& all, const geometry::Plane& plane) {
+    for (std::size_t k = 0; k < 3; ++k)
+        if (std::abs(plane.normal[k]) == 1) {
+            all.low[k] = std::min(all.low[k], plane.point[k]);
+            all.high[k] = std::max(all.high[k], plane.point[k]);
+        }
+}
+
+}  // namespace
+
+bool holds(const Phases& phases, std::size_t phase) {
+    return phases.empty() || std::ranges::find(phases, phase) != phases.end();
+}
+
+std::vector<dem::Wall> walls_in(const Spec& spec, std::size_t phase, const PhaseTimes& times) {
+    std::vector<dem::Wall> walls;
+    for (const MachineWall& given : spec.walls) {
+        dem::Wall wall(given.shape);
+        for (const WallMotion& motion : given.motions)
+            if (auto act = acting(motion, times)) wall.motions.push_back(*act);
+        wall.materials = given.materials;
+        wall.present = holds(given.during, phase);
+        walls.push_back(std::move(wall));
+    }
+    return walls;
+}
+
+dem::Setup setup_of(const Spec& spec, const Filled& filled) {
+    dem::Setup setup;
+    setup.domain = {spec.domain.low, spec.domain.high, spec.domain.periodic};
+    setup.material = spec.pairs.front();
+    setup.material.density = spec.densities.front();
+    if (spec.densities.size() > 1) setup.kinds = {spec.densities, spec.pairs};
+    setup.gravity = spec.gravity;
+    setup.time_step = spec.time_step;
+    setup.spheres = filled.spheres;
+    setup.walls = walls_in(spec, 0, {{0.0}, {}});
+    return setup;
+}
+
+double time_step_of(const Spec& spec, double fraction, double speed) {
+    double shortest = never;
+    const auto pair_of = [&](std::size_t a, std::size_t b) { return spec.pairs[dem::place_of_pair(a, b)]; };
+    for (const Species& a : spec.species) {
+        dem::Material own = pair_of(a.material, a.material);
+        own.density = spec.densities[a.material];
+        shortest = std::min(shortest, dem::rayleigh_time(own, a.smallest() / 2));
+        for (const Species& b : spec.species) {
+            dem::Material pair = pair_of(a.material, b.material);
+            pair.density = std::min(spec.densities[a.material], spec.densities[b.material]);
+            shortest =
+                std::min(shortest, dem::hertz_contact_time(pair, std::min(a.smallest(), b.smallest()) / 2, speed));
+        }
+        for (const MachineWall& wall : spec.walls) {
+            dem::Material pair = wall.materials[a.material];
+            pair.density = spec.densities[a.material];
+            shortest = std::min(shortest, dem::hertz_contact_time(pair, a.smallest() / 2, speed));
+        }
+    }
+    return fraction * shortest;
+}
+
+double fastest_of(const Spec& spec) {
+    const double g = norm(spec.gravity);
+    double top = 0, initial = 0;
+    const auto consider = [&](const Region& region) {
+        if (!(g > 0)) return;
+        const Bounds bounds = region.bounds();
+        for (unsigned corner = 0; corner < 8; ++corner) {
+            Vec3 x{};
+            for (std::size_t k = 0; k < 3; ++k)
+                x[k] = std::clamp((corner >> k & 1U) != 0 ? bounds.high[k] : bounds.low[k], spec.domain.low[k],
+                                  spec.domain.high[k]);
+            // How far the domain goes on downhill from there.
+            double drop = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const double along = spec.gravity[k] / g;
+                if (!spec.domain.periodic[k])
+                    drop += std::max(along * (spec.domain.low[k] - x[k]), along * (spec.domain.high[k] - x[k]));
+            }
+            top = std::max(top, drop);
+        }
+    };
+    for (const auto& fill : spec.fills) {
+        if (const auto* region = std::get_if<Fill>(&fill)) {
+            consider(region->in);
+            initial = std::max(initial, norm(region->velocity) + region->shaken);
+        } else {
+            for (const Placed& placed : std::get<std::vector<Placed>>(fill)) {
+                initial = std::max(initial, norm(placed.sphere.velocity));
+                const Vec3& x = placed.sphere.position;
+                consider({Region::Box{x, x}});
+            }
+        }
+    }
+    for (const Feed& feed : spec.feeds) {
+        consider(feed.through);
+        initial = std::max(initial, norm(feed.velocity));
+    }
+    double walls = 0;
+    const double largest = largest_of(spec);
+    for (const MachineWall& wall : spec.walls) {
+        std::vector<Motion> motions;
+        for (const WallMotion& motion : wall.motions) motions.push_back(motion.motion);
+        if (motions.empty()) continue;
+        walls = std::max(walls, dem::MovingWall(dem::Wall(wall.shape, motions), spec.domain, largest).fastest());
+    }
+    return std::max(std::sqrt(2 * g * top) + initial + walls, 1e-3);
+}
+
+geometry::Domain domain_around(const Spec& spec, const std::array<bool, 3>& given) {
+    Bounds all{{never, never, never}, {-never, -never, -never}};
+    for (const MachineWall& wall : spec.walls) {
+        widen_by(all, wall, spec.phases);
+        if (const auto* plane = std::get_if<geometry::Plane>(&wall.shape)) bound_by(all, *plane);
+    }
+    const auto include = [&](const Region& region) {
+        const Bounds bounds = region.bounds();
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (std::isfinite(bounds.low[k])) all.low[k] = std::min(all.low[k], bounds.low[k]);
+            if (std::isfinite(bounds.high[k])) all.high[k] = std::max(all.high[k], bounds.high[k]);
+        }
+    };
+    for (const auto& fill : spec.fills) {
+        if (const auto* region = std::get_if<Fill>(&fill)) include(region->in);
+        if (const auto* placed = std::get_if<std::vector<Placed>>(&fill))
+            for (const Placed& one : *placed) widen(all, one.sphere.position);
+    }
+    for (const Feed& feed : spec.feeds) include(feed.through);
+    geometry::Domain domain{all.low, all.high, {}};
+    const double around = margin * largest_of(spec);
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (given[k]) continue;
+        if (!(std::isfinite(all.low[k]) && std::isfinite(all.high[k])))
+            throw std::invalid_argument(std::string("nothing bounds the machine along ") + "xyz"[k] +
+                                        ": give a \"domain\"");
+        domain.low[k] -= around;
+        domain.high[k] += around;
+    }
+    return domain;
+}
+
+}  // namespace grainsweep::machine

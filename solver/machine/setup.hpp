@@ -1,0 +1,31 @@
+// From a Spec to what an engine computes.
+#pragma once
+
+#include "solver/machine/filling.hpp"
+#include "solver/machine/spec.hpp"
+
+#include <vector>
+
+namespace grainsweep::machine {
+
+/// Begin of each phase that has begun, and its end where it has ended, s.
+struct PhaseTimes {
+    std::vector<double> begin, end;
+};
+
+/// Returns the walls as they are in a phase: which are present, and how they move from now on. Motions of phases that
+/// have not begun never start.
+[[nodiscard]] std::vector<dem::Wall> walls_in(const Spec& spec, std::size_t phase, const PhaseTimes& times);
+/// Returns the setup at the start, in the first phase.
+[[nodiscard]] dem::Setup setup_of(const Spec& spec, const Filled& filled);
+/// Returns the time step: a fraction of the shortest Rayleigh time and of the shortest Hertz contact time of any two
+/// particles that meet at `speed`, s.
+[[nodiscard]] double time_step_of(const Spec& spec, double fraction, double speed);
+/// Returns the fastest impact to be expected: the fall from the top of the fillings and feeds to the lower end of the
+/// domain, with the fastest wall or feed, m/s.
+[[nodiscard]] double fastest_of(const Spec& spec);
+/// Returns a box around walls, fillings and feeds at all times, with two of the largest diameters around it. Throws
+/// std::invalid_argument where nothing bounds it along an axis whose ends are not given.
+[[nodiscard]] geometry::Domain domain_around(const Spec& spec, const std::array<bool, 3>& given = {});
+
+}  // namespace grainsweep::machine

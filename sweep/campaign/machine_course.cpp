@@ -1,0 +1,389 @@
+// "phases", "measure", "gravity" and "domain" of a machine.
+#include "sweep/campaign/formula.hpp"
+#include "sweep/campaign/machine_reading.hpp"
+
+#include "solver/machine/reduction.hpp"
+#include "solver/machine/setup.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+namespace grainsweep::campaign {
+namespace {
+
+
+using machine::OptionSpec;
+
+/// What an entry of "measure" is.
+enum class EntryKind { probe, time_of, expression };
+
+EntryKind kind_of(const Cursor& place) {
+    if (place.json().is_string()) return EntryKind::expression;
+    if (!place.json().is_object())
+        place.refuse("must be an object with a probe, or a text: an expression of other measurements");
+    return place.json().contains("time_of") ? EntryKind::time_of : EntryKind::probe;
+}
+
+/// The probe of an entry: its one key that is none of a measurement's own.
+const machine::ProbeInfo& probe_of(const Cursor& place) {
+    const machine::ProbeInfo* found = nullptr;
+    std::string unknown;
+    for (const auto& [key, value] : place.json().items()) {
+        const auto own = machine_keys::measure();
+        if (key == notes_key || std::ranges::find(own, key, &Key::name) != own.end()) continue;
+        const auto* probe = machine::find_probe(key);
+        if (probe == nullptr) {
+            unknown = key;
+        } else if (found != nullptr) {
+            place.refuse(fmt::format("has two probes, '{}' and '{}'; a measurement has one", found->name, key));
+        } else {
+            found = probe;
+        }
+    }
+    const WordList probes = names_of(machine::probe_catalogue());
+    if (!unknown.empty()) {
+        WordList known = probes;
+        for (const Key& key : machine_keys::measure()) known.push_back(key.name);
+        throw wrong_question(path_of(place.path(), unknown), "", "there is no such probe",
+                             nearest_word(unknown, known));
+    }
+    if (found == nullptr) place.refuse(fmt::format("a measurement needs a probe: {}", in_words(probes)));
+    return *found;
+}
+
+const machine::ReductionInfo& reduction_of(const Cursor& place, const machine::ProbeInfo& probe) {
+    const bool profile = !probe.over.empty();
+    std::vector<std::string_view> words;
+    for (const auto& reduction : machine::reduction_catalogue())
+        if ((reduction.shape == Shape::profile) == profile) words.push_back(reduction.name);
+    if (!place.json().contains("as")) return *machine::find_reduction(profile ? "profile" : "mean");
+    return *machine::find_reduction(place["as"].word(words));
+}
+
+machine::OptionValue option_value(const Cursor& place, const OptionSpec& option, const MachineReading& reading) {
+    switch (option.kind) {
+        case OptionSpec::Kind::number:
+            return reading.scope.number(place, option.unit, option.bounds);
+        case OptionSpec::Kind::vector:
+            return reading.scope.vector(place, option.unit);
+        case OptionSpec::Kind::direction:
+            return reading.scope.direction(place);
+        case OptionSpec::Kind::region:
+            return reading.scope.region(place);
+        case OptionSpec::Kind::species:
+            return reading.scope.places_in(place, reading.species, "species");
+        case OptionSpec::Kind::walls: {
+            std::vector<std::size_t> walls;
+            for (const std::size_t named : reading.scope.places_in(place, reading.walls, "wall"))
+                for (const std::size_t one : reading.repeats[named]) walls.push_back(one);
+            return walls;
+        }
+        case OptionSpec::Kind::word:
+            break;
+    }
+    return reading.scope.word(place, option.words);
+}
+
+machine::Options read_options(const Cursor& place, const machine::ProbeInfo& probe, const MachineReading& reading) {
+    machine::Options options;
+    if (!place.json().is_object()) place.refuse(fmt::format("must be an object with the options of '{}'", probe.name));
+    const WordList known = names_of(probe.options);
+    for (const auto& [key, value] : place.json().items()) {
+        if (key == notes_key) continue;
+        const auto option = std::ranges::find(probe.options, key, &OptionSpec::name);
+        if (option == probe.options.end())
+            throw wrong_question(
+                path_of(place.path(), key), "",
+                fmt::format("'{}' has {}", probe.name, probe.options.empty() ? "no options" : in_words(known)),
+                nearest_word(key, known));
+        options.set(key, option_value(place[key], *option, reading));
+    }
+    for (const OptionSpec& option : probe.options)
+        if (option.required && !options.has(option.name))
+            throw wrong_question(place.path(), "", fmt::format("key '{}' is missing: {}", option.name, option.meaning));
+    if (probe.flaw != nullptr)
+        if (const auto flaw = probe.flaw(options); !flaw.empty()) place.refuse(flaw);
+    return options;
+}
+
+/// "above" or "below".
+std::pair<double, bool> threshold_of(const Section& section, const MachineReading& reading, std::string_view unit) {
+    const auto above = section.find("above"), below = section.find("below");
+    if (above.has_value() == below.has_value())
+        throw wrong_question(section.place().path(), "", "it has one of \"above\" and \"below\"");
+    return {reading.scope.number(above ? *above : *below, unit), above.has_value()};
+}
+
+std::size_t measure_named(const Cursor& place, const MachineReading& reading) {
+    return reading.scope.place_in(place, reading.measures, "measurement with a probe");
+}
+
+std::string_view unit_of(const MachineReading& reading, std::size_t measure) {
+    return machine::find_probe(reading.spec.measures[measure].probe)->unit;
+}
+
+machine::Until read_until(const Cursor& place, const MachineReading& reading) {
+    const Section section(place, machine_keys::until());
+    const auto rest = section.find("at_rest"), empty = section.find("empty"), stops = section.find("flow_stops"),
+               measure = section.find("measure");
+    if (static_cast<int>(rest.has_value()) + static_cast<int>(empty.has_value()) + static_cast<int>(stops.has_value()) +
+            static_cast<int>(measure.has_value()) !=
+        1)
+        place.refuse("a phase lasts until one of \"at_rest\", \"empty\", \"flow_stops\" and \"measure\"");
+    if (!measure)
+        for (const char* key : {"above", "below"})
+            if (const auto end = section.find(key)) end->refuse("it belongs to \"measure\"");
+    if (rest) {
+        if (!rest->flag()) rest->refuse("must be true");
+        if (!(geometry::norm(reading.spec.gravity) > 0)) rest->refuse("without gravity nothing comes to rest");
+        return machine::AtRest{};
+    }
+    if (empty) return machine::Empty{reading.scope.region(*empty)};
+    if (stops) {
+        const Section of(*stops, machine_keys::flow_stops());
+        return machine::FlowStops{reading.scope.region(of.at("in")),
+                                  reading.scope.number(of.at("quiet"), "s", positive_number)};
+    }
+    const std::size_t number = measure_named(*measure, reading);
+    const auto [value, above] = threshold_of(section, reading, unit_of(reading, number));
+    return machine::Passes{number, value, above};
+}
+
+}  // namespace
+
+machine::Phases read_during(const Section& section, const MachineReading& reading) {
+    const auto place = section.find("during");
+    if (!place) return {};
+    auto phases = reading.scope.places_in(*place, reading.phases, "phase");
+    std::ranges::sort(phases);
+    return phases;
+}
+
+void read_phase_names(const Section& top, MachineReading& reading) {
+    const Cursor all = top.at("phases");
+    for (const auto& place : all.elements()) {
+        const Section section(place, machine_keys::phase());
+        const Cursor name = section.at("name");
+        require_name(name, name.text());
+        if (std::ranges::find(reading.phases, name.text()) != reading.phases.end())
+            name.refuse("a phase of this name is there twice");
+        reading.phases.push_back(name.text());
+    }
+    if (reading.phases.empty()) all.refuse("a machine needs a phase");
+}
+
+void read_phases(const Section& top, MachineReading& reading) {
+    for (const auto& place : top.at("phases").elements()) {
+        const Section section(place, machine_keys::phase());
+        const auto given = section.find("for"), until = section.find("until"), most = section.find("at_most");
+        if (given.has_value() == until.has_value() || until.has_value() != most.has_value())
+            place.refuse("a phase lasts \"for\" a time, or \"until\" something and \"at_most\" a time");
+        machine::Phase phase;
+        phase.name = section.at("name").text();
+        phase.duration = reading.scope.number(given ? *given : *most, "s", positive_number);
+        if (const auto frames = section.find("frames")) phase.frames = reading.scope.whole(*frames, {1, 1e6});
+        if (until) phase.until = read_until(*until, reading);
+        reading.spec.phases.push_back(std::move(phase));
+    }
+}
+
+void read_measures(const Section& top, MachineReading& reading) {
+    const Cursor all = top.at("measure");
+    auto& spec = reading.spec;
+    for (const auto& [name, value] : all.json().items()) {
+        const Cursor place = all[name];
+        if (kind_of(place) != EntryKind::probe) continue;
+        const auto& probe = probe_of(place);
+        machine::Measure measure;
+        measure.name = name;
+        measure.probe = probe.name;
+        measure.options = read_options(place[probe.name], probe, reading);
+        measure.reduction = reduction_of(place, probe).name;
+        if (place.json().contains("during")) {
+            measure.during = reading.scope.places_in(place["during"], reading.phases, "phase");
+            std::ranges::sort(measure.during);
+        }
+        if (place.json().contains("shares")) {
+            const Cursor shares = place["shares"];
+            if (!shares.json().is_array() || shares.json().size() != 2) shares.refuse("must be a list of two shares");
+            measure.shares = {reading.scope.number(shares[std::size_t{0}], "1"), reading.scope.number(shares[1], "1")};
+            if (!(measure.shares->first < measure.shares->second))
+                shares.refuse("the first share must be the smaller one");
+        }
+        reading.measures.push_back(name);
+        spec.measures.push_back(std::move(measure));
+    }
+    for (const auto& [name, value] : all.json().items()) {
+        const Cursor place = all[name];
+        if (kind_of(place) != EntryKind::time_of) continue;
+        const Section section(place, machine_keys::time_of());
+        const std::size_t of = measure_named(section.at("time_of"), reading);
+        const auto [threshold, above] = threshold_of(section, reading, unit_of(reading, of));
+        spec.times.push_back({name, of, threshold, above});
+    }
+    // Expressions see parameters, "let" and what is measured; one may use another one that comes earlier.
+    std::vector<std::string> known;
+    for (const auto& observable : machine_observables(top))
+        if (observable.shape == Shape::scalar) known.push_back(observable.name);
+    const auto constants = reading.scope.names();
+    for (const auto& [name, value] : all.json().items()) {
+        const Cursor place = all[name];
+        if (kind_of(place) != EntryKind::expression) continue;
+        auto names = known;
+        std::erase(names, name);
+        names.insert(names.end(), constants.begin(), constants.end());
+        const auto parsed = Formula::parse(place.text(), names);
+        if (const auto* why = std::get_if<std::string>(&parsed)) place.refuse(*why);
+        const auto& formula = std::get<Formula>(parsed);
+        machine::Derived derived{name, {}, {}};
+        std::map<std::string, double, std::less<>> given;
+        for (const auto& used : formula.names()) {
+            if (std::ranges::find(known, used) != known.end())
+                derived.needs.push_back(used);
+            else
+                given.emplace(used, reading.scope.number(Cursor(Json(used), place.path()), "1"));
+        }
+        derived.value = [formula, given](const std::map<std::string, double, std::less<>>& measured) {
+            return formula([&](std::string_view used) {
+                const auto here = given.find(used);
+                return here != given.end() ? here->second : measured.find(used)->second;
+            });
+        };
+        spec.derived.push_back(std::move(derived));
+    }
+}
+
+std::vector<ObservableSpec> machine_observables(const Section& top) {
+    std::vector<ObservableSpec> all;
+    const Cursor measures = top.at("measure");
+    if (!measures.json().is_object()) measures.refuse("must be an object of measurements by name");
+    const auto meaning_of = [](const Cursor& place, std::string_view standard) {
+        return place.json().is_object() && place.json().contains("meaning") ? place["meaning"].text()
+                                                                            : std::string(standard);
+    };
+    for (const auto& [name, value] : measures.json().items()) {
+        const Cursor place = measures[name];
+        require_name(place, name);
+        const EntryKind kind = kind_of(place);
+        if (kind == EntryKind::expression)
+            all.push_back({name, "SI", place.text(), Shape::scalar, {}, "something in the expression has no value"});
+        if (kind == EntryKind::time_of)
+            all.push_back({name,
+                           "s",
+                           meaning_of(place, "first time at which a measurement passes a value"),
+                           Shape::scalar,
+                           {},
+                           "it never passes the value"});
+        if (kind != EntryKind::probe) continue;
+        const auto& probe = probe_of(place);
+        const auto& reduction = reduction_of(place, probe);
+        const auto meaning = meaning_of(place, fmt::format("{}: {}", probe.meaning, reduction.meaning));
+        const std::string over = reduction.shape == Shape::series    ? "time, s"
+                                 : reduction.shape == Shape::profile ? std::string(probe.over)
+                                                                     : std::string();
+        const std::string unit = std::string(probe.unit) + std::string(reduction.unit);
+        all.push_back({name, unit, meaning, reduction.shape, over,
+                       reduction.shape == Shape::scalar ? "there was nothing to measure" : ""});
+        if (reduction.has_error)
+            all.push_back({name + "_error",
+                           unit,
+                           fmt::format("standard error of {} from ten blocks of frames", name),
+                           Shape::scalar,
+                           {},
+                           "fewer than twenty frames"});
+    }
+    if (all.empty()) measures.refuse("a machine needs a measurement");
+    all.push_back({"particles", "1", "particles present at the end", Shape::scalar, {}, {}});
+    all.push_back({"lost", "1", "particles that passed an open face of the domain", Shape::scalar, {}, {}});
+    all.push_back({"max_overlap",
+                   "1",
+                   "deepest overlap of two particles over the diameter of the smaller one",
+                   Shape::scalar,
+                   {},
+                   {}});
+    if (const auto feeds = top.find("feed"))
+        for (const auto& feed : feeds->elements()) {
+            const bool named = feed.json().is_object() && feed.json().contains("name");
+            const std::string name = named ? feed["name"].text() : "feed";
+            all.push_back({name + "_fed", "kg", "mass fed", Shape::scalar, {}, "it is left out here"});
+            all.push_back({name + "_waiting",
+                           "kg",
+                           "mass that found no place and waits",
+                           Shape::scalar,
+                           {},
+                           "it is left out here"});
+        }
+    for (const auto& phase : top.at("phases").elements()) {
+        if (!phase.json().is_object() || !phase.json().contains("until") || !phase.json().contains("name")) continue;
+        const std::string name = phase["name"].text();
+        all.push_back({name + "_time", "s", fmt::format("how long phase '{}' lasted", name), Shape::scalar, {}, {}});
+        all.push_back({name + "_ended",
+                       "1",
+                       fmt::format("1: phase '{}' ended by its condition, 0: by its time", name),
+                       Shape::scalar,
+                       {},
+                       {}});
+    }
+    std::set<std::string> names;
+    for (const auto& observable : all)
+        if (!names.insert(observable.name).second)
+            throw wrong_question(path_of(measures.path(), observable.name), "",
+                                 "every case has an observable of this name anyway; take another one",
+                                 observable.name + "_2");
+    return all;
+}
+
+void read_surroundings(const Section& top, MachineReading& reading) {
+    auto& spec = reading.spec;
+    const auto& scope = reading.scope;
+    const auto place = top.find("domain");
+    std::array<std::optional<double>, 3> low, high;
+    if (place) {
+        const Section section(*place, machine_keys::domain());
+        if (const auto sides = section.find("sides")) {
+            if (!sides->json().is_array() || sides->json().size() != 3)
+                sides->refuse("must be a list of three words: of x, y, z");
+            for (std::size_t k = 0; k < 3; ++k)
+                spec.domain.periodic[k] =
+                    scope.word((*sides)[k], std::array<std::string_view, 2>{"open", "periodic"}) == "periodic";
+        }
+        const auto read_corner = [&](std::string_view key, std::array<std::optional<double>, 3>& into) {
+            const auto corner = section.find(key);
+            if (!corner) return;
+            if (!corner->json().is_array() || corner->json().size() != 3)
+                corner->refuse("must be a list of three numbers: x, y, z");
+            for (std::size_t k = 0; k < 3; ++k)
+                if (!(*corner)[k].json().is_null()) into[k] = scope.number((*corner)[k], "m");
+        };
+        read_corner("low", low), read_corner("high", high);
+    }
+    geometry::Domain around;
+    const auto periodic = spec.domain.periodic;
+    for (std::size_t k = 0; k < 3; ++k)
+        if (periodic[k] && !(low[k] && high[k]))
+            place->refuse(
+                fmt::format("a domain that is periodic along {} needs its \"low\" and \"high\" there", "xyz"[k]));
+    for (std::size_t k = 0; k < 3; ++k)
+        if (!(low[k] && high[k])) {
+            try {
+                around = machine::domain_around(
+                    spec, {low[0].has_value() && high[0].has_value(), low[1].has_value() && high[1].has_value(),
+                           low[2].has_value() && high[2].has_value()});
+            } catch (const std::invalid_argument& why) {
+                throw wrong_question(place ? place->path() : top.place().path(), "", why.what());
+            }
+            break;
+        }
+    for (std::size_t k = 0; k < 3; ++k) {
+        spec.domain.low[k] = low[k].value_or(around.low[k]);
+        spec.domain.high[k] = high[k].value_or(around.high[k]);
+        if (!(spec.domain.low[k] < spec.domain.high[k]))
+            place->refuse(fmt::format("\"low\" must lie below \"high\" along {}", "xyz"[k]));
+    }
+}
+
+}  // namespace grainsweep::campaign

@@ -1,0 +1,53 @@
+// The keys of a machine file, a table per object. A number may be written as a number, as a quantity ("60 um") or as an
+// expression over parameters and "let"; the table calls it a value.
+#pragma once
+
+#include "sweep/campaign/keys.hpp"
+
+#include <span>
+#include <string_view>
+
+namespace grainsweep::campaign::machine_keys {
+
+/// One table, with the words under which the reference shows it.
+struct Table {
+    std::string_view title;
+    std::span<const Key> keys;
+};
+
+[[nodiscard]] std::span<const Key> top();
+[[nodiscard]] std::span<const Key> parameter();
+[[nodiscard]] std::span<const Key> gravity();
+[[nodiscard]] std::span<const Key> domain();
+[[nodiscard]] std::span<const Key> material();
+[[nodiscard]] std::span<const Key> contacts();
+[[nodiscard]] std::span<const Key> pair();
+[[nodiscard]] std::span<const Key> species();
+[[nodiscard]] std::span<const Key> sizes();
+[[nodiscard]] std::span<const Key> wall();
+[[nodiscard]] std::span<const Key> turned();
+[[nodiscard]] std::span<const Key> motion();
+[[nodiscard]] std::span<const Key> rotate();
+[[nodiscard]] std::span<const Key> shift();
+[[nodiscard]] std::span<const Key> vibrate();
+[[nodiscard]] std::span<const Key> fill();
+[[nodiscard]] std::span<const Key> sphere();
+[[nodiscard]] std::span<const Key> feed();
+[[nodiscard]] std::span<const Key> phase();
+[[nodiscard]] std::span<const Key> until();
+[[nodiscard]] std::span<const Key> flow_stops();
+[[nodiscard]] std::span<const Key> measure();
+[[nodiscard]] std::span<const Key> time_of();
+
+/// Shapes and regions: the key that names one, and the keys of its object.
+struct Form {
+    std::string_view name, meaning;
+    std::span<const Key> keys;
+};
+[[nodiscard]] std::span<const Form> shapes();
+[[nodiscard]] std::span<const Form> regions();
+
+/// All of them, in the order of the reference.
+[[nodiscard]] std::span<const Table> all();
+
+}  // namespace grainsweep::campaign::machine_keys

@@ -1,0 +1,216 @@
+#include "sweep/campaign/machine_parameters.hpp"
+
+#include "sweep/campaign/formula.hpp"
+#include "sweep/campaign/machine_reading.hpp"
+#include "sweep/campaign/quantity.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+namespace grainsweep::campaign {
+namespace {
+
+constexpr std::size_t longest_machine_name = 64;
+
+/// Units in which machines calculate; the first that fits is the one of a parameter in expressions.
+constexpr std::array<std::string_view, 24> si_units = {
+    "1",   "m",  "s",    "kg",    "m/s",  "rad", "rad/s", "Hz", "m2",  "m3",        "m/s2", "N",
+    "N m", "Pa", "J/m2", "kg/m3", "kg/s", "1/s", "J",     "W",  "N/m", "kg/(m2 s)", "m3/s", "Pa s"};
+
+/// A value in SI units. Refuses a unit that is none.
+double in_si_units(const Cursor& place, double value, const std::string& unit) {
+    if (unit == "1") return value;
+    const std::string text = fmt::format("{} {}", value, unit);
+    std::string why;
+    for (const auto si : si_units) {
+        const auto converted = in_si(text, si);
+        if (const auto* number = std::get_if<double>(&converted)) return *number;
+        if (why.empty()) why = std::get<std::string>(converted);
+    }
+    place.refuse(fmt::format("'{}' is no unit that a machine calculates with: {}", unit, why));
+}
+
+/// A number in the parameter's own unit.
+double own_number(const Cursor& place, const std::string& unit) {
+    return MachineScope().number(place, unit);
+}
+
+ParameterSpec word_parameter(const Section& section, ParameterSpec spec) {
+    for (const char* key : {"unit", "bounds", "whole"})
+        if (const auto too = section.find(key)) too->refuse("a parameter that is a word has none");
+    Words words;
+    for (const auto& word : section.at("words").elements()) {
+        require_name(word, word.text());
+        words.allowed.push_back(word.text());
+    }
+    if (words.allowed.empty()) section.at("words").refuse("must name a word");
+    spec.unit = "";
+    spec.default_value = section.at("default").word(words.allowed);
+    spec.bounds = std::move(words);
+    return spec;
+}
+
+ParameterSpec number_parameter(const Section& section, ParameterSpec spec) {
+    const auto unit = section.find("unit");
+    spec.unit = unit ? unit->text() : "1";
+    (void)in_si_units(unit ? *unit : section.place(), 1, spec.unit);
+    Interval bounds;
+    if (const auto ends = section.find("bounds")) {
+        if (!ends->json().is_array() || ends->json().size() != 2) ends->refuse("must be a list: [low, high]");
+        if (const Cursor low = (*ends)[std::size_t{0}]; !low.json().is_null()) bounds.low = own_number(low, spec.unit);
+        if (const Cursor high = (*ends)[1]; !high.json().is_null()) bounds.high = own_number(high, spec.unit);
+        if (!(bounds.low <= bounds.high)) ends->refuse("the lower bound must not be above the upper one");
+    }
+    const Cursor standard = section.at("default");
+    const double value = own_number(standard, spec.unit);
+    if (!bounds.contains(value))
+        standard.refuse(fmt::format("must be a number{}, as its bounds say", in_words(bounds)));
+    if (section.flag("whole", false)) {
+        if (value != std::floor(value)) standard.refuse("must be a whole number");
+        spec.default_value = static_cast<std::int64_t>(value);
+    } else {
+        spec.default_value = value;
+    }
+    spec.bounds = bounds;
+    return spec;
+}
+
+/// Those that every machine has.
+void add_common(std::vector<ParameterSpec>& all) {
+    all.push_back(
+        {"particles_scale", "1", "diameters times this: fewer, coarser particles", 1.0, Interval{0.1, 100}, {}});
+    all.push_back({"time_step", "s", "time step; 0: time_step_fraction of the limits", 0.0, Interval{0, 1e-3}, {}});
+    all.push_back({"time_step_fraction",
+                   "1",
+                   "time step over the shortest Rayleigh time and Hertz contact time",
+                   0.2,
+                   Interval{0, 1, true, false},
+                   {{"time_step", Relevance::Condition::zero, {}}}});
+    all.push_back({"precision",
+                   "",
+                   "arithmetic: 'mixed' vectorised, 'double' the clear reference",
+                   std::string("mixed"),
+                   Words{{"mixed", "double"}},
+                   {}});
+}
+
+/// "rpm" of a name in expressions: letters and digits of the unit.
+std::string suffix_of(const std::string& unit) {
+    std::string suffix;
+    for (const char c : unit)
+        if ((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9')) suffix += c;
+    return suffix;
+}
+
+}  // namespace
+
+void require_name(const Cursor& place, std::string_view name) {
+    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+    const bool plain = !name.empty() && letter(name.front()) && name.size() <= longest_machine_name &&
+                       std::ranges::all_of(name, [&](char c) { return letter(c) || (c >= '0' && c <= '9'); });
+    if (!plain)
+        throw wrong_question(
+            place.path(), name,
+            fmt::format("a name is letters, digits and _, not a digit first, at most {}", longest_machine_name));
+}
+
+std::vector<ParameterSpec> read_machine_parameters(const Section& top) {
+    std::vector<ParameterSpec> all;
+    add_common(all);
+    const auto common = all;
+    const auto place = top.find("parameters");
+    if (!place) return all;
+    if (!place->json().is_object()) place->refuse("must be an object of parameters by name");
+    std::set<std::string> folded;
+    for (const auto& [name, value] : place->json().items()) {
+        const Cursor here = (*place)[name];
+        require_name(here, name);
+        if (name == "pi") here.refuse("'pi' is a number in expressions; take another name");
+        if (std::ranges::find(common, name, &ParameterSpec::name) != common.end())
+            throw wrong_question(here.path(), "", "every machine has a parameter of this name; take another one");
+        std::string lower = name;
+        std::ranges::transform(lower, lower.begin(),
+                               [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        if (!folded.insert(lower).second)
+            throw wrong_question(here.path(), "", "two names that differ by case only are one name in SQL; rename one");
+        const Section section(here, machine_keys::parameter());
+        const auto meaning = section.find("meaning");
+        ParameterSpec spec{name, "1", meaning ? meaning->text() : name, 0.0, Interval{}, {}};
+        all.push_back(section.find("words") ? word_parameter(section, std::move(spec))
+                                            : number_parameter(section, std::move(spec)));
+    }
+    std::ranges::sort(all, {}, &ParameterSpec::name);
+    return all;
+}
+
+MachineScope machine_scope(const Section& top, const std::vector<ParameterSpec>& parameters, const Inputs& inputs) {
+    MachineScope scope;
+    for (const auto& parameter : parameters) {
+        const Value& value = inputs.find(parameter.name)->second;
+        if (const auto* words = std::get_if<Words>(&parameter.bounds)) {
+            const auto& word = std::get<std::string>(value);
+            scope.set_word(parameter.name, word);
+            for (const auto& one : words->allowed) scope.set(parameter.name + "_is_" + one, one == word ? 1 : 0);
+            continue;
+        }
+        const auto* whole = std::get_if<std::int64_t>(&value);
+        const double number = whole != nullptr ? static_cast<double>(*whole) : std::get<double>(value);
+        const double si = in_si_units(top.place(), number, parameter.unit);
+        scope.set(parameter.name, si);
+        if (const auto suffix = suffix_of(parameter.unit); parameter.unit != "1" && !suffix.empty())
+            scope.set(parameter.name + "_" + suffix, number);
+    }
+    const auto lets = top.find("let");
+    if (!lets) return scope;
+    if (!lets->json().is_object()) lets->refuse("must be an object of expressions by name");
+    std::set<std::string> open;
+    for (const auto& [name, value] : lets->json().items()) {
+        const Cursor here = (*lets)[name];
+        require_name(here, name);
+        if (name == notes_key) here.refuse("'notes' is no name here");
+        if (name == "pi" || scope.knows(name)) here.refuse("a parameter or number has this name; take another one");
+        open.insert(name);
+    }
+    // Whatever needs nothing that is open is next.
+    while (!open.empty()) {
+        const auto ready = std::ranges::find_if(open, [&](const std::string& name) {
+            const auto& text = lets->json()[name];
+            if (!text.is_string() || is_quantity(text.get_ref<const std::string&>())) return true;
+            auto names = scope.names();
+            names.insert(names.end(), open.begin(), open.end());
+            const auto parsed = Formula::parse(text.get<std::string>(), names);
+            if (const auto* why = std::get_if<std::string>(&parsed)) (*lets)[name].refuse(*why);
+            return std::ranges::none_of(std::get<Formula>(parsed).names(),
+                                        [&](const auto& used) { return open.contains(used); });
+        });
+        if (ready == open.end()) (*lets)[*open.begin()].refuse("it depends on itself");
+        const Cursor here = (*lets)[*ready];
+        double number = 0;
+        if (here.json().is_string() && is_quantity(here.json().get_ref<const std::string&>())) {
+            // A quantity in SI units, whichever they are.
+            std::string why;
+            bool read = false;
+            for (const auto si : si_units) {
+                const auto converted = in_si(here.text(), si);
+                if (const auto* value = std::get_if<double>(&converted)) {
+                    number = *value;
+                    read = true;
+                    break;
+                }
+                if (why.empty()) why = std::get<std::string>(converted);
+            }
+            if (!read) here.refuse(why);
+        } else {
+            number = scope.number(here, "1");
+        }
+        scope.set(*ready, number);
+        open.erase(ready);
+    }
+    return scope;
+}
+
+}  // namespace grainsweep::campaign

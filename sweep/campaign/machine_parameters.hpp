@@ -1,0 +1,19 @@
+// "parameters" and "let" of a machine, and the numbers that its expressions may name. Internal to the reader of
+// machines.
+#pragma once
+
+#include "sweep/campaign/cursor.hpp"
+#include "sweep/campaign/machine_scope.hpp"
+
+#include <vector>
+
+namespace grainsweep::campaign {
+
+/// Parameters of the machine, and those that every machine has.
+[[nodiscard]] std::vector<ParameterSpec> read_machine_parameters(const Section& top);
+/// What expressions may name, for complete inputs: parameters in SI units, NAME_UNIT, NAME_is_WORD, and "let", whose
+/// expressions may use one another in any order. Refuses a circle of them.
+[[nodiscard]] MachineScope machine_scope(const Section& top, const std::vector<ParameterSpec>& parameters,
+                                         const Inputs& inputs);
+
+}  // namespace grainsweep::campaign

@@ -1,0 +1,253 @@
+// "species", "fill" and "feed" of a machine.
+#include "sweep/campaign/csv_table.hpp"
+#include "sweep/campaign/machine_reading.hpp"
+
+#include "solver/plain_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace grainsweep::campaign {
+namespace {
+
+using machine::Species;
+
+constexpr double most_particles = 5e6;
+
+particles::SizeDistribution sizes_of(const Section& section, const MachineReading& reading, double& diameter) {
+    using particles::SizeDistribution;
+    const auto& scope = reading.scope;
+    if (const auto file = section.find("file")) {
+        if (section.find("spread")) section.at("spread").refuse("beside \"file\" it says too much");
+        try {
+            const auto table = particles::SizeTable::read(reading.contents(*file));
+            if (!(diameter > 0)) diameter = SizeDistribution::table(table.over(1)).moment(1);
+            return SizeDistribution::table(table.over(diameter));
+        } catch (const std::invalid_argument& why) {
+            file->refuse(why.what());
+        }
+    }
+    const auto place = section.find("spread");
+    if (!place) throw wrong_question(section.place().path(), "", "sizes have a \"spread\" or a \"file\"");
+    const auto words = std::ranges::find(machine_keys::sizes(), std::string_view("spread"), &Key::name)->words;
+    const auto spread = scope.word(*place, words);
+    if (spread == "uniform") return SizeDistribution::uniform(scope.number(section, "half_width", "1", 0.1, {0, 0.9}));
+    if (spread == "lognormal") return SizeDistribution::lognormal(scope.number(section, "sigma", "1", 0.2, {0, 1}));
+    return SizeDistribution::weibull_classes(spread == "weibull_wide" ? 0.15 : 0.1);
+}
+
+/// "species" or "mix" with "by": shares by number.
+machine::Mix read_mix(const Section& section, const MachineReading& reading) {
+    const auto one = section.find("species"), several = section.find("mix");
+    if (one.has_value() == several.has_value())
+        throw wrong_question(section.place().path(), "", "it has either a \"species\" or a \"mix\" of them");
+    if (one) return {{reading.scope.place_in(*one, reading.species, "species"), 1.0}};
+    if (!several->json().is_object() || several->json().empty())
+        several->refuse("must be an object of shares by species");
+    const auto words = std::ranges::find(machine_keys::fill(), std::string_view("by"), &Key::name)->words;
+    const auto by = reading.scope.word(section, "by", words, "mass");
+    machine::Mix mix;
+    double sum = 0;
+    for (const auto& [name, value] : several->json().items()) {
+        const Cursor place = (*several)[name];
+        const auto found = std::ranges::find(reading.species, name);
+        if (found == reading.species.end())
+            throw wrong_question(place.path(), "",
+                                 fmt::format("must be a species: {}", in_words(WordList(reading.species))),
+                                 nearest_word(name, reading.species));
+        const auto number = static_cast<std::size_t>(found - reading.species.begin());
+        const Species& species = reading.spec.species[number];
+        double share = reading.scope.number(place, "1", no_negative_number);
+        if (by != "count") share /= species.mean_volume();
+        if (by == "mass") share /= reading.spec.densities[species.material];
+        mix.emplace_back(number, share);
+        sum += share;
+    }
+    if (!(sum > 0)) several->refuse("the shares of a mix must not all be 0");
+    for (auto& [number, share] : mix) share /= sum;
+    return mix;
+}
+
+std::int64_t count_of(const Section& section, const MachineReading& reading, const machine::Mix& mix) {
+    double volume = 0, mass = 0;  // of a particle, in the mean
+    for (const auto& [number, share] : mix) {
+        const Species& species = reading.spec.species[number];
+        volume += share * species.mean_volume();
+        mass += share * species.mean_volume() * reading.spec.densities[species.material];
+    }
+    const auto given = [&](const char* key) { return static_cast<int>(section.find(key).has_value()); };
+    if (given("count") + given("mass") + given("volume") != 1)
+        throw wrong_question(section.place().path(), "", "a filling has one of \"count\", \"mass\" and \"volume\"");
+    const char* key = given("count") != 0 ? "count" : given("mass") != 0 ? "mass" : "volume";
+    const char* unit = given("count") != 0 ? "1" : given("mass") != 0 ? "kg" : "m3";
+    const double one = given("count") != 0 ? 1 : given("mass") != 0 ? mass : volume;
+    const Cursor place = section.at(key);
+    const double count = std::round(reading.scope.number(place, unit, no_negative_number) / one);
+    if (count > most_particles)
+        place.refuse(fmt::format("it makes {:.4g} particles; at most {:.4g} can be simulated", count, most_particles));
+    return static_cast<std::int64_t>(count);
+}
+
+machine::Placed placed_sphere(const Cursor& place, const MachineReading& reading, std::size_t species) {
+    const Section section(place, machine_keys::sphere());
+    const auto& scope = reading.scope;
+    dem::Sphere sphere;
+    sphere.position = scope.vector(section.at("at"), "m");
+    sphere.velocity = scope.vector(section, "velocity", "m/s");
+    sphere.angular_velocity = scope.vector(section, "spin", "rad/s");
+    sphere.radius = scope.number(section, "diameter", "m", reading.spec.species[species].diameter, positive_number) / 2;
+    return {species, sphere};
+}
+
+constexpr std::array<std::string_view, 10> sphere_columns = {"x",  "y",  "z",  "diameter", "vx",
+                                                             "vy", "vz", "wx", "wy",       "wz"};
+
+/// Rows of a CSV file, in SI units; what is absent is 0, and the diameter that of the species.
+std::vector<machine::Placed> spheres_in_file(const Cursor& place, const MachineReading& reading, std::size_t species) {
+    const auto refuse = [&](const std::string& rule) { place.refuse(rule); };
+    CsvTable table(reading.contents(place), refuse);
+    const auto columns_of = [&](std::string_view name) { return std::ranges::find(table.header(), name); };
+    for (const auto& name : table.header())
+        if (std::ranges::find(sphere_columns, name) == sphere_columns.end())
+            place.refuse(fmt::format("the file has an unknown column '{}'; spheres have {}", name,
+                                     in_words(WordList(sphere_columns))));
+    for (const char* name : {"x", "y", "z"})
+        if (columns_of(name) == table.header().end()) place.refuse(fmt::format("the file has no column '{}'", name));
+    std::vector<machine::Placed> all;
+    while (const auto row = table.next()) {
+        const auto value = [&](std::string_view name, double standard) {
+            const auto column = columns_of(name);
+            if (column == table.header().end()) return standard;
+            const auto& cell = (*row)[static_cast<std::size_t>(column - table.header().begin())];
+            const auto number = grainsweep::number_in(cell);
+            if (!number) place.refuse(fmt::format("line {}: '{}' is no number", table.number(), cell));
+            return *number;
+        };
+        dem::Sphere sphere;
+        sphere.position = {value("x", 0), value("y", 0), value("z", 0)};
+        sphere.velocity = {value("vx", 0), value("vy", 0), value("vz", 0)};
+        sphere.angular_velocity = {value("wx", 0), value("wy", 0), value("wz", 0)};
+        sphere.radius = value("diameter", reading.spec.species[species].diameter) / 2;
+        if (!(sphere.radius > 0)) place.refuse(fmt::format("line {}: a diameter must be above 0", table.number()));
+        all.push_back({species, sphere});
+    }
+    return all;
+}
+
+}  // namespace
+
+void read_species(const Section& top, MachineReading& reading) {
+    const Cursor all = top.at("species");
+    if (!all.json().is_object() || all.json().empty()) all.refuse("must be an object of species by name");
+    auto& spec = reading.spec;
+    for (const auto& [name, value] : all.json().items()) {
+        const Cursor place = all[name];
+        require_name(place, name);
+        const Section section(place, machine_keys::species());
+        const auto named = section.find("material");
+        if (!named && reading.materials.size() > 1)
+            throw wrong_question(place.path(), "", "key 'material' is missing: there are several materials");
+        const std::size_t material = named ? reading.scope.place_in(*named, reading.materials, "material") : 0;
+        if (!(reading.densities[material] > 0))
+            throw wrong_question(path_of(top.at("materials").path(), reading.materials[material]), "",
+                                 fmt::format("key 'density' is missing: particles of '{}' are of it", name));
+        auto at = std::ranges::find(reading.of_particles, material);
+        if (at == reading.of_particles.end()) {
+            if (reading.of_particles.size() == dem::kinds_at_most)
+                place.refuse(fmt::format("particles are of at most {} materials", dem::kinds_at_most));
+            reading.of_particles.push_back(material);
+            spec.materials.push_back(reading.materials[material]);
+            spec.densities.push_back(reading.densities[material]);
+            at = reading.of_particles.end() - 1;
+        }
+        Species species;
+        species.name = name;
+        species.material = static_cast<std::uint8_t>(at - reading.of_particles.begin());
+        species.diameter = reading.scope.number(section, "diameter", "m", 0, {1e-7, 10});
+        if (const auto sizes = section.find("sizes"))
+            species.sizes = sizes_of(Section(*sizes, machine_keys::sizes()), reading, species.diameter);
+        if (!(species.diameter > 0)) throw wrong_question(place.path(), "", "key 'diameter' is missing");
+        species.diameter *= reading.particles_scale;
+        reading.species.push_back(name);
+        spec.species.push_back(std::move(species));
+    }
+    if (spec.species.size() > 200) all.refuse("at most 200 species are told apart");
+}
+
+void read_fills(const Section& top, MachineReading& reading) {
+    const auto all = top.find("fill");
+    if (!all) return;
+    for (const auto& place : all->elements()) {
+        const Section section(place, machine_keys::fill());
+        if (!reading.scope.present(section)) continue;
+        if (const auto spheres = section.find("spheres")) {
+            for (const char* key : {"mix", "by", "count", "mass", "volume", "in", "as", "velocity", "shaken"})
+                if (const auto too = section.find(key)) too->refuse("beside \"spheres\" it has no effect");
+            if (!section.find("species")) throw wrong_question(place.path(), "", "key 'species' is missing");
+            const std::size_t species = reading.scope.place_in(section.at("species"), reading.species, "species");
+            std::vector<machine::Placed> placed;
+            if (spheres->json().is_array())
+                for (const auto& one : spheres->elements()) placed.push_back(placed_sphere(one, reading, species));
+            else
+                placed = spheres_in_file(*spheres, reading, species);
+            reading.spec.fills.emplace_back(std::move(placed));
+            continue;
+        }
+        machine::Fill fill;
+        fill.mix = read_mix(section, reading);
+        fill.count = count_of(section, reading, fill.mix);
+        if (!section.find("in")) throw wrong_question(place.path(), "", "key 'in' is missing: the region they lie in");
+        fill.in = reading.scope.region(section.at("in"));
+        const auto words = std::ranges::find(machine_keys::fill(), std::string_view("as"), &Key::name)->words;
+        fill.as = reading.scope.word(section, "as", words, "lattice") == "lattice" ? machine::Fill::As::lattice
+                                                                                   : machine::Fill::As::random;
+        fill.velocity = reading.scope.vector(section, "velocity", "m/s");
+        fill.shaken = reading.scope.number(section, "shaken", "m/s", 0, no_negative_number);
+        reading.spec.fills.emplace_back(std::move(fill));
+    }
+}
+
+void read_feeds(const Section& top, MachineReading& reading) {
+    const auto all = top.find("feed");
+    if (!all) return;
+    for (const auto& place : all->elements()) {
+        const Section section(place, machine_keys::feed());
+        const auto named = section.find("name");
+        machine::Feed feed;
+        feed.name = named ? named->text() : "feed";
+        if (named) require_name(*named, feed.name);
+        if (!reading.scope.present(section)) continue;
+        if (std::ranges::find(reading.spec.feeds, feed.name, &machine::Feed::name) != reading.spec.feeds.end())
+            place.refuse("several feeds need names of their own", feed.name + "_2");
+        feed.mix = read_mix(section, reading);
+        feed.rate = reading.scope.number(section.at("rate"), "kg/s", no_negative_number);
+        const Cursor through = section.at("through");
+        feed.through = reading.scope.region(through);
+        const auto bounds = feed.through.bounds();
+        double widest = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (!(std::isfinite(bounds.low[k]) && std::isfinite(bounds.high[k])))
+                through.refuse("particles are fed into a region with an end on every side");
+            widest = std::max(widest, bounds.high[k] - bounds.low[k]);
+        }
+        feed.velocity = reading.scope.vector(section, "velocity", "m/s");
+        const double speed = geometry::norm(feed.velocity);
+        double depth = widest;
+        for (std::size_t k = 0; k < 3; ++k)
+            if (std::abs(feed.velocity[k]) > 0)
+                depth = std::min(depth, (bounds.high[k] - bounds.low[k]) * speed / std::abs(feed.velocity[k]));
+        const auto every = section.find("every");
+        if (!every && !(speed > 0))
+            throw wrong_question(place.path(), "",
+                                 "a feed needs a \"velocity\", or \"every\": the time from batch to batch");
+        feed.interval = every ? reading.scope.number(*every, "s", positive_number) : depth / speed;
+        feed.during = read_during(section, reading);
+        reading.spec.feeds.push_back(std::move(feed));
+    }
+}
+
+}  // namespace grainsweep::campaign

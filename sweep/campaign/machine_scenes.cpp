@@ -1,0 +1,82 @@
+// The scenes of machines, as far as this process has met them.
+#include "sweep/campaign/machine.hpp"
+#include "sweep/campaign/wrong_question.hpp"
+
+#include "solver/machine/plan.hpp"
+#include "solver/machine/run.hpp"
+
+#include <map>
+#include <mutex>
+#include <stdexcept>
+#include <utility>
+
+namespace grainsweep::campaign {
+namespace {
+
+/// Part of every id; grows when results of machines change on purpose.
+constexpr int machine_revision = 1;
+
+struct Machines {
+    std::mutex mutex;
+    std::map<std::string, std::shared_ptr<const Machine>, std::less<>> by_scene;
+};
+
+Machines& machines() {
+    static Machines all;
+    return all;
+}
+
+/// A case that is impossible is no wrong question of the campaign file: it is rejected.
+machine::Spec possible_spec(const Machine& machine, const Inputs& inputs) {
+    try {
+        return machine_spec(machine, inputs);
+    } catch (const WrongQuestion& wrong) {
+        throw std::invalid_argument(wrong.what());
+    }
+}
+
+SceneInfo scene_of(const std::shared_ptr<const Machine>& machine, std::string name) {
+    SceneInfo scene;
+    scene.name = std::move(name);
+    scene.label = machine->name;
+    scene.summary = machine->summary;
+    scene.revision = machine_revision;
+    scene.parameters = machine->parameters;
+    scene.observables = machine->observables;
+    const auto numerics = [](double fraction, const char* precision) {
+        return Inputs{{"time_step_fraction", fraction}, {"precision", std::string(precision)}};
+    };
+    scene.accuracy = {{"fast", numerics(0.35, "mixed")},
+                      {"balanced", numerics(0.2, "mixed")},
+                      {"reference", numerics(0.05, "double")}};
+    scene.maker = [machine](const Inputs& inputs, std::uint64_t seed, Artefacts&,
+                            const Files&) -> std::unique_ptr<Scene> {
+        return std::make_unique<machine::Run>(possible_spec(*machine, inputs), seed);
+    };
+    scene.estimate_cost = [machine](const Inputs& inputs, const Files&) {
+        return machine::cost_of(possible_spec(*machine, inputs));
+    };
+    scene.warnings = [machine](const Inputs& inputs, const Files&) {
+        return machine::warnings_of(possible_spec(*machine, inputs));
+    };
+    return scene;
+}
+
+}  // namespace
+
+const SceneInfo& enter_machine(std::shared_ptr<const Machine> machine) {
+    auto scene = scene_of(machine, machine_scene_name(*machine));
+    auto& all = machines();
+    const std::lock_guard lock(all.mutex);
+    all.by_scene[scene.name] = std::move(machine);
+    return enter_scene(std::move(scene));
+}
+
+std::shared_ptr<const Machine> known_machine(std::string_view scene) {
+    auto& all = machines();
+    const std::lock_guard lock(all.mutex);
+    const auto found = all.by_scene.find(scene);
+    return found == all.by_scene.end() ? nullptr : found->second;
+}
+
+}  // namespace grainsweep::campaign

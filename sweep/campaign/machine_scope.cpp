@@ -1,0 +1,212 @@
+#include "sweep/campaign/machine_scope.hpp"
+
+#include "sweep/campaign/formula.hpp"
+#include "sweep/campaign/quantity.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace grainsweep::campaign {
+
+using machine::Region;
+using machine::Vec3;
+
+bool is_quantity(std::string_view text) {
+    const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+    std::size_t at = text.find_first_not_of(" \t");
+    if (at == std::string_view::npos) return false;
+    if (text[at] == '-' || text[at] == '+') ++at;
+    const std::size_t begin = at;
+    while (at < text.size() && (digit(text[at]) || text[at] == '.')) ++at;
+    if (at == begin) return false;
+    if (at < text.size() && (text[at] == 'e' || text[at] == 'E')) {
+        std::size_t exponent = at + 1;
+        if (exponent < text.size() && (text[exponent] == '-' || text[exponent] == '+')) ++exponent;
+        if (exponent < text.size() && digit(text[exponent])) {
+            at = exponent;
+            while (at < text.size() && digit(text[at])) ++at;
+        }
+    }
+    while (at < text.size() && text[at] == ' ') ++at;
+    if (at == text.size()) return true;
+    const auto c = static_cast<unsigned char>(text[at]);
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c >= 0x80 || c == '%' ||
+           (c == '1' && text.substr(at, 2) == "1/");
+}
+
+double MachineScope::number(const Cursor& place, std::string_view unit, const Interval& bounds) const {
+    const auto rule = [&](std::string_view more) {
+        return fmt::format("must be a number{}{}{}", in_words(bounds), unit == "1" ? "" : fmt::format(", {}", unit),
+                           more);
+    };
+    double value = 0;
+    if (place.json().is_number()) {
+        value = place.json().get<double>();
+    } else if (place.json().is_string()) {
+        const std::string given = place.json().get<std::string>();
+        if (is_quantity(given)) {
+            const auto read = in_si(given, unit);
+            if (const auto* why = std::get_if<std::string>(&read)) place.refuse(*why);
+            value = std::get<double>(read);
+        } else {
+            const auto known = names();
+            const auto parsed = Formula::parse(given, known);
+            if (const auto* why = std::get_if<std::string>(&parsed)) place.refuse(*why);
+            value = std::get<Formula>(parsed)([this](std::string_view name) { return numbers_.find(name)->second; });
+            if (!std::isfinite(value)) place.refuse("the expression has no finite value here");
+            if (!bounds.contains(value)) place.refuse(rule(fmt::format("; here it is {:.6g}", value)));
+        }
+    } else {
+        place.refuse(rule(", a quantity or an expression"));
+    }
+    if (!std::isfinite(value) || !bounds.contains(value)) place.refuse(rule(""));
+    return value == 0 ? 0 : value;
+}
+
+double MachineScope::number(const Section& section, std::string_view key, std::string_view unit, double standard,
+                            const Interval& bounds) const {
+    const auto place = section.find(key);
+    return place ? number(*place, unit, bounds) : standard;
+}
+
+std::int64_t MachineScope::whole(const Cursor& place, const Interval& bounds) const {
+    return std::llround(number(place, "1", bounds));
+}
+
+bool MachineScope::present(const Section& section) const {
+    return number(section, "when", "1", 1) != 0;
+}
+
+Vec3 MachineScope::vector(const Cursor& place, std::string_view unit) const {
+    if (!place.json().is_array() || place.json().size() != 3) place.refuse("must be a list of three numbers: x, y, z");
+    return {number(place[std::size_t{0}], unit), number(place[1], unit), number(place[2], unit)};
+}
+
+Vec3 MachineScope::vector(const Section& section, std::string_view key, std::string_view unit,
+                          const Vec3& standard) const {
+    const auto place = section.find(key);
+    return place ? vector(*place, unit) : standard;
+}
+
+Vec3 MachineScope::direction(const Cursor& place) const {
+    const Vec3 given = vector(place, "1");
+    const double length = geometry::norm(given);
+    if (!(length > 0)) place.refuse("a direction must not be 0");
+    if (length == 1) return given;
+    return geometry::operator*(1 / length, given);
+}
+
+Vec3 MachineScope::direction(const Section& section, std::string_view key, const Vec3& standard) const {
+    const auto place = section.find(key);
+    return place ? direction(*place) : standard;
+}
+
+std::string MachineScope::text(const Cursor& place) const {
+    std::string text = place.text();
+    for (std::size_t open = text.find('{'); open != std::string::npos; open = text.find('{', open)) {
+        const std::size_t close = text.find('}', open);
+        if (close == std::string::npos) place.refuse("a '{' without its '}'");
+        const std::string name = text.substr(open + 1, close - open - 1);
+        const auto word = words_.find(name);
+        if (word == words_.end()) {
+            WordList known(std::views::transform(words_, [](const auto& one) { return std::string_view(one.first); }));
+            place.refuse(fmt::format("'{{{}}}' names no parameter that is a word", name), nearest_word(name, known));
+        }
+        text.replace(open, close - open + 1, word->second);
+        open += word->second.size();
+    }
+    return text;
+}
+
+std::string MachineScope::word(const Cursor& place, const WordList& words) const {
+    const std::string rule = fmt::format("must be {}", in_words(words));
+    if (!place.json().is_string() || place.json().get_ref<const std::string&>().empty()) place.refuse(rule);
+    auto word = text(place);
+    if (std::ranges::find(words, word) == words.end()) place.refuse(rule, nearest_word(word, words));
+    return word;
+}
+
+std::string MachineScope::word(const Section& section, std::string_view key, const WordList& words,
+                               std::string_view standard) const {
+    const auto place = section.find(key);
+    return place ? word(*place, words) : std::string(standard);
+}
+
+std::size_t MachineScope::place_in(const Cursor& place, const std::vector<std::string>& names,
+                                   std::string_view what) const {
+    const WordList list(names);
+    if (names.empty()) place.refuse(fmt::format("there is no {} that it could name", what));
+    const std::string chosen = word(place, list);
+    return static_cast<std::size_t>(std::ranges::find(names, chosen) - names.begin());
+}
+
+std::vector<std::size_t> MachineScope::places_in(const Cursor& place, const std::vector<std::string>& names,
+                                                 std::string_view what) const {
+    if (!place.json().is_array()) return {place_in(place, names, what)};
+    std::vector<std::size_t> places;
+    for (const auto& one : place.elements()) {
+        const std::size_t at = place_in(one, names, what);
+        if (std::ranges::find(places, at) != places.end()) one.refuse("it is there twice");
+        places.push_back(at);
+    }
+    if (places.empty()) place.refuse(fmt::format("must name a {} or several", what));
+    return places;
+}
+
+std::vector<std::string> MachineScope::names() const {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : numbers_) names.push_back(name);
+    return names;
+}
+
+std::optional<std::size_t> form_of(const Json& object, std::span<const machine_keys::Form> forms) {
+    std::optional<std::size_t> found;
+    for (std::size_t k = 0; k < forms.size(); ++k) {
+        if (!object.is_object() || !object.contains(std::string(forms[k].name))) continue;
+        if (found) return std::nullopt;
+        found = k;
+    }
+    return found;
+}
+
+Region MachineScope::region(const Cursor& place) const {
+    const auto forms = machine_keys::regions();
+    const auto form = form_of(place.json(), forms);
+    const WordList words(std::views::transform(forms, &machine_keys::Form::name));
+    if (!form || place.json().size() != 1) {
+        std::string nearest;
+        if (place.json().is_object() && place.json().size() == 1)
+            nearest = nearest_word(place.json().begin().key(), words);
+        place.refuse(fmt::format("a region is an object with one key: {}", in_words(words)), nearest);
+    }
+    const auto& [name, meaning, keys] = forms[*form];
+    const Cursor inner = place[name];
+    Region region;
+    if (name == "all" || name == "any") {
+        std::vector<Region> of;
+        for (const auto& one : inner.elements()) of.push_back(this->region(one));
+        if (name == "all")
+            region.is = Region::All{std::move(of)};
+        else
+            region.is = Region::Any{std::move(of)};
+    } else if (name == "not") {
+        region.is = Region::Not{{this->region(inner)}};
+    } else {
+        const Section section(inner, keys);
+        if (name == "box") region.is = Region::Box{vector(section.at("low"), "m"), vector(section.at("high"), "m")};
+        if (name == "cylinder")
+            region.is = Region::Round{vector(section.at("base"), "m"), direction(section, "axis", {0, 0, 1}),
+                                      number(section.at("radius"), "m"), number(section, "inner", "m", 0),
+                                      number(section.at("length"), "m")};
+        if (name == "ball")
+            region.is = Region::Ball{vector(section.at("centre"), "m"), number(section.at("radius"), "m")};
+        if (name == "half_space")
+            region.is = Region::Half{vector(section, "point", "m"), direction(section.at("normal"))};
+    }
+    if (const std::string flaw = region.flaw(); !flaw.empty()) inner.refuse(flaw);
+    return region;
+}
+
+}  // namespace grainsweep::campaign
