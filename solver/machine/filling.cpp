@@ -19,7 +19,8 @@ using geometry::operator-;
 using kit::require;
 using kit::sentence;
 
-constexpr double spacing = 1.15, most_jitter = 0.05, lowest = 0.1;  // of the largest diameter
+constexpr double most_jitter = 0.05, lowest = 0.1;      // D
+constexpr double spacing = 1.15, least_spacing = 1.02;  // D, largest diameters
 constexpr double most_sites = 2e8;
 
 double largest_of(const Spec& spec, const Mix& mix) {
@@ -28,6 +29,19 @@ double largest_of(const Spec& spec, const Mix& mix) {
         if (share > 0) largest = std::max(largest, spec.species[species].largest());
     return largest;
 }
+
+/// Places of a lattice: their distance, and how far particles are off them in each direction, so that none touch.
+struct Pitch {
+    double distance = 0, jitter = 0, largest = 0;
+
+    Pitch(const Spec& spec, const Mix& mix) : largest(largest_of(spec, mix)) {
+        double diameter = 0;
+        for (const auto& [species, share] : mix)
+            if (share > 0) diameter = std::max(diameter, spec.species[species].diameter);
+        distance = std::max(spacing * diameter, least_spacing * largest);
+        jitter = std::min(most_jitter * diameter, (distance - largest) / 2);
+    }
+};
 
 std::string name_of(const Spec& spec, const Mix& mix) {
     std::string names;
@@ -45,16 +59,23 @@ Bounds bounds_in(const Spec& spec, const Region& region) {
     return bounds;
 }
 
-/// A cubic lattice, stretched so that it fills the bounds evenly across, layers from the bottom up.
+/// A cubic lattice, stretched across so that it reaches from side to side, layers from the bottom up.
 class Lattice {
 public:
-    Lattice(const Bounds& bounds, double largest) : bounds_(bounds) {
+    /// `room`: between the bounds and the outermost places.
+    Lattice(const Bounds& bounds, const std::array<bool, 3>& periodic, double distance, double room) {
         for (std::size_t k = 0; k < 3; ++k) {
-            const double width = bounds.high[k] - bounds.low[k];
-            count_[k] = std::max(0.0, std::floor(width / (spacing * largest) + 1e-9));
-            step_[k] = k < 2 && count_[k] > 0 ? width / count_[k] : spacing * largest;
+            const double width = bounds.high[k] - bounds.low[k], between = width - 2 * room;
+            if (periodic[k]) {
+                count_[k] = std::floor(width / distance + 1e-9);
+                step_[k] = width / count_[k];
+                first_[k] = bounds.low[k] + step_[k] / 2;
+                continue;
+            }
+            count_[k] = between < 0 ? 0 : 1 + std::floor(between / distance + 1e-9);
+            step_[k] = k < 2 && count_[k] > 1 ? between / (count_[k] - 1) : distance;
+            first_[k] = k < 2 && count_[k] == 1 ? bounds.low[k] + width / 2 : bounds.low[k] + room;
         }
-        base_ = lowest * largest;
     }
     [[nodiscard]] double sites() const { return count_[0] * count_[1] * count_[2]; }
     /// Calls visit(centre) layer by layer until it returns false.
@@ -63,15 +84,12 @@ public:
         for (double z = 0; z < count_[2]; ++z)
             for (double y = 0; y < count_[1]; ++y)
                 for (double x = 0; x < count_[0]; ++x)
-                    if (!visit(Vec3{bounds_.low[0] + (x + 0.5) * step_[0], bounds_.low[1] + (y + 0.5) * step_[1],
-                                    bounds_.low[2] + base_ + (z + 0.5) * step_[2]}))
+                    if (!visit(Vec3{first_[0] + x * step_[0], first_[1] + y * step_[1], first_[2] + z * step_[2]}))
                         return;
     }
 
 private:
-    Bounds bounds_;
-    std::array<double, 3> count_{}, step_{};
-    double base_ = 0;
+    std::array<double, 3> count_{}, step_{}, first_{};
 };
 
 /// Whether a sphere of the radius, somewhat away from the centre, lies in the region, in the domain and touches no
@@ -100,7 +118,7 @@ public:
         const auto particles = draws.in_numbers(fill.count);
         const double largest = largest_of(spec_, fill.mix);
         const Obstacles obstacles(spec_, largest);
-        const auto centres = fill.as == Fill::As::lattice ? on_lattice(fill, draws, largest, obstacles)
+        const auto centres = fill.as == Fill::As::lattice ? on_lattice(fill, draws, obstacles)
                                                           : at_random(fill, draws, particles, obstacles);
         for (std::size_t n = 0; n < particles.size(); ++n) {
             dem::Sphere sphere;
@@ -153,17 +171,22 @@ private:
         into_.species.push_back(static_cast<std::uint8_t>(species));
     }
 
-    std::vector<Vec3> on_lattice(const Fill& fill, const Draws& draws, double largest, const Obstacles& obstacles) {
-        const Lattice lattice(bounds_in(spec_, fill.in), largest);
+    std::vector<Vec3> on_lattice(const Fill& fill, const Draws& draws, const Obstacles& obstacles) {
+        const Pitch pitch(spec_, fill.mix);
+        const double room = pitch.largest / 2 + std::numbers::sqrt3 * pitch.jitter;
+        const Bounds bounds = bounds_in(spec_, fill.in);
+        std::array<bool, 3> periodic{};
+        for (std::size_t k = 0; k < 3; ++k)
+            periodic[k] = spec_.domain.periodic[k] && bounds.low[k] <= spec_.domain.low[k] &&
+                          bounds.high[k] >= spec_.domain.high[k];
+        const Lattice lattice(bounds, periodic, pitch.distance, room);
         require(lattice.sites() < most_sites,
                 "the region of a filling has more than 2e8 places for particles: make it smaller");
-        const double jitter = most_jitter * largest;
-        const double room = largest / 2 + std::numbers::sqrt3 * jitter;
         const auto wanted = static_cast<std::size_t>(fill.count);
         std::vector<Vec3> centres;
         lattice.each([&](const Vec3& site) {
             if (centres.size() == wanted) return false;
-            if (fits(spec_, obstacles, fill.in, site, room)) centres.push_back(site);
+            if (fits(spec_, obstacles, fill.in, site, room * (1 - 1e-9))) centres.push_back(site);
             return true;
         });
         require(centres.size() == wanted,
@@ -173,7 +196,7 @@ private:
                              static_cast<double>(centres.size()), static_cast<double>(wanted)));
         for (std::size_t n = 0; n < centres.size(); ++n)
             for (std::size_t k = 0; k < 3; ++k)
-                centres[n][k] += jitter * (2 * draws.uniform(place_draw, 3 * n + k) - 1);
+                centres[n][k] += pitch.jitter * (2 * draws.uniform(place_draw, 3 * n + k) - 1);
         return centres;
     }
 

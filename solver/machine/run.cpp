@@ -159,7 +159,9 @@ void Run::take_frame() {
         if (!holds(measure.during, phase_)) continue;
         Record& record = records_[m];
         const double value = probes_[m]->look(sight);
-        if (std::isfinite(value)) record.samples.push_back({.time = sight.time, .value = value});
+        // The end of a phase is the beginning of the next one.
+        const bool again = !record.samples.empty() && record.samples.back().time == sight.time;
+        if (std::isfinite(value) && !again) record.samples.push_back({.time = sight.time, .value = value});
         if (find_probe(measure.probe)->over.empty()) continue;
         std::vector<Sample> profile;
         probes_[m]->profile(sight, profile);
