@@ -66,6 +66,11 @@ const SceneInfo* find_scene(std::string_view name) {
     return found == all.scenes.end() ? nullptr : &found->second;
 }
 
+std::string shown_scene(std::string_view name) {
+    const SceneInfo* known = find_scene(name);
+    return known != nullptr ? known->shown() : std::string(name);
+}
+
 namespace {
 
 constexpr std::array<std::string_view, 3> path_words = {"baseline", "avx2", "avx512"};

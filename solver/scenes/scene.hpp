@@ -127,6 +127,8 @@ struct SceneInfo {
 const SceneInfo& enter_scene(SceneInfo scene);
 /// One of both; nullptr when there is none of that name.
 [[nodiscard]] const SceneInfo* find_scene(std::string_view name);
+/// The label of the scene of that name; the name itself where it has none.
+[[nodiscard]] std::string shown_scene(std::string_view name);
 
 /// Instruction set of the solver's inner loops in this process: "x86-64-v2", "avx2", "avx512"; elsewhere "baseline".
 [[nodiscard]] std::string_view instruction_path();

@@ -15,7 +15,6 @@
 namespace grainsweep::campaign {
 namespace {
 
-
 using machine::OptionSpec;
 
 /// What an entry of "measure" is.

@@ -201,8 +201,8 @@ int explain(const std::string& database, const std::string& id, Format format) {
                                       {"why", reason}});
         return 0;
     }
-    std::cout << fmt::format("{}\nscene {} revision {}, seed {}\n", heading_of(archive, question.id), question.scene,
-                             question.revision, question.seed);
+    std::cout << fmt::format("{}\nscene {} revision {}, seed {}\n", heading_of(archive, question.id),
+                             shown_scene(question.scene), question.revision, question.seed);
     const SceneInfo* scene = find_scene(question.scene);
     for (const auto& [name, value] : question.inputs) {
         const auto* parameter = scene == nullptr ? nullptr : scene->find_parameter(name);

@@ -200,7 +200,7 @@ void show_plan(const Campaign& campaign, const Outlook& outlook) {
     const auto& cost = outlook.cost;
     const Cases& cases = outlook.cases;
     const auto& scene = campaign.scene();
-    std::cout << fmt::format("campaign   {}: {} (revision {})\n", campaign.name, scene.name, scene.revision);
+    std::cout << fmt::format("campaign   {}: {} (revision {})\n", campaign.name, scene.shown(), scene.revision);
     std::cout << fmt::format("design     {}", campaign.design);
     for (const auto& [name, value] : campaign.request.options) {
         if (const auto text = option_text(value); text != "[]") std::cout << fmt::format(", {} {}", name, text);

@@ -58,7 +58,7 @@ void apply(const std::vector<std::string>& settings, Campaign& campaign, const s
         const auto* parameter = scene.find_parameter(name);
         if (parameter == nullptr) {
             throw campaign::wrong_question(where, "",
-                                           fmt::format("scene '{}' has no parameter of this name", scene.name),
+                                           fmt::format("scene '{}' has no parameter of this name", scene.shown()),
                                            campaign::nearest_word(name, names));
         }
         if (!set.insert(name).second) throw campaign::wrong_question(where, "", "this parameter is set twice");

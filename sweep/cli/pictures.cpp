@@ -44,7 +44,8 @@ Pictures::Pictures(PictureRequest request, campaign::Case question)
         check_page_file("--watch", request_.page, "");
         film_ = std::make_unique<report::Film>();
     }
-    if (!request_.folder.empty()) series_ = std::make_unique<report::VtkSeries>(request_.folder, question_.scene);
+    if (!request_.folder.empty())
+        series_ = std::make_unique<report::VtkSeries>(request_.folder, shown_scene(question_.scene));
 }
 
 Pictures::~Pictures() = default;
@@ -57,8 +58,9 @@ workers::Camera Pictures::camera() {
 void Pictures::shoot(const Scene& scene) {
     const Snapshot snapshot = scene.snapshot();
     if (!any_ && !report::shows_particles(snapshot) && snapshot.fields.empty())
-        throw campaign::wrong_question(film_ ? "--watch" : "--vtk", "",
-                                       fmt::format("scene '{}' shows no particles and no flow", question_.scene));
+        throw campaign::wrong_question(
+            film_ ? "--watch" : "--vtk", "",
+            fmt::format("scene '{}' shows no particles and no flow", shown_scene(question_.scene)));
     any_ = true;
     if (series_) series_->add(snapshot, scene.time());
     if (film_) film_->add(snapshot, scene.time());
@@ -83,7 +85,7 @@ void Pictures::say(bool on_standard_output) const {
     std::size_t files = 0;
     std::error_code none;
     for (const auto& entry : std::filesystem::directory_iterator(request_.folder, none)) {
-        if (!entry.path().filename().string().starts_with(question_.scene)) continue;
+        if (!entry.path().filename().string().starts_with(shown_scene(question_.scene))) continue;
         bytes += entry.file_size(none);
         ++files;
     }

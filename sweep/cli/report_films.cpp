@@ -47,7 +47,8 @@ std::vector<report::PageFilm> films_of(const store::Store& store, std::int64_t c
         if (film.shows_anything())
             films.push_back({campaign, id, says, film.bytes(report::about_case(question, result.value()))});
         else
-            leave_out(fmt::format("belongs to scene '{}', which shows no particles and no flow", question.scene));
+            leave_out(fmt::format("belongs to scene '{}', which shows no particles and no flow",
+                                  shown_scene(question.scene)));
     }
     return films;
 }

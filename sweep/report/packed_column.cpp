@@ -14,7 +14,6 @@
 namespace grainsweep::report {
 namespace {
 
-
 constexpr std::size_t most_different = 256;
 constexpr double exact_in_float = 16'777'216;  // 2^24
 

@@ -122,7 +122,7 @@ Document closing_summary(const store::Store& store, const std::string& campaign,
                          const std::filesystem::path& database) {
     const auto responses = read_responses(store, find_campaigns(store, campaign).front());
     Document shown;
-    shown.say(fmt::format("{}: {} cases of {}: {}", campaign, responses.rows(), responses.campaign.scene,
+    shown.say(fmt::format("{}: {} cases of {}: {}", campaign, responses.rows(), shown_scene(responses.campaign.scene),
                           outcome_line(responses)));
     if (!responses.campaign.condition.empty()) shown.say("where: " + points_line(responses));
     if (const auto brackets = brackets_of(store, responses.campaign)) {

@@ -27,7 +27,7 @@ Json entry(const std::string& name, const Json& value, const std::string& unit) 
 
 Json about_case(const campaign::Case& question, const campaign::CaseResult& result) {
     const SceneInfo* scene = find_scene(question.scene);
-    std::string title = question.scene;
+    std::string title = shown_scene(question.scene);
     std::ranges::replace(title, '_', ' ');
     const std::string message = result.outcome == campaign::Outcome::completed
                                     ? ""
@@ -43,7 +43,7 @@ Json about_case(const campaign::Case& question, const campaign::CaseResult& resu
                 results.push_back(entry(observable.name, found->second, observable.unit));
     }
     return {
-        {"title", title},      {"name", question.scene + "_" + question.id.substr(0, 8)},
+        {"title", title},      {"name", shown_scene(question.scene) + "_" + question.id.substr(0, 8)},
         {"case", question.id}, {"subtitle", fmt::format("case {}, seed {}", question.id.substr(0, 10), question.seed)},
         {"message", message},  {"inputs", inputs},
         {"results", results}};

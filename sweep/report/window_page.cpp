@@ -136,7 +136,7 @@ Json window_page_data(const ModelCases& cases, const WindowRequest& request, con
         order.size() < 2 ? Json() : map_of(cases, request, window, admits, centre.setting, order[0], order[1]);
     return {{"campaigns", std::array{Json{{"name", cases.campaign.name}}}},
             {"campaign", cases.campaign.name},
-            {"scene", cases.campaign.scene},
+            {"scene", shown_scene(cases.campaign.scene)},
             {"where", request.where},
             {"objective", objective ? Json(request.objective) : Json()},
             {"maximize", request.maximise},

@@ -235,10 +235,10 @@ const ResponseColumn& named_observable(std::span<const ResponseColumn> observabl
     if (found != observables.end()) return *found;
     std::vector<std::string> names;
     for (const auto& response : observables) names.push_back(response.name);
-    throw campaign::wrong_question(
-        "--observable", fmt::format("'{}'", name),
-        fmt::format("scene '{}' measures no such scalar; it measures {}", campaign.scene, campaign::listed(names)),
-        campaign::nearest_word(name, names));
+    throw campaign::wrong_question("--observable", fmt::format("'{}'", name),
+                                   fmt::format("scene '{}' measures no such scalar; it measures {}",
+                                               shown_scene(campaign.scene), campaign::listed(names)),
+                                   campaign::nearest_word(name, names));
 }
 
 const ResponseColumn& Responses::observable(std::string_view name) const {
