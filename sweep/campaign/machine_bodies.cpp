@@ -49,6 +49,16 @@ Enum law_of(const Section& section, const MachineScope& scope, std::string_view 
     return static_cast<Enum>(std::ranges::find(words, chosen) - words.begin());
 }
 
+/// Where a wall does not say: the only material, or the only one that no particles are of.
+std::size_t material_of_walls(const Cursor& wall, const MachineReading& reading) {
+    std::vector<std::size_t> free;
+    for (std::size_t m = 0; m < reading.materials.size(); ++m)
+        if (reading.materials.size() == 1 || std::ranges::find(reading.of_particles, m) == reading.of_particles.end())
+            free.push_back(m);
+    if (free.size() == 1) return free.front();
+    throw wrong_question(wall.path(), "", "key 'material' is missing: several materials could be meant");
+}
+
 machine::WallMotion read_motion(const Cursor& place, const MachineReading& reading, bool& present) {
     const auto& scope = reading.scope;
     const Section section(place, machine_keys::motion());
@@ -197,9 +207,8 @@ void read_walls(const Section& top, MachineReading& reading) {
                         if (acts && !geometry::is_still(motion.motion)) wall.motions.push_back(std::move(motion));
                     }
                 const auto material = section.find("material");
-                if (!material && reading.materials.size() > 1)
-                    throw wrong_question(place.path(), "", "key 'material' is missing: there are several materials");
-                const std::size_t of = material ? reading.scope.place_in(*material, reading.materials, "material") : 0;
+                const std::size_t of = material ? reading.scope.place_in(*material, reading.materials, "material")
+                                                : material_of_walls(place, reading);
                 for (const std::size_t particles : reading.of_particles)
                     wall.materials.push_back(reading.contacts[particles][of]);
                 numbers.push_back(reading.spec.walls.size());

@@ -40,6 +40,27 @@ particles::SizeDistribution sizes_of(const Section& section, const MachineReadin
     return SizeDistribution::weibull_classes(spread == "weibull_wide" ? 0.15 : 0.1);
 }
 
+/// A region, or {"disc": ...}: the opening of a feeder.
+machine::Region feed_region(const Cursor& place, const MachineReading& reading, const machine::Mix& mix) {
+    constexpr double thickness = 1.5;  // largest diameters
+    if (!place.json().is_object() || !place.json().contains("disc") || place.json().size() != 1)
+        return reading.scope.region(place);
+    const auto form = std::ranges::find(machine_keys::shapes(), std::string_view("disc"), &machine_keys::Form::name);
+    const Section disc(place["disc"], form->keys);
+    double largest = 0;
+    for (const auto& [species, share] : mix) largest = std::max(largest, reading.spec.species[species].largest());
+    machine::Region::Round round;
+    round.axis = reading.scope.direction(disc, "normal", {0, 0, 1});
+    round.length = thickness * largest;
+    round.base = geometry::operator-(reading.scope.vector(disc, "centre", "m"),
+                                     geometry::operator*(round.length / 2, round.axis));
+    round.radius = reading.scope.number(disc.at("radius"), "m", positive_number);
+    round.inner = reading.scope.number(disc, "inner", "m", 0, no_negative_number);
+    machine::Region region{round};
+    if (const std::string flaw = region.flaw(); !flaw.empty()) place.refuse(flaw);
+    return region;
+}
+
 /// "species" or "mix" with "by": shares by number.
 machine::Mix read_mix(const Section& section, const MachineReading& reading) {
     const auto one = section.find("species"), several = section.find("mix");
@@ -226,7 +247,7 @@ void read_feeds(const Section& top, MachineReading& reading) {
         feed.mix = read_mix(section, reading);
         feed.rate = reading.scope.number(section.at("rate"), "kg/s", no_negative_number);
         const Cursor through = section.at("through");
-        feed.through = reading.scope.region(through);
+        feed.through = feed_region(through, reading, feed.mix);
         const auto bounds = feed.through.bounds();
         double widest = 0;
         for (std::size_t k = 0; k < 3; ++k) {
