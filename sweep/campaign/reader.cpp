@@ -1,5 +1,6 @@
 #include "sweep/campaign/reader.hpp"
 
+#include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/program_section.hpp"
@@ -55,11 +56,13 @@ std::shared_ptr<const Machine> machine_of(const Section& top, const fs::path& fo
     const fs::path file = folder / place->text();
     std::error_code none;
     if (!fs::is_regular_file(file, none)) {
-        std::vector<std::string> others;
+        if (auto installed = installed_machine(place->text())) return installed;
+        std::vector<std::string> others = installed_machines();
         for (const auto& entry : fs::directory_iterator(file.parent_path().empty() ? "." : file.parent_path(), none))
             if (entry.path().extension() == ".json") others.push_back(entry.path().filename().string());
-        place->refuse("there is no such machine file beside the campaign file",
-                      nearest_word(file.filename().string(), others));
+        place->refuse(
+            "there is no such machine file beside the campaign file, and no machine of this name is installed",
+            nearest_word(file.filename().string(), others));
     }
     return read_machine(file);
 }

@@ -33,7 +33,8 @@ struct Command {
 [[nodiscard]] std::vector<Command> study_commands();      // converge, sensitivity, report
 [[nodiscard]] std::vector<Command> decide_commands();     // predict, window
 [[nodiscard]] std::vector<Command> solve_commands();      // solve
-[[nodiscard]] std::vector<Command> catalogue_commands();  // scenes, designs, schema
+[[nodiscard]] std::vector<Command> catalogue_commands();  // scenes, machines, designs, schema
+[[nodiscard]] std::vector<Command> draw_commands();       // draw
 [[nodiscard]] std::vector<Command> manual_commands();     // completion, manual
 
 /// All of them, in the order --help shows.

@@ -14,6 +14,7 @@ std::vector<Command> all_commands() {
              study_commands(),
              decide_commands(),
              solve_commands(),
+             draw_commands(),
              catalogue_commands(),
              manual_commands(),
          }) {

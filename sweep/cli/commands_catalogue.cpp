@@ -1,6 +1,8 @@
 // scenes, designs, schema: what exists, from the same tables that the reader checks against.
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/cursor.hpp"
+#include "sweep/campaign/installed_machines.hpp"
+#include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/program_keys.hpp"
 #include "sweep/campaign/schema.hpp"
@@ -145,7 +147,7 @@ Json json_of(const SceneInfo& scene) {
     };
     Json accuracy = Json::object();
     for (const auto& [name, inputs] : scene.accuracy) accuracy.add(name, report::to_json(inputs));
-    return {{"name", scene.name},
+    return {{"name", scene.shown()},
             {"summary", scene.summary},
             {"revision", scene.revision},
             {"parameters", Json::list(scene.parameters, [](const auto& parameter) { return json_of(parameter); })},
@@ -156,7 +158,7 @@ Json json_of(const SceneInfo& scene) {
 void show_scene(const SceneInfo& scene, Format format) {
     if (format == Format::json) return report::write(std::cout, json_of(scene));
     if (format == Format::csv) return report::write(std::cout, parameters_of(scene), format);
-    std::cout << fmt::format("{}, revision {}: {}\n\n", scene.name, scene.revision, scene.summary);
+    std::cout << fmt::format("{}, revision {}: {}\n\n", scene.shown(), scene.revision, scene.summary);
     report::write(std::cout, parameter_lines(scene), format);
     std::cout << '\n';
     report::write(std::cout, observables_of(scene), format);
@@ -229,6 +231,21 @@ int list_scenes(const std::string& name, Format format) {
     }
     table.rows.push_back({std::string(campaign::program_word), std::int64_t{1}, Cell{}, Cell{},
                           std::string(campaign::program_summary())});
+    report::write(std::cout, table, format);
+    return 0;
+}
+
+int list_machines(const std::string& name, Format format) {
+    if (!name.empty()) {
+        show_scene(campaign::enter_machine(campaign::machine_named("NAME", name)), format);
+        return 0;
+    }
+    store::Table table{{"machine", "parameters", "observables", "summary"}, {}};
+    for (const auto& installed : campaign::installed_machines()) {
+        const auto machine = campaign::installed_machine(installed);
+        table.rows.push_back({installed, static_cast<std::int64_t>(machine->parameters.size()),
+                              static_cast<std::int64_t>(machine->observables.size()), machine->summary});
+    }
     report::write(std::cout, table, format);
     return 0;
 }
@@ -312,6 +329,8 @@ Command listing(std::string command, std::string summary, int (*list)(const std:
 std::vector<Command> catalogue_commands() {
     return {
         listing("scenes", "lists the scenes, or the parameters and observables of one scene", list_scenes),
+        listing("machines", "lists the machines that are installed, or the parameters and observables of one machine",
+                list_machines),
         listing("designs", "lists the designs, or the options of one design", list_designs),
         {"schema", "prints the JSON Schema of a campaign file",
          [](Parser&, const Format& format) -> Action { return [&format] { return print_schema(format); }; }, false,

@@ -1,0 +1,50 @@
+#include "sweep/campaign/installed_machines.hpp"
+
+#include "sweep/campaign/json_text.hpp"
+#include "sweep/campaign/machine.hpp"
+#include "sweep/campaign/wrong_question.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+
+namespace grainsweep::campaign {
+namespace {
+
+constexpr std::string_view machine_ending = ".json";
+
+const InstalledFile* find_installed(std::string_view name) {
+    const auto all = installed_files();
+    const auto found = std::ranges::find(all, name, &InstalledFile::name);
+    return found == all.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::vector<std::string> installed_machines() {
+    std::vector<std::string> names;
+    for (const auto& file : installed_files())
+        if (file.name.ends_with(machine_ending))
+            names.emplace_back(file.name.substr(0, file.name.size() - machine_ending.size()));
+    return names;
+}
+
+std::shared_ptr<const Machine> installed_machine(std::string_view name) {
+    const auto* file = find_installed(std::string(name) + std::string(machine_ending));
+    if (file == nullptr) return nullptr;
+    return make_machine(parse_json(file->contents), "$", [](const std::string& beside) {
+        const auto* found = find_installed(beside);
+        if (found == nullptr) throw std::logic_error("a machine that is installed names a file that is not: " + beside);
+        return std::string(found->contents);
+    });
+}
+
+std::shared_ptr<const Machine> machine_named(std::string_view where, const std::string& name) {
+    std::error_code none;
+    if (std::filesystem::is_regular_file(name, none)) return read_machine(name);
+    if (auto machine = installed_machine(name)) return machine;
+    throw wrong_question(where, name, "there is no such machine file, and no machine of this name is installed",
+                         nearest_word(name, installed_machines()));
+}
+
+}  // namespace grainsweep::campaign

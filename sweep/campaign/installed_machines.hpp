@@ -1,0 +1,26 @@
+// The machines that come with the program: configs/machines, compiled in.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace grainsweep::campaign {
+
+struct Machine;
+
+struct InstalledFile {
+    std::string_view name, contents;
+};
+[[nodiscard]] std::span<const InstalledFile> installed_files();
+
+/// Names of the machines, sorted.
+[[nodiscard]] std::vector<std::string> installed_machines();
+/// One of them; nullptr where there is none of that name.
+[[nodiscard]] std::shared_ptr<const Machine> installed_machine(std::string_view name);
+/// A machine file, or one that is installed, by a path or a name. Throws WrongQuestion, naming `where`.
+[[nodiscard]] std::shared_ptr<const Machine> machine_named(std::string_view where, const std::string& name);
+
+}  // namespace grainsweep::campaign

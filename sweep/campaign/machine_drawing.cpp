@@ -1,0 +1,26 @@
+#include "sweep/campaign/machine_drawing.hpp"
+
+#include "sweep/campaign/wrong_question.hpp"
+
+#include "solver/machine/drawing.hpp"
+
+#include <stdexcept>
+
+namespace grainsweep::campaign {
+
+void draw_machine(const Machine& machine, const Inputs& inputs, std::int64_t frames,
+                  const std::function<void(const Snapshot&, double time)>& show) {
+    const auto spec = machine_spec(machine, inputs);
+    try {
+        const auto filled = machine::filled(spec, 1);
+        const double end = machine::longest_time(spec);
+        for (std::int64_t k = 0; k < frames; ++k) {
+            const double time = end * static_cast<double>(k) / static_cast<double>(frames - 1);
+            show(machine::drawing(spec, filled, time), time);
+        }
+    } catch (const std::invalid_argument& why) {
+        throw WrongQuestion(machine.name + ": " + why.what());
+    }
+}
+
+}  // namespace grainsweep::campaign

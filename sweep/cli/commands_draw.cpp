@@ -1,0 +1,105 @@
+// draw: a machine in three dimensions before it runs.
+#include "sweep/campaign/installed_machines.hpp"
+#include "sweep/campaign/machine_drawing.hpp"
+#include "sweep/campaign/reader.hpp"
+#include "sweep/campaign/wrong_question.hpp"
+#include "sweep/cli/command.hpp"
+#include "sweep/cli/page_file.hpp"
+#include "sweep/report/file_size.hpp"
+#include "sweep/report/film.hpp"
+#include "sweep/report/watch_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+namespace grainsweep::cli {
+namespace {
+
+using report::Json;
+
+constexpr std::int64_t usual_pictures = 121;
+
+struct DrawRequest {
+    std::string machine, page;
+    std::vector<std::string> settings;  ///< NAME=VALUE
+    std::int64_t frames = usual_pictures;
+};
+
+/// Defaults, and what is set.
+Inputs inputs_of(const SceneInfo& scene, const std::vector<std::string>& settings) {
+    Inputs inputs = scene.defaults();
+    for (const auto& setting : settings) {
+        const auto equals = setting.find('=');
+        if (equals == std::string::npos) throw campaign::wrong_question("--set", setting, "must be NAME=VALUE");
+        const std::string name = setting.substr(0, equals);
+        const auto* parameter = scene.find_parameter(name);
+        if (parameter == nullptr)
+            throw campaign::wrong_question("--set " + name, "",
+                                           fmt::format("machine '{}' has no parameter of this name", scene.shown()),
+                                           campaign::nearest_word(name, campaign::names_of(scene.parameters)));
+        inputs[name] = campaign::parse_value(*parameter, setting.substr(equals + 1), {}, "--set " + name);
+    }
+    return inputs;
+}
+
+Json about_machine(const SceneInfo& scene, const Inputs& inputs) {
+    Json shown = Json::array();
+    for (const auto& parameter : scene.parameters)
+        shown.push_back(std::array<Json, 3>{
+            parameter.name, report::to_json(report::to_cell(inputs.find(parameter.name)->second)), parameter.unit});
+    std::string title = scene.shown();
+    std::ranges::replace(title, '_', ' ');
+    return {{"title", title},
+            {"name", scene.shown()},
+            {"case", ""},
+            {"subtitle", "the machine before it runs: walls move, particles stay where they are filled in"},
+            {"message", ""},
+            {"inputs", shown},
+            {"results", Json::array()}};
+}
+
+int draw(const DrawRequest& request, report::Format format) {
+    check_page_file("-o", request.page, "");
+    const auto machine = campaign::machine_named("MACHINE", request.machine);
+    const SceneInfo& scene = campaign::enter_machine(machine);
+    const Inputs inputs = inputs_of(scene, request.settings);
+    report::Film film;
+    campaign::draw_machine(*machine, inputs, request.frames,
+                           [&film](const Snapshot& picture, double time) { film.add(picture, time); });
+    const std::string page = report::watch_page(film, about_machine(scene, inputs));
+    write_page_file(request.page, page);
+    if (format == report::Format::json)
+        report::write(std::cout, Json{{"machine", scene.shown()},
+                                      {"page", request.page},
+                                      {"particles", static_cast<std::int64_t>(film.spheres())}});
+    else
+        std::cout << fmt::format("{} ({}): {} with {} particles; open it in a browser\n", request.page,
+                                 report::size_text(page.size()), scene.shown(), film.spheres());
+    return 0;
+}
+
+}  // namespace
+
+std::vector<Command> draw_commands() {
+    return {
+        {"draw", "draws a machine before it runs: an HTML page with its walls, motions, fillings and regions",
+         [](Parser& parser, const report::Format& format) -> Action {
+             const auto request = std::make_shared<DrawRequest>();
+             parser.add_option("MACHINE", request->machine, "machine file, or the name of an installed machine")
+                 ->required();
+             parser.add_option("--set", request->settings, "NAME=VALUE: a parameter")->type_name("NAME=VALUE");
+             parser.add_option("-o,--output", request->page, "HTML page to write")->required()->type_name("FILE.html");
+             parser
+                 .add_option("--frames", request->frames,
+                             fmt::format("number of pictures; default: {}", usual_pictures))
+                 ->type_name("N")
+                 ->check(whole_number(2, 2000));
+             return [request, &format] { return draw(*request, format); };
+         },
+         false}};
+}
+
+}  // namespace grainsweep::cli
