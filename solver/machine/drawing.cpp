@@ -50,6 +50,19 @@ void add_box(WallSurface& frame, const Bounds& box) {
         }
 }
 
+/// A cylinder along an axis as far as it is in the domain.
+Region::Round within(Region::Round round, const geometry::Domain& domain) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (round.axis[k] != 1) continue;
+        const double low = std::max(round.base[k], domain.low[k]);
+        const double high = std::min(round.base[k] + round.length, domain.high[k]);
+        if (!(low < high)) return round;
+        round.base[k] = low;
+        round.length = high - low;
+    }
+    return round;
+}
+
 /// Of a half space the outline of its plane in the domain; of combinations all their parts.
 void add_region(WallSurface& frame, const Region& region, const geometry::Domain& domain) {
     if (const auto* box = std::get_if<Region::Box>(&region.is)) {
@@ -59,7 +72,9 @@ void add_region(WallSurface& frame, const Region& region, const geometry::Domain
             seen.high[k] = std::min(seen.high[k], domain.high[k]);
         }
         add_box(frame, seen);
-    } else if (const auto* round = std::get_if<Region::Round>(&region.is)) {
+    } else if (const auto* given = std::get_if<Region::Round>(&region.is)) {
+        const Region::Round cut = within(*given, domain);
+        const Region::Round* round = &cut;
         for (const double radius : {round->radius, round->inner}) {
             if (!(radius > 0)) continue;
             const Vec3 u = across(round->axis), v = cross(round->axis, u), along = round->length * round->axis;
@@ -102,16 +117,14 @@ void add_particles(Snapshot& picture, const Filled& filled) {
     auto& mobile = picture.scalars["mobile"];
     auto& diameter = picture.scalars["diameter"];
     auto& species = picture.scalars["species"];
-    auto& velocity = picture.vectors["velocity"];
     for (std::size_t k = 0; k < filled.spheres.size(); ++k) {
         picture.positions.push_back(filled.spheres[k].position);
         id.push_back(static_cast<double>(k));
         mobile.push_back(1);
         diameter.push_back(2 * filled.spheres[k].radius);
         species.push_back(filled.species[k]);
-        velocity.push_back(filled.spheres[k].velocity);
     }
-    picture.units = {{"diameter", "m"}, {"velocity", "m/s"}};
+    picture.units = {{"diameter", "m"}};
 }
 
 }  // namespace
