@@ -11,8 +11,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
+#include <span>
 #include <stdexcept>
 
 namespace grainsweep::campaign {
@@ -61,6 +62,58 @@ double cell_number(const Cursor& file, std::size_t record, const std::string& ce
     return *x;
 }
 
+/// In small letters, without blanks and signs: "Std. Err" becomes "stderr".
+std::string plain_name(std::string_view name) {
+    std::string plain;
+    for (const char c : name) {
+        const bool capital = c >= 'A' && c <= 'Z';
+        const bool kept = capital || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '#' || (c & 0x80) != 0;
+        if (kept) plain += capital ? static_cast<char>(c - 'A' + 'a') : c;
+    }
+    return plain;
+}
+
+/// Whether data frames and tables give this name to the numbers of their rows.
+bool names_rows(std::string_view name) {
+    static constexpr auto names =
+        std::to_array<std::string_view>({"#", "index", "unnamed0", "level0", "row", "rows", "rowid", "rowname",
+                                         "rownames", "rowindex", "rownumber", "rownum", "line", "no", "nr", "id"});
+    return std::ranges::find(names, plain_name(name)) != names.end();
+}
+
+bool names_errors(std::string_view name) {
+    static constexpr auto whole = std::to_array<std::string_view>({"u", "s", "e", "ci", "ci95", "95ci"});
+    static constexpr auto parts =
+        std::to_array<std::string_view>({"err", "std", "sd", "se", "sigma", "dev", "unc", "tol", "delta", "accuracy",
+                                         "precision", "rms", "noise", "\u00b1", "\u03c3"});
+    const std::string plain = plain_name(name);
+    return name.starts_with("u(") || std::ranges::find(whole, plain) != whole.end() ||
+           std::ranges::any_of(parts, [&](std::string_view part) { return plain.find(part) != plain.npos; });
+}
+
+using CurveRow = std::array<double, 3>;  // where, value, error
+
+/// Refuses row numbers where places are expected: whole numbers under a name of row numbers, and 0, 1, 2, ... or
+/// 1, 2, 3, ... before places and values without errors. (A column without a name is refused with the header.)
+void refuse_row_numbers(const Cursor& file, const CsvRecord& header, std::span<const CurveRow> rows) {
+    bool whole = true, counts = rows.front()[0] == 0 || rows.front()[0] == 1, second_grows = true;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        whole = whole && rows[k][0] == std::floor(rows[k][0]);
+        counts = counts && rows[k][0] == rows.front()[0] + static_cast<double>(k);
+        second_grows = second_grows && (k == 0 || rows[k][1] > rows[k - 1][1]);
+    }
+    if (whole && names_rows(header[0]))
+        file.refuse(
+            fmt::format("its first column, {}, has row numbers, where places along the curve are expected: "
+                        "leave it out, or name it as the place that it is (bin, time)",
+                        shown(header[0])));
+    if (header.size() == 3 && counts && second_grows && !names_errors(header[2]))
+        file.refuse(
+            fmt::format("its first column, {}, counts the rows, its second, {}, grows as places do, and its "
+                        "third, {}, is not named as an error: leave out row numbers, or name the third 'error'",
+                        shown(header[0]), shown(header[1]), shown(header[2])));
+}
+
 /// Lines "where,value[,error]" below a header; a target for each.
 std::vector<designs::MeasuredTarget> read_curve(const Cursor& file, const designs::MeasuredTarget& alike,
                                                 bool has_error, const std::filesystem::path& folder) {
@@ -72,28 +125,34 @@ std::vector<designs::MeasuredTarget> read_curve(const Cursor& file, const design
             fmt::format("its header has {} columns: where along the curve, the value and, if it differs from "
                         "line to line, its error are expected",
                         columns));
+    std::vector<CurveRow> rows;
+    std::vector<std::size_t> numbers;  // of the records
+    while (const auto record = table.next()) {
+        CurveRow row{0, 0, alike.error};
+        for (std::size_t k = 0; k < columns; ++k) row[k] = cell_number(file, table.number(), (*record)[k]);
+        rows.push_back(row);
+        numbers.push_back(table.number());
+    }
+    if (rows.size() < 2 || rows.size() > most_points)
+        file.refuse(
+            fmt::format("it has {} lines; a curve of 2 to {} points is expected: some ten say what a smooth "
+                        "curve has to say",
+                        rows.size(), most_points));
+    refuse_row_numbers(file, table.header(), rows);
     if ((columns == 3) == has_error)
         file.refuse(columns == 3
                         ? "it has a column of errors, and there is an \"error\" as well; give them in one place"
                         : "its lines have no error, and there is no \"error\" for them all");
     std::vector<designs::MeasuredTarget> targets;
-    double before = -std::numeric_limits<double>::infinity();
-    while (const auto record = table.next()) {
-        const std::size_t number = table.number();
-        const double at = cell_number(file, number, (*record)[0]);
-        if (!(at > before)) file.refuse(fmt::format("record {}: places along the curve must grow", number));
-        before = at;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        if (k > 0 && !(rows[k][0] > rows[k - 1][0]))
+            file.refuse(fmt::format("record {}: places along the curve must grow", numbers[k]));
+        if (rows[k][2] < 0) file.refuse(fmt::format("record {}: an error is at least 0", numbers[k]));
         auto& target = targets.emplace_back(alike);
-        target.observable = designs::word_of({alike.observable, at});
-        target.value = cell_number(file, number, (*record)[1]);
-        if (columns == 3) target.error = cell_number(file, number, (*record)[2]);
-        if (target.error < 0) file.refuse(fmt::format("record {}: an error is at least 0", number));
+        target.observable = designs::word_of({alike.observable, rows[k][0]});
+        target.value = rows[k][1];
+        target.error = rows[k][2];
     }
-    if (targets.size() < 2 || targets.size() > most_points)
-        file.refuse(
-            fmt::format("it has {} lines; a curve of 2 to {} points is expected: some ten say what a smooth "
-                        "curve has to say",
-                        targets.size(), most_points));
     return targets;
 }
 

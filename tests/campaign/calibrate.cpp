@@ -120,12 +120,19 @@ TEST(CalibrateCampaign, FollowsAMeasuredCurve) {
     EXPECT_THAT(refused("time,y,sd\n0.2,1,1\n0.1,2,1\n"), HasSubstr("record 3: places along the curve must grow"));
     EXPECT_THAT(refused("time,y,sd\n0.2,1,1\n0.3,high,1\n"), HasSubstr("record 3 has \"high\" where a number"));
     EXPECT_THAT(refused("time,y,sd\n0.2,1,1\n"), HasSubstr("it has 1 lines"));
+    EXPECT_THAT(refused("time,y,sd\n0.2,1,1\n0.3,1,-1\n"), HasSubstr("record 3: an error is at least 0"));
     for (const char* numbers :
          {"0.25,1.95,0.02\n0.5,4,0.02\n0.75,6,0.02\n", "\n\n0.25,1.95,0.02\n0.5,4,0.02\n0.7,6,1\n",
           "\xEF\xBB\xBF+1.0D-01,1.95,0.02\r\n0.5,4,0.02\r\n0.7,6,1\r\n"})
         EXPECT_THAT(refused(numbers), HasSubstr("a header that names the columns is expected"));
     EXPECT_THAT(refused("\"\",\"time\",\"y\"\n\"1\",0.25,1.95\n\"2\",0.5,4\n"),
                 HasSubstr("column 1 of its header has no name"));
+    for (const char* name : {"index", "Unnamed: 0", "Row", "#"})
+        EXPECT_THAT(refused(std::string(name) + ",y,sd\n1,1.95,0.02\n2,4,0.02\n"),
+                    HasSubstr("has row numbers, where places along the curve are expected"));
+    EXPECT_THAT(refused("index,time,y\n3,0.25,1.95\n7,0.5,4\n"), HasSubstr("has row numbers, where places"));
+    for (const char* first : {"0,0.25,1.95\n1,0.5,4\n", "1,0.25,-1\n2,0.5,4\n3,0.75,6\n"})
+        EXPECT_THAT(refused(std::string("X,time,y\n") + first), HasSubstr("counts the rows, its second, \"time\""));
     EXPECT_THAT(refused("time;y;sd\n0,25;1,95;0,02\n0,5;4;0,02\n"), HasSubstr("its header has semicolons between"));
     EXPECT_THAT(refused("time\ty\tsd\n0.25\t1.95\t0.02\n"), HasSubstr("its header has tabs between the columns"));
     EXPECT_THAT(refused("time,y,sd\ns,1,1\n0.2,1,1\n"), HasSubstr("record 2 has \"s\" where a number"));
@@ -133,6 +140,18 @@ TEST(CalibrateCampaign, FollowsAMeasuredCurve) {
     EXPECT_THAT(refused("time,y,y\n0.2,1,1\n"), HasSubstr("its header names 'y' twice"));
     EXPECT_THAT(refused("\xFF\xFEt,y\n"), HasSubstr("not UTF-16"));
     EXPECT_THAT(refused(""), HasSubstr("the file is empty"));
+    // Whole numbers are places under the name of a place, and with errors that are named so.
+    for (const char* honest : {"time (s),y,Std. error\n1,2,0.1\n2,4,0.1\n", "index,y,sd\n0.5,2,0.1\n1.5,4,0.1\n",
+                               "time,y,spread\n1,4,0.1\n2,2,0.1\n", "time,y,spread\n2,2,0.1\n3,4,0.1\n"}) {
+        folder.write("curve.csv", honest);
+        folder.write("c.json", asked.dump());
+        EXPECT_EQ(run_program({"plan", "c.json"}, folder.path()).code, 0) << honest;
+    }
+    asked["calibration"]["targets"][0]["error"] = 0.1;
+    EXPECT_THAT(refused("index,y\n1,2\n2,4\n"), HasSubstr("has row numbers, where places"));
+    EXPECT_THAT(refused("X,time,y\n1,0.2,2\n2,0.4,4\n"), HasSubstr("counts the rows"));
+    EXPECT_THAT(refused("time,y,sd\n0.25,1.95,0.02\n0.5,4,0.02\n"), HasSubstr("there is an \"error\" as well"));
+    asked["calibration"]["targets"][0].erase("error");
     asked["calibration"]["targets"][0]["file"] = "none.csv";
     EXPECT_THAT(refusal(folder, asked), HasSubstr("there is no such file"));
     asked["calibration"]["targets"][0] = {{"observable", "y_series"}, {"value", 1}, {"error", 1}};
