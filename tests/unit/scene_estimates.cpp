@@ -14,6 +14,7 @@
 
 namespace grainsweep::tests::scene_estimates_test {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
@@ -31,20 +32,21 @@ Files sizes(const std::string& rows) {
     return {{"size_file", "diameter,number_fraction\n" + rows}};
 }
 
+std::string facet(const std::array<std::array<double, 3>, 3>& corners) {
+    std::string text = "facet normal 0 0 0\nouter loop\n";
+    for (const auto& c : corners)
+        text += "vertex " + std::to_string(c[0]) + " " + std::to_string(c[1]) + " " + std::to_string(c[2]) + "\n";
+    return text + "endloop\nendfacet\n";
+}
+
 /// A bar from x0 to x1, z0 to z1, m in the file, as long as `length`.
 std::string bar(double x0, double x1, double z0, double z1, double length) {
     const std::array<std::array<double, 2>, 4> at = {{{x0, z0}, {x1, z0}, {x1, z1}, {x0, z1}}};
     std::string text;
-    const auto triangle = [&](std::array<std::array<double, 3>, 3> corners) {
-        text += "facet normal 0 0 0\nouter loop\n";
-        for (const auto& c : corners)
-            text += "vertex " + std::to_string(c[0]) + " " + std::to_string(c[1]) + " " + std::to_string(c[2]) + "\n";
-        text += "endloop\nendfacet\n";
-    };
     for (std::size_t k = 0; k < 4; ++k) {
         const auto &a = at[k], &b = at[(k + 1) % 4];
-        triangle({{{a[0], 0, a[1]}, {b[0], 0, b[1]}, {b[0], length, b[1]}}});
-        triangle({{{a[0], 0, a[1]}, {b[0], length, b[1]}, {a[0], length, a[1]}}});
+        text += facet({{{a[0], 0, a[1]}, {b[0], 0, b[1]}, {b[0], length, b[1]}}});
+        text += facet({{{a[0], 0, a[1]}, {b[0], length, b[1]}, {a[0], length, a[1]}}});
     }
     return text;
 }
@@ -116,6 +118,19 @@ TEST(SceneEstimates, AToolOfAWrongUnitIsRefusedWithItsSize) {
         EXPECT_THAT(ask(1e-3, solid(blade + stray)),
                     ThrowsMessage<std::invalid_argument>(HasSubstr("remove stray triangles")));
     EXPECT_NO_THROW(ask(1e-3, solid(blade + bar(10, 15, 0, 40, 200)))()) << "two bars are a tool";
+    const std::string joined = facet({{{0, 0, 0}, {0.01, 0, -3}, {-0.01, 200, -3}}});
+    EXPECT_THAT(ask(1e-3, solid(blade + joined)), ThrowsMessage<std::invalid_argument>(AllOf(
+                                                      HasSubstr("1 of 9 triangles"), HasSubstr("-0.003) m of the file"),
+                                                      HasSubstr("reach 0.003 m beyond"))));
+}
+
+TEST(SceneEstimates, AToolWhoseEdgeIsTheTipOfANeedleIsWarnedOf) {
+    const auto with = [](const std::string& tip) {
+        return kinds(with_tool(1e-3), {{"tool", solid(bar(0, 5, 0, 40, 200) + tip)}});
+    };
+    // Drawn out of the blade's open end.
+    EXPECT_THAT(with(facet({{{0, 0, 0}, {5, 0, 0}, {2, 0, -8}}})), testing::IsEmpty()) << "as wide as the blade";
+    EXPECT_THAT(with(facet({{{0, 0, 0}, {5, 0, 0}, {2, 0, -13}}})), testing::Contains("tip of the tool"));
 }
 
 // 4e14 boxes of two diameters would not fit any machine.

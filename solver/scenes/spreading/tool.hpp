@@ -18,6 +18,9 @@ namespace grainsweep::spreading {
 enum class Tool { blade, roller, file };
 enum class Base { smooth, rough };
 
+/// Share of a tool's surface that a stray piece or a needle has at most.
+inline constexpr double small_share = 0.02;
+
 struct Study;
 
 /// The tool as its wall, over a level, m.

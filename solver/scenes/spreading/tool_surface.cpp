@@ -1,9 +1,11 @@
 // The tool of an STL file: checked against what a tool can be, fitted to the layer's width.
+#include "solver/geometry/loose_parts.hpp"
 #include "solver/scenes/kit/stl_wall.hpp"
 #include "solver/scenes/spreading/question.hpp"
 #include "solver/scenes/spreading/tool.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -11,7 +13,6 @@
 #include <stdexcept>
 #include <string>
 #include <tuple>
-#include <vector>
 
 namespace grainsweep::spreading {
 namespace {
@@ -20,8 +21,10 @@ using geometry::Vec3;
 
 constexpr double alike = 1e-6;        // lengths that differ by less than this share of the surface's extent
 constexpr double largest_tool = 0.5;  // m, along the travel and upwards
-constexpr double stray_share = 0.02;  // of the surface: less, apart from all the rest, is no part of a tool
-constexpr double stray_gap = 1e-5;    // of the extent: nearer is not apart
+
+/// Lowest, foremost, rearmost, both along y, highest.
+constexpr auto ends =
+    std::to_array<geometry::End>({{2, false}, {0, true}, {0, false}, {1, false}, {1, true}, {2, true}});
 
 void require_length(double length, double width) {
     char sentence[240];
@@ -48,58 +51,18 @@ void require_size(const geometry::Mesh& mesh, double scale) {
     throw std::invalid_argument(sentence);
 }
 
-/// One triangle along an axis.
-struct Span {
-    double low = 0, high = 0, area = 0;
-    std::size_t triangle = 0;
-};
-
-const Vec3& corner_of(const geometry::TriangleSurface& surface, std::size_t triangle, std::size_t k) {
-    return surface.corners[static_cast<std::size_t>(surface.triangles[triangle][k])];
-}
-
-std::vector<Span> spans_of(const geometry::TriangleSurface& surface, std::size_t axis) {
-    using namespace geometry;
-    std::vector<Span> spans;
-    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-        const Vec3 &a = corner_of(surface, t, 0), &b = corner_of(surface, t, 1), &c = corner_of(surface, t, 2);
-        spans.push_back({std::min({a[axis], b[axis], c[axis]}), std::max({a[axis], b[axis], c[axis]}),
-                         norm(cross(b - a, c - a)) / 2, t});
-    }
-    return spans;
-}
-
-[[noreturn]] void refuse_stray(const geometry::TriangleSurface& surface, std::size_t count, std::size_t triangle,
-                               double gap) {
-    const Vec3& at = corner_of(surface, triangle, 0);
-    char sentence[280];
+/// Refuses a small part of the surface that hangs loose and would be the tool's edge or one of its ends.
+void require_one_body(const geometry::Mesh& mesh) {
+    const auto loose = geometry::loose_triangles(mesh, 1, ends, small_share);
+    if (!loose) return;
+    const Vec3& at = loose->outermost;
+    char sentence[320];
     std::snprintf(
         sentence, sizeof sentence,
-        "tool: %zu of %zu triangles, at (%.4g, %.4g, %.4g) m of the file, lie %.3g m apart from all others and "
-        "would be the tool's edge or its end: remove stray triangles",
-        count, surface.triangles.size(), at[0], at[1], at[2], gap);
+        "tool: %zu of %zu triangles, at (%.4g, %.4g, %.4g) m of the file, are joined to the others along no "
+        "closed edge, reach %.3g m beyond them and would be the tool's edge or its end: remove stray triangles",
+        loose->count, mesh.triangles().size(), at[0], at[1], at[2], loose->beyond);
     throw std::invalid_argument(sentence);
-}
-
-/// Refuses a small part of the surface that lies apart from the rest along an axis.
-void require_one_body(const geometry::TriangleSurface& surface) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        auto spans = spans_of(surface, axis);
-        std::ranges::sort(spans, {}, &Span::low);
-        double area = 0, most = spans.front().high;
-        for (const Span& span : spans) area += span.area, most = std::max(most, span.high);
-        const double least_gap = stray_gap * (most - spans.front().low);
-        double below = 0, reach = spans.front().high;
-        for (std::size_t k = 0; k < spans.size(); ++k) {
-            const double gap = spans[k].low - reach;
-            if (k > 0 && gap > least_gap && below <= stray_share * area)
-                refuse_stray(surface, k, spans[0].triangle, gap);
-            if (k > 0 && gap > least_gap && area - below <= stray_share * area)
-                refuse_stray(surface, spans.size() - k, spans[k].triangle, gap);
-            below += spans[k].area;
-            reach = std::max(reach, spans[k].high);
-        }
-    }
 }
 
 }  // namespace
@@ -129,7 +92,7 @@ geometry::Mesh tool_surface(std::string_view stl, double scale, double facet_ang
     const std::lock_guard lock(guard);
     if (key == asked) return made;
     const geometry::Mesh given = kit::mesh_of(question::tool.name, stl, scale, facet_angle);
-    require_one_body(given.surface());
+    require_one_body(given);
     require_size(given, scale);
     made = fitted(given, width);
     key = asked;

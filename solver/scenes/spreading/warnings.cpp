@@ -1,6 +1,7 @@
 #include "solver/scenes/spreading/warnings.hpp"
 
 #include "solver/dem/material.hpp"
+#include "solver/geometry/loose_parts.hpp"
 #include "solver/scenes/kit/rare_sizes.hpp"
 #include "solver/scenes/kit/sentence.hpp"
 #include "solver/scenes/spreading/study.hpp"
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 namespace grainsweep::spreading {
 namespace {
@@ -82,7 +84,24 @@ void warn_of_layer(std::vector<Warning>& warnings, const Study& s, double layer)
                                              settling, fall)});
 }
 
+/// A corner of the file that is far from its place draws its triangles out to a needle.
+void warn_of_needles(std::vector<Warning>& warnings, const Study& s) {
+    using geometry::End;
+    const std::pair<End, const char*> ends[] = {
+        {{2, false}, "lowest"}, {{0, true}, "foremost"}, {{0, false}, "rearmost"}};
+    for (const auto& [end, name] : ends)
+        if (const auto needle = geometry::needle_at(s.surface, end, small_share))
+            warnings.push_back(
+                {"tip of the tool",
+                 std::string("the ") + name +
+                     sentence(
+                         " point of the surface is the tip of a needle, %.3g m long and %.3g m thick, %.3g m along "
+                         "y: if it is no part of the tool, remove it from the file",
+                         needle->length, needle->width, needle->tip[1])});
+}
+
 void warn_of_tool(std::vector<Warning>& warnings, const Study& s) {
+    if (s.tool == Tool::file) warn_of_needles(warnings, s);
     const double measured = (1 - measured_from) * s.travel;
     if (s.behind + s.clearance >= measured)
         warnings.push_back(
