@@ -79,7 +79,6 @@ Patches::Patches(double from, double to, double width, double side) : from_(from
     across_ = count(width);
     dx_ = (to - from) / static_cast<double>(along_);
     dy_ = width / static_cast<double>(across_);
-    volume_.assign(along_ * across_, 0);
 }
 
 void Patches::add(const dem::State& state, double sign) {
@@ -94,11 +93,16 @@ void Patches::add(const dem::State& state, double sign) {
 }
 
 double Patches::deviation() const {
-    if (volume_.size() < 4) return std::numeric_limits<double>::quiet_NaN();
+    if (size() < 4) return std::numeric_limits<double>::quiet_NaN();
+    const auto count = static_cast<double>(size());
     double mean = 0, squares = 0;
-    for (const double v : volume_) mean += v / static_cast<double>(volume_.size());
-    for (const double v : volume_) squares += (v - mean) * (v - mean);
-    return std::sqrt(squares / static_cast<double>(volume_.size()));
+    for (const auto& [patch, v] : volume_) mean += v / count;
+    auto next = volume_.begin();
+    for (std::size_t patch = 0; patch < size(); ++patch) {
+        const double v = next != volume_.end() && next->first == patch ? (next++)->second : 0.0;
+        squares += (v - mean) * (v - mean);
+    }
+    return std::sqrt(squares / count);
 }
 
 constexpr std::int64_t most_kept = 1 << 22;  // points of a grid of which few are covered

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <unordered_set>
 #include <vector>
@@ -42,14 +43,14 @@ public:
     void add(const dem::State& state, double sign = 1);
     /// Base area of one of them, m2.
     [[nodiscard]] double area() const { return dx_ * dy_; }
-    [[nodiscard]] std::size_t size() const { return volume_.size(); }
+    [[nodiscard]] std::size_t size() const { return along_ * across_; }
     /// Standard deviation of their volumes, m3; of fewer than four NaN.
     [[nodiscard]] double deviation() const;
 
 private:
     double from_, to_, width_, dx_ = 0, dy_ = 0;
     std::size_t along_ = 1, across_ = 1;
-    std::vector<double> volume_;
+    std::map<std::size_t, double> volume_;  ///< of patches with a sphere: as many as there are spheres at most
 };
 
 /// Height of the uppermost sphere surface above the points of a square grid, seen from above; 0 where no sphere covers

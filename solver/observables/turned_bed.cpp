@@ -133,6 +133,13 @@ SectionFlow::DownhillProfile SectionFlow::below(const Line& surface) const {
     return profile;
 }
 
+double section_bytes(double radius, double diameter, double cover_cell) {
+    const auto cells = [radius](double edge) { return 4 * (radius / edge + 1) * (radius / edge + 1); };
+    const double fraction = 2 * sizeof(double), flow = 2 * sizeof(double) + sizeof(std::int64_t);  // mean() is a copy
+    const double cover = sizeof(std::int64_t) + sizeof(double) + 1;
+    return fraction * cells(diameter) + flow * cells(diameter / flow_cells_per_d) + cover * cells(cover_cell);
+}
+
 Cover::Cover(double radius, double cell) : grid_(radius, cell), hidden_(grid_.cells(), 0) {}
 
 void Cover::add(const dem::State& state) {

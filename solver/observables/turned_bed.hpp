@@ -113,6 +113,9 @@ private:
     std::vector<char> now_;  // scratch
 };
 
+/// Memory of the three of them, bytes: it grows with the drum's section, whatever the number of particles.
+[[nodiscard]] double section_bytes(double radius, double diameter, double cover_cell);
+
 /// Mean tangential speed, in the drum's sense, of the spheres nearer than a tenth of D to the lower half of the wall;
 /// nothing: there is none. m/s.
 [[nodiscard]] std::optional<double> wall_layer_speed(const dem::State& state, double radius, double diameter);

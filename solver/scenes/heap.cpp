@@ -31,8 +31,11 @@ SceneInfo heap_scene() {
     };
     info.estimate_cost = [](const Inputs& inputs, const Files& files) {
         const auto s = heap::study_of(inputs, files);
-        return kit::estimate(heap::question::powder.method(inputs), s.material, static_cast<double>(s.particles),
-                             s.steps_to_rest(), s.glued_spheres());
+        auto estimate = kit::estimate(heap::question::powder.method(inputs), s.material,
+                                      static_cast<double>(s.particles), s.steps_to_rest(), s.glued_spheres());
+        constexpr double bytes_per_ring = 2 * sizeof(double);  // of the outline
+        estimate.bytes += bytes_per_ring * s.reach() / s.diameter;
+        return estimate;
     };
     info.warnings = heap::warnings_of;
     return info;

@@ -4,6 +4,7 @@
 // Definitions as in drum/study.hpp (geometry, times) and solver/observables/turned_bed.hpp (what is measured). The
 // regimes go with the Froude number w^2 R/g (Mellmann 2001, Powder Technol. 118, 251: rolling below about 0.1,
 // cascading and cataracting above, centrifuging from 1).
+#include "solver/observables/turned_bed.hpp"
 #include "solver/scenes/catalogue.hpp"
 #include "solver/scenes/drum/experiment.hpp"
 #include "solver/scenes/drum/question.hpp"
@@ -33,8 +34,10 @@ SceneInfo rotating_drum_scene() {
     };
     info.estimate_cost = [](const Inputs& inputs, const Files& files) {
         const auto s = drum::study_of(inputs, files);
-        return kit::estimate(drum::question::powder.method(inputs), s.material, static_cast<double>(s.particles),
-                             static_cast<double>(s.last_step()));
+        auto estimate = kit::estimate(drum::question::powder.method(inputs), s.material,
+                                      static_cast<double>(s.particles), static_cast<double>(s.last_step()));
+        estimate.bytes += observables::section_bytes(s.radius, s.diameter, s.occupancy_cell);
+        return estimate;
     };
     info.warnings = drum::warnings_of;
     return info;

@@ -81,17 +81,13 @@ Prediction predict(const SceneInfo& scene, const Inputs& inputs) {
     return predict(scene, inputs, named.of(inputs));
 }
 
-namespace {
-
-void require_memory(const Forecast& forecast, double room) {
-    if (!(forecast.largest_bytes > room)) return;
+void require_memory(const std::string& which, double bytes, double room) {
+    if (!(bytes > room)) return;
     throw wrong_question("$", "",
-                         fmt::format("the case of point {} needs about {:.3g} GB of memory, and this machine gives a "
-                                     "process {:.3g} GB: make the case smaller or take a larger machine",
-                                     forecast.largest_point, 1e-9 * forecast.largest_bytes, 1e-9 * room));
+                         fmt::format("{} needs about {:.3g} GB of memory, and this machine gives a process {:.3g} GB: "
+                                     "make the case smaller or take a larger machine",
+                                     which, 1e-9 * bytes, 1e-9 * room));
 }
-
-}  // namespace
 
 Forecast forecast(const SceneInfo& scene, const Cases& cases, double room) {
     Forecast total;
@@ -125,7 +121,7 @@ Forecast forecast(const SceneInfo& scene, const Cases& cases, double room) {
     }
     if (total.questions > 0 && total.impossible == total.questions)
         throw wrong_question("$", "", "no case of this campaign can be computed: " + total.first_reason);
-    require_memory(total, room);
+    require_memory(fmt::format("the case of point {}", total.largest_point), total.largest_bytes, room);
     return total;
 }
 

@@ -46,6 +46,9 @@ struct Prediction {
 /// Throws std::invalid_argument where a file that the inputs name cannot be read.
 [[nodiscard]] Prediction predict(const SceneInfo& scene, const Inputs& inputs);
 
+/// Throws WrongQuestion where "the case of point 3" (`which`) needs more memory than `room`, bytes.
+void require_memory(const std::string& which, double bytes, double room);
+
 /// Adds the scene's own estimates over different questions without a proven answer. Throws WrongQuestion where all
 /// questions are impossible, and where one needs more memory than `room`, bytes.
 [[nodiscard]] Forecast forecast(const SceneInfo& scene, const Cases& cases,

@@ -1,5 +1,6 @@
 // solve: one case of a campaign in this process, without a database.
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/forecast.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/relevance.hpp"
@@ -13,6 +14,7 @@
 #include "sweep/store/expression.hpp"
 #include "sweep/study/features.hpp"
 #include "sweep/workers/compute.hpp"
+#include "sweep/workers/memory_room.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -246,6 +248,8 @@ void show_answer(const campaign::Case& question, const CaseResult& result) {
 int solve(const SolveRequest& request, Format format) {
     const Asked asked = question_of(request);
     const auto& question = asked.question;
+    const double bytes = campaign::predict(*find_scene(question.scene), question.inputs).cost.bytes;
+    campaign::asked_in(request.config, [&] { campaign::require_memory("this case", bytes, workers::memory_room()); });
     Pictures pictures(request.pictures, question);
     const CaseResult result = answer_of(asked, request, pictures);
     if (::isatty(STDERR_FILENO) == 1) std::fputs("\r\033[K", stderr);

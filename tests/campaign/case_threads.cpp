@@ -126,6 +126,21 @@ TEST_F(Drum, WhereTheSystemGivesNoMoreThreadsACaseIsComputedAllTheSame) {
     EXPECT_EQ(json::parse(limited.out).at("scalars"), json::parse(free.out).at("scalars"));
 }
 
+// Grids of the section that would take 60 PB, of fifty spheres.
+TEST_F(Drum, ASectionThatFitsNoMemoryIsRefusedBeforeItIsLaidOut) {
+    json config = drum({{"threads", 1}});
+    config["fixed"].merge_patch(
+        {{"particles", 50}, {"diameter", 1e-6}, {"drum_diameter", 10}, {"occupancy_cell", 0.05}});
+    folder.write("wide.json", config.dump());
+    for (const auto& command : {std::vector<std::string>{"plan", "wide.json"},
+                                {"solve", "wide.json"},
+                                {"run", "wide.json", "--db", "wide.db", "--quiet"}}) {
+        const auto refused = run_program(command, folder.path());
+        EXPECT_EQ(refused.code, 2) << command.front();
+        EXPECT_THAT(refused.err, HasSubstr("GB of memory, and this machine gives a process")) << command.front();
+    }
+}
+
 TEST_F(Drum, ACaseInDoublePrecisionHasOne) {
     json config = drum({{"threads", 2}});
     config["fixed"].merge_patch({{"particles", 50}, {"precision", "double"}});

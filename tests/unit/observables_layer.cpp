@@ -89,6 +89,13 @@ TEST(Layer, PatchesSpreadAsTheirVolumes) {
     patches.add(spheres({{0.7, 0.2, 9}, {3.1, 1.1, 9}}, 1), -1);
     EXPECT_NEAR(patches.deviation(), 0, 1e-12);
     EXPECT_TRUE(std::isnan(Patches(0, 1, 1, 1).deviation()));
+    // Of a wide layer of few spheres only patches with a sphere are kept: these would be 8 PB.
+    Patches wide(0, 1e8, 1e7, 1);
+    wide.add(spheres({{0.5, 0.5, 0}}, 1));
+    EXPECT_EQ(wide.size(), 1'000'000'000'000'000U);
+    Patches bare(0, 1e3, 1e3, 1);
+    bare.add(spheres({{0.5, 0.5, 0}, {999.5, 999.5, 0}}, 1));
+    EXPECT_NEAR(bare.deviation(), v * std::sqrt(2e-6 - 4e-12), 1e-12);
 }
 
 TEST(Layer, ProfileAveragesByHeight) {

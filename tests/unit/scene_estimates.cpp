@@ -142,6 +142,27 @@ TEST(SceneEstimates, AFillingTakesMemoryByItsSpheres) {
     EXPECT_EQ(placed->size(), radii.size());
 }
 
+// Grids of the section are by the room, whatever the number of particles: memory that is predicted.
+TEST(SceneEstimates, CountTheSectionOfADrumAndTheGluedSpheres) {
+    Inputs drum = find_scene("rotating_drum")->defaults();
+    drum["diameter"] = 1e-6;
+    drum["drum_diameter"] = 10.0;
+    drum["occupancy_cell"] = 0.05;
+    drum["particles"] = std::int64_t{400};
+    EXPECT_GT(find_scene("rotating_drum")->estimate_cost(drum, {}).bytes, 25e14 * 24);
+    Inputs rough = find_scene("powder_spreading")->defaults();
+    rough["diameter"] = 1e-6;
+    rough["gap"] = 1e-5;
+    rough["travel"] = 1.0;
+    rough["layer_area"] = 1e-9;
+    rough["blade_thickness"] = 1e-4;
+    const double smooth_bytes = find_scene("powder_spreading")->estimate_cost(rough, {}).bytes;
+    rough["base"] = std::string("rough");
+    const double glued = 1.02e6 * 10 / (1.2 * 1.2);
+    EXPECT_NEAR(find_scene("powder_spreading")->estimate_cost(rough, {}).bytes - smooth_bytes, 1500 * glued,
+                0.05 * 1500 * glued);
+}
+
 TEST(SceneEstimates, APackingWithoutRoomIsRefusedBeforeItsPairs) {
     std::string csv = "x,y,z\n";
     for (int k = 0; k < 4000; ++k) csv += std::to_string(0.002 * k) + ",0.5,0.5\n";
