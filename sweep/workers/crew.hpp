@@ -90,7 +90,7 @@ public:
     /// Where a case can go now, if anywhere. Short cases queue up behind a running one. Good until wait().
     [[nodiscard]] virtual std::optional<Place> place_for(double predicted_seconds) = 0;
     virtual void give(const Place& place, const campaign::Attempt& attempt, const campaign::Case& question) = 0;
-    /// The next event, or nothing within the time.
+    /// The next event, or nothing: at the end of the time, or when a worker has become ready for its first case.
     [[nodiscard]] virtual std::optional<PoolEvent> wait(std::chrono::milliseconds at_most) = 0;
     /// Asks workers to finish or give back what they have and take nothing more.
     virtual void retire() = 0;

@@ -95,7 +95,9 @@ struct Pool::Impl {
 
     void receive(const std::shared_ptr<Worker>& worker, std::string_view line) {
         const bool fruitful = worker->state.has_begun_any();
+        const bool serving = worker->state.phase() == Phase::serving;
         auto meaning = worker->state.receive(line, clock.now());
+        if (!serving && worker->state.phase() == Phase::serving) place_is_new = true;
         if (!fruitful && worker->state.has_begun_any()) {
             fruitless.fruitful();
             worker->child->was_fruitful();
@@ -285,6 +287,7 @@ struct Pool::Impl {
     CoreSharing sharing;
     FruitlessLaunches fruitless;
     int events_before_reading = 0;
+    bool place_is_new = false;  // a worker has become ready since the last wait
     double leased = 0, looked = 0;
     int interruptions = 0;
     double interrupted = -one_request;  // when last
@@ -349,13 +352,14 @@ std::optional<PoolEvent> Pool::wait(std::chrono::milliseconds at_most) {
         }
         impl_->keep_time();
     }
-    while (impl_->events.empty()) {
+    while (impl_->events.empty() && !std::exchange(impl_->place_is_new, false)) {
         if (const auto& why = impl_->why_none(); !why.empty()) throw std::runtime_error(why);
         const auto left = until - Clock::now();
         if (left <= 0s) return std::nullopt;
         impl_->loop.run_one_for(std::min(std::chrono::ceil<std::chrono::milliseconds>(left), 100ms));
         impl_->keep_time();
     }
+    if (impl_->events.empty()) return std::nullopt;
     PoolEvent event = std::move(impl_->events.front());
     impl_->events.pop_front();
     return event;
