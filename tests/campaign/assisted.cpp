@@ -1,16 +1,14 @@
 // Campaigns that stop by the rule `assisted`: earlier than by plain errors, with the truth within theirs, and at the
 // same point however they were run.
-#include "tests/support/process.hpp"
+#include "tests/support/progress.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <string>
-#include <thread>
 
 namespace grainsweep::tests::assisted_test {
 
@@ -81,13 +79,7 @@ TEST(Assisted, StopsAtTheSamePointWithOneAndTwoWorkersAndAfterAKill) {
             Process killed(
                 program_command({"run", (folder / "c.json").string(), "--db", (folder / db).string(), "-j", "2"}),
                 folder.path());
-            const auto finished = [&] {
-                const auto asked =
-                    run_program({"query", db, "SELECT count(outcome) FROM sum", "--format", "json"}, folder.path());
-                const auto digit = asked.out.find_first_of("0123456789");
-                return asked.code == 0 && digit != std::string::npos ? std::stoi(asked.out.substr(digit)) : 0;
-            };
-            while (killed.running() && finished() < after) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+            await_settled(killed, folder / db, after);
             killed.signal(SIGKILL);
             killed.wait();
         }

@@ -72,7 +72,7 @@ TEST(Checkpoints, ACaseOfAKilledMainProgramIsContinued) {
 
 // A checkpoint says of which build and instruction path it is; once its case is settled it is of no use to any.
 TEST(Checkpoints, ThoseOfAnotherInstructionPathAreSweptWithTheirCase) {
-    const Folder folder(in_memory());
+    const Folder folder;
     folder.write("c.json", R"({"campaign": "c", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
         "fixed": {"wait_seconds": 0.1}, "design": {"kind": "halton", "points": 2},
         "execution": {"workers": 2, "launcher": ["/bin/sh", "-c", "exec \"$@\" --checkpoint-seconds 0", "sh"]}})");

@@ -1,6 +1,6 @@
 // A run that may take so long and no longer: it ends in time with exit code 75, and run after run the campaign ends in
 // the science of an undisturbed one.
-#include "tests/support/process.hpp"
+#include "tests/support/progress.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -45,10 +45,7 @@ public:
         EXPECT_TRUE(dump("c.json") == dump("calm.json"));
         EXPECT_GT(dump("c.json").size(), 100U);
     }
-    [[nodiscard]] std::int64_t ask(const std::string& sql) const {
-        const auto ended = run_program({"query", "c.json.db", sql, "--format", "json"}, folder_.path());
-        return ended.code == 0 ? json::parse(ended.out).at(0).front().get<std::int64_t>() : -1;
-    }
+    [[nodiscard]] std::int64_t ask(const std::string& sql) const { return number_in(folder_ / "c.json.db", sql); }
     [[nodiscard]] const Folder& folder() const { return folder_; }
 
 private:
@@ -101,8 +98,7 @@ TEST(Walltime, ASystemThatAsksGetsTheSameAnswer) {
         const LimitedCampaign campaign(2, 5, 600);
         {
             Process run(campaign.command(), campaign.folder().path());
-            while (run.running() && campaign.ask("SELECT count(*) FROM attempt") < 2)
-                std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            await_number(run, campaign.folder() / "c.json.db", "SELECT count(*) FROM attempt", 2);
             std::this_thread::sleep_for(std::chrono::milliseconds(300));
             run.signal(signal);
             run.signal(signal);  // a container and a script that passes it on

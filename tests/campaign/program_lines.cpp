@@ -26,7 +26,7 @@ json lines_campaign(int points) {
 const std::string sound = "    print(json.dumps({'case': q['case'], 'observables': {'y': 2 * x}}))";
 
 std::string ending_of(const std::string& script, const json& limits = {{"attempts", 1}}) {
-    const Folder folder(in_memory());
+    const Folder folder;
     auto campaign = lines_campaign(1);
     campaign["limits"] = limits;
     const auto ended = run_script(folder, script, campaign);
@@ -42,7 +42,7 @@ void expect_has(const std::string& text, const std::string& part) {
 }
 
 TEST(ProgramLines, OneProgramAnswersManyCases) {
-    const Folder folder(in_memory());
+    const Folder folder;
     auto campaign = lines_campaign(500);
     campaign["program"]["observables"]["started"] = {{"unit", "1"}};
     campaign["program"]["observables"]["p"] = {{"unit", "m"}, {"shape", "profile"}};
@@ -89,7 +89,7 @@ TEST(ProgramLines, EveryFailureIsOneClearOutcome) {
 }
 
 TEST(ProgramLines, OneThatEndsNowAndThenIsStartedAnew) {
-    const Folder folder(in_memory());
+    const Folder folder;
     const auto script = replying("n = 0", sound + "\n    n += 1\n    if n == 7: sys.stdout.flush(); sys.exit(0)");
     const auto ended = run_script(folder, script, lines_campaign(40));
     EXPECT_EQ(ended.code, 0) << ended.err;
@@ -97,7 +97,7 @@ TEST(ProgramLines, OneThatEndsNowAndThenIsStartedAnew) {
 }
 
 TEST(ProgramLines, SolveAndReplayAskItToo) {
-    const Folder folder(in_memory());
+    const Folder folder;
     ASSERT_EQ(run_script(folder, replying("", sound), lines_campaign(3)).code, 0);
     const auto solved = run_program({"solve", "c.json", "--set", "x=0.25", "--format", "json"}, folder.path());
     EXPECT_EQ(solved.code, 0) << solved.err;

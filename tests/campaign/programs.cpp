@@ -24,7 +24,7 @@ std::string ending(const Folder& folder) {
 
 /// How a campaign of one case ends.
 std::string ending_of(const std::string& script, const json& more = {}, const json& limits = {{"attempts", 1}}) {
-    const Folder folder(in_memory());
+    const Folder folder;
     auto campaign = script_campaign(1, more);
     campaign["limits"] = limits;
     const auto ended = run_script(folder, script, campaign);
@@ -56,7 +56,7 @@ bool there_within(const std::string& text, std::chrono::seconds time) {
 }
 
 TEST(Programs, AnswersAndFactsOfEveryCaseAreStored) {
-    const Folder folder(in_memory());
+    const Folder folder;
     auto campaign =
         script_campaign(8, {{"version", {{"command", {"sh", "-c", "echo tool 3.4.5"}}, {"match", "tool (.*)"}}}});
     const auto ended = run_script(folder, sound_script, campaign);
@@ -74,7 +74,7 @@ TEST(Programs, AnswersAndFactsOfEveryCaseAreStored) {
 }
 
 TEST(Programs, ACaseIsReplayedFromTheArchiveAlone) {
-    const Folder folder(in_memory());
+    const Folder folder;
     ASSERT_EQ(run_script(folder, "echo \"{\\\"y\\\": {{ x }}}\" > out.json\n",
                          script_campaign(2, {{"files", json::array()}, {"templates", {"script.sh"}}}))
                   .code,
@@ -90,7 +90,7 @@ TEST(Programs, ACaseIsReplayedFromTheArchiveAlone) {
 }
 
 TEST(Programs, AReplayThatDiffersIsJudgedByItsTolerance) {
-    const Folder folder(in_memory());
+    const Folder folder;
     const std::string script = "echo \"{\\\"y\\\": 1.0$(date +%N | cut -c1-3)}\" > out.json\n";
     ASSERT_EQ(run_script(folder, script, script_campaign(1)).code, 0);
     const auto id = rows_of(folder, "SELECT case_id FROM p LIMIT 1")[0]["case_id"].get<std::string>();
@@ -140,7 +140,7 @@ TEST(Programs, OneThatWritesWithoutEndFillsNeitherDiskNorMemory) {
 }
 
 TEST(Programs, FoldersWithinFoldersWithoutEndAreRefusedAndRemoved) {
-    const Folder folder(in_memory());
+    const Folder folder;
     auto campaign = script_campaign(1, {{"keep", "none"}});
     campaign["limits"] = {{"attempts", 1}};
     const std::string nests =
@@ -183,7 +183,7 @@ TEST(Programs, ChildrenDoNotSurviveAProgramThatEnds) {
 
 TEST(Programs, NothingSurvivesWorkersOrMainProgramThatAreKilled) {
     for (const bool main_program : {true, false}) {
-        const Folder folder(in_memory());
+        const Folder folder;
         const std::string mark = main_program ? "98763.25" : "98764.25";
         folder.write("script.sh", "(setsid sh -c 'trap \"\" TERM; sleep " + mark + "; true' &)\nsleep " + mark + "\n");
         auto campaign = script_campaign(1);
@@ -202,7 +202,7 @@ TEST(Programs, NothingSurvivesWorkersOrMainProgramThatAreKilled) {
 }
 
 TEST(Programs, ACaseMayChangeItsFilesAndTheNextDoesNotSeeIt) {
-    const Folder folder(in_memory());
+    const Folder folder;
     const std::string script =
         "grep -q changed data.txt && echo '{\"y\": -1}' > out.json || echo \"{\\\"y\\\": $1}\" > out.json\n"
         "echo changed > data.txt; echo 'exit 1' > script.sh; rm -f inputs.json; chmod 000 .\n";
@@ -219,7 +219,7 @@ TEST(Programs, ACaseMayChangeItsFilesAndTheNextDoesNotSeeIt) {
 
 TEST(Programs, FailedCasesKeepTheirFoldersWhereAsked) {
     for (const std::string keep : {"failed", "all", "none"}) {
-        const Folder folder(in_memory());
+        const Folder folder;
         auto campaign = script_campaign(2, {{"keep", keep}});
         campaign["limits"] = {{"attempts", 1}};
         (void)run_script(folder, std::string(sound_script) + "[ $1 = 0.5 ] && exit 1; true\n", campaign);
@@ -240,7 +240,7 @@ TEST(Programs, OneWorkerTwoWorkersAndAKilledRunGiveTheSameDump) {
     const std::string script = "sleep 0.02\n" + std::string(sound_script);
     const auto campaign = script_campaign(24, {{"observables", {{"e", {{"from", {{"output", "e=([0-9.]+)"}}}}}}}});
     const std::string with_output = script + "echo noise; echo e=1.5; echo e=2.5\n";
-    const Folder one(in_memory()), two(in_memory()), killed(in_memory());
+    const Folder one, two, killed;
     ASSERT_EQ(run_script(one, with_output, campaign, {"-j", "1"}).code, 0);
     ASSERT_EQ(run_script(two, with_output, campaign, {"-j", "2"}).code, 0);
     killed.write("script.sh", with_output);
@@ -262,7 +262,7 @@ TEST(Programs, OneWorkerTwoWorkersAndAKilledRunGiveTheSameDump) {
 
 TEST(Programs, ContentsAreIdentityAndNamesOfFoldersAreNot) {
     const auto id_of = [](const std::string& script, const json& more) {
-        const Folder folder(in_memory());
+        const Folder folder;
         folder.write("script.sh", script);
         folder.write("c.json", script_campaign(1, more).dump());
         const auto planned = run_program({"plan", "c.json", "--format", "json"}, folder.path());
@@ -279,7 +279,7 @@ TEST(Programs, ContentsAreIdentityAndNamesOfFoldersAreNot) {
 }
 
 TEST(Programs, ALibraryThatIsMissingIsACrashThatSaysSo) {
-    const Folder folder(in_memory());
+    const Folder folder;
     folder.write("main.cpp", "extern \"C\" int f(); int main() { return f(); }");
     folder.write("f.c", "int f(void) { return 0; }");
     const std::string build = "cd " + folder.path().string() +
@@ -292,7 +292,7 @@ TEST(Programs, ALibraryThatIsMissingIsACrashThatSaysSo) {
 }
 
 TEST(Programs, OneThatIsGoneEndsTheRunAndNothingIsSpent) {
-    const Folder folder(in_memory());
+    const Folder folder;
     const auto tool =
         folder.write("tool", "#!/bin/sh\necho '{\"y\": 1}' > out.json\nrm -f " + (folder / "tool").string() + "\n");
     std::filesystem::permissions(tool, std::filesystem::perms::owner_all);

@@ -1,6 +1,7 @@
 // Workers on hosts: whatever is killed, the answers are those of a local run, and a host that breaks the protocol does
 // no harm.
 #include "stats/random.hpp"
+#include "tests/support/progress.hpp"
 #include "tests/support/scripted_worker.hpp"
 
 #include <gmock/gmock.h>
@@ -49,12 +50,10 @@ public:
         EXPECT_GT(dump("local.db").size(), 1000U);
     }
     [[nodiscard]] std::int64_t ask(const std::string& sql) const {
-        const auto ended = run_program({"query", "hosted.db", sql, "--format", "json"}, folder_.path());
-        return ended.code == 0 ? json::parse(ended.out).at(0).front().get<std::int64_t>() : -1;
+        return number_in(folder_ / "hosted.db", sql);
     }
     void await(Process& run, std::int64_t cases) const {
-        while (run.running() && ask("SELECT count(outcome) FROM hosted") < cases)
-            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        await_settled(run, folder_ / "hosted.db", cases);
     }
     void expect_no_orphans() const {
         const std::string mark = (folder_ / "hosted.artefacts").string();
@@ -160,8 +159,7 @@ TEST(Hosts, TheyEndWithTheMainProgram) {
 TEST(Hosts, AHostThatIsAskedToEndSavesWhatItsWorkersHave) {
     const HostedCampaign campaign(8, 1.5);
     Process run(campaign.command(), campaign.folder().path());
-    while (run.running() && campaign.ask("SELECT count(*) FROM attempt") < 4)
-        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    await_number(run, campaign.folder() / "hosted.db", "SELECT count(*) FROM attempt", 4);
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     const auto hosts = run.children();
     ASSERT_EQ(hosts.size(), 2U);

@@ -49,7 +49,7 @@ private:
     [[nodiscard]] std::vector<std::string> run_into(const std::string& database) const;
     [[nodiscard]] std::string complaint_of(const FailingCall& call, const std::string& database) const;
 
-    Folder folder_{in_memory()};
+    Folder folder_;
     std::string undisturbed_;
 };
 

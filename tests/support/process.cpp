@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <sys/resource.h>
+#include <sys/statvfs.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -123,8 +124,11 @@ std::vector<pid_t> processes_with(const std::string& text) {
 }
 
 fs::path in_memory() {
-    const fs::path memory = "/dev/shm";
-    return ::access(memory.c_str(), W_OK) == 0 ? memory : fs::temp_directory_path();
+    const char* memory = "/dev/shm";
+    struct statvfs system {};
+    const bool suitable = ::access(memory, W_OK) == 0 && ::statvfs(memory, &system) == 0 &&
+                          (system.f_flag & ST_NOEXEC) == 0 && system.f_bavail * system.f_frsize > (1UL << 30U);
+    return suitable ? fs::path(memory) : fs::temp_directory_path();
 }
 
 Folder::Folder(const fs::path& parent) {

@@ -47,10 +47,14 @@ Ended run_program(const std::vector<std::string>& arguments, const std::filesyst
 /// Processes whose command line contains `text`.
 [[nodiscard]] std::vector<pid_t> processes_with(const std::string& text);
 
+/// A folder in memory, where no test waits for a disk, if it has a gigabyte of room and may hold programs; else the
+/// system's folder of temporary files.
+[[nodiscard]] std::filesystem::path in_memory();
+
 /// A new empty folder, removed at the end of the test program's life of this object.
 class Folder {
 public:
-    explicit Folder(const std::filesystem::path& parent = std::filesystem::temp_directory_path());
+    explicit Folder(const std::filesystem::path& parent = in_memory());
     ~Folder();
     Folder(const Folder&) = delete;
     Folder& operator=(const Folder&) = delete;
@@ -61,8 +65,5 @@ public:
 private:
     std::filesystem::path path_;
 };
-
-/// Where files are in memory, if the system offers it: syncs cost nothing there, and files are files all the same.
-[[nodiscard]] std::filesystem::path in_memory();
 
 }  // namespace grainsweep::tests

@@ -35,7 +35,7 @@ void WholeCampaign::run(const std::filesystem::path& file, const std::function<v
 }
 
 std::string WholeCampaign::undisturbed() const {
-    const Folder folder{in_memory()};
+    const Folder folder;
     run(folder / "whole.db", [](std::size_t) {});
     return dump_of(store::Store(folder / "whole.db", store::Store::Mode::read));
 }

@@ -17,7 +17,7 @@ namespace grainsweep::tests::report_curves_test {
 using testing::ElementsAre;
 
 struct ReportCurves : testing::Test {
-    Folder folder{in_memory()};
+    Folder folder;
     store::Store store{folder / "a.db", store::Store::Mode::create};
 
     /// Six cells, two repeats each; all but the last case answered: a series of 1001 samples, a histogram at eight

@@ -143,7 +143,7 @@ protected:
         return found;
     }
 
-    tests::Folder folder{in_memory()};
+    tests::Folder folder;
     campaign::Campaign campaign;
     std::vector<campaign::PlacedCase> placed;
     campaign::Cases cases;

@@ -48,7 +48,7 @@ protected:
         return answer ? std::optional(answer->result.outcome) : std::nullopt;
     }
 
-    tests::Folder folder{in_memory()};
+    tests::Folder folder;
     campaign::Campaign campaign;
     std::vector<campaign::PlacedCase> placed;
     campaign::Cases cases;

@@ -25,7 +25,7 @@ Bytes bytes(std::size_t count, unsigned first = 0) {
 }
 
 struct StoreArtefacts : testing::Test {
-    Folder folder{in_memory()};
+    Folder folder;
     std::filesystem::path place = folder.path() / "new" / "artefacts";
     ArtefactFolder artefacts{place};
 

@@ -17,7 +17,7 @@ using store::Store;
 using testing::HasSubstr;
 
 struct StoreChecksums : testing::Test {
-    Folder folder{in_memory()};
+    Folder folder;
     std::filesystem::path file = folder / "a.db";
     campaign::Campaign asked = small_campaign("c");
     std::vector<campaign::PlacedCase> cases = small_design(asked, 6);
@@ -99,7 +99,7 @@ TEST_F(StoreChecksums, ANumberThatChangedIsNamed) {
 
 TEST_F(StoreChecksums, WhateverChangesIsFound) {
     store::Connection(file, store::Connection::Access::write).execute("PRAGMA wal_checkpoint(TRUNCATE)");
-    const Folder copies{in_memory()};
+    const Folder copies;
     const auto copy = copies / "a.db";
     for (const auto* change : {
              "UPDATE observation SET sample = 7 WHERE case_key = 1 AND sample = 1",

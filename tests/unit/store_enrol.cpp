@@ -17,7 +17,7 @@ using store::Store;
 using testing::HasSubstr;
 
 struct StoreEnrol : testing::Test {
-    Folder folder{in_memory()};
+    Folder folder;
     std::filesystem::path file = folder / "a.db";
     Store store{file, Store::Mode::create};
 

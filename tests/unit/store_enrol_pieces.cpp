@@ -31,7 +31,7 @@ std::string contents_of(const std::filesystem::path& file) {
 }
 
 struct PieceByPiece : testing::Test {
-    Folder folder{in_memory()};
+    Folder folder;
     Campaign campaign = [] {
         auto asked = small_campaign("c");
         asked.replicates = 2;

@@ -28,7 +28,7 @@ void flip_bit(const std::filesystem::path& file, std::int64_t byte) {
 }
 
 struct FileChecksum : testing::Test {
-    Folder folder{in_memory()};
+    Folder folder;
     std::filesystem::path file = folder / "a.db";
     campaign::Campaign asked = small_campaign("c");
     std::vector<campaign::PlacedCase> cases = small_design(asked, 12);

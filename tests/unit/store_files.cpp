@@ -38,7 +38,7 @@ std::string sentence(const std::filesystem::path& file, Store::Mode mode) {
 }
 
 TEST(StoreFiles, WhatIsNotThereCannotBeRead) {
-    const Folder folder{in_memory()};
+    const Folder folder;
     EXPECT_THAT(sentence<WrongQuestion>(folder / "none.db", Store::Mode::read), HasSubstr("there is no database"));
     EXPECT_THAT(sentence<WrongQuestion>(folder.path(), Store::Mode::read), HasSubstr("is not a file"));
     EXPECT_FALSE(std::filesystem::exists(folder / "none.db")) << "reading makes no file";
@@ -48,7 +48,7 @@ TEST(StoreFiles, WhatIsNotThereCannotBeRead) {
 }
 
 TEST(StoreFiles, AStrangersFileIsLeftAlone) {
-    const Folder folder{in_memory()};
+    const Folder folder;
     const std::string config = "{\"campaign\": \"quickstart\", \"scene\": \"powder_spreading\"}";
     write(folder / "config.json", config);
     auto foreign = store::Connection(folder / "foreign.db", store::Connection::Access::write);
@@ -62,7 +62,7 @@ TEST(StoreFiles, AStrangersFileIsLeftAlone) {
 }
 
 TEST(StoreFiles, ANewerSchemaIsNotTouched) {
-    const Folder folder{in_memory()};
+    const Folder folder;
     { const Store store(folder / "a.db", Store::Mode::create); }
     {
         store::Connection db(folder / "a.db", store::Connection::Access::write);
@@ -74,7 +74,7 @@ TEST(StoreFiles, ANewerSchemaIsNotTouched) {
 }
 
 TEST(StoreFiles, AFolderThatIsMissingIsABrokenWorld) {
-    const Folder folder{in_memory()};
+    const Folder folder;
     EXPECT_THAT(sentence<BrokenWorld>(folder.path() / "no" / "a.db", Store::Mode::create), HasSubstr("No such file"));
 }
 
@@ -87,7 +87,7 @@ std::vector<std::string> names_in(const Folder& folder) {
 }
 
 TEST(StoreFiles, TheSecondWriterIsToldWhoTheFirstIs) {
-    const Folder folder{in_memory()};
+    const Folder folder;
     const auto link = folder / "link.db";
     const auto hard_link = folder / "hard.db";
     {
@@ -126,7 +126,7 @@ TEST(StoreFiles, ADatabaseThatIsNoLongerInItsPlaceEndsTheRun) {
     const auto cases = small_design(campaign, 3);
     for (const auto disk : {Store::Disk::local, Store::Disk::network}) {
         for (const std::string how : {"moved", "deleted", "replaced"}) {
-            const Folder folder{in_memory()};
+            const Folder folder;
             const auto file = folder / "a.db";
             {
                 Store store(file, Store::Mode::create, disk);
@@ -155,7 +155,7 @@ TEST(StoreFiles, ADatabaseThatIsNoLongerInItsPlaceEndsTheRun) {
 }
 
 TEST(StoreFiles, WriterAndReadersLeaveOneFile) {
-    const Folder folder{in_memory()};
+    const Folder folder;
     {
         Store writer(folder / "a.db", Store::Mode::create);
         const auto campaign = small_campaign("c");
@@ -168,7 +168,7 @@ TEST(StoreFiles, WriterAndReadersLeaveOneFile) {
 }
 
 TEST(StoreFiles, AReaderChangesNothing) {
-    const Folder folder{in_memory()};
+    const Folder folder;
     { const Store writer(folder / "a.db", Store::Mode::create); }
     store::Connection reader(folder / "a.db", store::Connection::Access::read);
     EXPECT_THROW(reader.execute("DELETE FROM campaign"), BrokenWorld);
@@ -176,7 +176,7 @@ TEST(StoreFiles, AReaderChangesNothing) {
 }
 
 TEST(StoreFiles, AnOlderSchemaIsReadAsItIsAndBroughtUpToDateByTheNextRun) {
-    const Folder folder{in_memory()};
+    const Folder folder;
     const auto file = folder / "a.db";
     const auto campaign = small_campaign("c");
     const auto cases = small_design(campaign, 3);
@@ -215,7 +215,7 @@ TEST(StoreFiles, TheJournalFitsTheFileSystem) {
 }
 
 TEST(StoreFiles, ADatabaseOnANetworkDiskIsRefusedWithWhatToDo) {
-    const tests::Folder folder{in_memory()};
+    const tests::Folder folder;
     EXPECT_NO_THROW(store::refuse_network(folder / "x.db", store::file_system_of(folder / "x.db")));
     EXPECT_NO_THROW(store::refuse_network(folder / "x.db", 0xEF53));
     try {
@@ -229,7 +229,7 @@ TEST(StoreFiles, ADatabaseOnANetworkDiskIsRefusedWithWhatToDo) {
 }
 
 TEST(StoreFiles, BothJournalsAreFullySynced) {
-    const Folder folder{in_memory()};
+    const Folder folder;
     store::Connection db(folder / "a.db", store::Connection::Access::write);
     const auto ask = [&](const char* sql) {
         auto statement = db.prepare(sql);
@@ -259,7 +259,7 @@ private:
 };
 
 TEST(StoreFiles, ADatabaseInAFolderThatCannotBeWrittenIsRead) {
-    const Folder folder{in_memory()};
+    const Folder folder;
     chmod(folder.path().c_str(), 0755);
     const auto closed = folder / "with space #%?";
     std::filesystem::create_directory(closed);

@@ -15,7 +15,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 struct StoreQuery : testing::Test {
-    Folder folder{in_memory()};
+    Folder folder;
     std::filesystem::path file = folder / "a.db";
     campaign::Campaign asked = small_campaign("first");
     std::vector<campaign::PlacedCase> cases = small_design(asked, 8);

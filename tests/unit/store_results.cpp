@@ -13,7 +13,7 @@ using campaign::Outcome;
 using store::Store;
 
 struct StoreResults : testing::Test {
-    Folder folder{in_memory()};
+    Folder folder;
     campaign::Campaign asked = small_campaign("first");
     std::vector<campaign::PlacedCase> cases = small_design(asked, 8);
     Store store{folder / "a.db", Store::Mode::create};

@@ -46,7 +46,7 @@ std::string refusal_of(Ask&& ask) {
 }
 
 struct StoreTampering : testing::Test {
-    Folder folder{in_memory()};
+    Folder folder;
     std::filesystem::path file = folder / "a.db";
     campaign::Campaign asked = small_campaign("c");
     std::vector<campaign::PlacedCase> cases = small_design(asked, 12);

@@ -20,7 +20,7 @@ using namespace workers;
 namespace fs = std::filesystem;
 
 struct Root {
-    tests::Folder folder{in_memory()};
+    tests::Folder folder;
     void write(const std::string& name, const std::string& text) const {
         const auto file = folder.path() / name;
         fs::create_directories(file.parent_path());
