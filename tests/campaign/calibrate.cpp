@@ -85,11 +85,13 @@ TEST(CalibrateCampaign, GivesTheSameInterruptedOrNotWithOneWorkerOrTwo) {
 TEST(CalibrateCampaign, SaysWhatTheTargetsCannotGive) {
     const Folder folder;
     auto contradicting = config();
+    contradicting["calibration"]["waves"] = 1;
     contradicting["calibration"]["targets"][0]["value"] = 0.1;
     contradicting["calibration"]["targets"][1]["value"] = 0.7;
     folder.write("c.json", contradicting.dump());
     EXPECT_THAT(calibrate(folder, "a.db").out, HasSubstr("the targets contradict each other"));
     auto far = config();
+    far["calibration"]["waves"] = 1;
     far["calibration"]["targets"][0]["value"] = 3;
     folder.write("c.json", far.dump());
     EXPECT_THAT(calibrate(folder, "b.db").out, HasSubstr("no case came near the measured 3"));

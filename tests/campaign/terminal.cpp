@@ -28,8 +28,8 @@ const char* config = R"({"campaign": "wide", "scene": "rehearsal", "factors": [
   {"name": "x1", "between": [0, 1]}, {"name": "x2", "between": [0, 1]}, {"name": "x3", "between": [0, 1]},
   {"name": "x4", "between": [0, 1]}, {"name": "x5", "between": [0, 1]}, {"name": "x6", "between": [0, 1]},
   {"name": "x7", "between": [0, 1]}, {"name": "x8", "between": [0.001, 1], "scale": "log"}],
-  "where": "x1 + x2 < 1.9", "design": {"kind": "halton", "points": 400, "sequences": 8},
-  "convergence": {"observable": "y", "block": 50, "tolerance": 0.001}, "replicates": 2})";
+  "where": "x1 + x2 < 1.9", "design": {"kind": "halton", "points": 96, "sequences": 8},
+  "convergence": {"observable": "y", "block": 32, "tolerance": 0.001}, "replicates": 2})";
 
 struct Terminal : testing::Test {
     Folder folder;

@@ -164,8 +164,6 @@ double PlainDem::end_of_contact(const dem::Material& m, double radius, bool last
 }
 
 void PlainDem::pair(std::size_t i, std::size_t j, bool update) {
-    const bool of_powder = setup_.spheres[i].mobile && setup_.spheres[j].mobile;
-    const dem::Material m = of_powder ? setup_.material : dem::at_surface(setup_.material, setup_.frozen);
     Vec3 d = x_[i] - x_[j];
     for (std::size_t a = 0; a < 3; ++a)
         if (setup_.domain.periodic[a]) {
@@ -174,6 +172,8 @@ void PlainDem::pair(std::size_t i, std::size_t j, bool update) {
         }
     const double ri = setup_.spheres[i].radius, rj = setup_.spheres[j].radius;
     if (dot(d, d) > 1.1 * (ri + rj) * (ri + rj)) return;  // far: it left contact, and was forgotten, on its way
+    const bool of_powder = setup_.spheres[i].mobile && setup_.spheres[j].mobile;
+    const dem::Material m = of_powder ? setup_.material : dem::at_surface(setup_.material, setup_.frozen);
     const double r = norm(d), overlap = ri + rj - r;
     if (overlap <= end_of_contact(m, ri * rj / (ri + rj), pairs_that_last_.contains({i, j}))) {
         pair_history_.erase({i, j});
