@@ -4,9 +4,7 @@
 #include <xxhash.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
-#include <cmath>
 #include <iterator>
 #include <limits>
 #include <utility>
@@ -41,7 +39,7 @@ CaseResult unanswered(const Attempt& attempt, Outcome outcome, std::string reaso
     return result;
 }
 
-std::string undeclared(const Observations& observations, std::span<const ObservableSpec> declared) {
+std::optional<std::string> undeclared(const Observations& observations, std::span<const ObservableSpec> declared) {
     const auto is_declared = [&](const std::string& name, bool scalar) {
         const auto found = std::ranges::find(declared, name, &ObservableSpec::name);
         return found != declared.end() && (found->shape == Shape::scalar) == scalar;
@@ -50,7 +48,7 @@ std::string undeclared(const Observations& observations, std::span<const Observa
         if (!is_declared(name, true)) return name;
     for (const auto& [name, samples] : observations.series)
         if (!is_declared(name, false)) return name;
-    return {};
+    return std::nullopt;
 }
 
 std::string shortest(double x) {

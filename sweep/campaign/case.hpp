@@ -6,7 +6,6 @@
 #include <array>
 #include <compare>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -94,8 +93,9 @@ struct CaseResult {
 
 /// What the main program knows of an attempt that brought no answer: how long it took, not what it cost.
 [[nodiscard]] CaseResult unanswered(const Attempt& attempt, Outcome outcome, std::string reason, double seconds);
-/// An observable that is not among those declared, or has another shape there; empty: there is none.
-[[nodiscard]] std::string undeclared(const Observations& observations, std::span<const ObservableSpec> declared);
+/// An observable that is not among those declared, or has another shape there.
+[[nodiscard]] std::optional<std::string> undeclared(const Observations& observations,
+                                                    std::span<const ObservableSpec> declared);
 
 /// scene, revision, every input that differs from its default, seed: name=value, sorted, doubles in
 /// shortest round-trip form, -0 as 0, a file by the hash of its contents.  `defaults` are the scene's.

@@ -116,8 +116,8 @@ std::optional<Entry> entry_of(const fs::path& file, const campaign::Attempt& nam
     const auto* answer = std::get_if<Answer>(&entry);
     if (answer == nullptr) return entry;
     if (answer->result.attempt != named) return Damaged{"it answers another attempt than its name says"};
-    if (const auto name = campaign::undeclared(answer->result.observations, scene.observables); !name.empty())
-        return Damaged{fmt::format("it measured '{}', which its scene does not declare so", name)};
+    if (const auto name = campaign::undeclared(answer->result.observations, scene.observables))
+        return Damaged{fmt::format("it measured '{}', which its scene does not declare so", *name)};
     return entry;
 }
 

@@ -10,7 +10,6 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -251,10 +250,10 @@ std::optional<campaign::CaseResult> compute(const campaign::Case& question, std:
     } catch (const std::invalid_argument& error) {
         return close(campaign::Outcome::rejected, error.what());
     }
-    if (const auto name = campaign::undeclared(result.observations, info->observables); !name.empty()) {
+    if (const auto name = campaign::undeclared(result.observations, info->observables)) {
         result.observations = {};
         return close(campaign::Outcome::rejected,
-                     fmt::format("it measured '{}', which its scene does not declare so", name));
+                     fmt::format("it measured '{}', which its scene does not declare so", *name));
     }
     if (!all_finite(result.observations)) {
         result.observations = {};

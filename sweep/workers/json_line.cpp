@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -28,25 +27,6 @@ bool is_real(std::string_view number) {
 }
 
 }  // namespace
-
-void Writer::put(std::string_view text) {
-    if (std::ranges::all_of(text, is_plain))
-        line.append("\"").append(text) += '"';
-    else
-        line += Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-void Writer::put(double number) {
-    if (!std::isfinite(number)) {
-        line += "null";
-        return;
-    }
-    std::array<char, 32> digits{};
-    const auto* const end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
-    const std::string_view shown(digits.data(), static_cast<std::size_t>(end - digits.data()));
-    line += shown;
-    if (!is_real(shown)) line += ".0";
-}
 
 void Writer::put(const Value& value) {
     std::visit([&](const auto& held) { put(held); }, value);

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "solver/scenes/values.hpp"
+#include "sweep/campaign/json_writer.hpp"
 
-#include <array>
 #include <charconv>
 #include <concepts>
 #include <functional>
@@ -14,7 +14,6 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 namespace grainsweep::workers::json_line {
@@ -44,19 +43,13 @@ public:
     }
 
     /// What is no UTF-8 (of a library's error text, say) is replaced.
-    void put(std::string_view text);
+    void put(std::string_view text) { campaign::append_json(line, text); }
+    void put(const std::string& text) { put(std::string_view(text)); }
     /// With ".0" where it is whole, so that the reader can tell a count from a real; what is not finite is null.
-    void put(double number);
+    void put(double number) { campaign::append_json(line, number); }
+    void put(std::integral auto number) { line += campaign::JsonText(number).text(); }
     void put(const Value& value);
     void put(const Sample& sample);
-    void put(const std::string& text) { put(std::string_view(text)); }
-    void put(std::integral auto number) {
-        std::array<char, 24> digits{};
-        if constexpr (std::same_as<decltype(number), bool>)
-            line += number ? "true" : "false";
-        else
-            line.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr);
-    }
     template <class T>
     void put(const std::optional<T>& value) {
         value ? put(*value) : void(line += "null");

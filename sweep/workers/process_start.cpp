@@ -120,29 +120,33 @@ pid_t start_process(const ProcessStart& start, std::error_code& error) {
         streams, [](int stream) { return stream < 0; }, nothing);
     auto environment = environment_of(start.environment);
     const pid_t parent = ::getpid();
-    volatile int failure = 0;  // a stranger shares the memory until its program runs
+    volatile int failure = 0;  // errno; a stranger shares the memory until its program runs
     const SignalsHeld held;
     const auto set_up = [&](auto& executor) { executor.env = environment.data(); };
     const auto prepare = [&](auto&) {
         failure = become(start, streams, parent, held);
         if (failure != 0) ::_exit(127);
     };
-    const auto give_up = [](auto&, const std::error_code& refused) { say_why_not(refused.value()); };
-    const boost::filesystem::path program(start.argv.front());
-    const auto arguments = bp::args(std::vector<std::string>(start.argv.begin() + 1, start.argv.end()));
-    auto child = start.stranger
-                     ? bp::child(program, arguments, bp::extend::on_setup = set_up, bp::extend::on_exec_setup = prepare,
-                                 error, bp::posix::use_vfork)
-                     : bp::child(program, arguments, bp::extend::on_setup = set_up, bp::extend::on_exec_setup = prepare,
-                                 bp::extend::on_exec_error = give_up, bp::ignore_error);
+    const auto give_up = [&](auto&, const std::error_code& refused) {
+        failure = refused.value();
+        if (!start.stranger) say_why_not(refused.value());
+    };
+    const auto begin = [&](const auto&... way) {  // Boost finds use_vfork by its reference
+        const boost::filesystem::path program(start.argv.front());
+        const auto arguments = bp::args(std::vector<std::string>(start.argv.begin() + 1, start.argv.end()));
+        return bp::child(program, arguments, bp::extend::on_setup = set_up, bp::extend::on_exec_setup = prepare,
+                         bp::extend::on_exec_error = give_up, bp::ignore_error, way...);
+    };
+    auto child = start.stranger ? begin(bp::posix::use_vfork) : begin();
     const pid_t id = child.valid() ? child.id() : -1;
     child.detach();  // waited for by its number
     if (id > 0 && failure != 0) {
-        ::waitpid(id, nullptr, 0);
+        while (::waitpid(id, nullptr, 0) < 0 && errno == EINTR) {
+        }
         error.assign(failure, std::system_category());
         return -1;
     }
-    if (id < 0 && !error) error = std::make_error_code(std::errc::resource_unavailable_try_again);
+    if (id < 0) error = std::make_error_code(std::errc::resource_unavailable_try_again);
     return id;
 }
 

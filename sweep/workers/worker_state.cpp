@@ -106,9 +106,9 @@ WorkerState::Meaning WorkerState::understand(Done& done) {
     auto& result = done.result;
     if (!is_running(result.attempt)) return Complaint{"the worker answered a case it had not begun"};
     if (result.outcome == campaign::Outcome::abandoned) return Complaint{"the worker answered 'abandoned'"};
-    if (const auto name = campaign::undeclared(result.observations, expected_->measured); !name.empty())
+    if (const auto name = campaign::undeclared(result.observations, expected_->measured))
         return Complaint{
-            fmt::format("the worker measured '{}', which its scene does not declare so", shortened(name, 100))};
+            fmt::format("the worker measured '{}', which its scene does not declare so", shortened(*name, 100))};
     const bool measured =
         result.outcome == campaign::Outcome::completed || result.outcome == campaign::Outcome::skipped;
     if (!measured) result.observations = {};  // numbers of a failure are no answer

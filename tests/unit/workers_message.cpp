@@ -51,6 +51,14 @@ TEST(Message, AnAnswerSurvivesTheTripToTheLastBit) {
     EXPECT_TRUE(back.checkpointed);
 }
 
+TEST(Message, NumbersAreWrittenAsInAllOfThisProgramsJson) {
+    Done done;
+    done.result.cost = {100000, 0.1, 1e16, {}, 2};
+    EXPECT_NE(encode(done).find(R"("cost":{"cpu":0.1,"phases":{},"steps":1e+16,"threads":2.0,"wall":100000.0})"),
+              std::string::npos)
+        << encode(done);
+}
+
 TEST(Message, AnAnswerFromBeforeThreadsWereNotedIsRead) {
     std::string line = encode(Done{});
     const auto at = line.find(R"("threads":null,)");

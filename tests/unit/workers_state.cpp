@@ -124,6 +124,9 @@ TEST_F(Worker, MayNotAnswerAbandonedNorWhatTheSceneDoesNotMeasure) {
     auto unknown = done(first);
     unknown.result.observations.scalars["z"] = 1;
     EXPECT_NE(complaint(unknown).find("'z'"), std::string::npos);
+    auto without_name = done(first);
+    without_name.result.observations.scalars[""] = 1;
+    EXPECT_NE(complaint(without_name), "");
     auto wrong_shape = done(first);
     wrong_shape.result.observations.series["y"] = {{.time = 0, .value = 1}};
     EXPECT_NE(complaint(wrong_shape).find("'y'"), std::string::npos);
