@@ -139,7 +139,9 @@ TEST(DemChanges, ACaseThatGrowsContinuesBitForBit) {
             EXPECT_EQ(all, bytes_of(*cut));
             EXPECT_EQ(all, bytes_of(*restored));
             if (make == engines[1].make) of_one = all;
-            if (make == engines[2].make) EXPECT_EQ(all, of_one);
+            if (make == engines[2].make) {
+                EXPECT_EQ(all, of_one);
+            }
         }
     }
 }
