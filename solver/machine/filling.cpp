@@ -23,7 +23,7 @@ constexpr double most_jitter = 0.05, lowest = 0.1;      // D
 constexpr double spacing = 1.15, least_spacing = 1.02;  // D, largest diameters
 constexpr double most_sites = 2e8;
 
-double largest_of(const Spec& spec, const Mix& mix) {
+double widest_in(const Spec& spec, const Mix& mix) {
     double largest = 0;
     for (const auto& [species, share] : mix)
         if (share > 0) largest = std::max(largest, spec.species[species].largest());
@@ -34,7 +34,7 @@ double largest_of(const Spec& spec, const Mix& mix) {
 struct Pitch {
     double distance = 0, jitter = 0, largest = 0;
 
-    Pitch(const Spec& spec, const Mix& mix) : largest(largest_of(spec, mix)) {
+    Pitch(const Spec& spec, const Mix& mix) : largest(widest_in(spec, mix)) {
         double diameter = 0;
         for (const auto& [species, share] : mix)
             if (share > 0) diameter = std::max(diameter, spec.species[species].diameter);
@@ -116,7 +116,7 @@ public:
     void operator()(const Fill& fill) {
         const Draws draws(spec_, fill.mix, seed_, number_);
         const auto particles = draws.in_numbers(fill.count);
-        const double largest = largest_of(spec_, fill.mix);
+        const double largest = widest_in(spec_, fill.mix);
         const Obstacles obstacles(spec_, largest);
         const auto centres = fill.as == Fill::As::lattice ? on_lattice(fill, draws, obstacles)
                                                           : at_random(fill, draws, particles, obstacles);

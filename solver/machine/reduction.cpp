@@ -39,7 +39,7 @@ double least_of(std::span<const Sample> samples) {
     return samples.empty() ? unknown : std::ranges::min_element(samples, {}, &Sample::value)->value;
 }
 
-double largest_of(std::span<const Sample> samples) {
+double greatest_of(std::span<const Sample> samples) {
     return samples.empty() ? unknown : std::ranges::max_element(samples, {}, &Sample::value)->value;
 }
 
@@ -72,7 +72,7 @@ constexpr std::array all_reductions = {
     ReductionInfo{"first", "value at the first frame", Shape::scalar, first_of},
     ReductionInfo{"sd", "standard deviation over the frames", Shape::scalar, deviation_of},
     ReductionInfo{"min", "least value over the frames", Shape::scalar, least_of},
-    ReductionInfo{"max", "largest value over the frames", Shape::scalar, largest_of},
+    ReductionInfo{"max", "largest value over the frames", Shape::scalar, greatest_of},
     ReductionInfo{"slope", "least-squares slope over time", Shape::scalar, slope_of, false, "/s"},
     ReductionInfo{"integral", "integral over time, by trapezia", Shape::scalar, integral_of, false, " s"},
     ReductionInfo{"series", "value at every frame", Shape::series},

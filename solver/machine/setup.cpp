@@ -32,7 +32,7 @@ std::optional<Motion> acting(const WallMotion& given, const PhaseTimes& times) {
     return motion;
 }
 
-double largest_of(const Spec& spec) {
+double widest_of(const Spec& spec) {
     double largest = 0;
     for (const Species& species : spec.species) largest = std::max(largest, species.largest());
     return largest;
@@ -184,7 +184,7 @@ double fastest_of(const Spec& spec) {
         initial = std::max(initial, norm(feed.velocity));
     }
     double walls = 0;
-    const double largest = largest_of(spec);
+    const double largest = widest_of(spec);
     for (const MachineWall& wall : spec.walls) {
         std::vector<Motion> motions;
         for (const WallMotion& motion : wall.motions) motions.push_back(motion.motion);
@@ -214,7 +214,7 @@ geometry::Domain domain_around(const Spec& spec, const std::array<bool, 3>& give
     }
     for (const Feed& feed : spec.feeds) include(feed.through);
     geometry::Domain domain{all.low, all.high, {}};
-    const double around = margin * largest_of(spec);
+    const double around = margin * widest_of(spec);
     for (std::size_t k = 0; k < 3; ++k) {
         if (given[k]) continue;
         if (!(std::isfinite(all.low[k]) && std::isfinite(all.high[k])))

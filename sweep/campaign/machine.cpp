@@ -44,21 +44,21 @@ std::vector<std::string> expansions(const std::string& text, const std::vector<P
 }
 
 /// Without what changes no answer; files by the hash of their contents.
-Json identity_of(const Json& value, const std::string& key, const Machine& machine) {
+Json answering_part(const Json& value, const std::string& key, const Machine& machine) {
     if (value.is_string() && (key == "stl" || key == "file" || key == "spheres")) {
         const auto file = machine.files.find(value.get<std::string>());
         return file == machine.files.end() ? value : Json(content_hash(file->second));
     }
     if (value.is_array()) {
         Json list = Json::array();
-        for (const auto& inner : value) list.push_back(identity_of(inner, "", machine));
+        for (const auto& inner : value) list.push_back(answering_part(inner, "", machine));
         return list;
     }
     if (!value.is_object()) return value;
     Json object = Json::object();
     for (const auto& [name, inner] : value.items())
         if (name != notes_key && name != "meaning" && name != "bounds")
-            object[name] = identity_of(inner, name, machine);
+            object[name] = answering_part(inner, name, machine);
     return object;
 }
 
@@ -166,7 +166,7 @@ machine::Spec machine_spec(const Machine& machine, const Inputs& inputs) {
 }
 
 std::string machine_scene_name(const Machine& machine) {
-    Json identity = identity_of(*machine.document, "", machine);
+    Json identity = answering_part(*machine.document, "", machine);
     identity.erase("name"), identity.erase("summary");
     return std::string(machine_prefix) + content_hash(identity.dump());
 }

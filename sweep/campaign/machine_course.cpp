@@ -20,7 +20,7 @@ using machine::OptionSpec;
 /// What an entry of "measure" is.
 enum class EntryKind { probe, time_of, expression };
 
-EntryKind kind_of(const Cursor& place) {
+EntryKind entry_kind(const Cursor& place) {
     if (place.json().is_string()) return EntryKind::expression;
     if (!place.json().is_object())
         place.refuse("must be an object with a probe, or a text: an expression of other measurements");
@@ -121,7 +121,7 @@ std::size_t measure_named(const Cursor& place, const MachineReading& reading) {
     return reading.scope.place_in(place, reading.measures, "measurement with a probe");
 }
 
-std::string_view unit_of(const MachineReading& reading, std::size_t measure) {
+std::string_view unit_of_measure(const MachineReading& reading, std::size_t measure) {
     return machine::find_probe(reading.spec.measures[measure].probe)->unit;
 }
 
@@ -148,7 +148,7 @@ machine::Until read_until(const Cursor& place, const MachineReading& reading) {
                                   reading.scope.number(of.at("quiet"), "s", positive_number)};
     }
     const std::size_t number = measure_named(*measure, reading);
-    const auto [value, above] = threshold_of(section, reading, unit_of(reading, number));
+    const auto [value, above] = threshold_of(section, reading, unit_of_measure(reading, number));
     return machine::Passes{number, value, above};
 }
 
@@ -195,7 +195,7 @@ void read_measures(const Section& top, MachineReading& reading) {
     auto& spec = reading.spec;
     for (const auto& [name, value] : all.json().items()) {
         const Cursor place = all[name];
-        if (kind_of(place) != EntryKind::probe) continue;
+        if (entry_kind(place) != EntryKind::probe) continue;
         const auto& probe = probe_of(place);
         machine::Measure measure;
         measure.name = name;
@@ -218,10 +218,10 @@ void read_measures(const Section& top, MachineReading& reading) {
     }
     for (const auto& [name, value] : all.json().items()) {
         const Cursor place = all[name];
-        if (kind_of(place) != EntryKind::time_of) continue;
+        if (entry_kind(place) != EntryKind::time_of) continue;
         const Section section(place, machine_keys::time_of());
         const std::size_t of = measure_named(section.at("time_of"), reading);
-        const auto [threshold, above] = threshold_of(section, reading, unit_of(reading, of));
+        const auto [threshold, above] = threshold_of(section, reading, unit_of_measure(reading, of));
         spec.times.push_back({name, of, threshold, above});
     }
     // Expressions see parameters, "let" and what is measured; one may use another one that comes earlier.
@@ -231,7 +231,7 @@ void read_measures(const Section& top, MachineReading& reading) {
     const auto constants = reading.scope.names();
     for (const auto& [name, value] : all.json().items()) {
         const Cursor place = all[name];
-        if (kind_of(place) != EntryKind::expression) continue;
+        if (entry_kind(place) != EntryKind::expression) continue;
         auto names = known;
         std::erase(names, name);
         names.insert(names.end(), constants.begin(), constants.end());
@@ -267,7 +267,7 @@ std::vector<ObservableSpec> machine_observables(const Section& top) {
     for (const auto& [name, value] : measures.json().items()) {
         const Cursor place = measures[name];
         require_name(place, name);
-        const EntryKind kind = kind_of(place);
+        const EntryKind kind = entry_kind(place);
         if (kind == EntryKind::expression)
             all.push_back({name, "SI", place.text(), Shape::scalar, {}, "something in the expression has no value"});
         if (kind == EntryKind::time_of)

@@ -35,7 +35,7 @@ machine::Spec possible_spec(const Machine& machine, const Inputs& inputs) {
     }
 }
 
-SceneInfo scene_of(const std::shared_ptr<const Machine>& machine, std::string name) {
+SceneInfo scene_of_machine(const std::shared_ptr<const Machine>& machine, std::string name) {
     SceneInfo scene;
     scene.name = std::move(name);
     scene.label = machine->name;
@@ -65,7 +65,7 @@ SceneInfo scene_of(const std::shared_ptr<const Machine>& machine, std::string na
 }  // namespace
 
 const SceneInfo& enter_machine(std::shared_ptr<const Machine> machine) {
-    auto scene = scene_of(machine, machine_scene_name(*machine));
+    auto scene = scene_of_machine(machine, machine_scene_name(*machine));
     auto& all = machines();
     const std::lock_guard lock(all.mutex);
     all.by_scene[scene.name] = std::move(machine);

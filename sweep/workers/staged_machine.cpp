@@ -16,7 +16,7 @@ std::span<const std::byte> bytes_of(std::string_view text) {
     return std::as_bytes(std::span(text.data(), text.size()));
 }
 
-std::string text_of(const Bytes& bytes) {
+std::string text_from(const Bytes& bytes) {
     std::string text(bytes.size(), '\0');
     for (std::size_t k = 0; k < bytes.size(); ++k) text[k] = static_cast<char>(bytes[k]);
     return text;
@@ -36,10 +36,10 @@ void enter_staged_machine(std::string_view scene, Artefacts& artefacts) {
     const auto definition = artefacts.get(std::string(definition_of) + std::string(scene));
     if (!definition) return;
     try {
-        auto machine = campaign::machine_in(text_of(*definition), [&](const std::string& hash) {
+        auto machine = campaign::machine_in(text_from(*definition), [&](const std::string& hash) {
             const auto contents = artefacts.get(std::string(contents_of) + hash);
             if (!contents) throw std::invalid_argument("a file of the machine is not staged");
-            return text_of(*contents);
+            return text_from(*contents);
         });
         if (campaign::machine_scene_name(*machine) == scene) campaign::enter_machine(std::move(machine));
     } catch (const std::invalid_argument&) {  // the case is rejected: this worker has no such scene

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace grainsweep::tests::loose_parts_test {
+namespace grainsweep::tests::geometry_loose_parts_test {
 
 using geometry::End;
 using geometry::Mesh;
@@ -170,4 +170,4 @@ TEST(LooseParts, NeedlesAreDrawnOutCorners) {
     EXPECT_TRUE(geometry::needle_at(mesh(at_border), lowest, 0.05));
 }
 
-}  // namespace grainsweep::tests::loose_parts_test
+}  // namespace grainsweep::tests::geometry_loose_parts_test

@@ -140,8 +140,8 @@ TEST_F(StoreQuery, TheFixedViewsHaveTheColumnsOfTheContract) {
     for (const auto& row : tables.rows) names.push_back(text_of(row[0]));
     EXPECT_THAT(names,
                 ElementsAre("attempt", "attempt_computer", "attempt_program", "campaign", "campaign_case", "case_input",
-                            "convergence", "file_checksum", "observable", "observation", "parameter", "program",
-                            "program_content", "provenance", "sim_case", "table_checksum"));
+                            "convergence", "file_checksum", "machine", "observable", "observation", "parameter",
+                            "program", "program_content", "provenance", "sim_case", "table_checksum"));
     const auto by = store.query(
         "SELECT version, \"commit\", compiler, flags, instruction_path, processor, host, start, "
         "campaign_text, campaign_hash FROM provenance");
@@ -309,7 +309,8 @@ TEST_F(StoreQuery, AnUnknownNameGetsThoseThereAreAndTheNearest) {
     EXPECT_EQ(refusal("SELECT * FROM frist"),
               "SQL: no such table: frist; there are first, convergence_history, inputs, series, attempt, "
               "attempt_computer, attempt_program, campaign, campaign_case, case_input, convergence, file_checksum, "
-              "observable, observation, parameter, program, program_content, provenance, sim_case, table_checksum. Did "
+              "machine, observable, observation, parameter, program, program_content, provenance, sim_case, "
+              "table_checksum. Did "
               "you mean 'first'?");
     EXPECT_EQ(refusal("SELECT stdev(y) FROM first"), "SQL: no such function: stdev. Did you mean 'stddev'?");
     EXPECT_EQ(refusal("SELECT medain(y) FROM first"), "SQL: no such function: medain. Did you mean 'median'?");
