@@ -1,6 +1,8 @@
 // Beyond these limits a state is not sound: the case is reported unstable and has no result.
 #pragma once
 
+#include <string>
+
 namespace grainsweep::dem {
 
 /// Overlap over the smaller diameter (a wall: over the diameter). Hertz's law is a small-strain law: at 0.3 the
@@ -26,5 +28,9 @@ inline constexpr double largest_sound_speed_factor = 10;
 /// work of the walls. In 2,500 cases of few spheres at the default step, completed ones reach 7; the one that only this
 /// check finds reaches 27.
 inline constexpr double largest_sound_energy_gain = 15;
+
+/// What is wrong with a contact, in words that "with" and its partner complete; empty: nothing. `share`: its overlap
+/// over the smaller diameter. `swing`: rad per step.
+[[nodiscard]] std::string flaw_of_contact(double share, double swing);
 
 }  // namespace grainsweep::dem

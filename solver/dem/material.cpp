@@ -21,6 +21,10 @@ double effective_shear_modulus(const Material& m) {
                 compliance(m.partner->youngs_modulus, m.partner->poisson_ratio));
 }
 
+double normal_slope(const Material& m) {
+    return m.normal_law == NormalLaw::linear ? m.stiffness : 2 * effective_modulus(m);
+}
+
 double damping_ratio(double restitution) {
     const double l = std::log(restitution);
     return l / std::hypot(l, std::numbers::pi);

@@ -6,8 +6,8 @@
 //
 //     1/E* = (1 - nu_a^2)/E_a + (1 - nu_b^2)/E_b        1/G* = 2 (2 - nu_a)(1 + nu_a)/E_a + 2 (2 - nu_b)(1 + nu_b)/E_b
 //
-// Hertz (1882), Mindlin (1949). (Wu 2020, eq. 2, prints (1 - nu)^2: a misprint. Gupta, eq. 11, drops the sign of
-// beta, which is negative for e < 1.)
+// Hertz (1882), Mindlin (1949); a linear law has its stiffness given instead (laws/linear.hpp). (Wu 2020, eq. 2, prints
+// (1 - nu)^2: a misprint. Gupta, eq. 11, drops the sign of beta, which is negative for e < 1.)
 #pragma once
 
 #include <optional>
@@ -18,6 +18,10 @@ struct Surface;  // walls/wall.hpp
 
 /// Most kinds of spheres with materials of their own.
 inline constexpr unsigned kinds_at_most = 8;
+
+/// How touching bodies repel each other: hertz by their elastic constants (laws/hertz.hpp), linear by a spring of given
+/// stiffness (laws/linear.hpp). All contacts of a case have the same.
+enum class NormalLaw { hertz, linear };
 
 /// How touching bodies attract each other. By cohesion energy density times a contact area, overlap d, first order in
 /// d for equal spheres: sjkr pi R d (LIGGGHTS 3.8 `sjkr`), sjkr2 2 pi R d, paper pi R d/4 (Gupta, eq. 15 as printed).
@@ -50,9 +54,13 @@ struct Material {
     double youngs_modulus = 21e6;  ///< Pa
     double poisson_ratio = 0.3;
     std::optional<Elasticity> partner{};  ///< of the other body, where it is of another material
-    double density = 7980;                ///< kg/m3
-    double restitution = 0.5;             ///< (0, 1]
-    double friction = 0.2;                ///< Coulomb, particle-particle and particle-wall; 0: no tangential law at all
+    NormalLaw normal_law = NormalLaw::hertz;
+    double stiffness = 0;                        ///< of the linear law, N/m
+    double tangential_ratio = 2.0 / 7;           ///< likewise, of the tangential spring over the normal one
+    std::optional<double> tangential_damping{};  ///< likewise, of the dampers; tangential_ratio where none is given
+    double density = 7980;                       ///< kg/m3
+    double restitution = 0.5;                    ///< (0, 1]
+    double friction = 0.2;  ///< Coulomb, particle-particle and particle-wall; 0: no tangential law at all
     /// mu_r, tangent of the steepest slope on which a sphere stays at rest, [0, 1]; 0: no rolling resistance at all
     double rolling_friction = 0;
     RollingLaw rolling_law = RollingLaw::epsd;
@@ -69,7 +77,9 @@ struct Material {
 
 [[nodiscard]] double effective_modulus(const Material& material);        ///< E*, Pa
 [[nodiscard]] double effective_shear_modulus(const Material& material);  ///< G*, Pa
-[[nodiscard]] double damping_ratio(double restitution);                  ///< beta, <= 0; restitution in (0, 1]
+/// dF_n/dd without damping: of hertz over the radius of the contact, 2 E*, Pa; of linear k, N/m.
+[[nodiscard]] double normal_slope(const Material& material);
+[[nodiscard]] double damping_ratio(double restitution);  ///< beta, <= 0; restitution in (0, 1]
 /// -2 sqrt(5/6) beta: a damper of this times sqrt(S m*), S = dF/dd, makes restitution independent of the impact speed.
 [[nodiscard]] double damping_factor(double restitution);
 [[nodiscard]] double sphere_mass(double radius, double density);  ///< kg

@@ -40,6 +40,12 @@ void check(const Material& m) {
     }
     require(m.rolling_friction >= 0 && m.rolling_friction <= 1, "the rolling friction must lie in [0, 1]");
     require(m.rolling_damping >= 0 && m.rolling_damping <= 1, "the rolling damping must lie in [0, 1]");
+    if (m.normal_law == NormalLaw::hertz) return;
+    require(positive(m.stiffness), "the stiffness of the linear law must be positive");
+    require(m.tangential_ratio > 0 && m.tangential_ratio <= 1,
+            "the tangential stiffness of the linear law over the normal one must lie in (0, 1]");
+    require(!m.tangential_damping || not_negative(*m.tangential_damping),
+            "the tangential damping must not be negative");
 }
 
 void check_kinds(const Setup& setup) {
@@ -90,9 +96,13 @@ void require_possible(const Setup& setup) {
     const std::string of_frozen = flaw(setup.frozen, "frozen spheres");
     require(of_frozen.empty(), of_frozen);
     const std::vector<Material> all = materials_of(setup);
-    for (const Material& m : all)
+    for (const Material& m : all) {
+        require(m.normal_law == all.front().normal_law, "all contacts of a case must have the same normal law");
+        require(m.normal_law == NormalLaw::hertz || !(m.surface_energy > 0 && acts_by_surface_energy(m.cohesion_law)),
+                "jkr and dmt deform elastic spheres: with the linear law take sjkr, sjkr2 or paper");
         require(m.cohesion_law != CohesionLaw::jkr || (m.surface_energy > 0) == (all.front().surface_energy > 0),
                 "jkr needs surface energy in all contacts or in none: a small one, or dmt, where there is none");
+    }
     require(positive(setup.time_step), "the time step must be positive");
     require(geometry::finite(setup.gravity), "gravity must be finite");
     require(geometry::finite(setup.shaking.amplitude) && not_negative(setup.shaking.frequency),

@@ -2,6 +2,7 @@
 
 #include "solver/dem/material.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -17,6 +18,15 @@ double hertz_contact_time(const Material& m, double radius, double speed) {
     const double modulus = effective_modulus(m);
     // 2.868 = (15/16)^(2/5) times twice the integral of dx / sqrt(1 - x^(5/2)) over [0, 1].
     return 2.868 * std::pow(mass * mass / (radius / 2 * modulus * modulus * speed), 0.2);
+}
+
+double linear_contact_time(const Material& m, double radius) {
+    return std::numbers::pi * std::sqrt(sphere_mass(radius, m.density) / 2 / m.stiffness);
+}
+
+double shortest_time(const Material& m, double radius, double speed) {
+    return m.normal_law == NormalLaw::linear ? linear_contact_time(m, radius)
+                                             : std::min(rayleigh_time(m, radius), hertz_contact_time(m, radius, speed));
 }
 
 }  // namespace grainsweep::dem

@@ -3,7 +3,8 @@
 //   bench_dem [--scene NAME] [--path baseline|avx2|avx512] [--steps N] [--bed FILE --angle DEGREES]
 //
 // Besides the scenes: `laws`, the step of one settled bed under every combination of laws that is compiled; `rebuild`,
-// making the lists anew; `pairs`, what a particle costs by itself and what a contact adds.
+// making the lists anew; `pairs`, what a particle costs by itself and what a contact adds; `kinds`, the drum with one
+// kind of spheres and with two that differ in friction, in turns.
 //
 // ns_min is the cheapest window of a hundred steps, ns_mean all of them, lists included, in processor time of this
 // thread. Each phase of a sweep (sift, meet, scatter, advance_range) is a function of its own: `perf record` splits
@@ -15,6 +16,7 @@
 #include <cstdlib>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -176,6 +178,51 @@ void pairs(const Options& o, const dem::Setup& bed) {
     }
 }
 
+/// Every other sphere has another friction.
+dem::Setup of_two_kinds(dem::Setup s) {
+    for (std::size_t i = 1; i < s.spheres.size(); i += 2) s.spheres[i].kind = 1;
+    const auto rubbing = [&](double friction) {
+        dem::Material m = s.material;
+        m.friction = friction;
+        return m;
+    };
+    const double friction = s.material.friction;
+    s.kinds = {{s.material.density, s.material.density},
+               {rubbing(friction), rubbing(0.9 * friction), rubbing(0.8 * friction)}};
+    for (dem::Wall& wall : s.walls) {
+        const double at_wall = wall.surface.friction.value_or(friction);
+        wall.materials = {rubbing(at_wall), rubbing(0.9 * at_wall)};
+    }
+    return s;
+}
+
+void kinds(const Options& o, const dem::Setup& drum) {
+    constexpr std::int64_t window = 100;
+    for (const auto& [name, path] : path_names) {
+        if (!dem::fast::supports(path) || (!o.path.empty() && o.path != name)) continue;
+        const std::unique_ptr<dem::Engine> engines[] = {dem::fast::make_mixed_engine(drum, path),
+                                                        dem::fast::make_mixed_engine(of_two_kinds(drum), path)};
+        double least[2] = {1e300, 1e300}, total[2] = {};
+        for (const auto& engine : engines) engine->run(300);
+        for (std::int64_t s = 0; s < o.steps; s += window)
+            for (std::size_t k = 0; k < 2; ++k) {
+                const double start = processor_seconds();
+                engines[k]->run(window);
+                const double spent = processor_seconds() - start;
+                least[k] = std::min(least[k], spent);
+                total[k] += spent;
+            }
+        const double per_step = 1e9 / static_cast<double>(window) / static_cast<double>(drum.spheres.size());
+        const double windows = static_cast<double>(o.steps) / window;
+        std::printf(
+            "{\"bench\": \"dem_speed\", \"scene\": \"kinds\", \"path\": \"%s\", \"ns_min_one\": %.2f, \"ns_min_two\": "
+            "%.2f, \"ns_mean_one\": %.2f, \"ns_mean_two\": %.2f, \"two_to_one\": %.3f, \"fault\": \"%s\"}\n",
+            name.c_str(), per_step * least[0], per_step * least[1], per_step * total[0] / windows,
+            per_step * total[1] / windows, least[1] / least[0], (engines[0]->fault() + engines[1]->fault()).c_str());
+        std::fflush(stdout);
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -226,6 +273,7 @@ int main(int argc, char** argv) {
         {"laws", [&](const auto&) { laws(o, bed(0), bed(0.25)); }},
         {"rebuild", [&](const auto&) { rebuild(o, bed(0)); }},
         {"pairs", [&](const auto&) { pairs(o, bed(0)); }},
+        {"kinds", [&](const auto&) { kinds(o, turning_drum()); }},
         {"spreading_1mm", [&](const auto& s) { spread(o, s, 1e-3, 2e-3); }},
         {"spreading_3mm", [&](const auto& s) { spread(o, s, 3e-3, 4e-3); }},
     };

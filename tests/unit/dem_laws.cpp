@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -57,6 +58,38 @@ TEST(Hertz, IsTheSpringAndTheDamperOfItsFormula) {
     EXPECT_NEAR(contact.respond<true>(pair(0.3), nullptr).normal, stiffness * t.overlap - 0.3 * g_n, 1e-12);
     // The stored energy is the work of the spring.
     EXPECT_NEAR(contact.energy(t, nullptr), 0.4 * stiffness * t.overlap * t.overlap, 1e-18);
+}
+
+TEST(Linear, IsTheSpringsAndDampersOfItsFormula) {
+    Material m;
+    m.normal_law = NormalLaw::linear;
+    m.stiffness = 1000;
+    m.tangential_ratio = 0.4;
+    m.friction = 0.3;
+    m.rolling_friction = 0.2;
+    const auto contact = Contact<double, Linear, LinearSliding, LinearRolling>::of(m);
+    auto t = pair(0.01);
+    t.time_step = 1e-6;
+    t.slip = {0.01, 0, 0};
+    t.turning = {2, 0, 0};
+    t.rolling_inertia = 1e-12;
+    const double g = -2 * damping_ratio(0.5) * std::sqrt(1000 * t.reduced_mass);
+    std::array<double, 6> memory{1e-7, 0, 5e-8};
+    const auto r = contact.respond<true>(t, memory.data());
+    EXPECT_NEAR(r.elastic, 1000 * t.overlap, 1e-15);
+    EXPECT_NEAR(r.normal, 1000 * t.overlap - g * 0.01, 1e-15);
+    EXPECT_NEAR(memory[0], 1.1e-7, 1e-20);
+    EXPECT_NEAR(r.resistance[0], 400 * 1.1e-7 + 0.4 * g * 0.01, 1e-15);
+    const double k_r = 2.25 * 0.04 * 1000 * t.effective_radius * t.effective_radius;
+    EXPECT_NEAR(memory[3], k_r * 2e-6, 1e-20);
+    EXPECT_NEAR(contact.energy(t, memory.data()),
+                500 * t.overlap * t.overlap + 200 * 1.1e-7 * 1.1e-7 + 0.5 * memory[3] * memory[3] / k_r, 1e-18);
+    m.tangential_damping = 0.1;
+    std::array<double, 6> none{};
+    t.time_step = 0;
+    EXPECT_NEAR(
+        (Contact<double, Linear, LinearSliding, LinearRolling>::of(m).respond<true>(t, none.data()).resistance[0]),
+        0.1 * g * 0.01, 1e-15);
 }
 
 TEST(Mindlin, SticksAsASpringAndSlidesAtCoulombsLimit) {
@@ -162,6 +195,13 @@ TEST(Compiled, TheFirstCombinationThatFitsIsTaken) {
     EXPECT_EQ(adhesive(CohesionLaw::dmt, RollingLaw::epsd), 7);
     EXPECT_EQ(adhesive(CohesionLaw::dmt, RollingLaw::cdt), 8);
     EXPECT_EQ(chosen([](Material& m) { m.cohesion_law = CohesionLaw::jkr; }), 1) << "without surface energy";
+    const auto linear = [&](auto&& change) {
+        return chosen([&](Material& m) { m.normal_law = NormalLaw::linear, m.stiffness = 1, change(m); });
+    };
+    EXPECT_EQ(linear([](Material&) {}), 9);
+    EXPECT_EQ(linear([](Material& m) { m.cohesion = 1; }), 10);
+    EXPECT_EQ(linear(rolling(RollingLaw::cdt)), 10);
+    EXPECT_EQ(linear(rolling(RollingLaw::epsd)), 11);
     Material plain;  // of many sizes only some are compiled
     plain.friction = 0;
     EXPECT_EQ(
@@ -174,6 +214,11 @@ TEST(TimeStep, LimitsAreThoseOfThePapers) {
     EXPECT_NEAR(rayleigh_time(m, 0.0005), 5.3e-5, 0.1e-5);  // dt = 1e-5 is 0.19 of it at 1 mm
     EXPECT_NEAR(rayleigh_time(m, 0.001) / rayleigh_time(m, 0.0005), 2, 1e-12);
     EXPECT_NEAR(hertz_contact_time(m, 0.001, 3.2) / hertz_contact_time(m, 0.001, 0.1), 0.5, 1e-12);
+    EXPECT_EQ(shortest_time(m, 0.001, 0.1), std::min(rayleigh_time(m, 0.001), hertz_contact_time(m, 0.001, 0.1)));
+    Material linear = m;
+    linear.normal_law = NormalLaw::linear;
+    linear.stiffness = 1e4;
+    EXPECT_NEAR(shortest_time(linear, 0.001, 0.1), pi * std::sqrt(sphere_mass(0.001, 7980) / 2 / 1e4), 1e-15);
 }
 
 TEST(MovingWall, ABladeFollowsItsLaw) {

@@ -75,6 +75,11 @@ std::vector<Case> laws() {
         m.rolling_friction = 0.2, m.rolling_law = RollingLaw::cdt;
     });
     add("dmt", [](auto& m) { m.surface_energy = 0.5, m.cohesion_law = CohesionLaw::dmt, m.rolling_friction = 0.1; });
+    add("linear", [](auto& m) { m.normal_law = dem::NormalLaw::linear, m.stiffness = 2000; });
+    add("linear, sjkr, rolling", [](auto& m) {
+        m.normal_law = dem::NormalLaw::linear, m.stiffness = 2000;
+        m.cohesion = 1e5, m.rolling_friction = 0.2;
+    });
     return all;
 }
 

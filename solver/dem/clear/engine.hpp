@@ -85,6 +85,8 @@ private:
     [[nodiscard]] particles::Radii radii() const { return {0, p_.radius}; }
     /// Ids given so far.
     [[nodiscard]] std::size_t ids() const { return spheres_at_start_ + added_.size(); }
+    /// dF_n/dd over normal_slope(), by the radius of the contact.
+    [[nodiscard]] double slope_over(double contact_radius) const { return linear_ ? 1 : contact_radius; }
     /// Components of a contact's memory.
     [[nodiscard]] std::size_t memories() const { return pairs_.components(); }
 
@@ -139,7 +141,7 @@ private:
 
     ContactTable table_;
     std::vector<std::unique_ptr<const AnyContact>> laws_;  // of pairs of kinds
-    std::vector<double> stiffness_;                        // E* of these over that of the first
+    std::vector<double> stiffness_;                        // normal_slope() of these over that of the first
     bool spins_, rolls_, reaches_, remembers_separation_;  // traits of the laws
     geometry::Domain domain_;
     std::array<Vec3, 27> image_shifts_;
@@ -152,7 +154,9 @@ private:
     double mass_ = 0;                           // of all particles, if equal_
     Radii radii_;                               // of all spheres, those to come too
     std::pair<double, double> inverse_masses_;  // least and largest of them
-    double swing_factor_;  // dt^2 2 E*, of the first pair: times stiffest_ the square of a contact's phase per step
+    bool linear_;                               // the normal law
+    double swing_factor_;  // dt^2 normal_slope() of the first pair: times stiffest_ the square of a contact's phase per
+                           // step
     double skin_;
     double beyond_pair_ = 0, beyond_wall_ = 0;  // how far contacts may last beyond touch, m
     std::vector<double> densities_;             // of kinds of contact, kg/m3
@@ -181,7 +185,7 @@ private:
     double largest_overlap_ = 0;
     double peak_overlap_ = 0;          // largest of it so far
     double largest_wall_overlap_ = 0;  // over the diameter
-    double stiffest_ = 0;              // largest sqrt(R* d)/m* of a contact times its stiffness, m/kg
+    double stiffest_ = 0;              // largest slope_over() a mass of a contact times its stiffness
     double speed_limit_ = 0;
     double work_of_walls_ = 0;     // J, since the walls were set
     double work_of_shaking_ = 0;   // J, since the start

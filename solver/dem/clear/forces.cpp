@@ -130,7 +130,7 @@ void ClearEngine::pair_contacts(bool advance) {
             const AnyContact& laws = laws_of(i, j);
             if (reaches_ && !begins(laws, t, memory)) continue;
             largest = std::max(largest, t.overlap / (2 * std::min(t.radius_i, t.radius_j)));
-            stiffest_ = std::max(stiffest_, t.root / t.reduced_mass * stiffness_[pair(i, j)]);
+            stiffest_ = std::max(stiffest_, slope_over(t.root) / t.reduced_mass * stiffness_[pair(i, j)]);
             const auto r = advance ? laws.advance(t, memory) : laws.respond(t, memory);
             const Vec3 f = r.normal * t.normal - r.resistance;
             p_.force[i] += f;
@@ -191,7 +191,7 @@ void ClearEngine::wall_contacts(Contacts& contacts, bool advance) {
         const AnyContact& laws = *contacts.laws[p_.kind[i]];
         if (reaches_ && !begins(laws, t, memory)) continue;
         largest = std::max(largest, t.overlap / (2 * t.radius_i));
-        stiffest_ = std::max(stiffest_, t.root * inverse_mass(i) * contacts.stiffness[p_.kind[i]]);
+        stiffest_ = std::max(stiffest_, slope_over(t.root) * inverse_mass(i) * contacts.stiffness[p_.kind[i]]);
         const auto r = advance ? laws.advance(t, memory) : laws.respond(t, memory);
         const Vec3 f = r.normal * t.normal - r.resistance;
         const double arm = t.radius_i - t.overlap / 2;

@@ -124,34 +124,25 @@ void ClearEngine::report(const std::string& what, std::size_t i) {
 }
 
 void ClearEngine::report_contacts() {
-    const auto judge = [&](std::size_t i, double overlap, double share, double stiffness, const std::string& partner) {
-        char text[200];
-        const double swing = std::sqrt(swing_factor_ * stiffness);
-        if (!(share <= largest_sound_overlap)) {
-            std::snprintf(text, sizeof text, "overlap of %.3g diameters (limit %.3g) with ", share,
-                          largest_sound_overlap);
-            report(text + partner, i);
-        } else if (overlap > 0 && !(swing <= largest_sound_swing)) {
-            std::snprintf(text, sizeof text,
-                          "the time step is too large: a contact swings by %.3g rad per step (limit %.3g) with ", swing,
-                          largest_sound_swing);
-            report(text + partner, i);
-        }
+    const auto judge = [&](std::size_t i, double share, double stiffness, const std::string& partner) {
+        const std::string flaw = flaw_of_contact(share, std::sqrt(swing_factor_ * stiffness));
+        if (!flaw.empty()) report(flaw + partner, i);
     };
     for (std::size_t i = 0; i < p_.size(); ++i)
         for (std::uint32_t k = list_.begin(i); k < list_.end(i); ++k) {
             const std::size_t j = list_[k].j();
             const double r = norm(p_.position[i] - (p_.position[j] + image_shifts_[list_[k].image()]));
             const double overlap = radius(i) + radius(j) - r;
-            judge(i, overlap, overlap / (2 * std::min(radius(i), radius(j))),
-                  std::sqrt(effective_radius(i, j) * overlap) / reduced_mass(i, j),
+            judge(i, overlap / (2 * std::min(radius(i), radius(j))),
+                  slope_over(std::sqrt(effective_radius(i, j) * overlap)) / reduced_mass(i, j) * stiffness_[pair(i, j)],
                   "particle " + std::to_string(p_.id[j]));
         }
     for (std::size_t w = 0; w < walls_.size(); ++w)
         for (const auto& [entry, place] : walls_[w].touches) {
             const std::size_t i = walls_[w].near[entry];
             const double overlap = radius(i) - place.distance;
-            judge(i, overlap, overlap / (2 * radius(i)), std::sqrt(radius(i) * overlap) * inverse_mass(i),
+            judge(i, overlap / (2 * radius(i)),
+                  slope_over(std::sqrt(radius(i) * overlap)) * inverse_mass(i) * walls_[w].stiffness[p_.kind[i]],
                   "wall " + std::to_string(w));
         }
 }

@@ -45,7 +45,8 @@ ClearEngine::ClearEngine(const Setup& setup, const Method& method, const AnyCont
       time_step_(setup.time_step),
       equal_(equal),
       radii_(radii_of(setup)),
-      swing_factor_(2 * effective_modulus(table_.pairs().front()) * setup.time_step * setup.time_step),
+      linear_(table_.pairs().front().normal_law == NormalLaw::linear),
+      swing_factor_(normal_slope(table_.pairs().front()) * setup.time_step * setup.time_step),
       skin_(method.skin),
       densities_(setup.kinds.densities),
       to_come_(setup.to_come),
@@ -66,7 +67,7 @@ ClearEngine::ClearEngine(const Setup& setup, const Method& method, const AnyCont
     }
     for (const Material& m : table_.pairs()) {
         laws_.push_back(laws.of(m));
-        stiffness_.push_back(effective_modulus(m) / effective_modulus(table_.pairs().front()));
+        stiffness_.push_back(normal_slope(m) / normal_slope(table_.pairs().front()));
     }
     mass_ = sphere_mass(largest, densities_.front());
     if (skin_ <= 0 && largest > 0) {
@@ -246,7 +247,7 @@ std::vector<WallContacts> ClearEngine::make_walls(const std::vector<Wall>& walls
                 throw std::invalid_argument(
                     "the surface of a wall has friction or cohesion that nothing at the start had");
             contacts.laws.push_back(laws_.front()->of(m));
-            contacts.stiffness.push_back(effective_modulus(m) / effective_modulus(table_.pairs().front()));
+            contacts.stiffness.push_back(normal_slope(m) / normal_slope(table_.pairs().front()));
             if (contacts.laws.back()->beyond(radii_.largest) > beyond_wall_)
                 throw std::invalid_argument(
                     "the surface of a wall attracts from further than anything at the start did");

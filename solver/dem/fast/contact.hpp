@@ -68,15 +68,16 @@ struct Meeting {
         root = contact_radius;
         root_of_root = root * inverse_root(root);
     }
-    GRAINSWEEP_LANES F damped(const Arithmetic<F>::Damping& d) const {
+    GRAINSWEEP_LANES F damped(const Arithmetic<F>::Damping& d) const { return root_of_root * damped_by_mass(d); }
+    GRAINSWEEP_LANES F damped_by_mass(const Arithmetic<F>::Damping& d) const {
         if constexpr (partner == Partner::wall)
-            return root_of_root * (d.general * inverse_root(max(inverse_masses, broadcast(1e-12f))));
+            return d.general * inverse_root(max(inverse_masses, broadcast(1e-12f)));
         else if constexpr (Kernel::unequal)
-            return root_of_root * (d.general * inverse_root(inverse_masses));
+            return d.general * inverse_root(inverse_masses);
         else if constexpr (Kernel::holds)  // of mass 1, or one of them frozen
-            return root_of_root * select(broadcast(1.5f) < inverse_masses, d.of_pair, d.general);
+            return select(broadcast(1.5f) < inverse_masses, d.of_pair, d.general);
         else
-            return root_of_root * d.of_pair;
+            return d.of_pair;
     }
     GRAINSWEEP_LANES F damped_beside(const Arithmetic<F>::Damping& d, F normal_damper) const {
         return normal_damper * d.over_normal;

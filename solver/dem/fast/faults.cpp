@@ -6,7 +6,8 @@
 #include <limits>
 #include <numbers>
 
-#include "solver/dem/fast/mixed_engine.hpp"
+#include "solver/dem/fast/listed_pairs.hpp"
+#include "solver/dem/fast/pieced_walls.hpp"
 #include "solver/dem/fast/wall_lists.hpp"
 #include "solver/dem/limits.hpp"
 
@@ -29,6 +30,17 @@ std::string where_and_when(const FaultView& s, std::int32_t i) {
 /// Words for a limit that the time step sets.
 const char* reason_of(float limit) {
     return limit < static_cast<float>(overlap_limit) ? ": beyond, the time step is too long for the contact" : "";
+}
+
+/// In largest diameters.
+double overlap_of(const FaultView& s, const Record& a, const Record& b) {
+    double square = 0;
+    for (int q = 0; q < 3; ++q) {
+        const auto offset = static_cast<std::int32_t>(static_cast<std::uint32_t>(a.position[q]) -
+                                                      static_cast<std::uint32_t>(b.position[q]));
+        square += std::pow(offset * s.field.constants.unit[q], 2);
+    }
+    return static_cast<double>(a.radius) + static_cast<double>(b.radius) - std::sqrt(square);
 }
 
 struct Depth {
@@ -55,19 +67,24 @@ Depth deepest_at_walls(const FaultView& s) {
 
 }  // namespace
 
-SoundOverlaps sound_overlaps(const Setup& setup) {
-    double radius = std::numeric_limits<double>::infinity(), density = radius, modulus = 0;
+bool contacts_differ(const Setup& setup) {
+    return setup.kinds.densities.size() > 1;
+}
+
+SoundOverlaps resolved_overlaps(const Setup& setup) {
+    double radius = std::numeric_limits<double>::infinity(), density = radius, slope = 0;
     for_each_extreme_sphere(setup, [&](const Sphere& sphere) {
         radius = std::min(radius, sphere.radius);
         density = std::min(density, density_of(setup, sphere));
     });
-    if (!std::isfinite(radius)) return {static_cast<float>(overlap_limit), static_cast<float>(overlap_limit)};
-    const ContactTable table(setup);
-    for (const Material& m : table.pairs()) modulus = std::max(modulus, effective_modulus(m));
+    if (!std::isfinite(radius)) return {};
+    for (const Material& m : materials_of(setup)) slope = std::max(slope, normal_slope(m));
+    const bool linear = materials_of(setup).front().normal_law == NormalLaw::linear;
     const double mass = 4.0 / 3 * std::numbers::pi * radius * radius * radius * density;
     const auto limit = [&](double share) {  // R* = share R, m* = share m
-        const double root = largest_sound_swing * largest_sound_swing * share * mass /
-                            (2 * modulus * setup.time_step * setup.time_step);
+        const double root =
+            largest_sound_swing * largest_sound_swing * share * mass / (slope * setup.time_step * setup.time_step);
+        if (linear) return static_cast<float>(root >= 1 ? overlap_limit : 0);  // at any overlap
         return static_cast<float>(std::min(overlap_limit, root * root / (share * radius) / (2 * radius)));
     };
     return {limit(0.5), limit(1)};
@@ -109,22 +126,50 @@ std::string describe(const FaultView& s, const std::string& what, std::int32_t i
     return what + where_and_when(s, i);
 }
 
+std::string unsound_contact(const FaultView& s) {
+    const Scale& scale = s.scale;
+    const auto judge = [&](const Material& m, double overlap, double smaller, double radius, double inverse_mass) {
+        const double over = m.normal_law == NormalLaw::linear ? 1 : std::sqrt(radius * std::max(overlap, 0.0));
+        return flaw_of_contact(overlap / (2 * smaller),
+                               scale.time * std::sqrt(normal_slope(m) * over * inverse_mass / scale.mass));
+    };
+    for (std::int32_t k = 0; k < s.field.inner_count; ++k) {
+        const std::int32_t i = index_at(s.field.inner_first[k]), j = index_at(s.field.inner_second[k]);
+        if (i >= s.field.count || j >= s.field.count) continue;
+        const Record &a = s.field.records[i], &b = s.field.records[j];
+        const double one = radius_of(a, scale), other = radius_of(b, scale);
+        const Material& m = s.table.pairs()[place_of_pair(s.field.kind[i], s.field.kind[j])];
+        const std::string flaw = judge(m, overlap_of(s, a, b) * scale.length, std::min(one, other),
+                                       one * other / (one + other), double{a.inverse_mass} + double{b.inverse_mass});
+        if (!flaw.empty()) return flaw + "particle " + std::to_string(s.id[j]) + where_and_when(s, i);
+    }
+    std::string found;
+    std::vector<WallTouch> touched;
+    for (std::size_t w = 0; w < s.walls.count(); ++w)
+        for_each_near(s.field, s.walls, w, [&](std::int32_t i, std::int32_t) {
+            if (!found.empty()) return;
+            const Record& r = s.field.records[i];
+            const double radius = radius_of(r, scale);
+            const Material m = s.table.at_wall(s.walls[w].wall(), s.field.kind[i]);
+            touched.clear();
+            s.walls[w].find(0, position_of(r, scale), radius, touched);
+            for (const WallTouch& touch : touched) {
+                const std::string flaw =
+                    judge(m, radius - touch.place.distance, radius, radius, double{r.inverse_mass});
+                if (found.empty() && !flaw.empty()) found = flaw + "wall " + std::to_string(w) + where_and_when(s, i);
+            }
+        });
+    return found;
+}
+
 /// Looks for the pair again, by the positions the forces were computed at or one step later.
 std::string describe_overlap(const FaultView& s, const Tally& tally) {
     double most = 0;
     std::int32_t first = 0, second = -1;
     for (std::int32_t k = 0; k < s.field.inner_count; ++k) {
-        const auto i = static_cast<std::int32_t>(s.field.inner_first[k] / places_per_index);
-        const auto j = static_cast<std::int32_t>(s.field.inner_second[k] / places_per_index);
+        const std::int32_t i = index_at(s.field.inner_first[k]), j = index_at(s.field.inner_second[k]);
         const Record &a = s.field.records[i], &b = s.field.records[j];
-        double square = 0;
-        for (int q = 0; q < 3; ++q) {
-            const auto offset = static_cast<std::int32_t>(static_cast<std::uint32_t>(a.position[q]) -
-                                                          static_cast<std::uint32_t>(b.position[q]));
-            square += std::pow(offset * s.field.constants.unit[q], 2);
-        }
-        const double radii = static_cast<double>(a.radius) + static_cast<double>(b.radius);
-        const double share = (radii - std::sqrt(square)) / (2 * static_cast<double>(std::min(a.radius, b.radius)));
+        const double share = overlap_of(s, a, b) / (2 * static_cast<double>(std::min(a.radius, b.radius)));
         if (share > most) most = share, first = i, second = j;
     }
     char text[240];

@@ -43,14 +43,16 @@ void MixedEngine::run(std::int64_t steps) {
         stand_walls();
         make_lists();
         const bool checked = watch_.due(work_.steps);  // at the full step: no particle is advanced before
-        const bool goes_on = std::exchange(advanced, s + 1 < steps && !checked);
+        const bool judged = suspicious() && work_.steps % judging_interval == 0;
+        const bool goes_on = std::exchange(advanced, s + 1 < steps && !checked && !judged);
         begin_tally();
         walls_.sum_up(s + 1 == steps);
         press_walls(true);
         sweep_pairs(goes_on, advanced, false);
         peak_overlap_ = std::max(peak_overlap_, overlap());
         work_.pair_visits += field_.inner_count;
-        if (too_deep() && fault_.empty()) fault_ = describe_overlap(view(), tally_);
+        if (beyond(sound_) && fault_.empty()) fault_ = describe_overlap(view(), tally_);
+        if (judged && fault_.empty()) fault_ = unsound_contact(view());
         if (checked && fault_.empty()) check_energy();
     }
 }
@@ -258,7 +260,8 @@ void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
         }
         leave_over(field_, i, residual);
     }
-    if (too_deep()) fault_ = describe_overlap(view(), tally_);
+    if (beyond(sound_)) fault_ = describe_overlap(view(), tally_);
+    if (suspicious() && fault_.empty()) fault_ = unsound_contact(view());
 }
 
 void MixedEngine::set_walls(std::vector<Wall> walls) {

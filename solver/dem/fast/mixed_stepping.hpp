@@ -95,7 +95,7 @@ private:
     [[nodiscard]] double half_spin_change(std::int32_t particle, int axis) const;
     [[nodiscard]] FaultView view() const {
         join_lists();
-        return {field_, columns_.id.data(), space_.scale, walls_, smallest_diameter_, sound_, work_.steps};
+        return {field_, columns_.id.data(), space_.scale, walls_, table_, smallest_diameter_, sound_, work_.steps};
     }
     /// Of all pairs, over the smaller diameter; parked contacts keep theirs.
     [[nodiscard]] float overlap() const { return std::max(tally_.overlap, resting_.overlap()); }
@@ -105,7 +105,11 @@ private:
     [[nodiscard]] bool is_resting(std::int32_t particle) const {
         return needs_.resting && resting_.holds(particle) && !is_frozen(particle);
     }
-    [[nodiscard]] bool too_deep() const { return tally_.overlap > sound_.pair || tally_.wall_overlap > sound_.wall; }
+    [[nodiscard]] bool beyond(const SoundOverlaps& limits) const {
+        return tally_.overlap > limits.pair || tally_.wall_overlap > limits.wall;
+    }
+    /// Whether contacts are to be judged one by one.
+    [[nodiscard]] bool suspicious() const { return contacts_differ_ && beyond(resolved_); }
     template <class Self, class Archive>
     static void pass(Self& self, Archive& archive);
     void require_possible() const;
@@ -133,7 +137,9 @@ private:
     WallTouches touches_;
     float smallest_diameter_ = 1;
     float lightest_ = 1;  ///< reference density over the smallest
-    SoundOverlaps sound_;
+    bool contacts_differ_;
+    SoundOverlaps resolved_;
+    SoundOverlaps sound_;            ///< beyond it the state is not: the same, unless contacts differ
     bool box_includes_rest_ = true;  ///< something at rest, or a face, bounds displacements besides the particles
 
     Watch watch_;

@@ -8,6 +8,7 @@
 #include "solver/dem/laws/dmt.hpp"
 #include "solver/dem/laws/hertz.hpp"
 #include "solver/dem/laws/jkr.hpp"
+#include "solver/dem/laws/linear.hpp"
 #include "solver/dem/laws/mindlin.hpp"
 #include "solver/dem/laws/rolling.hpp"
 
@@ -43,17 +44,20 @@ struct Combination {
 template <class... Combinations>
 struct CombinationList {};
 
-using Compiled = CombinationList<Combination<Columns::equal, Hertz>,                                       //
-                                 Combination<Columns::sizes, Hertz, Mindlin>,                              //
-                                 Combination<Columns::equal, Hertz, Mindlin, LensCohesion>,                //
-                                 Combination<Columns::any, Hertz, Cohesion, Mindlin>,                      //
-                                 Combination<Columns::any, Hertz, Mindlin, ConstantTorque>,                //
-                                 Combination<Columns::any, Hertz, Jkr, Mindlin, RollingResistance>,        //
-                                 Combination<Columns::any, Hertz, Jkr, Mindlin, ConstantTorque>,           //
-                                 Combination<Columns::any, Hertz, Dmt, Mindlin, RollingResistance>,        //
-                                 Combination<Columns::any, Hertz, Dmt, Mindlin, ConstantTorque>,           //
-                                 Combination<Columns::any, Hertz, Cohesion, Mindlin, ConstantTorque>,      //
-                                 Combination<Columns::any, Hertz, Cohesion, Mindlin, RollingResistance>>;  //
+using Compiled = CombinationList<Combination<Columns::equal, Hertz>,                                          //
+                                 Combination<Columns::sizes, Hertz, Mindlin>,                                 //
+                                 Combination<Columns::equal, Hertz, Mindlin, LensCohesion>,                   //
+                                 Combination<Columns::any, Hertz, Cohesion, Mindlin>,                         //
+                                 Combination<Columns::any, Hertz, Mindlin, ConstantTorque>,                   //
+                                 Combination<Columns::any, Hertz, Jkr, Mindlin, RollingResistance>,           //
+                                 Combination<Columns::any, Hertz, Jkr, Mindlin, ConstantTorque>,              //
+                                 Combination<Columns::any, Hertz, Dmt, Mindlin, RollingResistance>,           //
+                                 Combination<Columns::any, Hertz, Dmt, Mindlin, ConstantTorque>,              //
+                                 Combination<Columns::sizes, Linear, LinearSliding>,                          //
+                                 Combination<Columns::any, Linear, Cohesion, LinearSliding, ConstantTorque>,  //
+                                 Combination<Columns::any, Linear, Cohesion, LinearSliding, LinearRolling>,   //
+                                 Combination<Columns::any, Hertz, Cohesion, Mindlin, ConstantTorque>,         //
+                                 Combination<Columns::any, Hertz, Cohesion, Mindlin, RollingResistance>>;     //
 
 /// Calls visit.operator()<Combination>() for number `index` of the list.
 template <class Visit, class... Combinations>

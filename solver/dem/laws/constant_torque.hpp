@@ -1,7 +1,7 @@
 // Rolling resistance by a torque of constant size against the relative rotation.
 //
 //     T = mu_r k_n d R* w/|w|,   w = w_i - w_j (at a wall w_i),   T := T - (T.n) n,   moment on i  -T, on j  T
-//     k_n d = 4/3 E* sqrt(R* d) d, the elastic part of F_n
+//     k_n d = 4/3 E* sqrt(R* d) d or that of the linear law, the elastic part of F_n
 //
 // Zhou, Wang, Yang & Xu (1999), Physica A 269, 536, eq. 7 (model A of Ai, Chen, Rotter & Ooi (2011), Powder Technol.
 // 206, 269), as LIGGGHTS 3.8 `rolling_friction cdt` evaluates it: normalised by the whole |w|, twist included, before

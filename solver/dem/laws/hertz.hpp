@@ -18,8 +18,8 @@ struct Hertz : LawTraits {
     static constexpr Aspect aspect = Aspect::normal;
     static constexpr int constants = 2;
 
-    static bool wanted(const Material&) { return true; }
-    static bool suits(const Material&) { return true; }
+    static bool wanted(const Material& m) { return m.normal_law == NormalLaw::hertz; }
+    static bool suits(const Material& m) { return wanted(m); }
     static std::array<Quantity, constants> constants_of(const Material& m) {
         const double modulus = effective_modulus(m);
         return {{{4.0 / 3.0 * modulus, pressure},

@@ -22,7 +22,7 @@ struct Mindlin : LawTraits {
     static constexpr int constants = 4;
 
     static bool wanted(const Material& m) { return m.friction > 0; }
-    static bool suits(const Material&) { return true; }
+    static bool suits(const Material& m) { return m.normal_law == NormalLaw::hertz; }
     /// Without friction a spring that is not displaced yet would count as sticking, with a dashpot.
     static std::array<Quantity, constants> constants_of(const Material& m) {
         const double modulus = 8 * effective_shear_modulus(m), on = m.friction > 0 ? 1 : 0;

@@ -1,7 +1,7 @@
 // Rolling resistance by an elastic-plastic spring and a dashpot.
 //
 //     dM = k_r w_t dt,  M += dM        w_t = (w_i - w_j) without its part along n
-//     k_r = 2.25 k_n mu_r^2 R*^2,  k_n = 4/3 E* sqrt(R* d)
+//     k_r = 2.25 k_n mu_r^2 R*^2,  k_n = 4/3 E* sqrt(R* d), or that of the linear law (linear.hpp)
 //     |M| <= mu_r R* |F_n|:  moment on i  -M - 2 eta_r sqrt(I_r k_r) w_t,   1/I_r = sum of 1/(7/5 m R^2)
 //     otherwise:             M := mu_r R* |F_n| M/|M|,  moment on i  -M     (no dashpot)
 //
@@ -22,8 +22,9 @@
 
 namespace grainsweep::dem {
 
-template <class Real>
-struct RollingResistance : LawTraits {
+/// `linear`: beside the linear normal law.
+template <class Real, bool linear>
+struct RollingSpring : LawTraits {
     using A = Arithmetic<Real>;
     static constexpr Aspect aspect = Aspect::rolling;
     static constexpr bool spin = true, rolls = true;
@@ -31,18 +32,21 @@ struct RollingResistance : LawTraits {
     static constexpr int constants = 4;
 
     static bool wanted(const Material& m) { return m.rolling_friction > 0; }
-    static bool suits(const Material& m) { return m.rolling_law != RollingLaw::cdt || !wanted(m); }
+    static bool suits(const Material& m) {
+        return linear == (m.normal_law == NormalLaw::linear) && (m.rolling_law != RollingLaw::cdt || !wanted(m));
+    }
     static std::array<Quantity, constants> constants_of(const Material& m) {
         const double mu_r = m.rolling_friction;
-        return {{{2.25 * mu_r * mu_r * (4.0 / 3.0 * effective_modulus(m)), pressure},
+        return {{{2.25 * mu_r * mu_r * (linear ? m.stiffness : 4.0 / 3.0 * effective_modulus(m)),
+                  linear ? force_per_length : pressure},
                  {mu_r, number},
                  {2 * m.rolling_damping, {.inertia = -0.5}},
                  {m.rolling_law == RollingLaw::epsd_liggghts ? 0.5 : 0.0, number}}};
     }
-    explicit RollingResistance(const double* c)
+    explicit RollingSpring(const double* c)
         : stiffness(A::number(c[0])), friction(A::number(c[1])), dashpot(A::number(c[2])), lever(A::number(c[3])) {}
 
-    Real stiffness;  ///< 2.25 mu_r^2 4/3 E*, Pa
+    Real stiffness;  ///< 2.25 mu_r^2 4/3 E*, Pa; linear: 2.25 mu_r^2 k, N/m
     Real friction;   ///< mu_r
     Real dashpot;    ///< 2 eta_r
     Real lever;      ///< at walls the rotation counts 1 + lever d/(R - d) times
@@ -50,6 +54,7 @@ struct RollingResistance : LawTraits {
     /// k_r, N m
     template <class T>
     [[nodiscard, gnu::always_inline]] Real spring(const T& t) const {
+        if constexpr (linear) return stiffness * t.effective_radius * t.effective_radius;
         return stiffness * t.root * t.effective_radius * t.effective_radius;
     }
 
@@ -79,5 +84,10 @@ struct RollingResistance : LawTraits {
         return k > 0 ? 0.5 * geometry::dot(m, m) / k : 0.0;
     }
 };
+
+template <class Real>
+using RollingResistance = RollingSpring<Real, false>;
+template <class Real>
+using LinearRolling = RollingSpring<Real, true>;
 
 }  // namespace grainsweep::dem

@@ -39,6 +39,10 @@ struct Touch {
 
     /// The damper of a coefficient, N s/m.
     [[nodiscard]] double damped(const Arithmetic::Damping& d) const { return d.coefficient * damping_root; }
+    /// A damper of a coefficient that is proportional to sqrt(m*) alone, N s/m.
+    [[nodiscard]] double damped_by_mass(const Arithmetic::Damping& d) const {
+        return d.coefficient * std::sqrt(reduced_mass);
+    }
     /// The same where the normal damper is known already.
     [[nodiscard]] double damped_beside(const Arithmetic::Damping& d, double) const { return damped(d); }
     /// Strength times the area, N; `lens`: its disc (wall: cap) is all there is.
@@ -92,6 +96,7 @@ struct Dimension {
 };
 inline constexpr Dimension number{}, length{.length = 1}, pressure{.length = -1, .mass = 1, .time = -2},
     root_of_pressure{.length = -0.5, .mass = 0.5, .time = -1}, energy_per_area{.mass = 1, .time = -2},
+    force_per_length = energy_per_area, root_of_force_per_length{.mass = 0.5, .time = -1},
     moment{.length = 2, .mass = 1, .time = -2};
 
 /// A constant of a law, in SI.

@@ -20,9 +20,11 @@ void for_each_part(Of& surface, Visit&& visit) {
 /// Calls visit(number) for every number of a material, its words as numbers.
 template <class Of, class Visit>
 void for_each_number(Of& m, Visit&& visit) {
-    for (auto* part : {&m.youngs_modulus, &m.poisson_ratio, &m.density, &m.restitution, &m.friction,
-                       &m.rolling_friction, &m.rolling_damping, &m.cohesion, &m.surface_energy})
+    for (auto* part :
+         {&m.youngs_modulus, &m.poisson_ratio, &m.density, &m.restitution, &m.friction, &m.rolling_friction,
+          &m.rolling_damping, &m.cohesion, &m.surface_energy, &m.stiffness, &m.tangential_ratio})
         visit(*part);
+    visit(m.normal_law);
     visit(m.rolling_law);
     visit(m.cohesion_law);
     visit(m.friction_limit);
@@ -48,6 +50,8 @@ void write_body(const Wall& wall, Put&& put) {
         for_each_number(m, put);
         put(static_cast<std::uint64_t>(m.partner.has_value()));
         put(m.partner.value_or(Elasticity{}));
+        put(static_cast<std::uint64_t>(m.tangential_damping.has_value()));
+        put(m.tangential_damping.value_or(0));
     }
 }
 
@@ -94,6 +98,9 @@ template <class Get>
         Elasticity partner;
         get(given), get(partner);
         if (given != 0) m.partner = partner;
+        double damping = 0;
+        get(given), get(damping);
+        if (given != 0) m.tangential_damping = damping;
     }
     get(wall.present);
     std::uint64_t motions = 0;

@@ -97,8 +97,7 @@ particles::SizeDistribution Powder::sizes(const Inputs& inputs, const Files& fil
 double Powder::step(const Inputs& inputs, double radius, double speed) const {
     if (const double given = time_step(inputs); given > 0) return given;
     const dem::Material of = material(inputs);
-    return time_step_fraction(inputs) *
-           std::min(dem::rayleigh_time(of, radius), dem::hertz_contact_time(of, radius, speed));
+    return time_step_fraction(inputs) * dem::shortest_time(of, radius, speed);
 }
 
 dem::Method Powder::method(const Inputs& inputs) const {

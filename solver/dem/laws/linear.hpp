@@ -1,0 +1,96 @@
+// Linear spring and dashpot, in the normal and in the tangential direction.
+//
+//     F_n = k d - g v_n,   g = -2 beta sqrt(k m*),   beta = ln e / sqrt(ln^2 e + pi^2) <= 0
+//
+// k is given. An impact lasts t_c = pi/sqrt(k/m* - (g/(2 m*))^2) and has the restitution e = exp(-g t_c/(2 m*)),
+// whatever its speed: a damped harmonic oscillator through half its period. Not clipped: near its end a damped contact
+// attracts.
+//
+//     s += v_t dt;  s -= (s.n) n;   k_t = r k,   g_t = q g
+//     sticking  k_t |s| <= mu |F_n|:  F_t = -k_t s - g_t v_t          (the sum is not limited)
+//     sliding   otherwise:            F_t = -mu |F_n| s/|s|,  s := -F_t/k_t   (no tangential damping)
+//
+// A sphere free to turn meets the tangential spring with the mass 2/7 m*. At r = 2/7 both springs have the same period,
+// and at q = r as well the same restitution.
+//
+// Cundall & Strack (1979), Geotechnique 29, 47; ratios after Schaefer, Dippel & Wolf (1996), J. Phys. I France 6, 5.
+#pragma once
+
+#include "solver/dem/laws/touch.hpp"
+#include "solver/dem/material.hpp"
+
+namespace grainsweep::dem {
+
+template <class Real>
+struct Linear : LawTraits {
+    using A = Arithmetic<Real>;
+    static constexpr Aspect aspect = Aspect::normal;
+    static constexpr int constants = 2;
+
+    static bool wanted(const Material& m) { return m.normal_law == NormalLaw::linear; }
+    static bool suits(const Material& m) { return wanted(m); }
+    static std::array<Quantity, constants> constants_of(const Material& m) {
+        return {{{m.stiffness, force_per_length},
+                 {-2 * damping_ratio(m.restitution) * std::sqrt(m.stiffness), root_of_force_per_length}}};
+    }
+    explicit Linear(const double* c) : stiffness(A::number(c[0])), damping{A::damping(c[1])} {}
+
+    Real stiffness;               ///< k, N/m
+    typename A::Damping damping;  ///< -2 beta sqrt(k), sqrt(N/m)
+
+    template <bool advance, class T>
+    [[gnu::always_inline]] void add(const T& t, Response<Real>& r, Real*) const {
+        r.elastic = stiffness * t.overlap;
+        r.damping = t.damped_by_mass(damping);
+        r.normal = r.seen = A::fnma(r.damping, t.normal_velocity, r.elastic);
+    }
+
+    /// Stored in the overlap, J.
+    template <class T>
+    [[nodiscard]] Real energy(const T& t, const Real*) const {
+        return 0.5 * stiffness * t.overlap * t.overlap;
+    }
+};
+
+template <class Real>
+struct LinearSliding : LawTraits {
+    using A = Arithmetic<Real>;
+    static constexpr Aspect aspect = Aspect::sliding;
+    static constexpr bool spin = true;
+    static constexpr MemoryKind memory_kind{3, -1, length};
+    static constexpr int constants = 3;
+
+    static bool wanted(const Material& m) { return m.friction > 0; }
+    static bool suits(const Material& m) { return m.normal_law == NormalLaw::linear; }
+    /// Without friction a spring that is not displaced yet would count as sticking, with a dashpot.
+    static std::array<Quantity, constants> constants_of(const Material& m) {
+        return {{{m.tangential_ratio * m.stiffness, force_per_length},
+                 {m.friction > 0 ? m.tangential_damping.value_or(m.tangential_ratio) : 0.0, number},
+                 {m.friction, number}}};
+    }
+    explicit LinearSliding(const double* c)
+        : stiffness(A::number(c[0])), over_normal(A::number(c[1])), friction(A::number(c[2])) {}
+
+    Real stiffness;    ///< r k, N/m
+    Real over_normal;  ///< q
+    Real friction;     ///< mu
+
+    /// `advance` false: forces only, the displacement s stays as it is.
+    template <bool advance, class T>
+    [[gnu::always_inline]] void add(const T& t, Response<Real>& r, Real* displacement) const {
+        auto s = A::vector(displacement);
+        if constexpr (advance) s = A::across(A::add(s, t.time_step, t.slip), t.normal);
+        const auto [slides, scale] = A::cut(stiffness, s, friction * A::abs(r.seen));
+        r.resistance = A::spring(stiffness, scale, s, A::drop(slides, over_normal * r.damping), t.slip);
+        if constexpr (advance) A::remember(displacement, t.kept(A::scaled(s, scale)));
+    }
+
+    /// Stored in the tangential displacement, J.
+    template <class T>
+    [[nodiscard]] Real energy(const T&, const Real* displacement) const {
+        const auto s = A::vector(displacement);
+        return 0.5 * stiffness * geometry::dot(s, s);
+    }
+};
+
+}  // namespace grainsweep::dem

@@ -1,0 +1,20 @@
+#include "solver/dem/limits.hpp"
+
+#include <cstdio>
+
+namespace grainsweep::dem {
+
+std::string flaw_of_contact(double share, double swing) {
+    char text[200];
+    if (!(share <= largest_sound_overlap)) {
+        std::snprintf(text, sizeof text, "overlap of %.3g diameters (limit %.3g) with ", share, largest_sound_overlap);
+        return text;
+    }
+    if (share <= 0 || swing <= largest_sound_swing) return {};
+    std::snprintf(text, sizeof text,
+                  "the time step is too large: a contact swings by %.3g rad per step (limit %.3g) with ", swing,
+                  largest_sound_swing);
+    return text;
+}
+
+}  // namespace grainsweep::dem
