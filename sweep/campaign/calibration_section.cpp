@@ -3,6 +3,7 @@
 #include "solver/plain_text.hpp"
 #include "sweep/campaign/csv_table.hpp"
 #include "sweep/campaign/csv_text.hpp"
+#include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/sections.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/designs/calibration.hpp"
@@ -48,7 +49,8 @@ std::map<std::string, std::size_t> read_condition(const Cursor& inputs, Paramete
         const auto own = std::span(space.factors).first(calibrated);
         if (std::ranges::find(own, name, &Factor::name) != own.end())
             place.refuse(fmt::format("'{}' is calibrated; a condition states another parameter", name));
-        if (space.fixed.contains(name)) place.refuse(fmt::format("'{}' is fixed as well; give it in one place", name));
+        if (fixed_as_stated(space).contains(name))
+            place.refuse(fmt::format("'{}' is fixed as well; give it in one place", name));
         levels[name] = level_of(space, name, read_value(place, parameter, folder));
     }
     return levels;

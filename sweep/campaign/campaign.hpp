@@ -5,6 +5,7 @@
 #include "stats/convergence_rule.hpp"
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/cases.hpp"
+#include "sweep/campaign/formula.hpp"
 #include "sweep/designs/design.hpp"
 
 #include <cstdint>
@@ -43,13 +44,22 @@ struct Factor {
 /// Its value at the coordinate u in [0, 1], not yet in the type of its parameter.
 [[nodiscard]] Value value_at(const Factor& factor, double u);
 
+/// A fixed parameter whose number follows from others.
+struct Expression {
+    std::string name;
+    Formula formula;
+    bool whole = false;  ///< the parameter is a whole number
+};
+
 /// What a campaign varies and what it holds.
 struct ParameterSpace {
     const SceneInfo* scene = nullptr;
     std::vector<Factor> factors;  ///< their order fixes the design's dimensions
     Inputs fixed;                 ///< as given, with the accuracy setting resolved under it
+    /// Held too, as expressions; each stands after those it needs. Their results are unchecked here: expressions.hpp.
+    std::vector<Expression> expressions = {};
 
-    /// Complete inputs of the point u in [0, 1]^d: defaults, then fixed, then factors.
+    /// Complete inputs of the point u in [0, 1]^d: defaults, then fixed, factors, expressions.
     [[nodiscard]] Inputs at(std::span<const double> u) const;
     /// Complete inputs of a listed row of factor values.
     [[nodiscard]] Inputs at(std::span<const Value> row) const;

@@ -1,4 +1,6 @@
 // "factors" and "fixed": what varies and what is held.
+#include "sweep/campaign/expressions.hpp"
+#include "sweep/campaign/quantity.hpp"
 #include "sweep/campaign/sections.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 
@@ -6,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 namespace grainsweep::campaign {
@@ -50,6 +53,24 @@ Levels read_levels(const Section& factor, const ParameterSpec& parameter, const 
     return levels;
 }
 
+/// Whether a text is meant as a number and its unit, although it is not one.
+bool resembles_quantity(std::string_view text) {
+    const bool begins = text.find_first_of("0123456789.") == text.find_first_not_of(" +-");
+    return begins && !text.empty() && text.find_first_of("()+*<>=&|,") == std::string_view::npos;
+}
+
+/// The expression that a fixed number is given by; none: it is a value.
+std::optional<Formula> read_formula(const Cursor& place, const ParameterSpec& parameter, const SceneInfo& scene) {
+    if (!place.json().is_string() || std::holds_alternative<std::string>(parameter.default_value)) return std::nullopt;
+    const auto& text = place.json().get_ref<const std::string&>();
+    if (std::holds_alternative<double>(in_si(text, parameter.unit))) return std::nullopt;
+    auto formula = parse_expression(text, scene);
+    if (auto* sound = std::get_if<Formula>(&formula)) return std::move(*sound);
+    if (resembles_quantity(text)) return std::nullopt;
+    place.refuse(fmt::format("{}, or an expression of other parameters: {}", rule_of(parameter),
+                             std::get<std::string>(formula)));
+}
+
 }  // namespace
 
 const ParameterSpec& read_parameter(const Cursor& name, const SceneInfo& scene) {
@@ -86,9 +107,8 @@ std::vector<Factor> read_factors(const Cursor& place, const SceneInfo& scene, co
     return factors;
 }
 
-Inputs read_fixed(const Cursor& place, const ParameterSpace& space, const std::filesystem::path& folder) {
+void read_fixed(const Cursor& place, ParameterSpace& space, const std::filesystem::path& folder) {
     if (!place.json().is_object()) place.refuse("must be an object of parameter names and values");
-    Inputs fixed;
     for (const auto& [key, value] : place.json().items()) {
         const Cursor here(value, path_of(place.path(), key));
         if (key == notes_key) {
@@ -106,9 +126,14 @@ Inputs read_fixed(const Cursor& place, const ParameterSpace& space, const std::f
         if (std::ranges::find(space.factors, key, &Factor::name) != space.factors.end()) {
             here.refuse(fmt::format("'{}' is also a factor; it is either varied or fixed", key));
         }
-        fixed[key] = read_value(here, *parameter, folder);
+        auto formula = read_formula(here, *parameter, *space.scene);
+        if (formula)
+            space.expressions.push_back(
+                {key, std::move(*formula), std::holds_alternative<std::int64_t>(parameter->default_value)});
+        else
+            space.fixed[key] = read_value(here, *parameter, folder);
     }
-    return fixed;
+    space.expressions = in_order(std::move(space.expressions));
 }
 
 }  // namespace grainsweep::campaign

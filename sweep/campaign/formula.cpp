@@ -260,12 +260,14 @@ private:
 }  // namespace
 
 struct Formula::Compiled {
+    std::string text;
     std::vector<std::string> names;
     std::vector<double> values;  // of the names; muParser keeps their addresses
     mu::Parser parser;
     std::mutex mutex;
 
-    explicit Compiled(const FormulaCheck& check) : names(check.used), values(names.size()) {
+    explicit Compiled(const FormulaCheck& check) : text(check.plain), names(check.used), values(names.size()) {
+        std::erase(text, ' ');  // no two words stand side by side
         parser.ClearFun();
         parser.ClearConst();
         parser.ClearOprt();
@@ -299,6 +301,10 @@ std::variant<Formula, std::string> Formula::parse(std::string_view text, const W
 
 const std::vector<std::string>& Formula::names() const {
     return compiled_->names;
+}
+
+const std::string& Formula::text() const {
+    return compiled_->text;
 }
 
 double Formula::operator()(const Lookup& value_of) const {

@@ -26,6 +26,8 @@ public:
 
     /// The names it needs, each once, in the order of their first use.
     [[nodiscard]] const std::vector<std::string>& names() const;
+    /// The text without blanks and superfluous signs: equal for formulas that differ in nothing else.
+    [[nodiscard]] const std::string& text() const;
     /// Its value, not finite where it has none: log(0), 1/0, sqrt(-1), or a name that stands for such a value.
     [[nodiscard]] double operator()(const Lookup& value_of) const;
 

@@ -1,5 +1,6 @@
 #include "sweep/campaign/identity.hpp"
 
+#include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
@@ -162,7 +163,7 @@ Identity identity_of(const Campaign& campaign) {
     identity.design = campaign.design;
     const auto& design = designs::design_named(campaign.design);
     for (const auto& factor : campaign.space.factors) identity.factors += line_of(factor) + '\n';
-    for (const auto& [name, value] : campaign.space.fixed)
+    for (const auto& [name, value] : fixed_as_stated(campaign.space))
         identity.fixed += fmt::format("{} = {}\n", name, identity_text(value));
     for (const auto& [name, value] : campaign.request.options) {
         if (std::holds_alternative<designs::Rows>(value)) continue;  // compared row by row, by what they ask

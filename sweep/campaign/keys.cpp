@@ -66,7 +66,8 @@ std::span<const Key> campaign_keys() {
         needed({"campaign", Kind::text, "name of the campaign and of its view in the database"}),
         needed({"scene", Kind::word, "the experiment every case runs"}),
         needed({"factors", Kind::array, "what varies; their order fixes the dimensions of the design"}),
-        {"fixed", Kind::object, "parameters held at a value other than their default", "{}"},
+        {"fixed", Kind::object,
+         "parameters held at a value other than their default, or following others by an expression", "{}"},
         {"where", Kind::text, "SQL expression over parameters: a point for which it is not true is left out"},
         {"design", Kind::object, "which points of the factor space are asked; needed unless there is a calibration"},
         {"calibration", Kind::object,
@@ -87,8 +88,8 @@ std::span<const Key> campaign_keys() {
 std::span<const Key> factor_keys() {
     static constexpr auto keys = std::to_array<Key>({
         needed({"name", Kind::word, "a parameter of the scene"}),
-        {"between", Kind::array, "[low, high] of a real parameter"},
-        {"levels", Kind::array, "the values it takes, numbers or words"},
+        {"between", Kind::array, "[low, high] of a real parameter, numbers or texts with a unit"},
+        {"levels", Kind::array, "the values it takes, numbers, texts with a unit, or words"},
         {"scale", Kind::word, "linear: low + u (high - low); log: low (high/low)^u", "\"linear\"", {}, scale_words},
     });
     return keys;

@@ -1,4 +1,5 @@
 #include "sweep/campaign/campaign.hpp"
+#include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 
 #include <algorithm>
@@ -65,6 +66,7 @@ Inputs ParameterSpace::at(std::span<const Value> row) const {
     };
     for (const auto& [name, value] : fixed) set(name, value);
     for (std::size_t j = 0; j < factors.size(); ++j) set(factors[j].name, row[j]);
+    evaluate_expressions(expressions, inputs);
     return inputs;
 }
 

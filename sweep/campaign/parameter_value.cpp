@@ -1,4 +1,5 @@
 // One value of one parameter: its type, its bounds, its words, its file.
+#include "sweep/campaign/quantity.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/sections.hpp"
 #include "sweep/campaign/wrong_question.hpp"
@@ -63,16 +64,30 @@ Value read_word(const Cursor& place, const ParameterSpec& parameter, const fs::p
 
 }  // namespace
 
+std::string rule_of(const ParameterSpec& parameter) {
+    const bool whole = std::holds_alternative<std::int64_t>(parameter.default_value);
+    return fmt::format("'{}' must be a {}number{}{}", parameter.name, whole ? "whole " : "",
+                       in_words(std::get<Interval>(parameter.bounds)), unit_of(parameter));
+}
+
 Value read_value(const Cursor& place, const ParameterSpec& parameter, const fs::path& folder) {
     if (std::holds_alternative<std::string>(parameter.default_value)) return read_word(place, parameter, folder);
     const auto& bounds = std::get<Interval>(parameter.bounds);
     const bool whole = std::holds_alternative<std::int64_t>(parameter.default_value);
-    const auto rule = fmt::format("'{}' must be a {}number{}{}", parameter.name, whole ? "whole " : "",
-                                  in_words(bounds), unit_of(parameter));
-    if (!place.json().is_number() || !bounds.contains(place.json().get<double>())) place.refuse(rule);
+    const auto rule = rule_of(parameter);
+    const auto& json = place.json();
+    if (json.is_string()) {
+        const auto value = in_si(json.get_ref<const std::string&>(), parameter.unit);
+        if (const auto* why = std::get_if<std::string>(&value)) place.refuse(fmt::format("{}: {}", rule, *why));
+        const double number = std::get<double>(value);
+        const Value counted = coerced(Value{number}, parameter.default_value);
+        if (!bounds.contains(number) || counted.index() != parameter.default_value.index())
+            place.refuse(fmt::format("{}, and this is {}{}", rule, shortest(number), unit_of(parameter)));
+        return counted;
+    }
+    if (!json.is_number() || !bounds.contains(json.get<double>())) place.refuse(rule);
     if (!whole) return place.number(bounds);
-    const auto number = place.json().get<double>();
-    if (place.json().is_number_float() && coerced(Value{number}, Value{std::int64_t{0}}).index() != 1)
+    if (json.is_number_float() && coerced(Value{json.get<double>()}, parameter.default_value).index() != 1)
         place.refuse(rule);
     return place.whole(bounds);
 }

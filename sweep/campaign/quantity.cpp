@@ -256,8 +256,8 @@ std::string advice(const UnitDatabase& database, std::string_view unit, const ut
         if (parsed && database.conversion(parsed.get(), place)) fitting.push_back(usual);
     }
     if (fitting.empty()) return {};
-    const auto known = std::ranges::find(fitting, unit) != fitting.end();
-    if (const auto nearest = known ? std::string() : nearest_word(unit, fitting); !nearest.empty())
+    // Every letter is near to every other.
+    if (const auto nearest = unit.size() > 1 ? nearest_word(unit, fitting) : std::string(); !nearest.empty())
         return fmt::format(", the nearest that fits is '{}'", nearest);
     if (fitting.size() > 4) fitting.resize(4);
     return fmt::format(", these fit: {}", listed(fitting));
@@ -307,7 +307,7 @@ std::variant<double, std::string> in_si(std::string_view text, std::string_view 
     double x = 0;
     const char* const end = text.data() + text.size();
     const auto [stop, error] = std::from_chars(text.data(), end, x);
-    if (!number || error == std::errc::invalid_argument) return "a quantity begins with a number, as in \"60 um\"";
+    if (!number || error == std::errc::invalid_argument) return "it begins with no number";
     if (error != std::errc()) return "the number is beyond double precision";
     const auto given = without_blanks({stop, static_cast<std::size_t>(end - stop)});
     if (given.empty() || given == unit) return x == 0 ? 0.0 : x;

@@ -1,5 +1,6 @@
 #include "sweep/campaign/reader.hpp"
 
+#include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/program.hpp"
@@ -139,7 +140,7 @@ Campaign parse_campaign(std::string_view text, const fs::path& folder) {
 
     auto& space = campaign.space;
     space.factors = read_factors(top.at("factors"), *space.scene, folder);
-    if (const auto fixed = top.find("fixed")) space.fixed = read_fixed(*fixed, space, folder);
+    if (const auto fixed = top.find("fixed")) read_fixed(*fixed, space, folder);
     const std::size_t declared = space.factors.size();
     const auto calibration = top.find("calibration");
     if (calibration.has_value() == top.find("design").has_value()) {
@@ -149,7 +150,7 @@ Campaign parse_campaign(std::string_view text, const fs::path& folder) {
                                            "'calibration': what was measured)");
     }
     if (calibration) read_calibration(*calibration, campaign, folder);
-    const Inputs given = space.fixed;
+    const Inputs given = fixed_as_stated(space);
     if (const auto accuracy = top.find("accuracy")) campaign.accuracy = read_accuracy(*accuracy, *space.scene);
     resolve_accuracy(space, campaign.accuracy);
     check_relevance(top, space, declared, given);

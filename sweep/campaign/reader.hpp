@@ -16,7 +16,7 @@ namespace grainsweep::campaign {
 /// The same from text; `folder` is where the files it names lie.
 [[nodiscard]] Campaign parse_campaign(std::string_view text, const std::filesystem::path& folder);
 
-/// A value of a parameter as a command line gives it ("0.3", "sjkr"), checked as a campaign file's would be.
+/// A value of a parameter as a command line gives it ("0.3", "60 um", "sjkr"), checked as a campaign file's would be.
 /// `where` names the place in messages.
 [[nodiscard]] Value parse_value(const ParameterSpec& parameter, std::string_view word,
                                 const std::filesystem::path& folder, std::string_view where);

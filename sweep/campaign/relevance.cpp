@@ -1,6 +1,7 @@
 #include "sweep/campaign/relevance.hpp"
 
 #include "sweep/campaign/cursor.hpp"
+#include "sweep/campaign/expressions.hpp"
 
 #include <fmt/format.h>
 
@@ -56,6 +57,10 @@ const Factor* find_factor(const ParameterSpace& space, std::string_view name) {
     return found == space.factors.end() ? nullptr : &*found;
 }
 
+auto find_expression(const ParameterSpace& space, std::string_view name) {
+    return std::ranges::find(space.expressions, name, &Expression::name);
+}
+
 }  // namespace
 
 std::optional<std::string> no_effect(const ParameterSpace& space, const ParameterSpec& parameter) {
@@ -67,6 +72,8 @@ std::optional<std::string> no_effect(const ParameterSpace& space, const Paramete
             return fmt::format("'{}' has no effect here: it matters only where '{}' is {}, which this factor never is",
                                parameter.name, condition.other, demand_of(condition));
         }
+        if (find_expression(space, condition.other) != space.expressions.end())
+            continue;  // its value differs from case to case
         const auto fixed = space.fixed.find(condition.other);
         const Value& value = fixed == space.fixed.end() ? other->default_value : fixed->second;
         if (satisfies(condition, value)) continue;
@@ -80,7 +87,7 @@ std::optional<std::string> no_effect(const ParameterSpace& space, const Paramete
 void resolve_accuracy(ParameterSpace& space, std::string_view accuracy) {
     const auto setting = space.scene->accuracy.find(accuracy);
     if (setting == space.scene->accuracy.end()) return;
-    const Inputs given = space.fixed;
+    const Inputs given = fixed_as_stated(space);
     for (const auto& [name, value] : setting->second) {
         if (!given.contains(name) && find_factor(space, name) == nullptr) space.fixed[name] = value;
     }
@@ -94,6 +101,7 @@ void resolve_accuracy(ParameterSpace& space, std::string_view accuracy) {
 
 void hold(ParameterSpace& space, std::string_view parameter, const Value& value, std::string_view accuracy) {
     std::erase_if(space.factors, [&](const Factor& factor) { return factor.name == parameter; });
+    std::erase_if(space.expressions, [&](const Expression& expression) { return expression.name == parameter; });
     space.fixed[std::string(parameter)] = value;
     const auto setting = space.scene->accuracy.find(accuracy);
     if (setting == space.scene->accuracy.end()) return;

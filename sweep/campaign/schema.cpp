@@ -20,6 +20,9 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
+/// A number with or without a unit behind it; which units fit is the reader's to say.
+constexpr std::string_view pattern_of_quantities = R"(^ *[+-]?[0-9.])";
+
 OrderedJson notes_schema() {
     return {{"description", "any text; ignored"}, {"type", {"string", "array"}}, {"items", {{"type", "string"}}}};
 }
@@ -106,7 +109,10 @@ OrderedJson value_schema(const ParameterSpec& parameter) {
         if (!words->file_allowed) schema["enum"] = words->allowed;
         if (words->file_allowed) schema["examples"] = words->allowed;
     } else {
-        schema["type"] = std::holds_alternative<std::int64_t>(parameter.default_value) ? "integer" : "number";
+        // Bounds are a rule for numbers, the pattern one for texts: "60 um".
+        schema["type"] = {std::holds_alternative<std::int64_t>(parameter.default_value) ? "integer" : "number",
+                          "string"};
+        schema["pattern"] = pattern_of_quantities;
         add_bounds(schema, std::get<Interval>(parameter.bounds));
     }
     std::visit([&schema](const auto& value) { schema["default"] = value; }, parameter.default_value);
@@ -142,6 +148,7 @@ OrderedJson scene_rule(const SceneInfo& scene) {
     for (const auto& parameter : scene.parameters) {
         factors.push_back(factor_schema(parameter));
         fixed[parameter.name] = value_schema(parameter);
+        fixed[parameter.name].erase("pattern");  // an expression is any text
     }
     fixed[std::string(notes_key)] = notes_schema();
     OrderedJson scalars = OrderedJson::array();
@@ -239,7 +246,8 @@ std::string campaign_schema(int indentation) {
     OrderedJson schema = {
         {"$schema", "https://json-schema.org/draft/2020-12/schema"},
         {"title", "grainsweep campaign"},
-        {"description", "one scene, factors that vary, a design over them, and when to stop; SI units"}};
+        {"description",
+         "one scene, factors that vary, a design over them, and when to stop; SI units where a number has no unit"}};
     schema.update(section(campaign_keys()));
     // Members are kept in a vector: all of this level stand before one of them is referred to.
     schema["oneOf"] = {{{"required", {"design"}}}, {{"required", {"calibration"}}}};

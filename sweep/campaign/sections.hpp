@@ -12,17 +12,21 @@
 
 namespace grainsweep::campaign {
 
-/// A value of a parameter, of its declared type and within its bounds. A file is looked for in `folder` and
+/// A value of a parameter, of its declared type and within its bounds; a number may be a text with a unit. A file is looked for in `folder` and
 /// becomes "file:<hash of its contents>:<absolute path>".
 [[nodiscard]] Value read_value(const Cursor& place, const ParameterSpec& parameter,
                                const std::filesystem::path& folder);
+
+/// "'gap' must be a number above 0 m": what a number of the parameter must be.
+[[nodiscard]] std::string rule_of(const ParameterSpec& parameter);
 
 /// The parameter a name means; refuses unknown ones with the nearest.
 [[nodiscard]] const ParameterSpec& read_parameter(const Cursor& name, const SceneInfo& scene);
 
 [[nodiscard]] std::vector<Factor> read_factors(const Cursor& place, const SceneInfo& scene,
                                                const std::filesystem::path& folder);
-[[nodiscard]] Inputs read_fixed(const Cursor& place, const ParameterSpace& space, const std::filesystem::path& folder);
+/// Values, quantities and expressions over the numbers of other parameters.
+void read_fixed(const Cursor& place, ParameterSpace& space, const std::filesystem::path& folder);
 
 /// The campaign's design: checks options against the design's OptionSpecs and fills in defaults.
 void read_design(const Cursor& place, Campaign& campaign, const std::filesystem::path& folder);

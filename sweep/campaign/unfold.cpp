@@ -1,10 +1,12 @@
 #include "sweep/campaign/campaign.hpp"
+#include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -58,7 +60,7 @@ private:
 };
 
 /// The questions of a campaign's points. What the points have in common is written once: of each point's canonical text
-/// only the lines of its factors are new.
+/// only the lines of its factors and expressions are new.
 class PointQuestions final : public Questions {
 public:
     PointQuestions(const Campaign& campaign, designs::PointSet points)
@@ -71,6 +73,8 @@ public:
             if (factor != space_.factors.end()) {
                 const auto number = static_cast<std::size_t>(factor - space_.factors.begin());
                 varying_.push_back({std::exchange(text, {}), name, number, standard});
+            } else if (std::ranges::find(space_.expressions, name, &Expression::name) != space_.expressions.end()) {
+                varying_.push_back({std::exchange(text, {}), name, std::nullopt, standard});
             } else if (value != standard) {
                 add_canonical(text, name, value);
             }
@@ -83,13 +87,24 @@ public:
     /// Complete inputs; those that `inputs` has from another point are changed where they vary.
     void inputs(std::size_t point, Inputs& inputs) const {
         if (inputs.empty()) inputs = common_;
-        for (const auto& one : varying_) inputs.find(one.name)->second = value(point, one);
+        for (const auto& one : varying_)
+            if (one.factor) inputs.find(one.name)->second = value(point, one);
+        evaluate_expressions(space_.expressions, inputs);
+    }
+    void check(std::size_t point) const {
+        if (space_.expressions.empty()) return;
+        Inputs all;
+        inputs(point, all);
+        check_expressions(space_, all);
     }
     [[nodiscard]] std::string text(std::size_t point) const {
         std::string text;
+        Inputs all;
+        if (!space_.expressions.empty()) inputs(point, all);
         for (const auto& one : varying_) {
             text += one.before;
-            if (const Value held = value(point, one); held != one.standard) add_canonical(text, one.name, held);
+            if (const Value held = one.factor ? value(point, one) : all.find(one.name)->second; held != one.standard)
+                add_canonical(text, one.name, held);
         }
         return text += rest_;
     }
@@ -112,9 +127,9 @@ public:
 
 private:
     struct Varying {
-        std::string before;  ///< the lines of the canonical text between the factor before it and this one
+        std::string before;  ///< the lines of the canonical text between the one before it and this one
         std::string name;
-        std::size_t factor = 0;
+        std::optional<std::size_t> factor;  ///< none: an expression
         Value standard;
     };
 
@@ -128,8 +143,8 @@ private:
     }
     [[nodiscard]] Value value(std::size_t point, const Varying& one) const {
         return points_.rows.empty()
-                   ? coerced(value_at(space_.factors[one.factor], points_.point(point)[one.factor]), one.standard)
-                   : coerced(points_.rows[point][one.factor], one.standard);
+                   ? coerced(value_at(space_.factors[*one.factor], points_.point(point)[*one.factor]), one.standard)
+                   : coerced(points_.rows[point][*one.factor], one.standard);
     }
 
     ParameterSpace space_;
@@ -218,6 +233,7 @@ Cases unfold(const Campaign& campaign, const Filter& filter) {
             questions->inputs(p, inputs);
             if (!filter(inputs)) continue;
         }
+        questions->check(p);
         const std::string text = questions->text(p);
         const auto part = points.part.empty() ? static_cast<std::uint32_t>(p % sequences) : points.part[p];
         const auto ask = [&](std::int64_t replicate) {

@@ -92,7 +92,9 @@ Command predict_command() {
                     .add_option("--observable", request->observable,
                                 "scalar observable; default: that of the convergence rule, else the scene's first")
                     ->type_name("NAME");
-                parser.add_option("--at", request->at, "value of a factor; once for every factor")
+                parser
+                    .add_option("--at", request->at,
+                                "value of a factor, a number with or without a unit, or a word; once for every factor")
                     ->type_name("NAME=VALUE")
                     ->allow_extra_args(false);
                 parser

@@ -1,4 +1,5 @@
 // plan: check and unfold a campaign; show the design and the predicted cost; run nothing.
+#include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/forecast.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/wrong_question.hpp"
@@ -162,7 +163,7 @@ Json plan_json(const Campaign& campaign, const Outlook& outlook) {
                         : threads == 0                              ? Json("auto")
                                                                     : threads},
             {"factors", report::to_json(factors_of(campaign))},
-            {"fixed", report::to_json(campaign.space.fixed)}};
+            {"fixed", report::to_json(campaign::fixed_as_stated(campaign.space))}};
 }
 
 /// The object, with all rows of the design at its end.
@@ -236,10 +237,10 @@ void show_plan(const Campaign& campaign, const Outlook& outlook) {
         std::cout << fmt::format("rule       {} on {}, tolerance {}, checked every {} points\n", convergence->rule,
                                  convergence->observable, convergence->tolerance, convergence->block);
     }
-    for (const auto& [name, value] : campaign.space.fixed) {
+    for (const auto& [name, value] : campaign::fixed_as_stated(campaign.space)) {
         const auto& unit = scene.find_parameter(name)->unit;
-        std::cout << fmt::format("fixed      {} = {}{}\n", name, campaign::to_text(value),
-                                 unit.empty() || unit == "1" ? "" : " " + unit);
+        const bool bare = unit.empty() || unit == "1" || !campaign.space.fixed.contains(name);
+        std::cout << fmt::format("fixed      {} = {}{}\n", name, campaign::to_text(value), bare ? "" : " " + unit);
     }
     std::cout << '\n';
     report::write(std::cout, factors_of(campaign), Format::text);

@@ -1,5 +1,6 @@
 // solve: one case of a campaign in this process, without a database.
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/forecast.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/reader.hpp"
@@ -101,6 +102,7 @@ Asked question_of(const SolveRequest& request) {
     campaign::asked_in(request.config, [&] { study::check_features(campaign); });
     apply(request.settings, campaign, std::filesystem::path(request.config).parent_path());
     const Inputs inputs = middle_of(campaign.space);
+    campaign::asked_in(request.config, [&] { campaign::check_expressions(campaign.space, inputs); });
     const auto filter = campaign::asked_in(
         request.config, [&] { return store::make_filter(campaign.where, campaign::filter_names(campaign)); });
     if (!filter(inputs))
@@ -264,35 +266,35 @@ int solve(const SolveRequest& request, Format format) {
 }  // namespace
 
 std::vector<Command> solve_commands() {
-    return {{"solve", "computes one case of a campaign in this process, without a database",
-             [](Parser& parser, const Format& format) -> Action {
-                 const auto request = std::make_shared<SolveRequest>();
-                 parser.add_option("CONFIG", request->config, "campaign file")->required();
-                 parser
-                     .add_option("--set", request->settings,
-                                 "value of a parameter; other factors take the middle of their range, or their "
-                                 "first level")
-                     ->type_name("NAME=VALUE")
-                     ->allow_extra_args(false);
-                 parser
-                     .add_option("--seed", request->seed,
-                                 "seed of the case, as other commands print it; default: as in the campaign")
-                     ->type_name("N")
-                     ->check(whole_number(0))
-                     ->grouped_digits();
-                 declare_pictures(parser, request->pictures);
-                 parser
-                     .add_option("--keep", request->keep, "new folder in which a program computes the case; it is kept")
-                     ->type_name("DIR");
-                 declare_path(parser, request->path);
-                 declare_threads(parser, request->threads);
-                 return [request, &format] {
-                     use_path(request->path);
-                     use_threads(request->threads);
-                     return solve(*request, format);
-                 };
-             },
-             false}};
+    return {
+        {"solve", "computes one case of a campaign in this process, without a database",
+         [](Parser& parser, const Format& format) -> Action {
+             const auto request = std::make_shared<SolveRequest>();
+             parser.add_option("CONFIG", request->config, "campaign file")->required();
+             parser
+                 .add_option("--set", request->settings,
+                             "value of a parameter, a number with or without a unit, or a word; other factors take the "
+                             "middle of their range, or their first level")
+                 ->type_name("NAME=VALUE")
+                 ->allow_extra_args(false);
+             parser
+                 .add_option("--seed", request->seed,
+                             "seed of the case, as other commands print it; default: as in the campaign")
+                 ->type_name("N")
+                 ->check(whole_number(0))
+                 ->grouped_digits();
+             declare_pictures(parser, request->pictures);
+             parser.add_option("--keep", request->keep, "new folder in which a program computes the case; it is kept")
+                 ->type_name("DIR");
+             declare_path(parser, request->path);
+             declare_threads(parser, request->threads);
+             return [request, &format] {
+                 use_path(request->path);
+                 use_threads(request->threads);
+                 return solve(*request, format);
+             };
+         },
+         false}};
 }
 
 }  // namespace grainsweep::cli

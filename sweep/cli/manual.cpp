@@ -98,11 +98,11 @@ std::string commands_section(std::span<const CommandInfo> commands) {
 
 std::string keys_section() {
     std::string text = section("CAMPAIGN FILE");
-    text +=
-        plain(
-            "One JSON object, in SI units. Any object may have \"notes\", a text or a list of texts. grainsweep schema "
-            "prints the JSON Schema.") +
-        "\n";
+    text += plain(
+                "One JSON object, in SI units where a number has no unit. Any object may have \"notes\", a text or a "
+                "list of texts. grainsweep schema "
+                "prints the JSON Schema.") +
+            "\n";
     const auto add = [&text](std::string_view title, std::span<const campaign::Key> keys) {
         text += fmt::format(".SS {}\n", title);
         for (const auto& key : keys) {

@@ -1,16 +1,16 @@
 #include "sweep/cli/settings.hpp"
 
 #include "sweep/campaign/csv_table.hpp"
+#include "sweep/campaign/quantity.hpp"
 #include "sweep/campaign/wrong_question.hpp"
 #include "sweep/files/whole_file.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <optional>
 #include <string_view>
+#include <variant>
 
 namespace grainsweep::cli {
 namespace {
@@ -43,10 +43,12 @@ double value_of(const ModelFactor& factor, const std::string& text, std::string_
             fmt::format("the levels of {} are {}", factor.name, campaign::listed(factor.words)),
             campaign::nearest_word(text, factor.words));
     }
-    double number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error == std::errc() && end == text.data() + text.size() && std::isfinite(number)) return number;
-    throw campaign::wrong_question(where, fmt::format("'{}'", text), fmt::format("{} takes a number", factor.name));
+    const auto number = campaign::in_si(text, factor.unit);
+    if (const auto* value = std::get_if<double>(&number)) return *value;
+    throw campaign::wrong_question(
+        where, fmt::format("'{}'", text),
+        fmt::format("{} takes a number{}{}: {}", factor.name, factor.unit.empty() || factor.unit == "1" ? "" : " in ",
+                    factor.unit == "1" ? "" : factor.unit, std::get<std::string>(number)));
 }
 
 void require_all(std::span<const ModelFactor> factors, const std::vector<std::optional<double>>& values,

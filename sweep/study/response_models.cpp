@@ -1,5 +1,6 @@
 #include "sweep/study/response_models.hpp"
 
+#include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/stored_text.hpp"
 #include "sweep/campaign/wrong_question.hpp"
@@ -347,9 +348,11 @@ std::function<bool(const Setting&)> admission(const store::Store& store, const M
     } catch (const campaign::WrongQuestion&) {  // an older program took what is refused today
         return {};
     }
-    return [inputs, factors = cases.factors, filter](const Setting& setting) mutable {
+    return [inputs, factors = cases.factors, expressions = campaign::expressions_of(cases.campaign, *scene),
+            filter](const Setting& setting) mutable {
         for (std::size_t j = 0; j < factors.size(); ++j)
             inputs[factors[j].name] = campaign::coerced(factors[j].value(setting[j]), inputs.at(factors[j].name));
+        campaign::evaluate_expressions(expressions, inputs);
         return filter(inputs);
     };
 }

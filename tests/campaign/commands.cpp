@@ -177,7 +177,7 @@ TEST(Commands, WrongArgumentsAreOneSentenceAndTwo) {
         {{"solve", "c.json", "--set", "x1"}, "grainsweep: --set: got x1; must be NAME=VALUE.\n"},
         {{"solve", "c.json", "--set", "x1=2"}, "grainsweep: --set x1: got 2; 'x1' must be a number from 0 to 1.\n"},
         {{"solve", "c.json", "--set", "x1=nan"},
-         "grainsweep: --set x1: got \"nan\"; 'x1' must be a number from 0 to 1.\n"},
+         "grainsweep: --set x1: got \"nan\"; 'x1' must be a number from 0 to 1: it begins with no number.\n"},
         {{"solve", "c.json", "--set", "x1=0", "--set", "x1=1"}, "grainsweep: --set x1: this parameter is set twice.\n"},
         {{"solve", "c.json", "--set", "nois=1"},
          "grainsweep: --set nois: scene 'rehearsal' has no parameter of this name. Did you mean 'noise'?\n"},

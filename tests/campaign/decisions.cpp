@@ -111,6 +111,9 @@ TEST(Predict, SaysWhatItRestsOnInEveryFormat) {
     csv.insert(csv.end(), {"--format", "csv"});
     EXPECT_TRUE(ran.ask(csv).out.starts_with("x1,x2,x3,x4,mean,mean_error,scatter,inside\n0.5,0.25,0.9,0"));
     EXPECT_EQ(ran.ask(at).out, text) << "the same again";
+    auto percent = at;
+    *std::ranges::find(percent, "x2=0.25") = "x2=25 %";
+    EXPECT_EQ(ran.ask(percent).out, text) << "a quantity is a number";
 }
 
 TEST(Predict, RefusesInOneSentence) {

@@ -103,8 +103,8 @@ INSTANTIATE_TEST_SUITE_P(
               "\"fixed\"."},
         Wrong{R"([{"op": "replace", "path": "/factors/0/between", "value": [0, 1.5]}])",
               "$.factors[0].between[1]: got 1.5; 'x1' must be a number from 0 to 1."},
-        Wrong{R"([{"op": "replace", "path": "/factors/0/between", "value": ["0", 1]}])",
-              "$.factors[0].between[0]: got \"0\"; 'x1' must be a number from 0 to 1."},
+        Wrong{R"([{"op": "replace", "path": "/factors/0/between", "value": ["low", 1]}])",
+              "$.factors[0].between[0]: got \"low\"; 'x1' must be a number from 0 to 1: it begins with no number."},
         Wrong{
             R"([{"op": "replace", "path": "/factors/0", "value": {"name": "x1", "between": [0, 1], "scale": "log"}}])",
             "$.factors[0].between: got [0,1]; a logarithmic range must lie above 0."},

@@ -19,6 +19,7 @@ namespace grainsweep::tests::campaign_quantity_test {
 
 using campaign::in_si;
 using testing::AllOf;
+using testing::Eq;
 using testing::HasSubstr;
 
 double value_of(std::string_view text, std::string_view unit) {
@@ -166,7 +167,7 @@ TEST(Quantities, ThatDoNotFitAreRefusedWithUnitsThatDo) {
 TEST(Quantities, ThatAreNoneAreRefused) {
     for (const char* text :
          {"", " ", "um", "um 60", "abc", "-", "+", "+-3 m", "--3 m", "nan m", "inf m", "e5 m", "NaN", "."})
-        EXPECT_THAT(refusal_of(text, "m"), HasSubstr("begins with a number")) << text;
+        EXPECT_THAT(refusal_of(text, "m"), Eq("it begins with no number")) << text;
     for (const char* text :
          {"60 mm 3", "60 m*3", "60 mm.3", "1.5.2 m",  "60 3 m",  "60 @ m", "60 m @ 3", "60 lg(re 1 m)",
           "60 *m",   "60 /m",  "60 m/",   "60 mm mm", "0x10 m",  "60 m;",  "60 \"m\"", "60 m since 2000-01-01",

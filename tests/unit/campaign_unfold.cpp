@@ -228,8 +228,10 @@ TEST(ListedRows, FromAFileAreThoseWrittenIn) {
               "you mean 'response'?");
     EXPECT_EQ(sentence("x1\n0\n"), "$.design.file: got \"rows.csv\"; its header has no column for factor 'response'.");
     EXPECT_EQ(sentence("x1,response\n0\n"), "$.design.file: got \"rows.csv\"; record 2 has 1 cells and the header 2.");
-    EXPECT_EQ(sentence("x1,response\n0,sum\n1e,sum\n"),
-              "$.design.file: rows.csv, record 3, column 'x1': got \"1e\"; 'x1' must be a number from 0 to 1.");
+    EXPECT_EQ(
+        sentence("x1,response\n0,sum\n1e,sum\n"),
+        "$.design.file: rows.csv, record 3, column 'x1': got \"1e\"; 'x1' must be a number from 0 to 1: 'e' does not "
+        "fit '1', these fit: %.");
     EXPECT_EQ(sentence("x1,response\n0,g_function\n"),
               "$.design.file: rows.csv, record 2, column 'response': got \"g_function\"; is none of the levels of "
               "factor 'response'.");

@@ -1,0 +1,116 @@
+#include "sweep/campaign/expressions.hpp"
+
+#include "sweep/campaign/quantity.hpp"
+#include "sweep/campaign/sections.hpp"
+#include "sweep/campaign/wrong_question.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <utility>
+
+namespace grainsweep::campaign {
+
+namespace {
+
+double as_number(const Value& value) {
+    const Value real = coerced(value, Value{0.0});
+    return std::get<double>(real);
+}
+
+[[noreturn]] void refuse_expression(const Expression& expression, std::string_view rule) {
+    throw wrong_question(path_of("$.fixed", expression.name), fmt::format("\"{}\"", expression.formula.text()), rule);
+}
+
+/// Refuses expressions that all wait for one another, at one of a circle.
+[[noreturn]] void refuse_circle(const std::vector<Expression>& expressions) {
+    const auto named = [&](const std::string& name) { return std::ranges::find(expressions, name, &Expression::name); };
+    std::vector<std::string> path;
+    std::string next = expressions.front().name;
+    while (std::ranges::find(path, next) == path.end()) {
+        path.push_back(next);
+        next = *std::ranges::find_if(named(next)->formula.names(),
+                                     [&](const auto& name) { return named(name) != expressions.end(); });
+    }
+    std::string circle = next;
+    for (auto step = std::ranges::find(path, next) + 1; step != path.end(); ++step) circle += " needs " + *step;
+    refuse_expression(*named(next), fmt::format("an expression cannot need itself: {} needs {}", circle, next));
+}
+
+}  // namespace
+
+std::variant<Formula, std::string> parse_expression(std::string_view text, const SceneInfo& scene) {
+    std::vector<std::string_view> numbers;
+    for (const auto& parameter : scene.parameters)
+        if (!std::holds_alternative<std::string>(parameter.default_value)) numbers.push_back(parameter.name);
+    return Formula::parse(text, numbers);
+}
+
+std::vector<Expression> in_order(std::vector<Expression> expressions) {
+    std::vector<Expression> ordered;
+    while (!expressions.empty()) {
+        const auto waits = [&](const std::string& name) {
+            return std::ranges::find(expressions, name, &Expression::name) != expressions.end();
+        };
+        const auto ready = std::ranges::find_if(expressions, [&](const Expression& expression) {
+            return std::ranges::none_of(expression.formula.names(), waits);
+        });
+        if (ready == expressions.end()) refuse_circle(expressions);
+        ordered.push_back(std::move(*ready));
+        expressions.erase(ready);
+    }
+    return ordered;
+}
+
+void evaluate_expressions(std::span<const Expression> expressions, Inputs& inputs) {
+    for (const auto& [name, formula, whole] : expressions) {
+        const double x = formula([&](std::string_view other) { return as_number(inputs.find(other)->second); });
+        inputs.find(name)->second = coerced(Value{x}, whole ? Value{std::int64_t{0}} : Value{0.0});
+    }
+}
+
+void check_expressions(const ParameterSpace& space, const Inputs& inputs) {
+    for (const auto& expression : space.expressions) {
+        const auto& parameter = *space.scene->find_parameter(expression.name);
+        const Value& value = inputs.find(expression.name)->second;
+        const bool fits = value.index() == parameter.default_value.index() &&
+                          std::get<Interval>(parameter.bounds).contains(as_number(value));
+        if (fits) continue;
+        std::string where;
+        for (const auto& name : expression.formula.names())
+            where +=
+                fmt::format("{}{} = {}", where.empty() ? " where " : ", ", name, to_text(inputs.find(name)->second));
+        refuse_expression(expression,
+                          fmt::format("{}, and it is {}{}", rule_of(parameter),
+                                      std::isnan(as_number(value)) ? "not a number" : to_text(value), where));
+    }
+}
+
+Inputs fixed_as_stated(const ParameterSpace& space) {
+    Inputs stated = space.fixed;
+    for (const auto& expression : space.expressions) stated[expression.name] = expression.formula.text();
+    return stated;
+}
+
+std::vector<Expression> expressions_of(const Identity& identity, const SceneInfo& scene) {
+    std::vector<Expression> expressions;
+    std::istringstream lines(identity.fixed);
+    for (std::string line; std::getline(lines, line);) {
+        const auto sign = line.find(" = ");  // no blanks are in a formula
+        if (sign == std::string::npos) continue;
+        const auto name = line.substr(0, sign), text = line.substr(sign + 3);
+        const auto* parameter = scene.find_parameter(name);
+        if (parameter == nullptr || std::holds_alternative<std::string>(parameter->default_value)) continue;
+        if (std::holds_alternative<double>(in_si(text, parameter->unit))) continue;
+        auto formula = parse_expression(text, scene);
+        if (auto* sound = std::get_if<Formula>(&formula))
+            expressions.push_back(
+                {name, std::move(*sound), std::holds_alternative<std::int64_t>(parameter->default_value)});
+    }
+    return in_order(std::move(expressions));
+}
+
+}  // namespace grainsweep::campaign
