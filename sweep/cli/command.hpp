@@ -5,8 +5,9 @@
 #include "sweep/report/table.hpp"
 
 #include <functional>
-#include <iosfwd>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace grainsweep::cli {
@@ -23,6 +24,27 @@ struct Command {
     bool hidden = false;
     bool verbatim = false;  ///< its text is for programs too: never broken to fit a terminal
 };
+
+/// A command that reads a Request: `arguments(parser, request)` declares what is read, `act(request, format)` returns
+/// the exit code.
+template <class Request>
+Command command(std::string name, std::string summary, auto arguments, auto act) {
+    return {std::move(name), std::move(summary),
+            [arguments, act](Parser& parser, const report::Format& format) -> Action {
+                const auto request = std::make_shared<Request>();
+                arguments(parser, *request);
+                return [act, request, &format] { return act(*request, format); };
+            }};
+}
+/// Not listed by --help.
+[[nodiscard]] inline Command hidden(Command command) {
+    command.hidden = true;
+    return command;
+}
+[[nodiscard]] inline Command verbatim(Command command) {
+    command.verbatim = true;
+    return command;
+}
 
 // One line per group of commands; each group has a file of its own.
 [[nodiscard]] std::vector<Command> plan_commands();       // plan

@@ -16,9 +16,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iostream>
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -30,6 +28,11 @@ using report::Format;
 using report::Json;
 using store::Store;
 using store::Table;
+
+struct Arguments {
+    std::string database, text;
+    double seconds = 600;
+};
 
 // ---- status -------------------------------------------------------------------------------------------------
 
@@ -47,8 +50,8 @@ Convergence convergence_of(const Store& archive, const store::CampaignRecord& re
     return {history.converged, history.verdict};
 }
 
-int status(const std::string& database, Format format) {
-    const Store archive(database, Store::Mode::read);
+int status(const Arguments& asked, Format format) {
+    const Store archive(asked.database, Store::Mode::read);
     Table table = archive.status();
     const auto records = archive.campaigns();  // one row each, in the same order
     std::vector<Convergence> standings;
@@ -181,9 +184,9 @@ Table attempts_table(const std::vector<store::LoggedAttempt>& attempts) {
     return table;
 }
 
-int explain(const std::string& database, const std::string& id, Format format) {
-    const Store archive(database, Store::Mode::read);
-    const campaign::Case question = require_case(archive, id);
+int explain(const Arguments& asked, Format format) {
+    const Store archive(asked.database, Store::Mode::read);
+    const campaign::Case question = require_case(archive, asked.text);
     const auto attempts = archive.attempts(question.id);
     const Table table = attempts_table(attempts);
     const std::string reason = why(attempts, archive.places(question.id), archive.result(question.id));
@@ -215,13 +218,7 @@ int explain(const std::string& database, const std::string& id, Format format) {
     return 0;
 }
 
-// ---- the table ----------------------------------------------------------------------------------------------
-
-constexpr double none_given = -1;  // of a tolerance
-
-struct Arguments {
-    std::string database, text;
-};
+// ---- query --------------------------------------------------------------------------------------------------
 
 /// Columns of a query that are named as a scalar of a scene, and their rows without a value.
 class Gaps {
@@ -271,8 +268,9 @@ private:
     std::int64_t rows_ = 0;
 };
 
-int query(const Arguments& asked, double seconds, Format format) {
+int query(const Arguments& asked, Format format) {
     constexpr std::int64_t most_memory = std::int64_t{1} << 30U;
+    const double seconds = asked.seconds;
     if (!(seconds >= 0)) throw campaign::wrong_question("--limit-seconds", std::to_string(seconds), "0 or more");
     const Store archive(asked.database, Store::Mode::read);
     const Store::QueryLimits limits{seconds, most_memory};
@@ -306,83 +304,69 @@ int query(const Arguments& asked, double seconds, Format format) {
     return 0;
 }
 
-std::shared_ptr<Arguments> with_database(Parser& parser) {
-    auto arguments = std::make_shared<Arguments>();
-    parser.add_option("DB", arguments->database, "database")->required();
-    return arguments;
+/// DB.
+void declare_database(Parser& parser, Arguments& asked) {
+    parser.add_option("DB", asked.database, "database");
+}
+
+void declare_case(Parser& parser, Arguments& asked) {
+    declare_database(parser, asked);
+    parser.add_option("CASE", asked.text, "case id, or its beginning");
+}
+
+void declare_replay(Parser& parser, ReplayRequest& request) {
+    parser.add_option("DB", request.database, "database");
+    parser.add_option("CASE", request.id, "case id, or its beginning");
+    parser.add_option(
+        "--tolerance X", request.tolerance,
+        "relative difference that counts as agreement; default: 0 on the same build and instruction path; "
+        "for a program its \"tolerance\"");
+    parser.add_option("--keep DIR", request.keep, "new folder in which a program computes the case; it is kept");
+    declare_pictures(parser, request.pictures);
+    declare_path(parser, request.path, "that of the stored case");
+    declare_threads(parser, request.threads);
+}
+
+int replay_checked(const ReplayRequest& request, Format format) {
+    use_threads(request.threads);
+    if (const auto tolerance = request.tolerance; tolerance && !(*tolerance >= 0 && *tolerance <= 1))
+        throw campaign::wrong_question("--tolerance", std::to_string(*tolerance), "a number from 0 to 1");
+    return replay(request, format);
+}
+
+void declare_query(Parser& parser, Arguments& asked) {
+    declare_database(parser, asked);
+    parser.add_option("SQL", asked.text, "the statement; every campaign is a view of its name");
+    parser.add_option("--limit-seconds SECONDS", asked.seconds, "limit of processor time, s; 0: none; default: 600");
+}
+
+int dump(const Arguments& asked, Format format) {
+    const Store archive(asked.database, Store::Mode::read);
+    if (format == Format::text) {
+        archive.dump([](std::string_view line) { std::cout << line << '\n'; });
+        return 0;
+    }
+    report::RowWriter rows(std::cout, format);
+    rows.begin({"line"});
+    archive.dump([&](std::string_view line) { rows.add({std::string(line)}); });
+    rows.end();
+    return 0;
 }
 
 }  // namespace
 
 std::vector<Command> archive_commands() {
     return {
-        {"status", "shows cases by outcome, rate, time left and convergence",
-         [](Parser& parser, const Format& format) -> Action {
-             const auto arguments = with_database(parser);
-             return [arguments, &format] { return status(arguments->database, format); };
-         },
-         false},
-        {"explain", "lists the attempts of a case; states why it will or will not run again",
-         [](Parser& parser, const Format& format) -> Action {
-             const auto arguments = with_database(parser);
-             parser.add_option("CASE", arguments->text, "case id, or its beginning")->required();
-             return [arguments, &format] { return explain(arguments->database, arguments->text, format); };
-         },
-         false},
-        {"replay", "computes a stored case again and compares; runs the stored command of a program",
-         [](Parser& parser, const Format& format) -> Action {
-             const auto request = std::make_shared<ReplayRequest>();
-             parser.add_option("DB", request->database, "database")->required();
-             parser.add_option("CASE", request->id, "case id, or its beginning")->required();
-             const auto tolerance = std::make_shared<double>(none_given);
-             parser
-                 .add_option("--tolerance", *tolerance,
-                             "relative difference that counts as agreement; default: 0 on the same build and "
-                             "instruction path; for a program its \"tolerance\"")
-                 ->type_name("X");
-             parser.add_option("--keep", request->keep, "new folder in which a program computes the case; it is kept")
-                 ->type_name("DIR");
-             declare_pictures(parser, request->pictures);
-             declare_path(parser, request->path, "that of the stored case");
-             const auto threads = std::make_shared<std::int64_t>(0);
-             declare_threads(parser, *threads);
-             return [request, tolerance, threads, &format] {
-                 use_threads(*threads);
-                 if (*tolerance != none_given) request->tolerance = *tolerance;
-                 if (request->tolerance && !(*request->tolerance >= 0 && *request->tolerance <= 1))
-                     throw campaign::wrong_question("--tolerance", std::to_string(*tolerance), "a number from 0 to 1");
-                 return replay(*request, format);
-             };
-         },
-         false},
-        {"query", "runs one read-only SQL statement",
-         [](Parser& parser, const Format& format) -> Action {
-             const auto arguments = with_database(parser);
-             parser.add_option("SQL", arguments->text, "the statement; every campaign is a view of its name")
-                 ->required();
-             const auto seconds = std::make_shared<double>(600);
-             parser.add_option("--limit-seconds", *seconds, "limit of processor time, s; 0: none; default: 600")
-                 ->type_name("SECONDS");
-             return [arguments, seconds, &format] { return query(*arguments, *seconds, format); };
-         },
-         false},
-        {"dump", "prints all results as canonical text; equal results give equal text",
-         [](Parser& parser, const Format& format) -> Action {
-             const auto arguments = with_database(parser);
-             return [arguments, &format] {
-                 const Store archive(arguments->database, Store::Mode::read);
-                 if (format == Format::text) {
-                     archive.dump([](std::string_view line) { std::cout << line << '\n'; });
-                     return 0;
-                 }
-                 report::RowWriter rows(std::cout, format);
-                 rows.begin({"line"});
-                 archive.dump([&](std::string_view line) { rows.add({std::string(line)}); });
-                 rows.end();
-                 return 0;
-             };
-         },
-         false, true},
+        command<Arguments>("status", "shows cases by outcome, rate, time left and convergence", declare_database,
+                           status),
+        command<Arguments>("explain", "lists the attempts of a case; states why it will or will not run again",
+                           declare_case, explain),
+        command<ReplayRequest>("replay",
+                               "computes a stored case again and compares; runs the stored command of a program",
+                               declare_replay, replay_checked),
+        command<Arguments>("query", "runs one read-only SQL statement", declare_query, query),
+        verbatim(command<Arguments>("dump", "prints all results as canonical text; equal results give equal text",
+                                    declare_database, dump)),
     };
 }
 

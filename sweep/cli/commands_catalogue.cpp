@@ -16,7 +16,6 @@
 
 #include <cmath>
 #include <iostream>
-#include <memory>
 
 namespace grainsweep::cli {
 
@@ -313,28 +312,24 @@ int print_schema(Format format) {
     return 0;
 }
 
-/// A command with one optional NAME.
-Command listing(std::string command, std::string summary, int (*list)(const std::string&, Format)) {
-    return {std::move(command), std::move(summary),
-            [list](Parser& parser, const Format& format) -> Action {
-                const auto name = std::make_shared<std::string>();
-                parser.add_option("NAME", *name, "one of them, in detail");
-                return [name, &format, list] { return list(*name, format); };
-            },
-            false};
+void declare_name(Parser& parser, std::string& name) {
+    parser.add_option("[NAME]", name, "one of them, in detail");
 }
 
 }  // namespace
 
 std::vector<Command> catalogue_commands() {
+    struct Nothing {};
     return {
-        listing("scenes", "lists the scenes, or the parameters and observables of one scene", list_scenes),
-        listing("machines", "lists the machines that are installed, or the parameters and observables of one machine",
-                list_machines),
-        listing("designs", "lists the designs, or the options of one design", list_designs),
-        {"schema", "prints the JSON Schema of a campaign file",
-         [](Parser&, const Format& format) -> Action { return [&format] { return print_schema(format); }; }, false,
-         true},
+        command<std::string>("scenes", "lists the scenes, or the parameters and observables of one scene", declare_name,
+                             list_scenes),
+        command<std::string>("machines",
+                             "lists the machines that are installed, or the parameters and observables of one machine",
+                             declare_name, list_machines),
+        command<std::string>("designs", "lists the designs, or the options of one design", declare_name, list_designs),
+        verbatim(command<Nothing>(
+            "schema", "prints the JSON Schema of a campaign file", [](Parser&, Nothing) {},
+            [](Nothing, Format format) { return print_schema(format); })),
     };
 }
 

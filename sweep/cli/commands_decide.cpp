@@ -19,7 +19,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
-#include <memory>
 #include <optional>
 #include <sstream>
 #include <utility>
@@ -76,36 +75,24 @@ int predict(const PredictRequest& request, Format format) {
 }
 
 void declare_subject(Parser& parser, std::string& database, std::string& campaign) {
-    parser.add_option("DB", database, "the database")->required();
-    parser
-        .add_option("--campaign", campaign,
-                    "name of a campaign; default: the only one, or the first of those that differ only in their points")
-        ->type_name("NAME");
+    parser.add_option("DB", database, "the database");
+    parser.add_option(
+        "--campaign NAME", campaign,
+        "name of a campaign; default: the only one, or the first of those that differ only in their points");
 }
 
-Command predict_command() {
-    return {"predict", "predicts a response, with its error, at settings that were not run",
-            [](Parser& parser, const Format& format) -> Action {
-                const auto request = std::make_shared<PredictRequest>();
-                declare_subject(parser, request->database, request->campaign);
-                parser
-                    .add_option("--observable", request->observable,
-                                "scalar observable; default: that of the convergence rule, else the scene's first")
-                    ->type_name("NAME");
-                parser
-                    .add_option("--at", request->at,
-                                "value of a factor, a number with or without a unit, or a word; once for every factor")
-                    ->type_name("NAME=VALUE")
-                    ->allow_extra_args(false);
-                parser
-                    .add_option("--points", request->points,
-                                "CSV file of settings: a header with every factor, one setting per line")
-                    ->type_name("FILE.csv");
-                parser.add_flag("--extrapolate", request->extrapolate,
-                                "predict also outside the ranges of the factors and where no near case has a result");
-                return [request, &format] { return predict(*request, format); };
-            },
-            false};
+void declare_predict(Parser& parser, PredictRequest& request) {
+    declare_subject(parser, request.database, request.campaign);
+    parser.add_option("--observable NAME", request.observable,
+                      "scalar observable; default: that of the convergence rule, else the scene's first");
+    parser
+        .add_option("--at NAME=VALUE", request.at,
+                    "value of a factor, a number with or without a unit, or a word; once for every factor")
+        ->allow_extra_args(false);
+    parser.add_option("--points FILE.csv", request.points,
+                      "CSV file of settings: a header with every factor, one setting per line");
+    parser.add_flag("--extrapolate", request.extrapolate,
+                    "predict also outside the ranges of the factors and where no near case has a result");
 }
 
 struct WindowArguments {
@@ -200,57 +187,42 @@ int window(const WindowArguments& arguments, Format format) {
     return end ? end->exit_code : 0;
 }
 
-Command window_command() {
-    return {
-        "window", "finds the process window: where a condition holds, the best setting, the cases to run next",
-        [](Parser& parser, const Format& format) -> Action {
-            const auto arguments = std::make_shared<WindowArguments>();
-            declare_subject(parser, arguments->database, arguments->campaign);
-            parser
-                .add_option("--where", arguments->request.where,
-                            "condition over observables and factors: \"mfr >= 0.35 and empty_share <= 0.1\"")
-                ->type_name("CONDITION");
-            parser.add_option("--maximize", arguments->maximise, "observable or factor to maximise")->type_name("NAME");
-            parser.add_option("--minimize", arguments->minimise, "observable or factor to minimise")->type_name("NAME");
-            parser
-                .add_option("--risk", arguments->request.risk,
-                            "largest probability that a setting in the window violates the condition")
-                ->capture_default_str();
-            parser.add_flag("--single", arguments->single,
-                            "apply the condition to every single run; default: to the mean over seeds");
-            parser.add_option("--next", arguments->next, "number of cases to propose")
-                ->type_name("N")
-                ->check(whole_number(0, 1000));
-            parser
-                .add_option("--next-file", arguments->next_file,
-                            "campaign file to write with the proposed cases; run it into the same database")
-                ->type_name("FILE.json");
-            parser.add_flag("--run", arguments->run,
-                            "run batches of proposed cases (--next N each; default: 8) until the best setting is "
-                            "known to --width; run it again to resume");
-            parser
-                .add_option("--width", arguments->width,
-                            "with --run: wanted 95 % half-width of the objective's mean at the best setting")
-                ->type_name("WIDTH");
-            parser.add_option("--max-cases", arguments->max_cases, "with --run: run at most N cases; default: 100")
-                ->type_name("N")
-                ->check(whole_number(1));
-            parser.add_option("-j", arguments->workers, "with --run: worker processes; 0: all cores")
-                ->type_name("N")
-                ->check(whole_number(0, 4096));
-            parser
-                .add_option("-o,--output", arguments->output,
-                            "HTML page with the window: best setting, maps, curves with their bands")
-                ->type_name("FILE.html");
-            return [arguments, &format] { return window(*arguments, format); };
-        },
-        false};
+void declare_window(Parser& parser, WindowArguments& arguments) {
+    declare_subject(parser, arguments.database, arguments.campaign);
+    parser.add_option("--where CONDITION", arguments.request.where,
+                      "condition over observables and factors: \"mfr >= 0.35 and empty_share <= 0.1\"");
+    parser.add_option("--maximize NAME", arguments.maximise, "observable or factor to maximise");
+    parser.add_option("--minimize NAME", arguments.minimise, "observable or factor to minimise");
+    parser
+        .add_option("--risk", arguments.request.risk,
+                    "largest probability that a setting in the window violates the condition")
+        ->capture_default_str();
+    parser.add_flag("--single", arguments.single,
+                    "apply the condition to every single run; default: to the mean over seeds");
+    parser.add_option("--next N", arguments.next, "number of cases to propose")->check(whole_number(0, 1000));
+    parser.add_option("--next-file FILE.json", arguments.next_file,
+                      "campaign file to write with the proposed cases; run it into the same database");
+    parser.add_flag("--run", arguments.run,
+                    "run batches of proposed cases (--next N each; default: 8) until the best setting is known to "
+                    "--width; run it again to resume");
+    parser.add_option("--width WIDTH", arguments.width,
+                      "with --run: wanted 95 % half-width of the objective's mean at the best setting");
+    parser.add_option("--max-cases N", arguments.max_cases, "with --run: run at most N cases; default: 100")
+        ->check(whole_number(1));
+    parser.add_option("-j N", arguments.workers, "with --run: worker processes; 0: all cores")
+        ->check(whole_number(0, 4096));
+    parser.add_option("-o,--output FILE.html", arguments.output,
+                      "HTML page with the window: best setting, maps, curves with their bands");
 }
 
 }  // namespace
 
 std::vector<Command> decide_commands() {
-    return {predict_command(), window_command()};
+    return {command<PredictRequest>("predict", "predicts a response, with its error, at settings that were not run",
+                                    declare_predict, predict),
+            command<WindowArguments>(
+                "window", "finds the process window: where a condition holds, the best setting, the cases to run next",
+                declare_window, window)};
 }
 
 }  // namespace grainsweep::cli

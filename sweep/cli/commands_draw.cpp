@@ -84,22 +84,19 @@ int draw(const DrawRequest& request, report::Format format) {
 }  // namespace
 
 std::vector<Command> draw_commands() {
-    return {
-        {"draw", "draws a machine before it runs: an HTML page with its walls, motions, fillings and regions",
-         [](Parser& parser, const report::Format& format) -> Action {
-             const auto request = std::make_shared<DrawRequest>();
-             parser.add_option("MACHINE", request->machine, "machine file, or the name of an installed machine")
-                 ->required();
-             parser.add_option("--set", request->settings, "NAME=VALUE: a parameter")->type_name("NAME=VALUE");
-             parser.add_option("-o,--output", request->page, "HTML page to write")->required()->type_name("FILE.html");
-             parser
-                 .add_option("--frames", request->frames,
-                             fmt::format("number of pictures; default: {}", usual_pictures))
-                 ->type_name("N")
-                 ->check(whole_number(2, 2000));
-             return [request, &format] { return draw(*request, format); };
-         },
-         false}};
+    const auto arguments = [](Parser& parser, DrawRequest& request) {
+        parser.add_option("MACHINE", request.machine, "machine file, or the name of an installed machine");
+        parser
+            .add_option("--set NAME=VALUE", request.settings,
+                        "value of a parameter, a number with or without a unit, or a word")
+            ->allow_extra_args(false);
+        parser.add_option("-o,--output FILE.html", request.page, "HTML page to write")->required();
+        parser.add_option("--frames N", request.frames, fmt::format("number of pictures; default: {}", usual_pictures))
+            ->check(whole_number(2, 2000));
+    };
+    return {command<DrawRequest>(
+        "draw", "draws a machine before it runs: an HTML page with its walls, motions, fillings and regions", arguments,
+        draw)};
 }
 
 }  // namespace grainsweep::cli

@@ -6,7 +6,6 @@
 
 #include <array>
 #include <iostream>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,36 +30,30 @@ std::string completion_for(const std::string& name) {
 }
 
 /// Text as it is; as one value where a program asks for one.
-void print(const std::string& column, const std::string& text, report::Format format) {
-    if (format == report::Format::text) {
+int print(const std::string& column, const std::string& text, report::Format format) {
+    if (format == report::Format::text)
         std::cout << text;
-    } else {
+    else
         report::write(std::cout, store::Table{{column}, {{text}}}, format);
-    }
+    return 0;
 }
 
 }  // namespace
 
 std::vector<Command> manual_commands() {
+    struct Nothing {};
     return {
-        {"completion", "prints a completion script for a shell",
-         [](Parser& parser, const report::Format& format) -> Action {
-             const auto shell = std::make_shared<std::string>();
-             parser.add_option("SHELL", *shell, "bash or zsh")->required();
-             return [shell, &format] {
-                 print("completion", completion_for(*shell), format);
-                 return 0;
-             };
-         },
-         false, true},
-        {"manual", "prints the manual page for man(1)",
-         [](Parser&, const report::Format& format) -> Action {
-             return [&format] {
-                 print("manual", manual_page(describe(all_commands())), format);
-                 return 0;
-             };
-         },
-         false, true},
+        verbatim(command<std::string>(
+            "completion", "prints a completion script for a shell",
+            [](Parser& parser, std::string& shell) { parser.add_option("SHELL", shell, "bash or zsh"); },
+            [](const std::string& shell, report::Format format) {
+                return print("completion", completion_for(shell), format);
+            })),
+        verbatim(command<Nothing>(
+            "manual", "prints the manual page for man(1)", [](Parser&, Nothing) {},
+            [](Nothing, report::Format format) {
+                return print("manual", manual_page(describe(all_commands())), format);
+            })),
     };
 }
 

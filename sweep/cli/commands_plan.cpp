@@ -18,7 +18,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <memory>
 #include <optional>
 
 namespace grainsweep::cli {
@@ -253,7 +252,13 @@ void show_plan(const Campaign& campaign, const Outlook& outlook) {
     }
 }
 
-int plan(const std::string& config, std::string database, Format format) {
+struct PlanRequest {
+    std::string config, database;
+};
+
+int plan(const PlanRequest& request, Format format) {
+    const auto& config = request.config;
+    auto database = request.database;
     Campaign campaign = read_with_program(config);
     std::optional<store::Store> archive;
     if (database.empty() && std::filesystem::exists(campaign.name + ".db")) database = campaign.name + ".db";
@@ -269,19 +274,14 @@ int plan(const std::string& config, std::string database, Format format) {
 }  // namespace
 
 std::vector<Command> plan_commands() {
-    return {{"plan", "checks a campaign file; shows the design and the predicted cost",
-             [](Parser& parser, const Format& format) -> Action {
-                 const auto config = std::make_shared<std::string>();
-                 const auto database = std::make_shared<std::string>();
-                 parser.add_option("CONFIG", *config, "campaign file")->required();
-                 parser
-                     .add_option("--db", *database,
-                                 "database of the campaign, whose finished cases are counted; default: NAME.db in "
-                                 "the current folder, if it exists")
-                     ->type_name("FILE");
-                 return [config, database, &format] { return plan(*config, *database, format); };
-             },
-             false}};
+    const auto arguments = [](Parser& parser, PlanRequest& request) {
+        parser.add_option("CONFIG", request.config, "campaign file");
+        parser.add_option("--db FILE", request.database,
+                          "database of the campaign, whose finished cases are counted; default: NAME.db in the current "
+                          "folder, if it exists");
+    };
+    return {command<PlanRequest>("plan", "checks a campaign file; shows the design and the predicted cost", arguments,
+                                 plan)};
 }
 
 }  // namespace grainsweep::cli

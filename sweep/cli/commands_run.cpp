@@ -18,7 +18,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
-#include <memory>
 #include <string>
 
 namespace grainsweep::cli {
@@ -54,113 +53,103 @@ void forgive_a_reader_that_is_gone() {
     std::cout.clear();
 }
 
-/// `run`, or `calibrate`, which asks that there is something to calibrate.
-Command running(std::string name, std::string summary, bool calibrates) {
-    return {std::move(name), std::move(summary),
-            [calibrates](Parser& parser, const Format& format) -> Action {
-                const auto request = std::make_shared<RunRequest>();
-                request->calibrates = calibrates;
-                const auto again = std::make_shared<std::string>();
-                parser.add_option("CONFIG", request->config, "campaign file")->required();
-                parser.add_option("--db", request->database, "database; default: NAME.db in the current folder")
-                    ->type_name("FILE");
-                parser
-                    .add_option("--artefacts", request->artefacts,
-                                "folder for checkpoints and shared starting states, visible to all nodes; default: "
-                                "beside the database")
-                    ->type_name("DIR");
-                parser
-                    .add_option("-j", request->workers,
-                                "worker processes, with execution.hosts per host; 0: all cores; default: "
-                                "execution.workers")
-                    ->type_name("N")
-                    ->check(whole_number(0, 4096));
-                parser
-                    .add_option("-k", request->stop_after_failures,
-                                "start no more cases after N failed cases; 0: no limit")
-                    ->type_name("N")
-                    ->check(whole_number(0));
-                parser.add_option("--again", *again, "rerun cases with this outcome, for example unstable or crashed")
-                    ->type_name("OUTCOME");
-                parser.add_option("--max-cases", request->max_cases, "finish at most N cases in this run; 0: all")
-                    ->type_name("N")
-                    ->check(whole_number(0));
-                parser.add_flag("--network-disk", request->network_disk,
-                                "allow a database on a network file system; only one node may write it at a time");
-                parser.add_flag("--quiet", request->quiet, "print no progress and no tables");
-                declare_path(parser, request->path);
-                return [request, again, &format] {
-                    use_path(request->path);
-                    // A campaign outlives the terminal it was started from, and the reader of its output.
-                    std::signal(SIGHUP, SIG_IGN);
-                    std::signal(SIGPIPE, SIG_IGN);
-                    if (!again->empty()) request->again = outcome_asked_again(*again);
-                    const RunReport report = run_campaign(*request);
-                    if (!request->quiet || format != Format::text) show_run(report, format);
-                    forgive_a_reader_that_is_gone();
-                    return report.exit_code;
-                };
-            },
-            false};
+struct RunArguments : RunRequest {
+    std::string outcome;  ///< of --again
+};
+
+void declare_run(Parser& parser, RunArguments& request) {
+    parser.add_option("CONFIG", request.config, "campaign file");
+    parser.add_option("--db FILE", request.database, "database; default: NAME.db in the current folder");
+    parser.add_option(
+        "--artefacts DIR", request.artefacts,
+        "folder for checkpoints and shared starting states, visible to all nodes; default: beside the database");
+    parser
+        .add_option("-j N", request.workers,
+                    "worker processes, with execution.hosts per host; 0: all cores; default: execution.workers")
+        ->check(whole_number(0, 4096));
+    parser.add_option("-k N", request.stop_after_failures, "start no more cases after N failed cases; 0: no limit")
+        ->check(whole_number(0));
+    parser.add_option("--again OUTCOME", request.outcome,
+                      "rerun cases with this outcome, for example unstable or crashed");
+    parser.add_option("--max-cases N", request.max_cases, "finish at most N cases in this run; 0: all")
+        ->check(whole_number(0));
+    parser.add_flag("--network-disk", request.network_disk,
+                    "allow a database on a network file system; only one node may write it at a time");
+    parser.add_flag("--quiet", request.quiet, "print no progress and no tables");
+    declare_path(parser, request.path);
 }
 
-void declare_worker(Parser& parser, workers::WorkerOptions& options, std::string& path) {
+int run(RunArguments& request, Format format) {
+    use_path(request.path);
+    // A campaign outlives the terminal it was started from, and the reader of its output.
+    std::signal(SIGHUP, SIG_IGN);
+    std::signal(SIGPIPE, SIG_IGN);
+    if (!request.outcome.empty()) request.again = outcome_asked_again(request.outcome);
+    const RunReport report = run_campaign(request);
+    if (!request.quiet || format != Format::text) show_run(report, format);
+    forgive_a_reader_that_is_gone();
+    return report.exit_code;
+}
+
+/// `run` that requires something to calibrate.
+int calibrate(RunArguments& request, Format format) {
+    request.calibrates = true;
+    return run(request, format);
+}
+
+struct WorkerArguments {
+    workers::WorkerOptions options;
+    std::string path;
+};
+
+void declare_worker(Parser& parser, WorkerArguments& arguments) {
+    auto& options = arguments.options;
     parser.add_option("--artefacts", options.artefacts, "folder for checkpoints and shared starting states");
     parser.add_option("--checkpoint-seconds", options.checkpoint_seconds, "seconds between two checkpoints of a case");
     parser.add_option("--lease-seconds", options.lease_seconds, "seconds without a message after which it ends");
     parser.add_option("--cases", options.cases, "folder for the cases of a program");
     parser.add_option("--limit-seconds", options.limit_seconds, "time limit of a case of a program, s");
-    declare_path(parser, path);
+    declare_path(parser, arguments.path);
 }
 
-Command worker_command() {
-    return {"worker", "computes cases for a run, which starts it",
-            [](Parser& parser, const Format&) -> Action {
-                const auto options = std::make_shared<workers::WorkerOptions>();
-                const auto path = std::make_shared<std::string>();
-                declare_worker(parser, *options, *path);
-                return [options, path] {
-                    use_path(*path);
-                    options->computer = this_computer();
-                    return workers::work(*options);
-                };
-            },
-            true};
+int work(WorkerArguments& arguments, Format) {
+    use_path(arguments.path);
+    arguments.options.computer = this_computer();
+    return workers::work(arguments.options);
 }
 
-Command host_command() {
-    return {"host", "runs the workers of one node for a run, which starts it (execution.hosts)",
-            [](Parser& parser, const Format&) -> Action {
-                const auto options = std::make_shared<workers::WorkerOptions>();
-                const auto path = std::make_shared<std::string>();
-                declare_worker(parser, *options, *path);
-                return [options, path] {
-                    workers::HostOptions host;
-                    host.lease_seconds = options->lease_seconds;
-                    host.command = {std::filesystem::read_symlink("/proc/self/exe").string(),
-                                    "worker",
-                                    "--checkpoint-seconds",
-                                    fmt::format("{}", options->checkpoint_seconds),
-                                    "--lease-seconds",
-                                    fmt::format("{}", options->lease_seconds)};
-                    if (!options->artefacts.empty())
-                        host.command.insert(host.command.end(), {"--artefacts", options->artefacts.string()});
-                    if (!options->cases.empty())
-                        host.command.insert(host.command.end(), {"--cases", options->cases.string(), "--limit-seconds",
-                                                                 fmt::format("{}", options->limit_seconds)});
-                    if (!path->empty()) host.command.insert(host.command.end(), {"--path", *path});
-                    return workers::host(host);
-                };
-            },
-            true};
+int host(const WorkerArguments& arguments, Format) {
+    const auto& options = arguments.options;
+    workers::HostOptions host;
+    host.lease_seconds = options.lease_seconds;
+    host.command = {std::filesystem::read_symlink("/proc/self/exe").string(),
+                    "worker",
+                    "--checkpoint-seconds",
+                    fmt::format("{}", options.checkpoint_seconds),
+                    "--lease-seconds",
+                    fmt::format("{}", options.lease_seconds)};
+    if (!options.artefacts.empty())
+        host.command.insert(host.command.end(), {"--artefacts", options.artefacts.string()});
+    if (!options.cases.empty())
+        host.command.insert(host.command.end(), {"--cases", options.cases.string(), "--limit-seconds",
+                                                 fmt::format("{}", options.limit_seconds)});
+    if (!arguments.path.empty()) host.command.insert(host.command.end(), {"--path", arguments.path});
+    return workers::host(host);
 }
 
 }  // namespace
 
 std::vector<Command> run_commands() {
-    return {running("run", "runs the cases of a campaign; run it again to resume", false),
-            running("calibrate", "runs waves of cases to find the inputs that reproduce measurements; resumes", true),
-            worker_command(), host_command()};
+    return {
+        command<RunArguments>("run", "runs the cases of a campaign; run it again to resume", declare_run, run),
+        command<RunArguments>("calibrate",
+                              "runs waves of cases to find the inputs that reproduce measurements; resumes",
+                              declare_run, calibrate),
+        hidden(command<WorkerArguments>("worker", "computes cases for a run, which starts it", declare_worker, work)),
+        hidden(command<WorkerArguments>("host",
+                                        "runs the workers of one node for a run, which starts it "
+                                        "(execution.hosts)",
+                                        declare_worker, host))};
 }
 
 }  // namespace grainsweep::cli

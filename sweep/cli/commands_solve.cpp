@@ -23,7 +23,6 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
-#include <memory>
 #include <set>
 
 namespace grainsweep::cli {
@@ -248,6 +247,8 @@ void show_answer(const campaign::Case& question, const CaseResult& result) {
 }
 
 int solve(const SolveRequest& request, Format format) {
+    use_path(request.path);
+    use_threads(request.threads);
     const Asked asked = question_of(request);
     const auto& question = asked.question;
     const double bytes = campaign::predict(*find_scene(question.scene), question.inputs).cost.bytes;
@@ -266,35 +267,25 @@ int solve(const SolveRequest& request, Format format) {
 }  // namespace
 
 std::vector<Command> solve_commands() {
-    return {
-        {"solve", "computes one case of a campaign in this process, without a database",
-         [](Parser& parser, const Format& format) -> Action {
-             const auto request = std::make_shared<SolveRequest>();
-             parser.add_option("CONFIG", request->config, "campaign file")->required();
-             parser
-                 .add_option("--set", request->settings,
-                             "value of a parameter, a number with or without a unit, or a word; other factors take the "
-                             "middle of their range, or their first level")
-                 ->type_name("NAME=VALUE")
-                 ->allow_extra_args(false);
-             parser
-                 .add_option("--seed", request->seed,
-                             "seed of the case, as other commands print it; default: as in the campaign")
-                 ->type_name("N")
-                 ->check(whole_number(0))
-                 ->grouped_digits();
-             declare_pictures(parser, request->pictures);
-             parser.add_option("--keep", request->keep, "new folder in which a program computes the case; it is kept")
-                 ->type_name("DIR");
-             declare_path(parser, request->path);
-             declare_threads(parser, request->threads);
-             return [request, &format] {
-                 use_path(request->path);
-                 use_threads(request->threads);
-                 return solve(*request, format);
-             };
-         },
-         false}};
+    const auto arguments = [](Parser& parser, SolveRequest& request) {
+        parser.add_option("CONFIG", request.config, "campaign file");
+        parser
+            .add_option("--set NAME=VALUE", request.settings,
+                        "value of a parameter, a number with or without a unit, or a word; other factors take the "
+                        "middle of their range, or their first level")
+            ->allow_extra_args(false);
+        parser
+            .add_option("--seed N", request.seed,
+                        "seed of the case, as other commands print it; default: as in the campaign")
+            ->check(whole_number(0))
+            ->grouped_digits();
+        declare_pictures(parser, request.pictures);
+        parser.add_option("--keep DIR", request.keep, "new folder in which a program computes the case; it is kept");
+        declare_path(parser, request.path);
+        declare_threads(parser, request.threads);
+    };
+    return {command<SolveRequest>("solve", "computes one case of a campaign in this process, without a database",
+                                  arguments, solve)};
 }
 
 }  // namespace grainsweep::cli

@@ -15,7 +15,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
-#include <memory>
 #include <optional>
 #include <sstream>
 #include <utility>
@@ -76,8 +75,17 @@ int sensitivity(const Subject& subject, Format format) {
     return 0;
 }
 
-int write_report(const std::vector<std::string>& databases, std::string output, std::int64_t watched,
-                 const report::PageModels& models, Format format) {
+struct ReportRequest {
+    std::string database, output;
+    std::vector<std::string> others;
+    std::int64_t watched = 0;
+    report::PageModels models;
+};
+
+int write_report(const ReportRequest& request, Format format) {
+    std::vector<std::string> databases = {request.database};
+    databases.insert(databases.end(), request.others.begin(), request.others.end());
+    auto output = request.output;
     std::vector<Store> stores;
     stores.reserve(databases.size());
     std::vector<report::PageSource> sources;
@@ -90,17 +98,17 @@ int write_report(const std::vector<std::string>& databases, std::string output, 
     if (output.empty()) output = fs::path(database).filename().replace_extension(".html").string();
     if (!to_standard_output)
         for (const auto& name : databases) check_page_file("-o", output, name);
-    const auto films = films_of(stores.front(), watched);
+    const auto films = films_of(stores.front(), request.watched);
     std::size_t film_bytes = 0;
     for (const auto& film : films) film_bytes += film.bytes.size() / 3 * 4;
     if (!films.empty())
         std::cerr << fmt::format("{} films: {} of the page\n", films.size(), report::size_text(film_bytes));
     if (to_standard_output) {  // the page is the answer: nothing else goes there
-        report::write_page(std::cout, sources, films, models);
+        report::write_page(std::cout, sources, films, request.models);
         return 0;
     }
     std::ostringstream stream;
-    report::write_page(stream, sources, films, models);
+    report::write_page(stream, sources, films, request.models);
     const std::string page = std::move(stream).str();
     write_page_file(output, page);
     const auto size = static_cast<std::int64_t>(page.size());
@@ -111,71 +119,47 @@ int write_report(const std::vector<std::string>& databases, std::string output, 
     return 0;
 }
 
-/// A command about one observable of one campaign, or of all.
-Command about_an_observable(std::string command, std::string summary, int (*answer)(const Subject&, Format)) {
-    return {
-        std::move(command), std::move(summary),
-        [answer](Parser& parser, const Format& format) -> Action {
-            const auto subject = std::make_shared<Subject>();
-            parser.add_option("DB", subject->database, "the database")->required();
-            parser.add_option("--campaign", subject->campaign, "name of a campaign; default: all")->type_name("NAME");
-            parser
-                .add_option("--observable", subject->observable,
-                            "scalar observable; default: that of the convergence rule, else the scene's first")
-                ->type_name("NAME");
-            if (answer == converge)
-                parser.add_flag("--check", subject->check,
-                                "exit with 1 unless everything shown has converged by its campaign's rule; "
-                                "without a rule a campaign has not");
-            return [subject, &format, answer] { return answer(*subject, format); };
-        },
-        false};
+/// One observable of one campaign, or of all.
+void declare_sensitivity(Parser& parser, Subject& subject) {
+    parser.add_option("DB", subject.database, "the database");
+    parser.add_option("--campaign NAME", subject.campaign, "name of a campaign; default: all");
+    parser.add_option("--observable NAME", subject.observable,
+                      "scalar observable; default: that of the convergence rule, else the scene's first");
+}
+
+void declare_converge(Parser& parser, Subject& subject) {
+    declare_sensitivity(parser, subject);
+    parser.add_flag("--check", subject.check,
+                    "exit with 1 unless everything shown has converged by its campaign's rule; without a rule a "
+                    "campaign has not");
+}
+
+void declare_report(Parser& parser, ReportRequest& request) {
+    parser.add_option("DB", request.database, "the database");
+    parser.add_option("-o,--output FILE", request.output,
+                      "the page; default: the database's name with .html, in the current folder; -: standard output");
+    parser.add_option("--with DB", request.others,
+                      "further databases, whose campaigns can be drawn with those of the first");
+    parser
+        .add_option("--watch N", request.watched,
+                    "number of films in the page: cases from the smallest to the largest main observable, computed "
+                    "again")
+        ->check(whole_number(0, 100));
+    parser.add_option("--model NAME", request.models.of,
+                      "scalars whose response models are drawn; default: the main observable, for campaigns of at most "
+                      "1000 cases");
 }
 
 }  // namespace
 
 std::vector<Command> study_commands() {
     return {
-        about_an_observable("converge", "shows moments with their errors, check by check, and the verdict", converge),
-        about_an_observable("sensitivity", "shows which factor moves the response: indices with their errors",
-                            sensitivity),
-        {"report", "writes one self-contained HTML page with tables and figures",
-         [](Parser& parser, const Format& format) -> Action {
-             struct Request {
-                 std::string database, output;
-                 std::vector<std::string> others;
-                 std::int64_t watched = 0;
-                 report::PageModels models;
-             };
-             const auto request = std::make_shared<Request>();
-             parser.add_option("DB", request->database, "the database")->required();
-             parser
-                 .add_option(
-                     "-o,--output", request->output,
-                     "the page; default: the database's name with .html, in the current folder; -: standard output")
-                 ->type_name("FILE");
-             parser
-                 .add_option("--with", request->others,
-                             "further databases, whose campaigns can be drawn with those of the first")
-                 ->type_name("DB");
-             parser
-                 .add_option("--watch", request->watched,
-                             "number of films in the page: cases from the smallest to the largest main "
-                             "observable, computed again")
-                 ->type_name("N")
-                 ->check(whole_number(0, 100));
-             parser
-                 .add_option("--model", request->models.of,
-                             "scalars whose response models are drawn; default: the main observable, for campaigns "
-                             "of at most 1000 cases")
-                 ->type_name("NAME");
-             return [request, &format] {
-                 std::vector<std::string> databases = {request->database};
-                 databases.insert(databases.end(), request->others.begin(), request->others.end());
-                 return write_report(databases, request->output, request->watched, request->models, format);
-             };
-         },
-         false, true},
+        command<Subject>("converge", "shows moments with their errors, check by check, and the verdict",
+                         declare_converge, converge),
+        command<Subject>("sensitivity", "shows which factor moves the response: indices with their errors",
+                         declare_sensitivity, sensitivity),
+        verbatim(command<ReportRequest>("report", "writes one self-contained HTML page with tables and figures",
+                                        declare_report, write_report)),
     };
 }
 

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <iostream>
-#include <memory>
 #include <string>
 
 namespace grainsweep::cli {
@@ -47,13 +46,9 @@ int verify(const std::string& database, Format format) {
 }  // namespace
 
 std::vector<Command> verify_commands() {
-    return {{"verify", "checks the whole database and names damaged entries",
-             [](Parser& parser, const Format& format) -> Action {
-                 const auto database = std::make_shared<std::string>();
-                 parser.add_option("DB", *database, "database")->required();
-                 return [database, &format] { return verify(*database, format); };
-             },
-             false}};
+    return {command<std::string>(
+        "verify", "checks the whole database and names damaged entries",
+        [](Parser& parser, std::string& database) { parser.add_option("DB", database, "database"); }, verify)};
 }
 
 }  // namespace grainsweep::cli

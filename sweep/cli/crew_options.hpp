@@ -11,7 +11,8 @@
 
 namespace grainsweep::cli {
 
-/// `asked` overrides the campaign file's; with hosts, of each host. 0: all cores of the job, divided by those that each case takes.
+/// `asked` overrides the campaign file's; with hosts, of each host. 0: all cores of the job, divided by those that each
+/// case takes.
 [[nodiscard]] std::size_t worker_count(const campaign::Campaign& campaign, std::optional<std::int64_t> asked);
 /// Of every case from its beginning to its end; programs have cores instead, which count as one.
 [[nodiscard]] unsigned threads_of_a_case(const campaign::Campaign& campaign);

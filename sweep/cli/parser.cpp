@@ -12,7 +12,6 @@
 #include <iostream>
 #include <memory>
 #include <sstream>
-#include <string_view>
 #include <system_error>
 
 namespace grainsweep::cli {
@@ -125,18 +124,8 @@ Option* Option::required() {
     return this;
 }
 
-Option* Option::needs(Option* other) {
-    option_->needs(other->option_);
-    return this;
-}
-
 Option* Option::check(WholeNumber rule) {
     option_->check([rule](const std::string& word) { return complaint(word, rule); });
-    return this;
-}
-
-Option* Option::type_name(const std::string& word) {
-    option_->type_name(word);
     return this;
 }
 
@@ -160,7 +149,13 @@ Option* Option::capture_default_str() {
 
 template <class T>
 Option* Parser::add_option(const std::string& names, T& into, const std::string& help) {
-    return &options_.emplace_back(app_->add_option(names, into, help));
+    const bool may_be_empty = names.starts_with('[');
+    const auto space = names.find(' ');
+    auto* option =
+        app_->add_option(may_be_empty ? names.substr(1, names.size() - 2) : names.substr(0, space), into, help);
+    if (space != std::string::npos) option->type_name(names.substr(space + 1));
+    option->required(!may_be_empty && !names.starts_with('-'));
+    return &options_.emplace_back(option);
 }
 template Option* Parser::add_option(const std::string&, std::string&, const std::string&);
 template Option* Parser::add_option(const std::string&, std::filesystem::path&, const std::string&);
@@ -168,6 +163,7 @@ template Option* Parser::add_option(const std::string&, std::vector<std::string>
 template Option* Parser::add_option(const std::string&, double&, const std::string&);
 template Option* Parser::add_option(const std::string&, std::int64_t&, const std::string&);
 template Option* Parser::add_option(const std::string&, std::optional<std::int64_t>&, const std::string&);
+template Option* Parser::add_option(const std::string&, std::optional<double>&, const std::string&);
 template Option* Parser::add_option(const std::string&, std::optional<std::uint64_t>&, const std::string&);
 
 Option* Parser::add_flag(const std::string& names, bool& into, const std::string& help) {

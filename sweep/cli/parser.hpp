@@ -4,11 +4,8 @@
 
 #include <cstdint>
 #include <deque>
-#include <filesystem>
 #include <limits>
-#include <optional>
 #include <string>
-#include <vector>
 
 namespace CLI {
 class App;
@@ -32,10 +29,7 @@ class Option {
 public:
     explicit Option(CLI::Option* option) : option_(option) {}
     Option* required();
-    Option* needs(Option* other);
     Option* check(WholeNumber rule);
-    /// What stands for the value in --help.
-    Option* type_name(const std::string& word);
     /// Of a list: false takes one value each time the option is given.
     Option* allow_extra_args(bool allowed);
     /// Digits may be grouped by underscores, as csv prints large numbers.
@@ -47,8 +41,9 @@ private:
     CLI::Option* option_;
 };
 
-/// Declares arguments: a name without dashes is a place, "-o,--output" an option with two names. `into` is written
-/// when the command line is read and must still be there then.
+/// Declares arguments: "DB" is a place, "[NAME]" one that may be empty, "-o,--output FILE" an option with two names and
+/// the word that stands for its value in --help. `into` is written when the command line is read and must still be
+/// there then.
 class Parser {
 public:
     explicit Parser(CLI::App& app) : app_(&app) {}

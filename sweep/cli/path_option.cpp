@@ -11,11 +11,9 @@
 namespace grainsweep::cli {
 
 void declare_path(Parser& parser, std::string& word, std::string_view otherwise) {
-    parser
-        .add_option(
-            "--path", word,
-            fmt::format("instruction set of the particle loops: baseline, avx2 or avx512; default: {}", otherwise))
-        ->type_name("WORD");
+    parser.add_option(
+        "--path WORD", word,
+        fmt::format("instruction set of the particle loops: baseline, avx2 or avx512; default: {}", otherwise));
 }
 
 void use_path(const std::string& word) {

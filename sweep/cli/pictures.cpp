@@ -23,16 +23,12 @@ constexpr std::int64_t usual_frames = 60;
 }  // namespace
 
 void declare_pictures(Parser& parser, PictureRequest& request) {
+    parser.add_option("--vtk DIR", request.folder,
+                      "folder for ParaView files: particles and walls (VTP), flow (VTI or VTR), a PVD series");
+    parser.add_option("--watch FILE.html", request.page, "HTML page that plays the case in three dimensions");
     parser
-        .add_option("--vtk", request.folder,
-                    "folder for ParaView files: particles and walls (VTP), flow (VTI or VTR), a PVD series")
-        ->type_name("DIR");
-    parser.add_option("--watch", request.page, "HTML page that plays the case in three dimensions")
-        ->type_name("FILE.html");
-    parser
-        .add_option("--frames", request.frames,
+        .add_option("--frames N", request.frames,
                     fmt::format("number of pictures from start to end for --vtk or --watch; default: {}", usual_frames))
-        ->type_name("N")
         ->check(whole_number(2, 9999));
 }
 

@@ -14,7 +14,6 @@
 #include <cmath>
 #include <iostream>
 #include <map>
-#include <string>
 #include <utility>
 #include <vector>
 

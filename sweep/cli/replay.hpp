@@ -4,6 +4,7 @@
 #include "sweep/cli/pictures.hpp"
 #include "sweep/report/table.hpp"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -15,6 +16,7 @@ struct ReplayRequest {
     std::string path;                 ///< instruction path; empty: that of the archive
     std::optional<double> tolerance;  ///< relative; none: bit for bit where that can be expected
     std::string keep;                 ///< folder for the case of a program
+    std::int64_t threads = 0;         ///< 0: one for each core of the job
 };
 
 /// Returns the exit code: 0 where both agree. Throws WrongQuestion where there is nothing to compare with.

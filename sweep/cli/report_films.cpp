@@ -12,8 +12,6 @@
 #include <cstddef>
 #include <iostream>
 #include <optional>
-#include <string>
-#include <utility>
 
 namespace grainsweep::cli {
 namespace {

@@ -7,9 +7,8 @@ namespace grainsweep::cli {
 
 void declare_threads(Parser& parser, std::int64_t& count) {
     parser
-        .add_option("--threads", count,
+        .add_option("--threads N", count,
                     "threads for the case; 0, the default: one per core of the job; results do not depend on it")
-        ->type_name("N")
         ->check(whole_number(0, 1024));
 }
 

@@ -12,7 +12,6 @@
 #include <iostream>
 #include <limits>
 #include <utility>
-#include <vector>
 
 namespace grainsweep::cli {
 namespace {

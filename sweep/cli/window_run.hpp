@@ -10,7 +10,6 @@
 #include "sweep/study/process_window.hpp"
 #include "sweep/study/response_models.hpp"
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
