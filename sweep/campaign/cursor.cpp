@@ -58,18 +58,27 @@ std::vector<Cursor> Cursor::elements() const {
     return cursors;
 }
 
+std::vector<std::pair<std::string, Cursor>> Cursor::members(std::string_view rule) const {
+    if (!value_->is_object()) refuse(rule);
+    std::vector<std::pair<std::string, Cursor>> members;
+    for (const auto& [name, value] : value_->items()) {
+        const Cursor here(value, path_of(path_, name));
+        const bool texts = value.is_array() && std::ranges::all_of(value, [](const Json& x) { return x.is_string(); });
+        if (name != notes_key)
+            members.emplace_back(name, here);
+        else if (!value.is_string() && !texts)
+            here.refuse("notes are a text or a list of texts");
+    }
+    return members;
+}
+
 Section::Section(Cursor place, std::span<const Key> keys) : place_(std::move(place)), keys_(keys) {
-    if (!place_.json().is_object()) place_.refuse("must be an object");
-    for (const auto& [name, value] : place_.json().items()) {
-        const Cursor here(value, path_of(place_.path(), name));
-        if (name == notes_key) {
-            check_notes(here);
-        } else if (std::ranges::find(keys_, name, &Key::name) == keys_.end()) {
-            WordList known(std::views::transform(keys_, &Key::name));
-            known.push_back(notes_key);
-            throw wrong_question(here.path(), "", fmt::format("unknown key; {} has {}", place_.path(), in_words(known)),
-                                 nearest_word(name, known));
-        }
+    for (const auto& [name, here] : place_.members("must be an object")) {
+        if (std::ranges::find(keys_, name, &Key::name) != keys_.end()) continue;
+        WordList known(std::views::transform(keys_, &Key::name));
+        known.push_back(notes_key);
+        throw wrong_question(here.path(), "", fmt::format("unknown key; {} has {}", place_.path(), in_words(known)),
+                             nearest_word(name, known));
     }
     for (const auto& key : keys_) {
         if (key.required && !find(key.name)) {
@@ -138,12 +147,6 @@ std::vector<std::string> Section::words(std::string_view key, const std::vector<
         words.push_back(allowed.empty() ? element.text() : element.word(allowed));
     }
     return words;
-}
-
-void check_notes(const Cursor& notes) {
-    const auto& value = notes.json();
-    const bool texts = value.is_array() && std::ranges::all_of(value, [](const Json& x) { return x.is_string(); });
-    if (!value.is_string() && !texts) notes.refuse("notes are a text or a list of texts");
 }
 
 std::string in_words(const Interval& bounds) {

@@ -40,6 +40,8 @@ public:
     [[nodiscard]] std::string word(const WordList& words) const;
     /// A list; refuses everything else.
     [[nodiscard]] std::vector<Cursor> elements() const;
+    /// The members of an object without its notes, which are checked; refuses everything else by the rule.
+    [[nodiscard]] std::vector<std::pair<std::string, Cursor>> members(std::string_view rule) const;
 
 private:
     const Json* value_;
@@ -73,8 +75,6 @@ private:
     std::span<const Key> keys_;
 };
 
-/// "notes" holds a text or a list of texts.
-void check_notes(const Cursor& notes);
 /// "a number from 0 to 1", "a number above 0": the interval in words.
 [[nodiscard]] std::string in_words(const Interval& bounds);
 /// "'a', 'b' or 'c'".

@@ -108,13 +108,7 @@ std::vector<Factor> read_factors(const Cursor& place, const SceneInfo& scene, co
 }
 
 void read_fixed(const Cursor& place, ParameterSpace& space, const std::filesystem::path& folder) {
-    if (!place.json().is_object()) place.refuse("must be an object of parameter names and values");
-    for (const auto& [key, value] : place.json().items()) {
-        const Cursor here(value, path_of(place.path(), key));
-        if (key == notes_key) {
-            check_notes(here);
-            continue;
-        }
+    for (const auto& [key, here] : place.members("must be an object of parameter names and values")) {
         const auto* parameter = space.scene->find_parameter(key);
         if (parameter == nullptr) {
             throw wrong_question(

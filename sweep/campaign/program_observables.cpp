@@ -1,6 +1,5 @@
 // "observables" of a program: what is measured, and where its value is found.
 #include "sweep/campaign/output_pattern.hpp"
-#include "sweep/campaign/placeholders.hpp"
 #include "sweep/campaign/program_keys.hpp"
 #include "sweep/campaign/program_section.hpp"
 #include "sweep/campaign/wrong_question.hpp"
@@ -8,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <regex>
 
 namespace grainsweep::campaign {
@@ -83,13 +81,7 @@ decltype(ProgramObservable::from) read_from(const Section& from) {
     }
     refuse_others(from, kind, {});
     const auto place = from.at("output");
-    const auto pattern = place.text();
-    try {
-        if (output_pattern(pattern).mark_count() < 1) place.refuse("needs a group, (...), that is the value");
-    } catch (const std::regex_error& error) {
-        place.refuse(fmt::format("is no regular expression (ECMAScript without back-references): {}", error.what()));
-    }
-    return FromOutput{pattern};
+    return FromOutput{read_output_pattern(place, "value")};
 }
 
 bool runs_over(const decltype(ProgramObservable::from)& from) {
@@ -125,6 +117,17 @@ ProgramObservable read_output(const std::string& name, const Section& section, P
 
 }  // namespace
 
+std::string read_output_pattern(const Cursor& place, std::string_view what) {
+    const auto pattern = place.text();
+    try {
+        if (output_pattern(pattern).mark_count() < 1)
+            place.refuse(fmt::format("needs a group, (...), that is the {}", what));
+    } catch (const std::regex_error& error) {
+        place.refuse(fmt::format("is no regular expression (ECMAScript without back-references): {}", error.what()));
+    }
+    return pattern;
+}
+
 Interval read_program_bounds(const Cursor& place) {
     const auto ends = place.elements();
     if (ends.size() != 2) place.refuse("must be [low, high]");
@@ -138,13 +141,7 @@ Interval read_program_bounds(const Cursor& place) {
 void read_program_observables(const Section& section, Program& program) {
     const auto all = section.find("observables");
     if (!all) return;
-    if (!all->json().is_object()) all->refuse("must be an object of names and where each value is found");
-    for (const auto& [name, value] : all->json().items()) {
-        const Cursor here(value, path_of(all->path(), name));
-        if (name == notes_key) {
-            check_notes(here);
-            continue;
-        }
+    for (const auto& [name, here] : all->members("must be an object of names and where each value is found")) {
         if (program.observables.size() >= most_observables)
             here.refuse(fmt::format("at most {} observables", most_observables));
         program.observables.push_back(read_output(name, Section(here, program_observable_keys()), program.protocol));

@@ -2,7 +2,6 @@
 
 #include "solver/plain_text.hpp"
 #include "sweep/campaign/case.hpp"
-#include "sweep/campaign/output_pattern.hpp"
 #include "sweep/campaign/placeholders.hpp"
 #include "sweep/campaign/program_keys.hpp"
 #include "sweep/campaign/wrong_question.hpp"
@@ -64,8 +63,7 @@ public:
         if (factors.json().is_array())
             for (const auto& factor : factors.elements()) add_factor(factor);
         if (const auto fixed = top.find("fixed"); fixed && fixed->json().is_object())
-            for (const auto& [name, value] : fixed->json().items())
-                if (name != notes_key) add(name, Cursor(value, path_of(fixed->path(), name)));
+            for (const auto& [name, value] : fixed->members({})) add(name, value);
         if (const auto calibration = top.find("calibration")) add_conditions(*calibration);
     }
 
@@ -128,8 +126,7 @@ private:
             if (!target.json().is_object() || !target.json().contains("inputs")) continue;
             const Cursor inputs = target["inputs"];
             if (!inputs.json().is_object()) continue;
-            for (const auto& [name, value] : inputs.json().items())
-                if (name != notes_key) add(name, Cursor(value, path_of(inputs.path(), name)));
+            for (const auto& [name, value] : inputs.members({})) add(name, value);
         }
     }
 
@@ -140,13 +137,7 @@ private:
 void read_parameter_notes(const Section& section, const Given& given, Program& program) {
     const auto all = section.find("parameters");
     if (!all) return;
-    if (!all->json().is_object()) all->refuse("must be an object of names and what is known of each");
-    for (const auto& [name, value] : all->json().items()) {
-        const Cursor here(value, path_of(all->path(), name));
-        if (name == notes_key) {
-            check_notes(here);
-            continue;
-        }
+    for (const auto& [name, here] : all->members("must be an object of names and what is known of each")) {
         const auto found = std::ranges::find(program.parameters, name, &ProgramParameter::name);
         if (found == program.parameters.end())
             throw wrong_question(here.path(), "", "is neither a factor nor a fixed value",
@@ -197,14 +188,7 @@ void read_version(const Section& section, Program& program) {
     const Section version(*place, program_version_keys());
     program.version_command = version.words("command", {});
     check_arguments(version.at("command"), program.version_command);
-    program.version_match = version.at("match").text();
-    try {
-        if (output_pattern(program.version_match).mark_count() < 1)
-            version.at("match").refuse("needs a group, (...), that is the version");
-    } catch (const std::regex_error& error) {
-        version.at("match").refuse(
-            fmt::format("is no regular expression (ECMAScript without back-references): {}", error.what()));
-    }
+    program.version_match = read_output_pattern(version.at("match"), "version");
 }
 
 /// Every name in braces means something.

@@ -6,6 +6,8 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <string_view>
 
 namespace grainsweep::campaign {
 
@@ -17,6 +19,8 @@ namespace grainsweep::campaign {
 void read_program_files(const Section& section, const std::filesystem::path& folder, Program& program);
 /// Reads "observables".
 void read_program_observables(const Section& section, Program& program);
+/// A regular expression with a group, which is the value or the version.
+[[nodiscard]] std::string read_output_pattern(const Cursor& place, std::string_view what);
 /// [low, high], null for an open end.
 [[nodiscard]] Interval read_program_bounds(const Cursor& place);
 /// The name of a file within a case's folder; refuses what could lie elsewhere.
