@@ -65,12 +65,13 @@ std::string view_text(const Connection& db, const Shown& shown) {
                                 rows.get<std::int64_t>(0), literal(rows.value(1))));
     }
     for (const auto& scalar : shown.scalars) {
-        auto rows = db.ask("SELECT observable_id FROM observable WHERE scene = ? AND revision = ? AND name = ?",
-                           shown.scene, shown.revision, scalar);
+        const auto key =
+            db.value<std::int64_t>("SELECT observable_id FROM observable WHERE scene = ? AND revision = ? AND name = ?",
+                                   shown.scene, shown.revision, scalar);
         columns.add(scalar, "_observed",
                     fmt::format("(SELECT o.value FROM observation AS o WHERE o.case_key = p.case_key AND "
                                 "o.observable_id = {} AND o.sample = 0)",
-                                rows.next() ? rows.get<std::int64_t>(0) : 0));
+                                key.value_or(0)));
     }
     return fmt::format(
         "CREATE VIEW {} AS\nSELECT {}\nFROM campaign_case AS p\nJOIN sim_case AS c ON c.case_key = p.case_key\n"
@@ -80,11 +81,7 @@ std::string view_text(const Connection& db, const Shown& shown) {
 
 void make_view(Connection& db, const Shown& shown) {
     const std::string text = view_text(db, shown);
-    std::optional<std::string> present;
-    {
-        auto rows = db.ask("SELECT sql FROM sqlite_schema WHERE name = ?", shown.name);
-        if (rows.next()) present = rows.get<std::string>(0);
-    }
+    const auto present = db.value<std::string>("SELECT sql FROM sqlite_schema WHERE name = ?", shown.name);
     if (present == text) return;
     if (present) db.execute(fmt::format("DROP VIEW {}", quoted_name(shown.name)));
     db.execute(text);

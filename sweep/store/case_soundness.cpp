@@ -241,11 +241,7 @@ void renew_answer(Connection& db, std::int64_t key, const Names& names) {
 }
 
 void renew_case(Connection& db, std::int64_t key, const Names& names) {
-    std::vector<std::int64_t> attempts;
-    {
-        auto rows = db.ask("SELECT number FROM attempt WHERE case_key = ?", key);
-        while (rows.next()) attempts.push_back(rows.get<std::int64_t>(0));
-    }
+    const auto attempts = db.column<std::int64_t>("SELECT number FROM attempt WHERE case_key = ?", key);
     for (const auto number : attempts) renew_attempt(db, key, number);
     renew_answer(db, key, names);
 }
@@ -291,11 +287,7 @@ void renew_case(Connection& db, std::int64_t key) {
 }
 
 void renew_all_cases(Connection& db) {
-    std::vector<std::int64_t> keys;
-    {
-        auto rows = db.ask("SELECT case_key FROM sim_case NOT INDEXED ORDER BY case_key");
-        while (rows.next()) keys.push_back(rows.get<std::int64_t>(0));
-    }
+    const auto keys = db.column<std::int64_t>("SELECT case_key FROM sim_case NOT INDEXED ORDER BY case_key");
     const Names names(db);
     for (const auto key : keys) renew_case(db, key, names);
 }

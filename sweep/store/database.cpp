@@ -9,9 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <new>
 #include <stdexcept>
-#include <utility>
 
 namespace grainsweep::store {
 

@@ -176,6 +176,19 @@ public:
         (statement.bind(++parameter, arguments), ...);
         return Rows(statement);
     }
+    /// The first column of every row.
+    template <class T, class... Arguments>
+    [[nodiscard]] std::vector<T> column(std::string_view sql, const Arguments&... arguments) const {
+        std::vector<T> values;
+        for (auto rows = ask(sql, arguments...); rows.next();) values.push_back(rows.template get<T>(0));
+        return values;
+    }
+    /// The first column of the first row; none where there is no row.
+    template <class T, class... Arguments>
+    [[nodiscard]] std::optional<T> value(std::string_view sql, const Arguments&... arguments) const {
+        auto rows = ask(sql, arguments...);
+        return rows.next() ? std::optional<T>(rows.template get<T>(0)) : std::nullopt;
+    }
     /// A statement of its own, not kept.
     [[nodiscard]] Statement prepare(std::string_view sql) const { return {handle_.get(), sql}; }
 

@@ -19,10 +19,11 @@ namespace {
 
 /// A campaign's name becomes that of a view: no table, fixed view or index may have it.
 void refuse_taken_name(const Connection& db, const Campaign& campaign) {
-    auto rows = db.ask("SELECT type FROM sqlite_schema WHERE name = ? COLLATE NOCASE", campaign.name);
-    if (!rows.next()) return;
+    const auto taken =
+        db.value<std::string>("SELECT type FROM sqlite_schema WHERE name = ? COLLATE NOCASE", campaign.name);
+    if (!taken) return;
     throw campaign::wrong_question("$.campaign", campaign.name,
-                                   fmt::format("the database has a {} of that name", rows.get<std::string_view>(0)));
+                                   fmt::format("the database has a {} of that name", *taken));
 }
 
 /// Declares what the scene takes and measures; returns its parameters sorted by name.
@@ -130,11 +131,8 @@ std::int64_t candidates_in(const Campaign& campaign, const campaign::Cases& case
 
 /// What is asked now; what is stored grows to it where the design extends, and changes with it elsewhere.
 void store_extent(Store::Impl& archive, const Campaign& campaign, std::int64_t key, std::int64_t candidates) {
-    std::string stored;
-    {
-        auto rows = archive.db.ask("SELECT design_extent FROM campaign WHERE campaign_id = ?", key);
-        if (rows.next()) stored = rows.get<std::string>(0);
-    }
+    const auto stored =
+        archive.db.value<std::string>("SELECT design_extent FROM campaign WHERE campaign_id = ?", key).value_or("");
     const auto identity = campaign::identity_of(campaign);
     archive.db.run(
         "UPDATE campaign SET factors = ?1, design_options = ?2, design_extent = ?3, replicates = max(replicates, ?4), "

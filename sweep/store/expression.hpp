@@ -5,7 +5,6 @@
 #include "sweep/campaign/campaign.hpp"
 
 #include <functional>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>

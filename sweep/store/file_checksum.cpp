@@ -25,18 +25,14 @@ struct FileSum {
     bool operator==(const FileSum&) const = default;
 };
 
-std::int64_t number(const Connection& db, std::string_view sql) {
-    auto rows = db.ask(sql);
-    return rows.next() ? rows.get<std::int64_t>(0) : 0;
-}
-
 /// None where the file is no whole number of pages.
 std::optional<FileSum> sum_of_file(const Connection& db) {
-    const auto page = static_cast<std::size_t>(number(db, "PRAGMA page_size"));
+    const auto page = static_cast<std::size_t>(db.value<std::int64_t>("PRAGMA page_size").value_or(0));
     const std::int64_t bytes = db.file_bytes();
     const auto size = static_cast<std::int64_t>(page);
     if (page == 0 || bytes % size != 0) return std::nullopt;
-    const auto own = number(db, "SELECT rootpage FROM sqlite_schema WHERE name = 'file_checksum'");
+    const auto own =
+        db.value<std::int64_t>("SELECT rootpage FROM sqlite_schema WHERE name = 'file_checksum'").value_or(0);
 
     FileSum sum{bytes / size, 0};
     constexpr std::size_t pages_at_once = 256;

@@ -9,7 +9,6 @@
 
 #include "sweep/store/database.hpp"
 
-#include <cstdint>
 #include <filesystem>
 #include <functional>
 

@@ -22,8 +22,7 @@ CaseState state_at(const Rows& rows, int first) {
 }
 
 std::int64_t highest_key(const Connection& db) {
-    auto rows = db.ask("SELECT coalesce(max(case_key), 0) FROM sim_case");
-    return rows.next() ? rows.get<std::int64_t>(0) : 0;
+    return db.value<std::int64_t>("SELECT coalesce(max(case_key), 0) FROM sim_case").value_or(0);
 }
 
 void search_each(const Connection& db, const campaign::Cases& cases, KnownCases& known) {

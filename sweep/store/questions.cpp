@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <sstream>
 
@@ -37,8 +36,7 @@ std::optional<campaign::Convergence> rule_at(const Rows& rows, int first) {
 }
 
 std::optional<std::int64_t> case_key(const Connection& db, std::string_view case_id) {
-    auto rows = db.ask("SELECT case_key FROM sim_case WHERE case_id = ?", case_id);
-    return rows.next() ? std::optional(rows.get<std::int64_t>(0)) : std::nullopt;
+    return db.value<std::int64_t>("SELECT case_key FROM sim_case WHERE case_id = ?", case_id);
 }
 
 /// The tables, not the view `inputs`: what a database has under that name is its own affair.
@@ -75,13 +73,8 @@ Observations observations_of(const Connection& db, std::int64_t key) {
 }  // namespace
 
 std::int64_t Store::Impl::campaign_key(std::string_view name) const {
-    {
-        auto rows = db.ask("SELECT campaign_id FROM campaign WHERE name = ?", name);
-        if (rows.next()) return rows.get<std::int64_t>(0);
-    }
-    std::vector<std::string> names;
-    auto rows = db.ask("SELECT name FROM campaign ORDER BY campaign_id");
-    while (rows.next()) names.push_back(rows.get<std::string>(0));
+    if (const auto key = db.value<std::int64_t>("SELECT campaign_id FROM campaign WHERE name = ?", name)) return *key;
+    const auto names = db.column<std::string>("SELECT name FROM campaign ORDER BY campaign_id");
     throw campaign::wrong_question("campaign", name,
                                    fmt::format("'{}' holds {}", file.string(), campaign::listed(names)),
                                    campaign::nearest_word(name, names));

@@ -23,11 +23,10 @@ void restore_question(Connection& db, std::int64_t key, const campaign::Case& qu
 
 /// The attempt that gave the case its outcome, or may have.
 std::optional<std::int64_t> standing_attempt(const Connection& db, std::int64_t key) {
-    auto rows = db.ask(
+    return db.value<std::int64_t>(
         "SELECT number FROM attempt WHERE case_key = ?1 AND outcome IS NOT NULL ORDER BY outcome = (SELECT outcome "
         "FROM sim_case WHERE case_key = ?1) DESC, number DESC LIMIT 1",
         key);
-    return rows.next() ? std::optional(rows.get<std::int64_t>(0)) : std::nullopt;
 }
 
 void note_in_log(Connection& db, std::int64_t key, std::int64_t number, std::string_view note) {

@@ -79,19 +79,11 @@ RowSum sum_of_rows(Statement& statement) {
 }
 
 std::vector<std::int64_t> parts_of(const Connection& db, std::string_view table) {
-    std::vector<std::int64_t> parts;
-    const std::string ids = table == "campaign_case" ? "SELECT DISTINCT campaign_id FROM campaign_case NOT INDEXED"
-                                                     : "SELECT DISTINCT campaign_id FROM convergence NOT INDEXED";
-    {
-        auto rows = db.ask(ids);
-        while (rows.next()) parts.push_back(rows.get<std::int64_t>(0));
-    }
-    auto rows = db.ask("SELECT part FROM table_checksum WHERE name = ?", table);
-    while (rows.next()) parts.push_back(rows.get<std::int64_t>(0));
-    std::ranges::sort(parts);
-    const auto same = std::ranges::unique(parts);
-    parts.erase(same.begin(), same.end());
-    return parts;
+    return db.column<std::int64_t>(
+        fmt::format("SELECT campaign_id FROM {} NOT INDEXED UNION SELECT part FROM table_checksum WHERE name = ? "
+                    "ORDER BY 1",
+                    table),
+        table);
 }
 
 void compare(const Connection& db, std::string_view table, std::int64_t part, std::vector<DamagedTable>& found) {
@@ -117,8 +109,7 @@ bool has_threads(const Connection& db) {
 }
 
 bool has_table(const Connection& db, std::string_view table) {
-    auto rows = db.ask("SELECT 1 FROM sqlite_schema WHERE name = ?", table);
-    return rows.next();
+    return db.value<std::int64_t>("SELECT 1 FROM sqlite_schema WHERE name = ?", table).has_value();
 }
 
 // The statement, not the function pragma_table_info(): a view of that name would stand before it.

@@ -17,7 +17,6 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <cstdint>
 #include <fstream>
 #include <stdexcept>
 
@@ -309,13 +308,13 @@ std::int64_t Store::Impl::computer_key(const campaign::Computer& by) {
             "VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING",
             by.version, by.commit, by.build, by.instruction_path, by.processor, by.host);
     });
-    auto rows = db.ask(
+    const auto key = db.value<std::int64_t>(
         "SELECT computer_id FROM attempt_computer WHERE (version, \"commit\", build, instruction_path, processor, "
         "host) "
         "= (?, ?, ?, ?, ?, ?)",
         by.version, by.commit, by.build, by.instruction_path, by.processor, by.host);
-    if (!rows.next()) throw BrokenWorld(fmt::format("database '{}': a row just written is not there", file.string()));
-    return found->second = rows.get<std::int64_t>(0);
+    if (!key) throw BrokenWorld(fmt::format("database '{}': a row just written is not there", file.string()));
+    return found->second = *key;
 }
 
 void Store::remember_file() {

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
-#include <set>
 #include <utility>
 
 namespace grainsweep::store {
@@ -16,8 +15,7 @@ namespace grainsweep::store {
 namespace {
 
 std::string campaign_name(const Connection& db, std::int64_t campaign) {
-    auto rows = db.ask("SELECT name FROM campaign NOT INDEXED WHERE campaign_id = ?", campaign);
-    return rows.next() ? rows.get<std::string>(0) : "";
+    return db.value<std::string>("SELECT name FROM campaign NOT INDEXED WHERE campaign_id = ?", campaign).value_or("");
 }
 
 /// The campaigns whose designs hold the case, "a, b".
