@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <set>
-#include <span>
 #include <utility>
 
 namespace grainsweep::report {

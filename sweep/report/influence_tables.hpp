@@ -13,6 +13,8 @@ namespace grainsweep::report {
 
 /// "given_data", "saltelli" or "morris".
 [[nodiscard]] std::string_view method_name(study::Influence::Method method);
+/// What a page shows of every factor by this method, and by what its bars are sorted.
+[[nodiscard]] Json shown_of(study::Influence::Method method);
 /// One row per factor for people, the most influential first.
 [[nodiscard]] store::Table influence_table(const study::Influence& influence);
 [[nodiscard]] Json to_json(const study::Responses& responses, const study::ResponseColumn& response,

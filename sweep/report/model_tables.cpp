@@ -8,8 +8,6 @@
 #include <numeric>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 namespace grainsweep::report {

@@ -3,12 +3,10 @@
 
 #include "sweep/report/table.hpp"
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace grainsweep::report {
 

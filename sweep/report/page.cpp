@@ -13,7 +13,6 @@
 #include "sweep/report/page_files.hpp"
 #include "sweep/report/page_template.hpp"
 #include "sweep/report/summary.hpp"
-#include "sweep/report/table.hpp"
 #include "sweep/study/curves.hpp"
 #include "sweep/study/effects.hpp"
 #include "sweep/study/error_text.hpp"
@@ -101,17 +100,18 @@ Json page_json(const Influence& influence) {
         return one;
     };
     const auto& split = influence.split;
-    return {{"method", method_name(influence.method)},
-            {"notes", influence.notes},
-            {"factors", Json::list(influence.factors, json_of_factor)},
-            {"variance",
-             {{"main_effects", drawn(split.main_effects.value)},
-              {"unexplained", drawn(split.unexplained.value)},
-              {"interactions", drawn(split.interactions.value)},
-              {"scatter", drawn(split.scatter.value)},
-              {"pairs", drawn(split.pairs.value)},
-              {"remainder", drawn(split.remainder.value)}}},
-            {"unexplained", unexplained_text(influence)}};
+    return shown_of(influence.method)
+        .add({{"method", method_name(influence.method)},
+              {"notes", influence.notes},
+              {"factors", Json::list(influence.factors, json_of_factor)},
+              {"variance",
+               {{"main_effects", drawn(split.main_effects.value)},
+                {"unexplained", drawn(split.unexplained.value)},
+                {"interactions", drawn(split.interactions.value)},
+                {"scatter", drawn(split.scatter.value)},
+                {"pairs", drawn(split.pairs.value)},
+                {"remainder", drawn(split.remainder.value)}}},
+              {"unexplained", unexplained_text(influence)}});
 }
 
 Json page_json(const std::vector<EffectBin>& effect) {

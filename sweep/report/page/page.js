@@ -75,13 +75,9 @@ const trendSigns = { rises: "↗ rises", falls: "↘ falls", bends: "∼ bends" 
 
 function influenceSection(response) {
   const { influence } = response, n = "number";
-  const figuresOf = { morris: (f) => [f.mu_star_text, f.sigma], saltelli: (f) => [f.first_text, f.total_text], given_data: (f) => [f.first_text] }[influence.method];
-  const titles = { morris: [["mu*", n], ["sigma", n]], saltelli: [["first order", n], ["total", n]], given_data: [["first order", n]] }[influence.method];
-  const columns = [["factor"], ...titles, ["trend", "sign"], ["rank correlation", n]];
-  const rows = influence.factors.map((f) => [f.name, ...figuresOf(f), trendSigns[f.trend] || "", f.rank_text]);
-  const says = influence.method === "morris" ? "Change of the response over the range of each factor."
-    : "Share of the variance of the response due to each factor alone" + (influence.method === "saltelli" ? ", and with its interactions." : ".");
-  return section("sensitivity", "Sensitivity", says, el("div", { class: "grid wide" }, influenceFigure(influence),
+  const columns = [["factor"], ...influence.shows.map((one) => [one.column, n]), ["trend", "sign"], ["rank correlation", n]];
+  const rows = influence.factors.map((f) => [f.name, ...influence.shows.map((one) => f[one.text]), trendSigns[f.trend] || "", f.rank_text]);
+  return section("sensitivity", "Sensitivity", influence.says, el("div", { class: "grid wide" }, influenceFigure(influence),
     el("div", { class: "card" }, table(columns, rows), varianceBar(influence.variance),
       influence.unexplained ? el("p", { class: "says" }, capital(influence.unexplained) + ".") : null,
       influence.notes.map((note) => el("p", { class: "says" }, note)))));

@@ -96,20 +96,18 @@ function effect(factor, bins, response, range, others) {
 }
 
 function influenceFigure(influence) {
-  const key = influence.method === "morris" ? "mu_star" : influence.method === "saltelli" ? "total" : "first";
-  const factors = [...influence.factors].sort((a, b) => (b[key] || 0) - (a[key] || 0));
-  const two = influence.method !== "given_data";
-  const most = influence.method === "morris" ? Math.max(...factors.map((f) => (f.mu_star || 0) + (f.mu_star_error || 0))) : 1;
-  return figure(influence.method === "morris" ? "Elementary effects" : "Share of the variance", "", () => {
+  const { by, shares, shows } = influence, two = shows.length > 1;
+  const factors = [...influence.factors].sort((a, b) => (b[by] || 0) - (a[by] || 0));
+  const most = shares ? 1 : Math.max(...factors.map((f) => (f[by] || 0) + (f[by + "_error"] || 0)));
+  return figure(shares ? "Share of the variance" : "Elementary effects", "", () => {
     const bar = (label, field, tone) => ({ label, data: factors.map((f) => (f[field] === undefined ? null : f[field])), errors: factors.map((f) => f[field + "_error"]),
       errorColour: colour("ink"), backgroundColor: colour(tone), maxBarThickness: 22 });
-    const sets = influence.method === "morris" ? [bar("mu* (mean absolute elementary effect)", "mu_star", "one"), bar("sigma (curvature and interactions)", "sigma", "two")]
-      : influence.method === "saltelli" ? [bar("first order", "first", "one"), bar("total, with interactions", "total", "two")] : [bar("first order", "first", "one")];
+    const sets = shows.map((one, k) => bar(one.label, one.key, ["one", "two"][k]));
     return {
       type: "bar",
       data: { labels: factors.map((f) => f.name), datasets: sets },
       options: { indexAxis: "y",
-        scales: { x: axis(influence.method === "morris" ? "effect" : "index", { beginAtZero: true, suggestedMax: most }), y: { ticks: { color: colour("ink") }, grid: { display: false } } },
+        scales: { x: axis(shares ? "index" : "effect", { beginAtZero: true, suggestedMax: most }), y: { ticks: { color: colour("ink") }, grid: { display: false } } },
         plugins: { legend: { display: two, labels: { color: colour("ink") } }, tooltip: { callbacks: {
           label: (item) => `${item.dataset.label}: ${show(item.raw)}` + (item.dataset.errors[item.dataIndex] ? ` ± ${show(item.dataset.errors[item.dataIndex])}` : "") } } } },
     };
