@@ -6,12 +6,13 @@
 //   4. their volume in the cells and the flux that brought it there (solids_volume.hpp)
 //
 // Interaction is what the level adds: SolidsPressure<AlgebraicTemperature> (ddpm),
-// SolidsPressure<TransportedTemperature> (ddpm_ktgf), SpringContacts or ProjectedContacts (cfd_dem), NoInteraction.
+// SolidsPressure<TransportedTemperature> (ddpm_ktgf), SpringContacts or ProjectedContacts (cfd_dem).
 // Terms that hold phi_p and dV_p/dt lag by one step and make the scheme one of first order in the step, with phi_p as a
 // factor; with phi_p -> 0 it is that of suspension.hpp with TwoWay<ForceForm>.
 #pragma once
 
 #include "solver/coupling/levels.hpp"
+#include "solver/coupling/march.hpp"
 #include "solver/coupling/solids_volume.hpp"
 #include "solver/flow/flow.hpp"
 #include "solver/flow/shared_space.hpp"
@@ -138,13 +139,6 @@ private:
     };
 
     [[nodiscard]] Stencil<Kernel> stencil_at(const Vec3& x) const { return {fluid_.grid(), walls_.periodic, x}; }
-    // At the predicted middle of the step.
-    [[nodiscard]] Stencil<Kernel> stencil(std::size_t p) const {
-        Vec3 x = cloud_.position[p];
-        const double half = 0.5 * fluid_.time_step();
-        for (std::size_t d = 0; d < 3; ++d) x[d] += half * cloud_.velocity[p][d];
-        return stencil_at(walls_.clipped(x));
-    }
 
     void find_source(double vibration, double dt) {
         const Sphere& sphere = motion_.sphere();
@@ -165,7 +159,7 @@ private:
                    [&](std::size_t p, const flow::Planes& own) { stencils_[p].scatter(force(p), source_, own); });
         deposit_.spread(source_);
         const FaceVectors& flux = solids_.flux();
-        each_value([&](std::size_t d, std::ptrdiff_t m) {
+        each_value([&](std::size_t d, std::size_t m) {
             source_[d].data()[m] += (flux[d].data()[m] - flux_before_[d].data()[m]) / dt;
         });
         space_.add_excess(fluid_.velocity(), flux, solids_.fraction(), source_);
@@ -173,21 +167,15 @@ private:
 
     void find_stencils() {
         stencils_.resize(cloud_.size());
-        slabs_.over(0, static_cast<std::ptrdiff_t>(cloud_.size()) - 1, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
-            for (auto p = static_cast<std::size_t>(first); p <= static_cast<std::size_t>(last); ++p)
-                stencils_[p] = stencil(p);
-        });
+        each_of(cloud_.size(), slabs_,
+                [&](std::size_t p) { stencils_[p] = stencil_at(predicted(cloud_, p, fluid_.time_step(), walls_)); });
     }
     void keep_flux() {
-        each_value([&](std::size_t d, std::ptrdiff_t m) { flux_before_[d].data()[m] = solids_.flux()[d].data()[m]; });
+        each_value([&](std::size_t d, std::size_t m) { flux_before_[d].data()[m] = solids_.flux()[d].data()[m]; });
     }
     template <class Body>
     void each_value(Body body) const {
-        slabs_.over(0, static_cast<std::ptrdiff_t>(source_[0].size()) - 1,
-                    [&](std::ptrdiff_t first, std::ptrdiff_t last) {
-                        for (std::size_t d = 0; d < 3; ++d)
-                            for (auto m = first; m <= last; ++m) body(d, m);
-                    });
+        for (std::size_t d = 0; d < 3; ++d) each_of(source_[d].size(), slabs_, [&](std::size_t m) { body(d, m); });
     }
 
     flow::Flow<Heat> fluid_;

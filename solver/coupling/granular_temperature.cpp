@@ -1,30 +1,12 @@
 #include "solver/coupling/granular_temperature.hpp"
 
+#include "solver/coupling/each.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 
 namespace grainsweep::coupling {
-namespace {
-
-template <class Body>
-void each_cell(const flow::Grid& grid, const Slabs& slabs, Body body) {
-    slabs.over(1, grid.cells(2), [&](std::ptrdiff_t first, std::ptrdiff_t last) {
-        for (int k = static_cast<int>(first); k <= static_cast<int>(last); ++k)
-            for (int j = 1; j <= grid.cells(1); ++j)
-                for (int i = 1; i <= grid.cells(0); ++i) body(i, j, k);
-    });
-}
-
-/// Every value of a field, ghosts included.
-template <class Body>
-void each_value(const flow::Field& field, const Slabs& slabs, Body body) {
-    slabs.over(0, static_cast<std::ptrdiff_t>(field.size()) - 1, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
-        for (auto m = first; m <= last; ++m) body(m);
-    });
-}
-
-}  // namespace
 
 void Straining::measure(const flow::Grid& grid, const flow::Field& fraction,
                         const std::array<flow::Field, 3>& mean_velocity, double thinnest) {
@@ -112,7 +94,7 @@ void TransportedTemperature::advance(const SolidsVolume& solids, const Straining
     if (!started_) fraction_ = solids.fraction();
     started_ = true;
     fill_ghosts(values_, grid_, solids.edges(), slabs_);
-    each_value(values_, slabs_, [&](std::ptrdiff_t m) {
+    each_of(values_.size(), slabs_, [&](std::size_t m) {
         const double a = fraction_.data()[m];
         conductivity_.data()[m] = a > bounds_.thinnest ? grains_.conductivity(a) * std::sqrt(values_.data()[m]) : 0;
     });
@@ -137,7 +119,7 @@ void TransportedTemperature::advance(const SolidsVolume& solids, const Straining
     });
     std::swap(values_, next_);
     fill_ghosts(values_, grid_, solids.edges(), slabs_);
-    each_value(values_, slabs_, [&](std::ptrdiff_t m) { fraction_.data()[m] = solids.fraction().data()[m]; });
+    each_of(values_.size(), slabs_, [&](std::size_t m) { fraction_.data()[m] = solids.fraction().data()[m]; });
 }
 
 void TransportedTemperature::rest(const SolidsVolume& solids) {

@@ -32,11 +32,6 @@ struct HystereticSpring {
     double friction = 0;     ///< mu
 
     [[nodiscard]] double unloading() const { return stiffness / (restitution * restitution); }
-    /// Of two bodies of reduced mass m*.
-    [[nodiscard]] double contact_time(double reduced_mass) const {
-        return 0.5 * 3.14159265358979323846 *
-               (std::sqrt(reduced_mass / stiffness) + std::sqrt(reduced_mass / unloading()));
-    }
 
     /// Normal force at overlap s > 0; a fresh memory is the beginning of contact.
     double push(double s, SpringMemory& memory) const {

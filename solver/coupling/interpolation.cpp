@@ -1,9 +1,5 @@
 #include "solver/coupling/interpolation.hpp"
 
-#include <algorithm>
-#include <utility>
-#include <vector>
-
 namespace grainsweep::coupling {
 namespace {
 
@@ -73,10 +69,14 @@ FaceDeposit::FaceDeposit(const flow::Grid& grid, const flow::Sides& sides, doubl
     }
 }
 
-void FaceDeposit::clear(flow::FaceVectors& faces, const Slabs& slabs) {
-    slabs.over(0, static_cast<std::ptrdiff_t>(faces[0].size()) - 1, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
-        for (auto& field : faces) std::fill(field.data() + first, field.data() + last + 1, 0.0);
+void FaceDeposit::clear(flow::Field& field, const Slabs& slabs) {
+    slabs.over(0, static_cast<std::ptrdiff_t>(field.size()) - 1, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+        std::fill(field.data() + first, field.data() + last + 1, 0.0);
     });
+}
+
+void FaceDeposit::clear(flow::FaceVectors& faces, const Slabs& slabs) {
+    for (auto& field : faces) clear(field, slabs);
 }
 
 void FaceDeposit::spread(flow::FaceVectors& faces) {

@@ -177,6 +177,7 @@ public:
     /// Threads that compute from now on; no bit depends on their number.
     void use(const Slabs& slabs) { slabs_ = slabs; }
 
+    static void clear(flow::Field& field, const Slabs& slabs);
     static void clear(flow::FaceVectors& faces, const Slabs& slabs = {});
     /// Extensive deposit, ghosts included -> per volume of each face's control volume.
     void spread(flow::FaceVectors& faces);

@@ -128,19 +128,15 @@ public:
                 stencils[p].scatter({v, v, v}, solid_, own);
             });
             deposit_.spread(solid_);
-            slabs_.over(0, static_cast<std::ptrdiff_t>(source_[0].size()) - 1,
-                        [&](std::ptrdiff_t first, std::ptrdiff_t last) {
-                            for (std::size_t d = 0; d < 3; ++d)
-                                for (auto m = first; m <= last; ++m)
-                                    source_[d].data()[m] /= std::max(1 - solid_[d].data()[m], least_fluid);
-                        });
+            for (std::size_t d = 0; d < 3; ++d)
+                each_of(source_[d].size(), slabs_,
+                        [&](std::size_t m) { source_[d].data()[m] /= std::max(1 - solid_[d].data()[m], least_fluid); });
         }
         return source_;
     }
 
     /// Motion of particle p in this step, before it touched any wall.
     void remember(std::size_t p, const Vec3& rate) { rate_[p] = rate; }
-    [[nodiscard]] const std::vector<Vec3>& rates() const { return rate_; }
     [[nodiscard]] const MomentumBudget& budget() const { return budget_; }
 
     void save(std::vector<std::byte>& into) const { append_bytes<Vec3>(into, rate_); }

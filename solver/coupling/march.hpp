@@ -65,6 +65,13 @@ void march(Cloud& cloud, const Motion<Drag>& motion, const Walls& walls, double 
         slabs);
 }
 
+/// Where particle p is predicted in the middle of a step, X + V dt/2.
+[[nodiscard]] inline Vec3 predicted(const Cloud& cloud, std::size_t p, double dt, const Walls& walls) {
+    Vec3 x = cloud.position[p];
+    for (std::size_t d = 0; d < 3; ++d) x[d] += 0.5 * dt * cloud.velocity[p][d];
+    return walls.clipped(x);
+}
+
 /// All particles in their own order; around(p) -> Surroundings.
 template <class Drag, class Around, class Moved>
 void march_all(Cloud& cloud, const Motion<Drag>& motion, double vibration, Around around, Moved moved,

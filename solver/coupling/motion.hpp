@@ -19,7 +19,6 @@
 #include "solver/coupling/drag.hpp"
 #include "solver/coupling/interpolation.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 

@@ -32,8 +32,8 @@ private:
     flow::Grid grid_;
     std::array<flow::Edges, 3> edges_;
     double limit_;
-    // Of the particles at the faces of component d, in planes first ... last.
-    void find_shift(int d, const flow::Field& fraction, int first, int last);
+    // Of the particles at the faces of component d.
+    void find_shift(int d, const flow::Field& fraction);
 
     flow::FaceVectors shift_;
     Slabs slabs_;

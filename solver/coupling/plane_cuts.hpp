@@ -3,8 +3,7 @@
 // its own. The planes are cut so that about as many particles fall to each.
 #pragma once
 
-#include "solver/flow/field.hpp"
-#include "solver/threads/slabs.hpp"
+#include "solver/coupling/each.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -20,10 +19,7 @@ public:
         particles_ = particles;
         if (slabs.count() == 1) return;
         touched_.resize(particles);
-        slabs.over(0, static_cast<std::ptrdiff_t>(particles) - 1, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
-            for (auto p = first; p <= last; ++p)
-                touched_[static_cast<std::size_t>(p)] = touched(static_cast<std::size_t>(p));
-        });
+        each_of(particles, slabs, [&](std::size_t p) { touched_[p] = touched(p); });
         counts_.assign(static_cast<std::size_t>(planes), 0);
         for (const auto& range : touched_) ++counts_[static_cast<std::size_t>(std::clamp(range.first, 0, planes - 1))];
         const auto parts = static_cast<std::size_t>(slabs.count());

@@ -8,12 +8,12 @@
 // displacement by the stress in one step is held below a tenth of a cell.
 #pragma once
 
+#include "solver/coupling/each.hpp"
 #include "solver/coupling/granular_temperature.hpp"
 #include "solver/coupling/march.hpp"
 #include "solver/coupling/packing_limit.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 
 namespace grainsweep::coupling {
@@ -121,37 +121,30 @@ private:
         straining_.measure(grid_, solids.fraction(), mean_velocity_, thinnest_);
         temperature_.advance(solids, straining_, dt);
         const flow::Field& fraction = solids.fraction();
-        slabs_.over(
-            0, static_cast<std::ptrdiff_t>(fraction.size()) - 1, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
-                for (auto m = first; m <= last; ++m) {
-                    const double a = fraction.data()[m];
-                    pressure_.data()[m] = a > thinnest_ ? grains_.pressure(a) * temperature_.values().data()[m] : 0;
-                }
-            });
+        each_of(fraction.size(), slabs_, [&](std::size_t m) {
+            const double a = fraction.data()[m];
+            pressure_.data()[m] = a > thinnest_ ? grains_.pressure(a) * temperature_.values().data()[m] : 0;
+        });
         FaceDeposit::clear(stress_, slabs_);
         cuts_.make(stencils.size(), grid_.cells(2) + 2, slabs_, [&](std::size_t p) { return stencils[p].planes(); });
         cuts_.each(slabs_, [&](std::size_t p, const flow::Planes& own) {
             stencils[p].scatter({volume_, volume_, volume_}, stress_, own);
         });
         deposit_.spread(stress_);
-        slabs_.over(1, grid_.cells(2), [&](std::ptrdiff_t first, std::ptrdiff_t last) {
-            for (int d = 0; d < 3; ++d) find_stress_along(d, static_cast<int>(first), static_cast<int>(last));
-        });
+        for (int d = 0; d < 3; ++d) find_stress_along(d);
         deposit_.spread_transposed(stress_);
     }
-    // From the fraction on the faces in stress_; in planes first ... last.
-    void find_stress_along(int d, int first, int last) {
+    // From the fraction on the faces in stress_.
+    void find_stress_along(int d) {
         flow::Field& stress = stress_[static_cast<std::size_t>(d)];
         const auto stride = stress.stride(d);
-        for (int k = first; k <= last; ++k)
-            for (int j = 1; j <= grid_.cells(1); ++j)
-                for (int i = 1; i <= grid_.cells(0); ++i) {
-                    const auto here = stress.index(i, j, k);
-                    const double difference = pressure_.data()[here] - pressure_.data()[here - stride];
-                    const int face = d == 0 ? i : d == 1 ? j : k;
-                    double& value = stress.data()[here];
-                    value = difference == 0 || !(value > 0) ? 0 : -difference / (grid_[d].spacing(face) * value);
-                }
+        each_cell(grid_, slabs_, [&, stride](int i, int j, int k) {
+            const auto here = stress.index(i, j, k);
+            const double difference = pressure_.data()[here] - pressure_.data()[here - stride];
+            const int face = d == 0 ? i : d == 1 ? j : k;
+            double& value = stress.data()[here];
+            value = difference == 0 || !(value > 0) ? 0 : -difference / (grid_[d].spacing(face) * value);
+        });
     }
 
     flow::Grid grid_;
@@ -173,23 +166,6 @@ private:
     bool stressed_ = false;
     bool stepped_ = false;  // what the start took is no step
     std::int64_t limited_ = 0;
-};
-
-/// Particles that do nothing to each other: the volume they take from the fluid alone.
-struct NoInteraction {
-    void use(const Slabs& slabs) { slabs_ = slabs; }
-    template <class Motion, class Stencils, class Around>
-    void move(Cloud& cloud, const Motion& motion, const Walls& walls, SolidsVolume&, const Stencils&,
-              const Around& around, std::vector<Vec3>& transmitted) {
-        advance_free(
-            cloud, motion, walls, around, [](std::size_t) { return Vec3{}; }, transmitted, slabs_);
-    }
-    void settle(Cloud&, const Walls&, SolidsVolume&) {}
-    void save(std::vector<std::byte>&) const {}
-    void restore(std::span<const std::byte>&) {}
-
-private:
-    Slabs slabs_;
 };
 
 }  // namespace grainsweep::coupling

@@ -96,41 +96,29 @@ void SolidsVolume::deposit(Body body) {
 void SolidsVolume::place(std::span<const Vec3> positions) {
     placed_.position.resize(positions.size());
     placed_.weights.resize(positions.size());
-    slabs_.over(0, static_cast<std::ptrdiff_t>(positions.size()) - 1, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
-        for (auto p = static_cast<std::size_t>(first); p <= static_cast<std::size_t>(last); ++p) {
-            placed_.position[p] = positions[p];
-            locate(p);
-        }
+    each_of(positions.size(), slabs_, [&](std::size_t p) {
+        placed_.position[p] = positions[p];
+        locate(p);
     });
-    clear(fraction_);
+    FaceDeposit::clear(fraction_, slabs_);
     double* const fraction = fraction_.data();
     deposit([=](std::size_t, std::ptrdiff_t to, double share) { fraction[to] += share; });
     over_cells_.densities(fraction_, scratch_, slabs_);
     fill_ghosts(fraction_, grid_, edges_, slabs_);
 }
 
-void SolidsVolume::clear(flow::Field& field) const {
-    slabs_.over(0, static_cast<std::ptrdiff_t>(field.size()) - 1, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
-        std::fill(field.data() + first, field.data() + last + 1, 0.0);
-    });
-}
-
 void SolidsVolume::mean(std::span<const Vec3> property, std::array<flow::Field, 3>& into) {
-    for (auto& field : into) clear(field);
+    for (auto& field : into) FaceDeposit::clear(field, slabs_);
     const std::array<double*, 3> sums{into[0].data(), into[1].data(), into[2].data()};
     deposit([&](std::size_t p, std::ptrdiff_t to, double share) {
         for (std::size_t d = 0; d < 3; ++d) sums[d][to] += share * property[p][d];
     });
     for (auto& field : into) {
         over_cells_.densities(field, scratch_, slabs_);
-        slabs_.over(1, grid_.cells(2), [&](std::ptrdiff_t first, std::ptrdiff_t last) {
-            for (int k = static_cast<int>(first); k <= static_cast<int>(last); ++k)
-                for (int j = 1; j <= grid_.cells(1); ++j)
-                    for (int i = 1; i <= grid_.cells(0); ++i) {
-                        const double phi = fraction_(i, j, k);
-                        double& value = field(i, j, k);
-                        value = phi > 0 ? value / phi : 0;
-                    }
+        each_cell(grid_, slabs_, [&](int i, int j, int k) {
+            const double phi = fraction_(i, j, k);
+            double& value = field(i, j, k);
+            value = phi > 0 ? value / phi : 0;
         });
     }
     fill_ghosts({{into[0], edges_}, {into[1], edges_}, {into[2], edges_}}, grid_, slabs_);
@@ -216,13 +204,10 @@ void SolidsVolume::carry(double dt) {
         carry_along<1>(shares, scale, own);
         carry_along<2>(shares, scale, own);
     });
-    slabs_.over(0, static_cast<std::ptrdiff_t>(placed_.position.size()) - 1,
-                [&](std::ptrdiff_t first, std::ptrdiff_t last) {
-                    for (auto p = static_cast<std::size_t>(first); p <= static_cast<std::size_t>(last); ++p) {
-                        placed_before_.position[p] = placed_.position[p];
-                        placed_before_.weights[p] = placed_.weights[p];
-                    }
-                });
+    each_of(placed_.position.size(), slabs_, [&](std::size_t p) {
+        placed_before_.position[p] = placed_.position[p];
+        placed_before_.weights[p] = placed_.weights[p];
+    });
     for (int d = 0; d < 3; ++d) over_faces_[at(d)].densities(flux_[at(d)], scratch_, slabs_);
 }
 

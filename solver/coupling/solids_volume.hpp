@@ -64,7 +64,6 @@ private:
     // body(p, place in the field, volume of p there), of each place in the order of the particles.
     template <class Body>
     void deposit(Body body);
-    void clear(flow::Field& field) const;
     void fill(int d, std::size_t p, Shares& shares) const;
     template <int D>
     void carry_along(const std::array<Shares, 3>& shares, double scale, const flow::Planes& planes);

@@ -51,33 +51,27 @@ public:
         const auto gathered = [&](std::size_t /*p*/, const Stencil<Kernel>& at) {
             return Surroundings{at.gather(velocity_), at.gather(acceleration_), s, {}};
         };
-        const auto unheeded = [](std::size_t, const Vec3&) {};
-        if constexpr (Level::acts_on_fluid) {
-            march(
-                cloud_, motion_, walls_, s, order, [](std::size_t p) { return p; },
-                [&](std::size_t p, std::size_t /*itself*/) { return gathered(p, stencils_[p]); },
-                [&](std::size_t p, const Vec3& before) {
-                    const Vec3& v = cloud_.velocity[p];
-                    level_.remember(p, {(v[0] - before[0]) / dt, (v[1] - before[1]) / dt, (v[2] - before[2]) / dt});
-                },
-                slabs_);
-        } else if constexpr (Level::mirrored) {
-            march(
-                cloud_, motion_, walls_, s, order,
-                [&](std::size_t p) {
-                    return Stencil<Kernel>(fluid_.grid(), walls_.periodic, Level::below(predicted(p)));
-                },
-                [&](std::size_t p, const Stencil<Kernel>& at) {
-                    Surroundings around = gathered(p, at);
-                    Level::turn(predicted(p), around);
-                    return around;
-                },
-                unheeded, slabs_);
-        } else {
-            march(
-                cloud_, motion_, walls_, s, order, [&](std::size_t p) { return stencil(p); }, gathered, unheeded,
-                slabs_);
-        }
+        const auto moved = [&]([[maybe_unused]] std::size_t p, [[maybe_unused]] const Vec3& before) {
+            if constexpr (Level::acts_on_fluid) {
+                const Vec3& v = cloud_.velocity[p];
+                level_.remember(p, {(v[0] - before[0]) / dt, (v[1] - before[1]) / dt, (v[2] - before[2]) / dt});
+            }
+        };
+        const auto advance = [&](auto locate, auto gather) {
+            march(cloud_, motion_, walls_, s, order, locate, gather, moved, slabs_);
+        };
+        if constexpr (Level::acts_on_fluid)
+            advance([](std::size_t p) { return p; },
+                    [&](std::size_t p, std::size_t /*itself*/) { return gathered(p, stencils_[p]); });
+        else if constexpr (Level::mirrored)
+            advance([&](std::size_t p) { return stencil_at(Level::below(middle(p))); },
+                    [&](std::size_t p, const Stencil<Kernel>& at) {
+                        Surroundings around = gathered(p, at);
+                        Level::turn(middle(p), around);
+                        return around;
+                    });
+        else
+            advance([&](std::size_t p) { return stencil_at(middle(p)); }, gathered);
     }
 
     [[nodiscard]] const flow::Flow<Heat>& fluid() const { return fluid_; }
@@ -100,23 +94,12 @@ public:
     }
 
 private:
-    // The middle of the step.
-    [[nodiscard]] Vec3 predicted(std::size_t p) const {
-        Vec3 x = cloud_.position[p];
-        const double half = 0.5 * fluid_.time_step();
-        for (std::size_t d = 0; d < 3; ++d) x[d] += half * cloud_.velocity[p][d];
-        return walls_.clipped(x);
-    }
-    [[nodiscard]] Stencil<Kernel> stencil(std::size_t p) const {
-        return {fluid_.grid(), walls_.periodic, predicted(p)};
-    }
+    [[nodiscard]] Vec3 middle(std::size_t p) const { return predicted(cloud_, p, fluid_.time_step(), walls_); }
+    [[nodiscard]] Stencil<Kernel> stencil_at(const Vec3& x) const { return {fluid_.grid(), walls_.periodic, x}; }
 
     void find_stencils() {
         stencils_.resize(cloud_.size());
-        slabs_.over(0, static_cast<std::ptrdiff_t>(cloud_.size()) - 1, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
-            for (auto p = static_cast<std::size_t>(first); p <= static_cast<std::size_t>(last); ++p)
-                stencils_[p] = stencil(p);
-        });
+        each_of(cloud_.size(), slabs_, [&](std::size_t p) { stencils_[p] = stencil_at(middle(p)); });
     }
 
     flow::Flow<Heat> fluid_;

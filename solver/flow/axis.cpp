@@ -1,7 +1,5 @@
 #include "solver/flow/axis.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <string>
 

@@ -54,32 +54,22 @@ ImplicitDiffusion::ImplicitDiffusion(const Grid& grid, const Edges& edges, doubl
     }
 }
 
-void ImplicitDiffusion::sweep_y(Field& field, int first, int last) const {
-    const Sweep& s = sweeps_[1];
-    for (int k = first; k <= last; ++k) {
-        for (int j = s.first; j <= n_[1]; ++j) {
-            const auto m = static_cast<std::size_t>(j);
-            double* const row = field.data() + field.index(1, j, k);
-            eliminate(row, row - field.stride(1), n_[0], s.low[m], s.inverse_pivot[m]);
+void ImplicitDiffusion::sweep(int d, Field& field, int first, int last) const {
+    const auto axis = static_cast<std::size_t>(d);
+    const Sweep& s = sweeps_[axis];
+    const auto stride = field.stride(d);
+    for (int other = first; other <= last; ++other) {
+        const auto row_at = [&](int along) {
+            return field.data() + (d == 1 ? field.index(1, along, other) : field.index(1, other, along));
+        };
+        for (int along = s.first; along <= n_[axis]; ++along) {
+            const auto m = static_cast<std::size_t>(along);
+            double* const row = row_at(along);
+            eliminate(row, row - stride, n_[0], s.low[m], s.inverse_pivot[m]);
         }
-        for (int j = n_[1] - 1; j >= s.first; --j) {
-            double* const row = field.data() + field.index(1, j, k);
-            substitute(row, row + field.stride(1), n_[0], s.high_over_pivot[static_cast<std::size_t>(j)]);
-        }
-    }
-}
-
-void ImplicitDiffusion::sweep_z(Field& field, int first, int last) const {
-    const Sweep& s = sweeps_[2];
-    for (int j = first; j <= last; ++j) {
-        for (int k = s.first; k <= n_[2]; ++k) {
-            const auto m = static_cast<std::size_t>(k);
-            double* const row = field.data() + field.index(1, j, k);
-            eliminate(row, row - field.stride(2), n_[0], s.low[m], s.inverse_pivot[m]);
-        }
-        for (int k = n_[2] - 1; k >= s.first; --k) {
-            double* const row = field.data() + field.index(1, j, k);
-            substitute(row, row + field.stride(2), n_[0], s.high_over_pivot[static_cast<std::size_t>(k)]);
+        for (int along = n_[axis] - 1; along >= s.first; --along) {
+            double* const row = row_at(along);
+            substitute(row, row + stride, n_[0], s.high_over_pivot[static_cast<std::size_t>(along)]);
         }
     }
 }
@@ -92,10 +82,7 @@ void ImplicitDiffusion::solve(Field& right, Field& solution, const Slabs& slabs)
             continue;
         }
         slabs.over(1, n_[d == 1 ? 2 : 1], [&](std::ptrdiff_t first, std::ptrdiff_t last) {
-            if (d == 1)
-                sweep_y(right, static_cast<int>(first), static_cast<int>(last));
-            else
-                sweep_z(right, static_cast<int>(first), static_cast<int>(last));
+            sweep(d, right, static_cast<int>(first), static_cast<int>(last));
         });
     }
     inverse_[0].apply(right, solution, slabs);

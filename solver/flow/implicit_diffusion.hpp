@@ -25,8 +25,8 @@ private:
         std::vector<double> low, inverse_pivot, high_over_pivot;  // index as the field's
         int first = 1;
     };
-    void sweep_y(Field& field, int first, int last) const;  // lines in these planes k
-    void sweep_z(Field& field, int first, int last) const;  // lines at these places j
+    // Lines along d, which is y or z, at these places along the other one.
+    void sweep(int d, Field& field, int first, int last) const;
 
     std::array<int, 3> n_;
     std::array<bool, 3> by_matrix_{};

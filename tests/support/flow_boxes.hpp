@@ -44,6 +44,23 @@ using Dense = DenseSuspension<Heat, Interaction, Trilinear, SchillerNaumann>;
 using Ddpm = SolidsPressure<AlgebraicTemperature>;
 using DdpmKtgf = SolidsPressure<TransportedTemperature>;
 
+/// Particles that do nothing to each other: the volume they take from the fluid alone.
+struct NoInteraction {
+    void use(const Slabs& slabs) { slabs_ = slabs; }
+    template <class Motion, class Stencils, class Around>
+    void move(Cloud& cloud, const Motion& motion, const Walls& walls, SolidsVolume&, const Stencils&,
+              const Around& around, std::vector<Vec3>& transmitted) {
+        advance_free(
+            cloud, motion, walls, around, [](std::size_t) { return Vec3{}; }, transmitted, slabs_);
+    }
+    void settle(Cloud&, const Walls&, SolidsVolume&) {}
+    void save(std::vector<std::byte>&) const {}
+    void restore(std::span<const std::byte>&) {}
+
+private:
+    Slabs slabs_;
+};
+
 /// Every interaction with the same arguments.
 struct BoxCase {
     Grid grid;

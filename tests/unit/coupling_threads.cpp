@@ -5,6 +5,7 @@
 #include "solver/coupling/spring_contacts.hpp"
 #include "solver/coupling/suspension.hpp"
 #include "solver/scenes/scene.hpp"
+#include "tests/support/flow_boxes.hpp"
 
 #include <gtest/gtest.h>
 
