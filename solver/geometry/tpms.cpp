@@ -28,7 +28,14 @@ struct Waves {
           c2z(cz * cz - sz * sz) {}
 };
 
-double value_of(TpmsCell cell, const Waves& w) {
+}  // namespace
+
+const TpmsTraits& traits(TpmsCell cell) {
+    return *std::ranges::find(tpms_cells, cell, &TpmsTraits::cell);
+}
+
+double tpms_value(TpmsCell cell, const std::array<double, 3>& bar) {
+    const Waves w(bar);
     switch (cell) {
         case TpmsCell::schwarz_p:
             return w.cx + w.cy + w.cz;
@@ -45,54 +52,6 @@ double value_of(TpmsCell cell, const Waves& w) {
                    (w.c2x * w.c2y + w.c2y * w.c2z + w.c2z * w.c2x);
     }
     return 0;
-}
-
-std::array<double, 3> gradient_of(TpmsCell cell, const Waves& w) {
-    switch (cell) {
-        case TpmsCell::schwarz_p:
-            return {-w.sx, -w.sy, -w.sz};
-        case TpmsCell::gyroid:
-            return {w.cx * w.cy - w.sz * w.sx, w.cy * w.cz - w.sx * w.sy, w.cz * w.cx - w.sy * w.sz};
-        case TpmsCell::diamond:
-            return {-w.sx * w.cy * w.cz - w.cx * w.sy * w.sz, -w.cx * w.sy * w.cz - w.sx * w.cy * w.sz,
-                    -w.cx * w.cy * w.sz - w.sx * w.sy * w.cz};
-        case TpmsCell::iwp:
-            return {-2 * w.sx * (w.cy + w.cz) + 2 * w.s2x, -2 * w.sy * (w.cz + w.cx) + 2 * w.s2y,
-                    -2 * w.sz * (w.cx + w.cy) + 2 * w.s2z};
-        case TpmsCell::frd:
-            return {-4 * w.sx * w.cy * w.cz + 2 * w.s2x * (w.c2y + w.c2z),
-                    -4 * w.cx * w.sy * w.cz + 2 * w.s2y * (w.c2z + w.c2x),
-                    -4 * w.cx * w.cy * w.sz + 2 * w.s2z * (w.c2x + w.c2y)};
-        case TpmsCell::i2y:
-            return {-2 * (2 * w.c2x * w.cy * w.sz - w.s2z * w.sx * w.sy + w.s2y * w.cz * w.cx) -
-                        2 * w.s2x * (w.c2y + w.c2z),
-                    -2 * (2 * w.c2y * w.cz * w.sx - w.s2x * w.sy * w.sz + w.s2z * w.cx * w.cy) -
-                        2 * w.s2y * (w.c2z + w.c2x),
-                    -2 * (2 * w.c2z * w.cx * w.sy - w.s2y * w.sz * w.sx + w.s2x * w.cy * w.cz) -
-                        2 * w.s2z * (w.c2x + w.c2y)};
-    }
-    return {};
-}
-
-}  // namespace
-
-const TpmsTraits& traits(TpmsCell cell) {
-    return *std::ranges::find(tpms_cells, cell, &TpmsTraits::cell);
-}
-
-std::optional<TpmsCell> tpms_cell_named(std::string_view name) {
-    const auto found = std::ranges::find(tpms_cells, name, &TpmsTraits::name);
-    if (found == tpms_cells.end()) return std::nullopt;
-    return found->cell;
-}
-
-double tpms_value(TpmsCell cell, const std::array<double, 3>& bar) {
-    return value_of(cell, Waves(bar));
-}
-
-LevelSet tpms_level_set(TpmsCell cell, const std::array<double, 3>& bar) {
-    const Waves waves(bar);
-    return {value_of(cell, waves), gradient_of(cell, waves)};
 }
 
 TpmsShell::TpmsShell(TpmsCell cell, int side, double edge, double thickness)

@@ -16,7 +16,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <string_view>
 
 namespace grainsweep::geometry {
@@ -42,18 +41,9 @@ inline constexpr std::array<TpmsTraits, 6> tpms_cells = {{
 }};
 
 [[nodiscard]] const TpmsTraits& traits(TpmsCell cell);
-/// Empty when there is no cell of that name.
-[[nodiscard]] std::optional<TpmsCell> tpms_cell_named(std::string_view name);
-
-/// f and its gradient with respect to the bar coordinates.
-struct LevelSet {
-    double value = 0;
-    std::array<double, 3> gradient{};
-};
 
 /// f at the bar coordinates X, Y, Z (any real numbers; the period is 2 pi).
 [[nodiscard]] double tpms_value(TpmsCell cell, const std::array<double, 3>& bar);
-[[nodiscard]] LevelSet tpms_level_set(TpmsCell cell, const std::array<double, 3>& bar);
 
 /// Where a point lies: in the shell (|f| <= C), on the side that is kept, or on the other side.
 enum class TpmsRegion { wall, kept, deleted };
