@@ -2,6 +2,7 @@
 
 #include "sweep/designs/radical_inverse.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <numeric>
@@ -89,32 +90,19 @@ constexpr std::array<std::uint8_t, 1060> original_digits = {
     13, 57, 40, 78, 8, 88, 33, 51, 23, 70,
 };
 
-constexpr std::array<std::uint8_t, 381> vc2006_digits = {
-    // base 2
-    0, 1,
-    // base 3
-    0, 2, 1,
+/// Of these bases alone: the others have the same rows in both tables.
+constexpr std::array<std::uint32_t, 9> vc2006_bases = {5, 7, 11, 29, 31, 41, 43, 47, 53};
+constexpr std::array<std::uint8_t, 267> vc2006_digits = {
     // base 5
     0, 2, 4, 1, 3,
     // base 7
     0, 3, 5, 1, 6, 2, 4,
     // base 11
     0, 5, 8, 2, 10, 3, 6, 1, 9, 4, 7,
-    // base 13
-    0, 6, 10, 2, 8, 4, 12, 1, 9, 5, 11, 3, 7,
-    // base 17
-    0, 8, 13, 3, 11, 5, 16, 1, 10, 7, 14, 4, 12, 2, 15, 6, 9,
-    // base 19
-    0, 9, 14, 3, 17, 6, 11, 1, 15, 7, 12, 4, 18, 8, 2, 16, 10, 5, 13,
-    // base 23
-    0, 11, 17, 4, 20, 7, 13, 2, 22, 9, 15, 5, 18, 1, 14, 10, 21, 6, 16, 3, 19, 8, 12,
     // base 29
     0, 14, 22, 5, 18, 9, 27, 2, 20, 11, 25, 7, 16, 3, 24, 13, 19, 6, 28, 10, 1, 23, 15, 12, 26, 4, 17, 8, 21,
     // base 31
     0, 16, 8, 26, 4, 22, 13, 29, 2, 19, 11, 24, 6, 20, 14, 28, 1, 17, 9, 30, 10, 23, 5, 21, 15, 3, 27, 12, 25, 7, 18,
-    // base 37
-    0, 18, 28, 6, 23, 11, 34, 3, 25, 14, 31, 8, 20, 36, 1, 16, 27, 10, 22, 13, 32, 4, 29, 17, 7, 35, 19, 2, 26, 12,
-    30, 9, 24, 15, 33, 5, 21,
     // base 41
     0, 20, 31, 7, 26, 12, 38, 3, 23, 34, 14, 17, 29, 5, 40, 10, 24, 1, 35, 18, 28, 9, 33, 15, 21, 4, 37, 13, 30, 8,
     39, 19, 25, 2, 32, 11, 22, 36, 6, 27, 16,
@@ -139,12 +127,13 @@ std::size_t braaten_weller_factors(BraatenWellerTable table) {
 std::span<const std::uint8_t> braaten_weller_permutation(BraatenWellerTable table, std::size_t factor) {
     assert(factor < braaten_weller_factors(table));
     static const std::vector<std::uint32_t> bases = primes(25);
-    const auto first =
-        std::accumulate(bases.begin(), bases.begin() + static_cast<std::ptrdiff_t>(factor), std::size_t{0});
-    const std::span<const std::uint8_t> digits = table == BraatenWellerTable::original
-                                                     ? std::span<const std::uint8_t>(original_digits)
-                                                     : std::span<const std::uint8_t>(vc2006_digits);
-    return digits.subspan(first, bases[factor]);
+    const std::uint32_t base = bases[factor];
+    const auto row = [base](std::span<const std::uint8_t> digits, std::span<const std::uint32_t> of) {
+        const auto first = std::accumulate(of.begin(), std::ranges::find(of, base), std::size_t{0});
+        return digits.subspan(first, base);
+    };
+    const bool differs = table == BraatenWellerTable::vc2006 && std::ranges::count(vc2006_bases, base) > 0;
+    return differs ? row(vc2006_digits, vc2006_bases) : row(original_digits, bases);
 }
 
 }  // namespace grainsweep::designs
