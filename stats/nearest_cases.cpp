@@ -10,12 +10,6 @@ namespace {
 constexpr std::size_t neighbours = 5;
 constexpr double rounding = 1 + 1e-9;  // of a squared distance
 
-double squared_distance(std::span<const double> a, std::span<const double> b) {
-    double sum = 0;
-    for (std::size_t j = 0; j < a.size(); ++j) sum += (a[j] - b[j]) * (a[j] - b[j]);
-    return sum;
-}
-
 /// D_j of the header; 1 where all cases or none failed.
 double separation(std::vector<double> of_failed, std::vector<double> of_answered) {
     if (of_failed.empty() || of_answered.empty()) return 1;
@@ -33,6 +27,12 @@ double separation(std::vector<double> of_failed, std::vector<double> of_answered
 }
 
 }  // namespace
+
+double squared_distance(std::span<const double> a, std::span<const double> b) {
+    double sum = 0;
+    for (std::size_t j = 0; j < a.size(); ++j) sum += (a[j] - b[j]) * (a[j] - b[j]);
+    return sum;
+}
 
 NearestCases::NearestCases(std::vector<double> rows, std::size_t width, std::vector<bool> failed)
     : rows_(std::move(rows)), failed_(std::move(failed)), any_failed_(std::ranges::count(failed_, true) > 0) {

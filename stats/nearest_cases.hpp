@@ -20,6 +20,8 @@
 
 namespace grainsweep::stats {
 
+[[nodiscard]] double squared_distance(std::span<const double> a, std::span<const double> b);
+
 class NearestCases {
 public:
     /// `rows`: coordinates, one row of `width` after the other, one row per entry of `failed`.

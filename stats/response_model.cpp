@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdio>
 #include <future>
-#include <limits>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -82,7 +81,7 @@ void assess(ResponseModel::State& state) {
     const Kriging& k = state.kriging;
     const response::LeftOut out = response::leave_one_out(k);
     state.noise = {k.points, out.residual.array().square() / out.variance.array()};
-    const Eigen::ArrayXd local = state.noise.factors_without_self();
+    const Eigen::ArrayXd local = state.noise.factors(state.noise.points, true);
     ModelQuality& q = state.quality;
     q.rests_on = static_cast<std::size_t>(k.size());
     q.logarithm = state.logarithm;

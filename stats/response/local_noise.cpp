@@ -37,25 +37,13 @@ std::int64_t LocalNoise::freedom() const {
     return neighbours() + static_cast<std::int64_t>(prior_cases);
 }
 
-Eigen::VectorXd LocalNoise::factors(const Eigen::MatrixXd& at) const {
+Eigen::VectorXd LocalNoise::factors(const Eigen::MatrixXd& at, bool without_self) const {
     Eigen::VectorXd result(at.rows());
     Eigen::ArrayXd squared(points.rows());
     std::vector<Neighbour> all(static_cast<std::size_t>(points.rows()));
     for (Eigen::Index p = 0; p < at.rows(); ++p) {
         squared_distances(points, at.row(p), squared);
-        for (Eigen::Index i = 0; i < squared.size(); ++i) all[static_cast<std::size_t>(i)] = {squared(i), i};
-        result(p) = factor(all, neighbours(), squared_scores);
-    }
-    return result;
-}
-
-Eigen::VectorXd LocalNoise::factors_without_self() const {
-    Eigen::VectorXd result(points.rows());
-    Eigen::ArrayXd squared(points.rows());
-    std::vector<Neighbour> all(static_cast<std::size_t>(points.rows()));
-    for (Eigen::Index p = 0; p < points.rows(); ++p) {
-        squared_distances(points, points.row(p), squared);
-        squared(p) = std::numeric_limits<double>::infinity();
+        if (without_self) squared(p) = std::numeric_limits<double>::infinity();
         for (Eigen::Index i = 0; i < squared.size(); ++i) all[static_cast<std::size_t>(i)] = {squared(i), i};
         result(p) = factor(all, neighbours(), squared_scores);
     }

@@ -17,10 +17,8 @@ struct LocalNoise {
     Eigen::MatrixXd points;          ///< mapped (n, d)
     Eigen::VectorXd squared_scores;  ///< t_i^2
 
-    /// At mapped points (m, d).
-    [[nodiscard]] Eigen::VectorXd factors(const Eigen::MatrixXd& at) const;
-    /// At the cases themselves, each without itself.
-    [[nodiscard]] Eigen::VectorXd factors_without_self() const;
+    /// At mapped points (m, d). Where these are the cases, each may be left out of its own factor.
+    [[nodiscard]] Eigen::VectorXd factors(const Eigen::MatrixXd& at, bool without_self = false) const;
     [[nodiscard]] Eigen::Index neighbours() const;
     /// Degrees of freedom, k + 4.
     [[nodiscard]] std::int64_t freedom() const;

@@ -1,5 +1,6 @@
 #include "sweep/study/response_models.hpp"
 
+#include "stats/nearest_cases.hpp"
 #include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/stored_text.hpp"
@@ -13,7 +14,6 @@
 #include <future>
 #include <limits>
 #include <numbers>
-#include <optional>
 #include <set>
 
 namespace grainsweep::study {
@@ -154,16 +154,10 @@ std::vector<double> scaled(std::vector<double> rows, std::size_t width, const st
     return rows;
 }
 
-double squared_distance(std::span<const double> a, std::span<const double> b) {
-    double sum = 0;
-    for (std::size_t j = 0; j < a.size(); ++j) sum += (a[j] - b[j]) * (a[j] - b[j]);
-    return sum;
-}
-
 double share_of_nearest(std::span<const double> point, std::span<const double> rows, const std::vector<bool>& defined) {
     const auto width = point.size(), n = defined.size();
     std::vector<std::pair<double, std::size_t>> near(n);
-    for (std::size_t i = 0; i < n; ++i) near[i] = {squared_distance(point, rows.subspan(i * width, width)), i};
+    for (std::size_t i = 0; i < n; ++i) near[i] = {stats::squared_distance(point, rows.subspan(i * width, width)), i};
     const auto k = std::min(n, static_cast<std::size_t>(std::max(8.0, std::sqrt(static_cast<double>(n)) / 1.5)));
     const auto end = near.begin() + static_cast<std::ptrdiff_t>(k);
     std::ranges::nth_element(near, end - 1);
@@ -182,7 +176,7 @@ std::optional<stats::ResponseModel> learn_boundary(std::span<const double> rows,
     for (std::size_t i = 0; i < defined.size(); ++i) {
         double nearest = std::numeric_limits<double>::infinity();
         for (std::size_t k = 0; k < defined.size(); ++k)
-            if (defined[k] != defined[i]) nearest = std::min(nearest, squared_distance(row(i), row(k)));
+            if (defined[k] != defined[i]) nearest = std::min(nearest, stats::squared_distance(row(i), row(k)));
         distance.push_back((defined[i] ? 1 : -1) * std::sqrt(nearest));
     }
     auto fit = stats::fit_response({rows, width}, distance, box);

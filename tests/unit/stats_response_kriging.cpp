@@ -211,7 +211,7 @@ TEST(LocalNoise, NeighboursDecideTheFactor) {
     EXPECT_DOUBLE_EQ(factors(0), 1);
     EXPECT_DOUBLE_EQ(factors(1), (4 * 9 + 4) / 8.0);
     noise.squared_scores(10) = 1e6;  // a case does not widen its own interval
-    EXPECT_DOUBLE_EQ(noise.factors_without_self()(10), 1);
+    EXPECT_DOUBLE_EQ(noise.factors(noise.points, true)(10), 1);
 }
 
 TEST(SpaceFilling, ChoosesFarFromWhatIsChosen) {
