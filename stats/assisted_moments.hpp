@@ -43,9 +43,7 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
-#include <optional>
 #include <span>
 #include <string>
 #include <variant>

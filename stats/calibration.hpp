@@ -17,7 +17,6 @@
 
 #include "stats/response_model.hpp"
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>

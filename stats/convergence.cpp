@@ -6,7 +6,6 @@
 #include <cassert>
 #include <cmath>
 #include <stdexcept>
-#include <string>
 #include <utility>
 
 namespace grainsweep::stats {

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
-#include <utility>
 
 namespace grainsweep::stats {
 namespace {

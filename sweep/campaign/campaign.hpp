@@ -9,7 +9,6 @@
 #include "sweep/designs/design.hpp"
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <span>

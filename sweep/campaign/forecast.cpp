@@ -11,7 +11,6 @@
 #include <cmath>
 #include <map>
 #include <stdexcept>
-#include <string>
 #include <system_error>
 #include <utility>
 

@@ -7,10 +7,8 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstdint>
 #include <cstdlib>
 #include <limits>
-#include <map>
 #include <set>
 #include <sstream>
 

@@ -4,7 +4,6 @@
 #include "sweep/campaign/campaign.hpp"
 
 #include <filesystem>
-#include <string>
 #include <string_view>
 
 namespace grainsweep::campaign {

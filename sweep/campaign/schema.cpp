@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
-#include <string>
 #include <string_view>
 #include <vector>
 

@@ -5,8 +5,6 @@
 #include "sweep/campaign/cursor.hpp"
 
 #include <filesystem>
-#include <map>
-#include <optional>
 #include <string>
 #include <vector>
 

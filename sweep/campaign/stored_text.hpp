@@ -4,7 +4,6 @@
 #include "sweep/campaign/case.hpp"
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>

@@ -3,7 +3,6 @@
 #include "sweep/campaign/visible_text.hpp"
 
 #include <string>
-#include <string_view>
 
 namespace grainsweep::campaign {
 namespace {

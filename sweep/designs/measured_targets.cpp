@@ -4,7 +4,6 @@
 #include "sweep/designs/curve_place.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <sstream>

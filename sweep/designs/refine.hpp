@@ -15,8 +15,6 @@
 #include "sweep/designs/design.hpp"
 
 #include <cstddef>
-#include <cstdint>
-#include <optional>
 #include <vector>
 
 namespace grainsweep::designs {

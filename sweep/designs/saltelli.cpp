@@ -9,8 +9,6 @@
 #include "sweep/designs/kinds.hpp"
 #include "sweep/designs/radical_inverse.hpp"
 
-#include <algorithm>
-
 namespace grainsweep::designs {
 namespace {
 

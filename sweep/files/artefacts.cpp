@@ -12,11 +12,9 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
-#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <new>
-#include <string>
 #include <type_traits>
 #include <utility>
 

@@ -3,7 +3,6 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <vector>
 
 namespace grainsweep::schedule {
 

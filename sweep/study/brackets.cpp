@@ -5,9 +5,6 @@
 #include "sweep/campaign/stored_request.hpp"
 #include "sweep/schedule/growth.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 namespace grainsweep::study {
 
 std::optional<Brackets> brackets_of(const store::Store& store, const store::CampaignRecord& record) {

@@ -7,8 +7,6 @@
 #include "sweep/study/response_models.hpp"
 #include "sweep/study/sample_parts.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

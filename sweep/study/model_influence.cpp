@@ -3,11 +3,7 @@
 #include "sweep/study/box_search.hpp"
 #include "sweep/study/sample_parts.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
-#include <numeric>
 #include <set>
 #include <utility>
 

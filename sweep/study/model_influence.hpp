@@ -7,7 +7,6 @@
 #pragma once
 
 #include "stats/model_indices.hpp"
-#include "sweep/store/store.hpp"
 #include "sweep/study/response_models.hpp"
 #include "sweep/study/responses.hpp"
 

@@ -22,7 +22,6 @@
 #include <mutex>
 #include <system_error>
 #include <thread>
-#include <utility>
 
 namespace grainsweep::workers {
 namespace {

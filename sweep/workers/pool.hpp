@@ -6,7 +6,6 @@
 #include "sweep/workers/worker_state.hpp"
 
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>

@@ -22,9 +22,6 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <utility>
 
 namespace grainsweep::workers {
