@@ -104,7 +104,8 @@ test)
     install_missing "${program_packages[@]}" "${test_packages[@]}"
     (cd "$here" && configure release -DGRAINSWEEP_TESTS=ON)
     cmake --build "$here/build" -j "$jobs"
-    (cd "$here" && ctest --preset release -j "$jobs" -LE slow)
+    # in thirds of a core: tests/CMakeLists.txt
+    (cd "$here" && ctest --preset release -j "$((3 * jobs))")
     ;;
 sanitize)
     install_missing "${program_packages[@]}" "${test_packages[@]}" "${sanitize_packages[@]}"
