@@ -1,5 +1,6 @@
 #include "solver/machine/feeding.hpp"
 
+#include "solver/scenes/kit/sentence.hpp"
 #include "stats/random.hpp"
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <stdexcept>
 
 namespace grainsweep::machine {
 namespace {
@@ -14,6 +16,7 @@ namespace {
 using geometry::norm;
 
 constexpr std::uint64_t tries = 1000;  // of one particle in a batch
+constexpr std::uint64_t tries_of_empty = 100000, series_of_empty = ~std::uint64_t{0};
 
 /// Spheres by cells of a width, to find those near a place.
 class Neighbourhood {
@@ -75,10 +78,46 @@ Feeder::Feeder(const Spec& spec, std::size_t feed, std::uint64_t seed) : spec_(s
         largest_ = std::max(largest_, spec.species[species].largest());
 }
 
-Filled Feeder::batch(const dem::State& state) {
-    const Draws draws(spec_, feed().mix, seed_, first_feed + feed_);
+Vec3 Feeder::place(const Draws& draws, std::uint64_t series, std::uint64_t n) const {
     const Bounds bounds = feed().through.bounds();
-    const Obstacles obstacles(spec_, largest_);
+    Vec3 x{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double low = std::max(bounds.low[k], spec_.domain.low[k]);
+        const double high = std::min(bounds.high[k], spec_.domain.high[k]);
+        x[k] = low + (high - low) * draws.uniform(place_draw, stats::splitmix64(series) + 3 * n + k);
+    }
+    return x;
+}
+
+bool Feeder::fits(const Obstacles& obstacles, const Vec3& centre, double radius) const {
+    if (feed().through.depth(centre) < radius) return false;
+    for (std::size_t k = 0; k < 3; ++k)
+        if (!spec_.domain.periodic[k] && (centre[k] < spec_.domain.low[k] || centre[k] > spec_.domain.high[k]))
+            return false;
+    return !obstacles.touch(centre, radius);
+}
+
+void Feeder::require_room() const {
+    const Draws draws(spec_, feed().mix, seed_, first_feed + feed_);
+    std::vector<dem::Wall> still;
+    for (const MachineWall& wall : spec_.walls) {
+        bool always = wall.motions.empty();
+        for (std::size_t p = 0; p < spec_.phases.size(); ++p)
+            if (holds(feed().during, p) && !holds(wall.during, p)) always = false;
+        if (always) still.emplace_back(wall.shape);
+    }
+    const Obstacles obstacles(still, spec_.domain, largest_, 0);
+    for (std::uint64_t n = 0; n < tries_of_empty; ++n)
+        if (fits(obstacles, place(draws, series_of_empty, n), largest_ / 2)) return;
+    throw std::invalid_argument(
+        feed().name + kit::sentence(": a particle of %.4g m finds no place in its region, even an empty one: it must "
+                                    "lie wholly in the region, in the domain and off the walls",
+                                    largest_));
+}
+
+Filled Feeder::batch(const dem::State& state, const std::vector<dem::Wall>& walls, double time) {
+    const Draws draws(spec_, feed().mix, seed_, first_feed + feed_);
+    const Obstacles obstacles(walls, spec_.domain, largest_, time);
     double widest = largest_;
     for (const double radius : state.radius) widest = std::max(widest, 2 * radius);
     Neighbourhood near(spec_.domain, widest);
@@ -90,12 +129,8 @@ Filled Feeder::batch(const dem::State& state) {
         const Species& species = spec_.species[particle.species];
         std::optional<Vec3> place;
         for (std::uint64_t n = 0; n < tries && !place; ++n) {
-            Vec3 x{};
-            for (std::size_t k = 0; k < 3; ++k)
-                x[k] = bounds.low[k] + (bounds.high[k] - bounds.low[k]) *
-                                           draws.uniform(place_draw, stats::splitmix64(number_) + 3 * n + k);
-            const bool inside = feed().through.depth(x) >= particle.radius && !obstacles.touch(x, particle.radius);
-            if (inside && !near.occupied(x, particle.radius)) place = x;
+            const Vec3 x = this->place(draws, number_, n);
+            if (fits(obstacles, x, particle.radius) && !near.occupied(x, particle.radius)) place = x;
         }
         if (!place) break;  // it waits, and so do those behind it
         dem::Sphere sphere;

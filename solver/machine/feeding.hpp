@@ -18,10 +18,14 @@ class Feeder {
 public:
     Feeder(const Spec& spec, std::size_t feed, std::uint64_t seed);
 
-    /// Adds `seconds` of its rate to what it owes.
+    /// Throws std::invalid_argument with one sentence where its largest particle has no place in the region, because of
+    /// the domain or of walls that stay where they are in all phases of the feed.
+    void require_room() const;
+    /// Adds `seconds` of its rate to what it owes; less than none where a phase ends before its time.
     void owe(double seconds) { owed_ += feed().rate * seconds; }
-    /// Returns the particles that find a place among those of the state and before one another.
-    [[nodiscard]] Filled batch(const dem::State& state);
+    /// Returns the particles that find a place among those of the state, among walls as they stand at a time, and
+    /// before one another.
+    [[nodiscard]] Filled batch(const dem::State& state, const std::vector<dem::Wall>& walls, double time);
     [[nodiscard]] double fed() const { return fed_; }              ///< kg
     [[nodiscard]] double waiting() const { return owed_ - fed_; }  ///< kg; up to one particle below 0
 
@@ -30,6 +34,10 @@ public:
 
 private:
     [[nodiscard]] const Feed& feed() const { return spec_.feeds[feed_]; }
+    /// The n-th place of a series of random ones.
+    [[nodiscard]] Vec3 place(const Draws& draws, std::uint64_t series, std::uint64_t n) const;
+    /// Whether a sphere there lies in the region, its centre in the domain, and touches no wall.
+    [[nodiscard]] bool fits(const Obstacles& obstacles, const Vec3& centre, double radius) const;
 
     const Spec& spec_;
     std::size_t feed_;

@@ -1,5 +1,6 @@
 #include "solver/machine/filling.hpp"
 
+#include "solver/machine/setup.hpp"
 #include "solver/particles/near_pairs.hpp"
 #include "solver/particles/random_addition.hpp"
 #include "solver/scenes/kit/sentence.hpp"
@@ -59,6 +60,15 @@ Bounds bounds_in(const Spec& spec, const Region& region) {
     return bounds;
 }
 
+/// Axes along which the bounds reach from one periodic face to the other.
+std::array<bool, 3> periodic_in(const Spec& spec, const Bounds& bounds) {
+    std::array<bool, 3> periodic{};
+    for (std::size_t k = 0; k < 3; ++k)
+        periodic[k] =
+            spec.domain.periodic[k] && bounds.low[k] <= spec.domain.low[k] && bounds.high[k] >= spec.domain.high[k];
+    return periodic;
+}
+
 /// A cubic lattice, stretched across so that it reaches from side to side, layers from the bottom up.
 class Lattice {
 public:
@@ -108,7 +118,10 @@ public:
     Filler(const Spec& spec, std::uint64_t seed, Filled& into) : spec_(spec), seed_(seed), into_(into) {}
 
     void operator()(const std::vector<Placed>& placed) {
-        for (const Placed& one : placed) add(one.sphere, one.species);
+        for (const Placed& one : placed) {
+            require_in_domain(one);
+            add(one.sphere, one.species);
+        }
         begin_ = into_.spheres.size();
         ++number_;
     }
@@ -117,7 +130,7 @@ public:
         const Draws draws(spec_, fill.mix, seed_, number_);
         const auto particles = draws.in_numbers(fill.count);
         const double largest = widest_in(spec_, fill.mix);
-        const Obstacles obstacles(spec_, largest);
+        const Obstacles obstacles(walls_in(spec_, 0, {{0.0}, {}}), spec_.domain, largest, 0);
         const auto centres = fill.as == Fill::As::lattice ? on_lattice(fill, draws, obstacles)
                                                           : at_random(fill, draws, particles, obstacles);
         for (std::size_t n = 0; n < particles.size(); ++n) {
@@ -165,6 +178,14 @@ private:
         return loose_.size();
     }
 
+    void require_in_domain(const Placed& one) const {
+        const Vec3& x = one.sphere.position;
+        for (std::size_t k = 0; k < 3; ++k)
+            require(spec_.domain.periodic[k] || (x[k] >= spec_.domain.low[k] && x[k] <= spec_.domain.high[k]),
+                    spec_.species[one.species].name +
+                        sentence(": a sphere at (%.4g, %.4g, %.4g) m lies outside of the domain", x[0], x[1], x[2]));
+    }
+
     void add(dem::Sphere sphere, std::size_t species) {
         sphere.kind = spec_.species[species].material;
         into_.spheres.push_back(sphere);
@@ -175,11 +196,7 @@ private:
         const Pitch pitch(spec_, fill.mix);
         const double room = pitch.largest / 2 + std::numbers::sqrt3 * pitch.jitter;
         const Bounds bounds = bounds_in(spec_, fill.in);
-        std::array<bool, 3> periodic{};
-        for (std::size_t k = 0; k < 3; ++k)
-            periodic[k] = spec_.domain.periodic[k] && bounds.low[k] <= spec_.domain.low[k] &&
-                          bounds.high[k] >= spec_.domain.high[k];
-        const Lattice lattice(bounds, periodic, pitch.distance, room);
+        const Lattice lattice(bounds, periodic_in(spec_, bounds), pitch.distance, room);
         require(lattice.sites() < most_sites,
                 "the region of a filling has more than 2e8 places for particles: make it smaller");
         const auto wanted = static_cast<std::size_t>(fill.count);
@@ -205,9 +222,9 @@ private:
         std::vector<double> radii;
         for (const auto& particle : particles) radii.push_back(particle.radius);
         const Bounds bounds = bounds_in(spec_, fill.in);
-        const particles::Room room{bounds.low, bounds.high, {}, [&](const Vec3& centre, double radius) {
-                                       return fits(spec_, obstacles, fill.in, centre, radius);
-                                   }};
+        const particles::Room room{
+            bounds.low, bounds.high, periodic_in(spec_, bounds),
+            [&](const Vec3& centre, double radius) { return fits(spec_, obstacles, fill.in, centre, radius); }};
         const auto seed = static_cast<std::uint64_t>(draws.uniform(order_draw, 1) * 0x1p53);
         auto centres = particles::random_addition(room, radii, seed);
         require(centres.has_value(), name_of(spec_, fill.mix) +
@@ -274,11 +291,11 @@ std::vector<Draws::Particle> Draws::in_numbers(std::int64_t count) const {
     return particles;
 }
 
-Obstacles::Obstacles(const Spec& spec, double largest) {
-    for (const MachineWall& wall : spec.walls) {
-        if (!holds(wall.during, 0)) continue;
-        walls_.emplace_back(dem::Wall(wall.shape), spec.domain, largest);
-        walls_.back().place(0);
+Obstacles::Obstacles(const std::vector<dem::Wall>& walls, const geometry::Domain& domain, double largest, double time) {
+    for (const dem::Wall& wall : walls) {
+        if (!wall.present) continue;
+        walls_.emplace_back(wall, domain, largest);
+        walls_.back().place(time);
     }
 }
 

@@ -48,10 +48,11 @@ enum : std::uint64_t { size_draw = 0, species_draw, place_draw, velocity_draw, o
 /// Number of a feed's draws: those of fillings come first.
 inline constexpr std::uint64_t first_feed = 1000;
 
-/// A wall at the start, as far as it is in the way of a particle.
+/// Walls that are in the way of a particle.
 class Obstacles {
 public:
-    Obstacles(const Spec& spec, double largest);
+    /// Those present among `walls`, where they stand at a time, for spheres of up to the largest diameter.
+    Obstacles(const std::vector<dem::Wall>& walls, const geometry::Domain& domain, double largest, double time);
     /// Whether a sphere there touches a wall.
     [[nodiscard]] bool touch(const Vec3& centre, double radius) const;
 

@@ -17,6 +17,7 @@ using geometry::dot;
 using geometry::norm;
 
 constexpr std::uint64_t checkpoint_format = 0x6772'6e73'6d63'0001ULL;  // "grnsmc", version 1
+constexpr std::int64_t most_steps = 1'000'000'000'000'000;             // of a phase
 constexpr double calm = 1e-3;                                          // kinetic energy of a particle at rest, in m g d
 constexpr double checks = 0.25;                                        // interval of checks, in sqrt(d/g)
 constexpr double longest_check = 0.01;                                 // of the phase, without gravity
@@ -57,12 +58,16 @@ Run::Run(Spec spec, std::uint64_t seed) : spec_(std::move(spec)), records_(spec_
         const Measure* measure = passes != nullptr ? &spec_.measures[passes->measure] : nullptr;
         watching_.push_back(measure != nullptr ? find_probe(measure->probe)->make(measure->options) : nullptr);
     }
-    for (std::size_t k = 0; k < spec_.feeds.size(); ++k) feeders_.emplace_back(spec_, k, seed);
+    for (std::size_t k = 0; k < spec_.feeds.size(); ++k) {
+        feeders_.emplace_back(spec_, k, seed);
+        feeders_.back().require_room();
+    }
     begin_phase();
 }
 
 std::int64_t Run::steps_in(double seconds) const {
-    return std::max<std::int64_t>(1, std::llround(std::ceil(seconds / spec_.time_step - 1e-6)));
+    const double steps = std::ceil(seconds / spec_.time_step - 1e-6);
+    return std::llround(std::clamp(steps, 1.0, static_cast<double>(most_steps)));
 }
 
 std::int64_t Run::step_of_frame(std::int64_t frame) const {
@@ -109,6 +114,9 @@ void Run::begin_phase() {
 
 void Run::end_phase(bool early) {
     times_.end.push_back(time());
+    for (std::size_t k = 0; early && k < feeders_.size(); ++k)
+        if (holds(spec_.feeds[k].during, phase_))
+            feeders_[k].owe(-static_cast<double>(credited_ahead(spec_.feeds[k])) * spec_.time_step);
     ended_early_.push_back(early ? 1 : 0);
     ++phase_;
     if (!finished()) begin_phase();
@@ -125,14 +133,20 @@ void Run::stop_here() {
     if (early || step_ == phase_begin_ + phase_steps()) end_phase(early);
 }
 
+std::int64_t Run::credited_ahead(const Feed& feed) const {
+    const std::int64_t every = steps_in(feed.interval), since = step_ - phase_begin_;
+    return std::min((since / every + 1) * every, phase_steps()) - since;
+}
+
+// A batch is what falls due until the next one, or until the end of the phase.
 void Run::feed() {
     for (std::size_t k = 0; k < feeders_.size(); ++k) {
         if (!holds(spec_.feeds[k].during, phase_)) continue;
-        const std::int64_t every = steps_in(spec_.feeds[k].interval);
-        if ((step_ - phase_begin_) % every != 0) continue;
-        feeders_[k].owe(static_cast<double>(every) * spec_.time_step);
+        const std::int64_t due = credited_ahead(spec_.feeds[k]);
+        if ((step_ - phase_begin_) % steps_in(spec_.feeds[k].interval) != 0 || due == 0) continue;
+        feeders_[k].owe(static_cast<double>(due) * spec_.time_step);
         engine_->state(state_);
-        add(feeders_[k].batch(state_));
+        add(feeders_[k].batch(state_, walls_in(spec_, phase_, times_), time()));
     }
 }
 
@@ -162,7 +176,8 @@ void Run::take_frame() {
         // The end of a phase is the beginning of the next one.
         const bool again = !record.samples.empty() && record.samples.back().time == sight.time;
         if (std::isfinite(value) && !again) record.samples.push_back({.time = sight.time, .value = value});
-        if (find_probe(measure.probe)->over.empty()) continue;
+        if (find_probe(measure.probe)->over.empty() || record.profiled == sight.time) continue;
+        record.profiled = sight.time;
         std::vector<Sample> profile;
         probes_[m]->profile(sight, profile);
         record.sums.resize(profile.size(), 0.0), record.counts.resize(profile.size(), 0.0);
@@ -174,7 +189,8 @@ void Run::take_frame() {
             record.counts[b] += 1;
         }
     }
-    ++frame_;
+    // Of frames closer than the time step one is taken.
+    while (++frame_ <= phase().frames && step_of_frame(frame_) <= step_) continue;
 }
 
 double Run::mass_in(const Region& region) {
@@ -295,7 +311,7 @@ void Run::fields(State& run, Visit&& visit) {
     visit(run.calm_since_), visit(run.watched_), visit(run.times_.begin), visit(run.times_.end);
     visit(run.ended_early_), visit(run.species_), visit(run.density_);
     for (auto& record : run.records_)
-        visit(record.samples), visit(record.bins), visit(record.sums), visit(record.counts);
+        visit(record.samples), visit(record.bins), visit(record.sums), visit(record.counts), visit(record.profiled);
 }
 
 void Run::save(Bytes& into) const {
@@ -319,7 +335,13 @@ void Run::restore(std::span<const std::byte> from) {
                times_.end.size() == phase_ && ended_early_.size() == phase_);
     in.require(species_.size() == density_.size() &&
                std::ranges::all_of(species_, [this](std::uint8_t s) { return s < spec_.species.size(); }));
+    in.require(step_ >= phase_begin_ && phase_begin_ >= 0 && frame_ >= 0 && check_ >= 0 &&
+               (finished() || (step_ <= phase_begin_ + phase_steps() && phase_begin_ <= most_steps)));
+    for (const auto& record : records_)
+        in.require(record.bins.size() == record.sums.size() && record.bins.size() == record.counts.size());
     engine_->restore(kit::engine_at_end(in));
+    engine_->state(state_);
+    in.require(state_.id.empty() || static_cast<std::size_t>(state_.id.back()) < species_.size());
 }
 
 }  // namespace grainsweep::machine

@@ -38,6 +38,7 @@ private:
     struct Record {
         std::vector<Sample> samples;
         std::vector<double> bins, sums, counts;  // of a profile
+        double profiled = undefined;             // time of the last one, s
     };
 
     [[nodiscard]] std::int64_t steps_in(double seconds) const;
@@ -49,6 +50,8 @@ private:
     void end_phase(bool early);
     void stop_here();
     void feed();
+    /// Steps from now on that a feed has been credited with.
+    [[nodiscard]] std::int64_t credited_ahead(const Feed& feed) const;
     void take_frame();
     [[nodiscard]] bool ends_early();
     [[nodiscard]] Sight look(bool contacts);
