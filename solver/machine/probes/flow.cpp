@@ -1,15 +1,16 @@
 // What has passed through a plane, or a part of it, since the probe first looked: net, by centres, positive along the
-// normal. A particle that is gone when the probe looks again has passed if its last known velocity carried it through.
+// normal. A particle that is gone when the probe looks again has passed if free flight from where it was last carried
+// it through. Where the domain is periodic across the plane, a particle is taken to have gone the shorter way.
 #include "solver/machine/probes/probes.hpp"
 #include "solver/machine/selection.hpp"
+
+#include <cmath>
 
 namespace grainsweep::machine::probes {
 namespace {
 
 using geometry::dot;
 using geometry::operator-;
-using geometry::operator+;
-using geometry::operator*;
 
 template <bool by_mass>
 class FlowProbe final : public machine::Probe {
@@ -18,53 +19,67 @@ public:
         : selection_(options), point_(options.vector("point")), normal_(options.vector("normal")) {}
 
     double look(const Sight& sight) override {
-        if (side_.size() < sight.species.size()) side_.resize(sight.species.size(), unseen);
-        amount_.resize(side_.size(), 0.0);
-        heads_through_.resize(side_.size(), 0);
-        std::vector<char> here(side_.size(), 0);
+        if (seen_.size() < sight.species.size()) seen_.resize(sight.species.size());
+        const double period = period_of(sight.domain);
+        std::vector<char> here(seen_.size(), 0);
         for (std::size_t i = 0; i < sight.size(); ++i) {
             const std::size_t id = sight.id(i);
             here[id] = 1;
             const double s = dot(sight.state.position[i] - point_, normal_);
-            const char now = s >= 0 ? beyond : before;
-            if (side_[id] != unseen && side_[id] != now && selection_.holds(sight, i))
-                passed_ += (now == beyond ? 1 : -1) * amount(sight, i);
-            if (!sight.state.mobile[i]) continue;
-            side_[id] = now;
-            amount_[id] = selection_.species_counts(sight, i) ? amount(sight, i) : 0;
-            const double v = dot(sight.state.velocity[i], normal_);
-            heads_through_[id] = (now == before && v > 0) || (now == beyond && v < 0);
+            Seen& seen = seen_[id];
+            if (seen.there != 0 && selection_.holds(sight, i))
+                passed_ += crossings(seen.s, s, period) * amount(sight, i);
+            seen = {1, s, dot(sight.state.velocity[i], normal_),
+                    selection_.species_counts(sight, i) ? amount(sight, i) : 0};
         }
-        for (std::size_t id = 0; id < side_.size(); ++id) {
-            if (here[id] != 0 || side_[id] == unseen || side_[id] == gone) continue;
-            if (heads_through_[id]) passed_ += (side_[id] == before ? 1 : -1) * amount_[id];
-            side_[id] = gone;
+        for (std::size_t id = 0; id < seen_.size(); ++id) {
+            if (here[id] != 0 || seen_[id].there == 0) continue;
+            const double t = sight.time - time_;
+            const double s = seen_[id].s + seen_[id].v * t + dot(sight.gravity, normal_) * t * t / 2;
+            passed_ += crossings(seen_[id].s, s, 0) * seen_[id].amount;
+            seen_[id].there = 0;
         }
+        time_ = sight.time;
         return passed_;
     }
 
     void save(ByteWriter& out) const override {
         out.put(passed_);
-        out.put(side_);
-        out.put(amount_);
-        out.put(heads_through_);
+        out.put(time_);
+        out.put(seen_);
     }
     void restore(ByteReader& in) override {
         in.get(passed_);
-        in.get(side_);
-        in.get(amount_);
-        in.get(heads_through_);
+        in.get(time_);
+        in.get(seen_);
     }
 
 private:
-    static constexpr char unseen = 0, before = 1, beyond = 2, gone = 3;
+    /// A particle as it was last.
+    struct Seen {
+        std::int64_t there = 0;
+        double s = 0, v = 0;  // along the normal, m and m/s
+        double amount = 0;
+    };
+
     static double amount(const Sight& sight, std::size_t i) { return by_mass ? sight.mass(i) : 1; }
+    /// Net times through the plane, or one of its images, on the way from s to the next one.
+    static double crossings(double from, double to, double period) {
+        if (!(period > 0)) return (to >= 0 ? 1 : 0) - (from >= 0 ? 1 : 0);
+        const double way = to - from - period * std::round((to - from) / period);
+        return std::floor((from + way) / period) - std::floor(from / period);
+    }
+    /// Of a plane across a periodic axis; 0: none.
+    [[nodiscard]] double period_of(const geometry::Domain& domain) const {
+        for (std::size_t k = 0; k < 3; ++k)
+            if (domain.periodic[k] && std::abs(normal_[k]) == 1) return domain.length(k);
+        return 0;
+    }
 
     Selection selection_;
     Vec3 point_, normal_;
-    double passed_ = 0;
-    std::vector<char> side_, heads_through_;  // by id
-    std::vector<double> amount_;
+    double passed_ = 0, time_ = 0;
+    std::vector<Seen> seen_;  // by id
 };
 
 constexpr std::array flow_options = {

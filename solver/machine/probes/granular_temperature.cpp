@@ -8,6 +8,7 @@ namespace grainsweep::machine::probes {
 namespace {
 
 using geometry::dot;
+using geometry::operator-;
 using geometry::operator+=;
 using geometry::operator*;
 
@@ -18,12 +19,16 @@ public:
         double mass = 0, squares = 0;
         Vec3 momentum{};
         selection_.each(sight, [&](std::size_t i) {
-            const Vec3& v = sight.state.velocity[i];
             mass += sight.mass(i);
-            momentum += sight.mass(i) * v;
+            momentum += sight.mass(i) * sight.state.velocity[i];
+        });
+        if (!(mass > 0)) return undefined;
+        const Vec3 mean = (1 / mass) * momentum;
+        selection_.each(sight, [&](std::size_t i) {
+            const Vec3 v = sight.state.velocity[i] - mean;
             squares += sight.mass(i) * dot(v, v);
         });
-        return mass > 0 ? (squares - dot(momentum, momentum) / mass) / (3 * mass) : undefined;
+        return squares / (3 * mass);
     }
 
 private:

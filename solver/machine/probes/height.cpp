@@ -40,7 +40,7 @@ public:
         double below = 0;
         for (const auto& [height, of_it] : heights)
             if ((below += of_it) >= share_ * volume) return height;
-        return undefined;
+        return heights.empty() ? undefined : heights.back().first;  // a sum in another order differs by rounding
     }
 
 private:

@@ -102,12 +102,8 @@ std::string flaw_of_lacey(const Options& given) {
 
 constexpr std::array lacey_options = {
     OptionSpec{"of", OptionSpec::Kind::species, "", "the two species", true}, in_option,
-    OptionSpec{"cell",
-               OptionSpec::Kind::number,
-               "m",
-               "side of the cubic cells: three to five particles",
-               true,
-               {0, 1e3, true, false}},
+    OptionSpec{
+        "cell", OptionSpec::Kind::number, "m", "side of the cubic cells: three to five particles", true, {1e-6, 1e3}},
     OptionSpec{"origin", OptionSpec::Kind::vector, "m", "a corner of a cell; default: the origin"},
     OptionSpec{"least",
                OptionSpec::Kind::number,

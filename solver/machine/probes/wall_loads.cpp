@@ -15,7 +15,7 @@ struct Walls {
     explicit Walls(const Options& options) : numbers(options.numbers("wall")) {}
     template <class Of>
     [[nodiscard]] double sum(const Sight& sight, const Vec3& about, Of&& of) const {
-        double total = 0;
+        double total = numbers.empty() ? undefined : 0;  // walls that this case is without
         for (const std::size_t w : numbers) total += of(sight.engine.wall_load(w, about));
         return total;
     }
