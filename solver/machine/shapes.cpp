@@ -87,7 +87,9 @@ geometry::Mesh mesh_of(Triangles triangles, double facet_angle, const Placement&
             corner = pose.from_body(corner);
             if (!geometry::finite(corner)) throw std::invalid_argument("a corner is no number");
         }
-    return geometry::Mesh(geometry::weld(triangles).surface, facet_angle);
+    auto surface = geometry::weld(triangles).surface;
+    if (surface.triangles.empty()) throw std::invalid_argument("its triangles have no area");
+    return geometry::Mesh(std::move(surface), facet_angle);
 }
 
 geometry::Mesh stl_mesh(std::string_view contents, double scale, double facet_angle, const Placement& placement) {

@@ -11,7 +11,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <set>
 #include <stdexcept>
 
 namespace grainsweep::campaign {
@@ -20,46 +19,89 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uintmax_t largest_machine_file = 256ULL << 20U;
+constexpr std::size_t most_files = 1000;
+constexpr double most_steps = 1e12;  // of a phase
 
-/// Names of files in the document: of "stl", of "file" in "sizes", of "spheres".
-void find_files(const Json& value, const std::string& key, std::set<std::string>& into) {
-    if (value.is_string() && (key == "stl" || key == "file" || key == "spheres")) into.insert(value.get<std::string>());
-    if (!value.is_structured()) return;
-    for (const auto& [name, inner] : value.items()) find_files(inner, value.is_object() ? name : "", into);
+/// Calls visit(pointer) for every text of the document that names a file: "stl" of walls, "file" in "sizes" of species,
+/// "spheres" of fillings.
+template <class Visit>
+void for_each_file(const Json& document, const Visit& visit) {
+    const auto of = [&](const Json::json_pointer& place) {
+        if (document.contains(place) && document.at(place).is_string()) visit(place);
+    };
+    const auto entries = [&](const char* key) {
+        std::vector<Json::json_pointer> all;
+        const Json::json_pointer section = Json::json_pointer() / key;
+        if (!document.contains(key) || !document.at(key).is_structured()) return all;
+        if (document.at(key).is_array())
+            for (std::size_t k = 0; k < document.at(key).size(); ++k) all.push_back(section / k);
+        else
+            for (const auto& [name, value] : document.at(key).items()) all.push_back(section / name);
+        return all;
+    };
+    for (const auto& wall : entries("walls")) of(wall / "stl");
+    for (const auto& species : entries("species")) of(species / "sizes" / "file");
+    for (const auto& fill : entries("fill")) of(fill / "spheres");
 }
 
-/// All texts that a text with "{NAME}" can become.
+/// "/walls/shell/stl" as a place for messages.
+Cursor cursor_at(const Json& document, const std::string& root, const Json::json_pointer& place) {
+    Json::json_pointer rest = place;
+    std::vector<std::string> keys;
+    for (; !rest.empty(); rest.pop_back()) keys.push_back(rest.back());
+    Cursor cursor(document, root);
+    for (auto key = keys.rbegin(); key != keys.rend(); ++key)
+        cursor = cursor.json().is_array() ? cursor[std::stoul(*key)] : cursor[*key];
+    return cursor;
+}
+
+/// All texts that a text with "{NAME}" can become, in the order of the words.
 std::vector<std::string> expansions(const std::string& text, const std::vector<ParameterSpec>& parameters) {
     const std::size_t open = text.find('{'), close = text.find('}', open);
     if (open == std::string::npos || close == std::string::npos) return {text};
+    const std::string braced = text.substr(open, close - open + 1);
     std::vector<std::string> all;
     for (const auto& parameter : parameters) {
         const auto* words = std::get_if<Words>(&parameter.bounds);
-        if (words == nullptr || parameter.name != text.substr(open + 1, close - open - 1)) continue;
-        for (const auto& word : words->allowed)
-            for (auto& one : expansions(text.substr(0, open) + word + text.substr(close + 1), parameters))
-                all.push_back(std::move(one));
+        if (words == nullptr || "{" + parameter.name + "}" != braced) continue;
+        for (const auto& word : words->allowed) {
+            std::string one = text;
+            for (std::size_t at = open; at != std::string::npos; at = one.find(braced, at))
+                one.replace(at, braced.size(), word);
+            for (auto& expanded : expansions(one, parameters)) all.push_back(std::move(expanded));
+        }
     }
     return all;
 }
 
-/// Without what changes no answer; files by the hash of their contents.
-Json answering_part(const Json& value, const std::string& key, const Machine& machine) {
-    if (value.is_string() && (key == "stl" || key == "file" || key == "spheres")) {
-        const auto file = machine.files.find(value.get<std::string>());
-        return file == machine.files.end() ? value : Json(content_hash(file->second));
+/// Without "notes", wherever a section has them; no name is "notes".
+Json without_notes(const Json& value) {
+    if (!value.is_structured()) return value;
+    Json all = value.is_array() ? Json::array() : Json::object();
+    for (const auto& [name, inner] : value.items()) {
+        if (value.is_array())
+            all.push_back(without_notes(inner));
+        else if (name != notes_key)
+            all[name] = without_notes(inner);
     }
-    if (value.is_array()) {
-        Json list = Json::array();
-        for (const auto& inner : value) list.push_back(answering_part(inner, "", machine));
-        return list;
-    }
-    if (!value.is_object()) return value;
-    Json object = Json::object();
-    for (const auto& [name, inner] : value.items())
-        if (name != notes_key && name != "meaning" && name != "bounds")
-            object[name] = answering_part(inner, name, machine);
-    return object;
+    return all;
+}
+
+/// Without what changes no answer; files by the hashes of their contents.
+Json answering_part(const Machine& machine) {
+    Json identity = *machine.document;
+    for_each_file(*machine.document, [&](const Json::json_pointer& place) {
+        Json hashes = Json::array();
+        for (const auto& name : expansions(machine.document->at(place).get<std::string>(), machine.parameters))
+            hashes.push_back(content_hash(machine.files.find(name)->second));
+        identity[place] = std::move(hashes);
+    });
+    identity.erase("name"), identity.erase("summary");
+    if (identity.contains("parameters"))
+        for (auto& parameter : identity["parameters"]) parameter.erase("meaning"), parameter.erase("bounds");
+    for (auto& measure : identity["measure"])
+        if (measure.is_object()) measure.erase("meaning");
+    return without_notes(identity);
 }
 
 machine::Vec3 gravity_of(const Section& top, const MachineScope& scope) {
@@ -77,14 +119,25 @@ double input_number(const Inputs& inputs, std::string_view name) {
     return std::get<double>(inputs.find(name)->second);
 }
 
-void set_time_step(machine::Spec& spec, const Inputs& inputs) {
+/// `phases`: their path.
+void set_time_step(machine::Spec& spec, const Inputs& inputs, const std::string& phases) {
     spec.method.precision = std::get<std::string>(inputs.find("precision")->second) == "double"
                                 ? dem::Method::Precision::double_precision
                                 : dem::Method::Precision::mixed;
     spec.time_step = input_number(inputs, "time_step");
-    if (!(spec.time_step > 0))
-        spec.time_step =
-            machine::time_step_of(spec, input_number(inputs, "time_step_fraction"), machine::fastest_of(spec));
+    const double longest = machine::time_step_of(spec, 1, machine::fastest_of(spec));
+    if (spec.time_step > longest)
+        throw wrong_question(
+            "time_step", fmt::format("{:.4g}", spec.time_step),
+            fmt::format("must be at most {:.4g} s, the shortest Rayleigh time or contact time of these "
+                        "particles",
+                        longest));
+    if (!(spec.time_step > 0)) spec.time_step = input_number(inputs, "time_step_fraction") * longest;
+    for (std::size_t p = 0; p < spec.phases.size(); ++p)
+        if (spec.phases[p].duration > most_steps * spec.time_step)
+            throw wrong_question(
+                path_of(phases, p), fmt::format("{:.4g} s", spec.phases[p].duration),
+                fmt::format("a phase has at most {:.0e} time steps, here of {:.4g} s", most_steps, spec.time_step));
 }
 
 machine::Spec spec_of(const Section& top, const Machine& machine, const Inputs& inputs) {
@@ -103,7 +156,11 @@ machine::Spec spec_of(const Section& top, const Machine& machine, const Inputs& 
     if (reading.spec.fills.empty() && reading.spec.feeds.empty())
         throw wrong_question(top.place().path(), "", "a machine needs particles: \"fill\" or \"feed\"");
     read_surroundings(top, reading);
-    set_time_step(reading.spec, inputs);
+    try {
+        set_time_step(reading.spec, inputs, top.at("phases").path());
+    } catch (const std::invalid_argument& why) {  // walls that cannot be in this domain
+        throw wrong_question(top.place().path(), "", why.what());
+    }
     return std::move(reading.spec);
 }
 
@@ -117,10 +174,19 @@ std::shared_ptr<const Machine> checked(Json document, const std::string& root, c
     machine->summary = summary ? summary->text() : machine->name;
     machine->parameters = read_machine_parameters(top);
     machine->observables = machine_observables(top);
-    std::set<std::string> named;
-    find_files(*machine->document, "", named);
-    for (const auto& text : named)
-        for (const auto& name : expansions(text, machine->parameters)) machine->files[name] = read_file(name);
+    for_each_file(*machine->document, [&](const Json::json_pointer& pointer) {
+        const Cursor place = cursor_at(*machine->document, root, pointer);
+        for (const auto& name : expansions(place.text(), machine->parameters)) {
+            if (machine->files.contains(name)) continue;
+            if (machine->files.size() == most_files)
+                place.refuse(fmt::format("a machine has at most {} files", most_files));
+            try {
+                machine->files[name] = read_file(name);
+            } catch (const std::invalid_argument& why) {
+                place.refuse(why.what());
+            }
+        }
+    });
     Inputs defaults;
     for (const auto& parameter : machine->parameters) defaults.emplace(parameter.name, parameter.default_value);
     (void)spec_of(top, *machine, defaults);
@@ -145,8 +211,8 @@ FileReader beside(const fs::path& folder) {
         std::error_code error;
         std::string contents = files::whole_file(folder / name, error, largest_machine_file);
         if (error)
-            throw wrong_question("$", name,
-                                 fmt::format("the file beside the machine file cannot be read: {}", error.message()));
+            throw std::invalid_argument(
+                fmt::format("the file '{}' beside the machine file cannot be read: {}", name, error.message()));
         return contents;
     };
 }
@@ -166,9 +232,7 @@ machine::Spec machine_spec(const Machine& machine, const Inputs& inputs) {
 }
 
 std::string machine_scene_name(const Machine& machine) {
-    Json identity = answering_part(*machine.document, "", machine);
-    identity.erase("name"), identity.erase("summary");
-    return std::string(machine_prefix) + content_hash(identity.dump());
+    return std::string(machine_prefix) + content_hash(answering_part(machine).dump());
 }
 
 std::string machine_text(const Machine& machine) {
@@ -179,7 +243,7 @@ std::string machine_text(const Machine& machine) {
 
 std::shared_ptr<const Machine> machine_in(std::string_view text, const FileReader& contents_of_hash) {
     try {
-        const Json definition = Json::parse(text);
+        const Json definition = parse_json(text);
         const Json& files = definition.at("files");
         return checked(definition.at("machine"), "$",
                        [&](const std::string& name) { return contents_of_hash(files.at(name).get<std::string>()); });

@@ -43,7 +43,7 @@ using FileReader = std::function<std::string(const std::string& name)>;
 /// on.
 [[nodiscard]] std::shared_ptr<const Machine> make_machine(nlohmann::json document, std::string root,
                                                           const FileReader& read_file);
-/// Reads files of a folder. Throws WrongQuestion.
+/// Reads files of a folder.
 [[nodiscard]] FileReader beside(const std::filesystem::path& folder);
 /// A machine file, and the files beside it.
 [[nodiscard]] std::shared_ptr<const Machine> read_machine(const std::filesystem::path& file);

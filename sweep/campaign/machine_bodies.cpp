@@ -91,9 +91,17 @@ machine::WallMotion read_motion(const Cursor& place, const MachineReading& readi
     if (!during.empty() && (from || to)) section.at("during").refuse("beside \"from\" or \"to\" it says too much");
     const auto phase_in = [&](const Cursor& end) -> std::optional<std::size_t> {
         if (!end.json().is_string()) return std::nullopt;
-        const auto found = std::ranges::find(reading.phases, end.json().get<std::string>());
-        if (found == reading.phases.end()) return std::nullopt;
-        return static_cast<std::size_t>(found - reading.phases.begin());
+        const auto word = end.json().get<std::string>();
+        const auto found = std::ranges::find(reading.phases, word);
+        if (found != reading.phases.end()) return static_cast<std::size_t>(found - reading.phases.begin());
+        const auto of_name = [](char c) {
+            return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+        };
+        if (!is_quantity(word) && std::ranges::all_of(word, of_name) && !scope.knows(word)) {
+            const WordList phases(reading.phases);
+            end.refuse(fmt::format("must be a time or a phase: {}", in_words(phases)), nearest_word(word, phases));
+        }
+        return std::nullopt;
     };
     const auto first = from ? phase_in(*from) : std::nullopt, last = to ? phase_in(*to) : std::nullopt;
     if (!during.empty()) {
@@ -191,7 +199,7 @@ void read_walls(const Section& top, MachineReading& reading) {
             if (as) {
                 const std::string counter = as->text();
                 require_name(*as, counter);
-                if (outer.knows(counter)) as->refuse("a parameter or \"let\" has this name");
+                if (counter == "pi" || outer.knows(counter)) as->refuse("a parameter or \"let\" has this name");
                 reading.scope.set(counter, static_cast<double>(k));
             }
             if (reading.scope.present(section)) {

@@ -1,15 +1,13 @@
-// "phases", "measure", "gravity" and "domain" of a machine.
+// "phases" and "measure" of a machine.
 #include "sweep/campaign/formula.hpp"
 #include "sweep/campaign/machine_reading.hpp"
 
 #include "solver/machine/reduction.hpp"
-#include "solver/machine/setup.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
 namespace grainsweep::campaign {
@@ -33,6 +31,7 @@ const machine::ProbeInfo& probe_of(const Cursor& place) {
     std::string unknown;
     for (const auto& [key, value] : place.json().items()) {
         const auto own = machine_keys::measure();
+        if (key == notes_key) check_notes(place[key]);
         if (key == notes_key || std::ranges::find(own, key, &Key::name) != own.end()) continue;
         const auto* probe = machine::find_probe(key);
         if (probe == nullptr) {
@@ -92,7 +91,10 @@ machine::Options read_options(const Cursor& place, const machine::ProbeInfo& pro
     if (!place.json().is_object()) place.refuse(fmt::format("must be an object with the options of '{}'", probe.name));
     const WordList known = names_of(probe.options);
     for (const auto& [key, value] : place.json().items()) {
-        if (key == notes_key) continue;
+        if (key == notes_key) {
+            check_notes(place[key]);
+            continue;
+        }
         const auto option = std::ranges::find(probe.options, key, &OptionSpec::name);
         if (option == probe.options.end())
             throw wrong_question(
@@ -118,11 +120,30 @@ std::pair<double, bool> threshold_of(const Section& section, const MachineReadin
 }
 
 std::size_t measure_named(const Cursor& place, const MachineReading& reading) {
-    return reading.scope.place_in(place, reading.measures, "measurement with a probe");
+    const std::size_t number = reading.scope.place_in(place, reading.measures, "measurement with a probe");
+    if (!machine::find_probe(reading.spec.measures[number].probe)->over.empty())
+        place.refuse("a profile has no single value that could pass another");
+    return number;
 }
 
 std::string_view unit_of_measure(const MachineReading& reading, std::size_t measure) {
     return machine::find_probe(reading.spec.measures[measure].probe)->unit;
+}
+
+/// Expressions behind those that they need. Refuses circles.
+void put_in_order(const Cursor& all, std::vector<machine::Derived>& derived) {
+    std::vector<machine::Derived> sorted;
+    const auto waits = [&](const std::string& name) {
+        return std::ranges::find(derived, name, &machine::Derived::name) != derived.end();
+    };
+    while (!derived.empty()) {
+        const auto ready =
+            std::ranges::find_if(derived, [&](const auto& one) { return std::ranges::none_of(one.needs, waits); });
+        if (ready == derived.end()) all[derived.front().name].refuse("it depends on itself");
+        sorted.push_back(std::move(*ready));
+        derived.erase(ready);
+    }
+    derived = std::move(sorted);
 }
 
 machine::Until read_until(const Cursor& place, const MachineReading& reading) {
@@ -193,6 +214,8 @@ void read_phases(const Section& top, MachineReading& reading) {
 void read_measures(const Section& top, MachineReading& reading) {
     const Cursor all = top.at("measure");
     auto& spec = reading.spec;
+    for (const auto& [name, value] : all.json().items())
+        if (reading.scope.knows(name)) all[name].refuse("a parameter or \"let\" has this name; take another one");
     for (const auto& [name, value] : all.json().items()) {
         const Cursor place = all[name];
         if (entry_kind(place) != EntryKind::probe) continue;
@@ -208,6 +231,7 @@ void read_measures(const Section& top, MachineReading& reading) {
         }
         if (place.json().contains("shares")) {
             const Cursor shares = place["shares"];
+            if (!probe.over.empty()) shares.refuse("a profile has no first value to be a share of");
             if (!shares.json().is_array() || shares.json().size() != 2) shares.refuse("must be a list of two shares");
             measure.shares = {reading.scope.number(shares[std::size_t{0}], "1"), reading.scope.number(shares[1], "1")};
             if (!(measure.shares->first < measure.shares->second))
@@ -224,7 +248,7 @@ void read_measures(const Section& top, MachineReading& reading) {
         const auto [threshold, above] = threshold_of(section, reading, unit_of_measure(reading, of));
         spec.times.push_back({name, of, threshold, above});
     }
-    // Expressions see parameters, "let" and what is measured; one may use another one that comes earlier.
+    // Expressions see parameters, "let", what is measured, and one another.
     std::vector<std::string> known;
     for (const auto& observable : machine_observables(top))
         if (observable.shape == Shape::scalar) known.push_back(observable.name);
@@ -233,7 +257,6 @@ void read_measures(const Section& top, MachineReading& reading) {
         const Cursor place = all[name];
         if (entry_kind(place) != EntryKind::expression) continue;
         auto names = known;
-        std::erase(names, name);
         names.insert(names.end(), constants.begin(), constants.end());
         const auto parsed = Formula::parse(place.text(), names);
         if (const auto* why = std::get_if<std::string>(&parsed)) place.refuse(*why);
@@ -254,6 +277,7 @@ void read_measures(const Section& top, MachineReading& reading) {
         };
         spec.derived.push_back(std::move(derived));
     }
+    put_in_order(all, spec.derived);
 }
 
 std::vector<ObservableSpec> machine_observables(const Section& top) {
@@ -304,10 +328,13 @@ std::vector<ObservableSpec> machine_observables(const Section& top) {
                    Shape::scalar,
                    {},
                    {}});
-    if (const auto feeds = top.find("feed"))
+    if (const auto feeds = top.find("feed")) {
+        std::set<std::string> feeders;
         for (const auto& feed : feeds->elements()) {
             const bool named = feed.json().is_object() && feed.json().contains("name");
             const std::string name = named ? feed["name"].text() : "feed";
+            if (!feeders.insert(name).second)
+                throw wrong_question(feed.path(), "", "several feeds need a \"name\" each", name + "_2");
             all.push_back({name + "_fed", "kg", "mass fed", Shape::scalar, {}, "it is left out here"});
             all.push_back({name + "_waiting",
                            "kg",
@@ -316,6 +343,7 @@ std::vector<ObservableSpec> machine_observables(const Section& top) {
                            {},
                            "it is left out here"});
         }
+    }
     for (const auto& phase : top.at("phases").elements()) {
         if (!phase.json().is_object() || !phase.json().contains("until") || !phase.json().contains("name")) continue;
         const std::string name = phase["name"].text();
@@ -334,55 +362,6 @@ std::vector<ObservableSpec> machine_observables(const Section& top) {
                                  "every case has an observable of this name anyway; take another one",
                                  observable.name + "_2");
     return all;
-}
-
-void read_surroundings(const Section& top, MachineReading& reading) {
-    auto& spec = reading.spec;
-    const auto& scope = reading.scope;
-    const auto place = top.find("domain");
-    std::array<std::optional<double>, 3> low, high;
-    if (place) {
-        const Section section(*place, machine_keys::domain());
-        if (const auto sides = section.find("sides")) {
-            if (!sides->json().is_array() || sides->json().size() != 3)
-                sides->refuse("must be a list of three words: of x, y, z");
-            for (std::size_t k = 0; k < 3; ++k)
-                spec.domain.periodic[k] =
-                    scope.word((*sides)[k], std::array<std::string_view, 2>{"open", "periodic"}) == "periodic";
-        }
-        const auto read_corner = [&](std::string_view key, std::array<std::optional<double>, 3>& into) {
-            const auto corner = section.find(key);
-            if (!corner) return;
-            if (!corner->json().is_array() || corner->json().size() != 3)
-                corner->refuse("must be a list of three numbers: x, y, z");
-            for (std::size_t k = 0; k < 3; ++k)
-                if (!(*corner)[k].json().is_null()) into[k] = scope.number((*corner)[k], "m");
-        };
-        read_corner("low", low), read_corner("high", high);
-    }
-    geometry::Domain around;
-    const auto periodic = spec.domain.periodic;
-    for (std::size_t k = 0; k < 3; ++k)
-        if (periodic[k] && !(low[k] && high[k]))
-            place->refuse(
-                fmt::format("a domain that is periodic along {} needs its \"low\" and \"high\" there", "xyz"[k]));
-    for (std::size_t k = 0; k < 3; ++k)
-        if (!(low[k] && high[k])) {
-            try {
-                around = machine::domain_around(
-                    spec, {low[0].has_value() && high[0].has_value(), low[1].has_value() && high[1].has_value(),
-                           low[2].has_value() && high[2].has_value()});
-            } catch (const std::invalid_argument& why) {
-                throw wrong_question(place ? place->path() : top.place().path(), "", why.what());
-            }
-            break;
-        }
-    for (std::size_t k = 0; k < 3; ++k) {
-        spec.domain.low[k] = low[k].value_or(around.low[k]);
-        spec.domain.high[k] = high[k].value_or(around.high[k]);
-        if (!(spec.domain.low[k] < spec.domain.high[k]))
-            place->refuse(fmt::format("\"low\" must lie below \"high\" along {}", "xyz"[k]));
-    }
 }
 
 }  // namespace grainsweep::campaign

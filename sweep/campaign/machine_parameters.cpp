@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <set>
 
 namespace grainsweep::campaign {
@@ -106,6 +107,27 @@ std::string suffix_of(const std::string& unit) {
     return suffix;
 }
 
+/// Names that a parameter gives to expressions: its own, NAME_UNIT, NAME_is_WORD.
+std::vector<std::string> names_in_expressions(const ParameterSpec& parameter) {
+    std::vector<std::string> names{parameter.name};
+    if (const auto* words = std::get_if<Words>(&parameter.bounds))
+        for (const auto& word : words->allowed) names.push_back(parameter.name + "_is_" + word);
+    else if (const auto suffix = suffix_of(parameter.unit); parameter.unit != "1" && !suffix.empty())
+        names.push_back(parameter.name + "_" + suffix);
+    return names;
+}
+
+void refuse_names_twice(const Cursor& place, const std::vector<ParameterSpec>& parameters) {
+    std::map<std::string, std::string> owners;
+    for (const auto& parameter : parameters)
+        for (const auto& name : names_in_expressions(parameter))
+            if (const auto [owner, first] = owners.emplace(name, parameter.name); !first)
+                throw wrong_question(
+                    path_of(place.path(), place.json().contains(parameter.name) ? parameter.name : owner->second), "",
+                    fmt::format("'{}' in expressions would be of '{}' and of '{}'; rename one", name, owner->second,
+                                parameter.name));
+}
+
 }  // namespace
 
 void require_name(const Cursor& place, std::string_view name) {
@@ -116,6 +138,7 @@ void require_name(const Cursor& place, std::string_view name) {
         throw wrong_question(
             place.path(), name,
             fmt::format("a name is letters, digits and _, not a digit first, at most {}", longest_machine_name));
+    if (name == notes_key) place.refuse("here are names, and 'notes' is none: put notes into the object around it");
 }
 
 std::vector<ParameterSpec> read_machine_parameters(const Section& top) {
@@ -143,6 +166,7 @@ std::vector<ParameterSpec> read_machine_parameters(const Section& top) {
         all.push_back(section.find("words") ? word_parameter(section, std::move(spec))
                                             : number_parameter(section, std::move(spec)));
     }
+    refuse_names_twice(*place, all);
     std::ranges::sort(all, {}, &ParameterSpec::name);
     return all;
 }
@@ -171,7 +195,6 @@ MachineScope machine_scope(const Section& top, const std::vector<ParameterSpec>&
     for (const auto& [name, value] : lets->json().items()) {
         const Cursor here = (*lets)[name];
         require_name(here, name);
-        if (name == notes_key) here.refuse("'notes' is no name here");
         if (name == "pi" || scope.knows(name)) here.refuse("a parameter or number has this name; take another one");
         open.insert(name);
     }

@@ -22,7 +22,8 @@ particles::SizeDistribution sizes_of(const Section& section, const MachineReadin
     using particles::SizeDistribution;
     const auto& scope = reading.scope;
     if (const auto file = section.find("file")) {
-        if (section.find("spread")) section.at("spread").refuse("beside \"file\" it says too much");
+        for (const char* key : {"spread", "half_width", "sigma"})
+            if (const auto too = section.find(key)) too->refuse("beside \"file\" it has no effect");
         try {
             const auto table = particles::SizeTable::read(reading.contents(*file));
             if (!(diameter > 0)) diameter = SizeDistribution::table(table.over(1)).moment(1);
@@ -35,6 +36,9 @@ particles::SizeDistribution sizes_of(const Section& section, const MachineReadin
     if (!place) throw wrong_question(section.place().path(), "", "sizes have a \"spread\" or a \"file\"");
     const auto words = std::ranges::find(machine_keys::sizes(), std::string_view("spread"), &Key::name)->words;
     const auto spread = scope.word(*place, words);
+    for (const auto& [key, of] : {std::pair{"half_width", "uniform"}, std::pair{"sigma", "lognormal"}})
+        if (const auto given = section.find(key); given && spread != of)
+            given->refuse(fmt::format("it belongs to \"spread\": \"{}\"", of));
     if (spread == "uniform") return SizeDistribution::uniform(scope.number(section, "half_width", "1", 0.1, {0, 0.9}));
     if (spread == "lognormal") return SizeDistribution::lognormal(scope.number(section, "sigma", "1", 0.2, {0, 1}));
     return SizeDistribution::weibull_classes(spread == "weibull_wide" ? 0.15 : 0.1);
@@ -213,8 +217,10 @@ void read_fills(const Section& top, MachineReading& reading) {
             std::vector<machine::Placed> placed;
             if (spheres->json().is_array())
                 for (const auto& one : spheres->elements()) placed.push_back(placed_sphere(one, reading, species));
-            else
+            else if (spheres->json().is_string())
                 placed = spheres_in_file(*spheres, reading, species);
+            else
+                spheres->refuse("must be a list of spheres, or the name of a CSV file");
             reading.spec.fills.emplace_back(std::move(placed));
             continue;
         }
@@ -253,6 +259,7 @@ void read_feeds(const Section& top, MachineReading& reading) {
         for (std::size_t k = 0; k < 3; ++k) {
             if (!(std::isfinite(bounds.low[k]) && std::isfinite(bounds.high[k])))
                 through.refuse("particles are fed into a region with an end on every side");
+            if (!(bounds.low[k] < bounds.high[k])) through.refuse("nothing lies in this region");
             widest = std::max(widest, bounds.high[k] - bounds.low[k]);
         }
         feed.velocity = reading.scope.vector(section, "velocity", "m/s");

@@ -1,0 +1,63 @@
+// "domain" of a machine.
+#include "sweep/campaign/machine_reading.hpp"
+
+#include "solver/machine/setup.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <optional>
+#include <stdexcept>
+
+namespace grainsweep::campaign {
+
+void read_surroundings(const Section& top, MachineReading& reading) {
+    auto& spec = reading.spec;
+    const auto& scope = reading.scope;
+    const auto place = top.find("domain");
+    std::array<std::optional<double>, 3> low, high;
+    if (place) {
+        const Section section(*place, machine_keys::domain());
+        if (const auto sides = section.find("sides")) {
+            if (!sides->json().is_array() || sides->json().size() != 3)
+                sides->refuse("must be a list of three words: of x, y, z");
+            for (std::size_t k = 0; k < 3; ++k)
+                spec.domain.periodic[k] =
+                    scope.word((*sides)[k], std::array<std::string_view, 2>{"open", "periodic"}) == "periodic";
+        }
+        const auto read_corner = [&](std::string_view key, std::array<std::optional<double>, 3>& into) {
+            const auto corner = section.find(key);
+            if (!corner) return;
+            if (!corner->json().is_array() || corner->json().size() != 3)
+                corner->refuse("must be a list of three numbers: x, y, z");
+            for (std::size_t k = 0; k < 3; ++k)
+                if (!(*corner)[k].json().is_null()) into[k] = scope.number((*corner)[k], "m");
+        };
+        read_corner("low", low), read_corner("high", high);
+    }
+    geometry::Domain around;
+    const auto periodic = spec.domain.periodic;
+    for (std::size_t k = 0; k < 3; ++k)
+        if (periodic[k] && !(low[k] && high[k]))
+            place->refuse(
+                fmt::format("a domain that is periodic along {} needs its \"low\" and \"high\" there", "xyz"[k]));
+    for (std::size_t k = 0; k < 3; ++k)
+        if (!(low[k] && high[k])) {
+            try {
+                around = machine::domain_around(
+                    spec, {low[0].has_value() && high[0].has_value(), low[1].has_value() && high[1].has_value(),
+                           low[2].has_value() && high[2].has_value()});
+            } catch (const std::invalid_argument& why) {
+                throw wrong_question(place ? place->path() : top.place().path(), "", why.what());
+            }
+            break;
+        }
+    for (std::size_t k = 0; k < 3; ++k) {
+        spec.domain.low[k] = low[k].value_or(around.low[k]);
+        spec.domain.high[k] = high[k].value_or(around.high[k]);
+        if (!(spec.domain.low[k] < spec.domain.high[k]))
+            place->refuse(fmt::format("\"low\" must lie below \"high\" along {}", "xyz"[k]));
+    }
+}
+
+}  // namespace grainsweep::campaign
