@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uintmax_t largest_machine_file = 256ULL << 20U;
-constexpr std::size_t most_files = 1000;
+constexpr std::size_t most_machine_files = 1000;
 constexpr double most_steps = 1e12;  // of a phase
 
 /// Calls visit(pointer) for every text of the document that names a file: "stl" of walls, "file" in "sizes" of species,
@@ -178,8 +178,8 @@ std::shared_ptr<const Machine> checked(Json document, const std::string& root, c
         const Cursor place = cursor_at(*machine->document, root, pointer);
         for (const auto& name : expansions(place.text(), machine->parameters)) {
             if (machine->files.contains(name)) continue;
-            if (machine->files.size() == most_files)
-                place.refuse(fmt::format("a machine has at most {} files", most_files));
+            if (machine->files.size() == most_machine_files)
+                place.refuse(fmt::format("a machine has at most {} files", most_machine_files));
             try {
                 machine->files[name] = read_file(name);
             } catch (const std::invalid_argument& why) {

@@ -29,10 +29,9 @@ EntryKind entry_kind(const Cursor& place) {
 const machine::ProbeInfo& probe_of(const Cursor& place) {
     const machine::ProbeInfo* found = nullptr;
     std::string unknown;
-    for (const auto& [key, value] : place.json().items()) {
+    for (const auto& [key, here] : place.members("must be an object with a probe")) {
         const auto own = machine_keys::measure();
-        if (key == notes_key) check_notes(place[key]);
-        if (key == notes_key || std::ranges::find(own, key, &Key::name) != own.end()) continue;
+        if (std::ranges::find(own, key, &Key::name) != own.end()) continue;
         const auto* probe = machine::find_probe(key);
         if (probe == nullptr) {
             unknown = key;
@@ -88,20 +87,16 @@ machine::OptionValue option_value(const Cursor& place, const OptionSpec& option,
 
 machine::Options read_options(const Cursor& place, const machine::ProbeInfo& probe, const MachineReading& reading) {
     machine::Options options;
-    if (!place.json().is_object()) place.refuse(fmt::format("must be an object with the options of '{}'", probe.name));
     const WordList known = names_of(probe.options);
-    for (const auto& [key, value] : place.json().items()) {
-        if (key == notes_key) {
-            check_notes(place[key]);
-            continue;
-        }
+    for (const auto& [key, here] :
+         place.members(fmt::format("must be an object with the options of '{}'", probe.name))) {
         const auto option = std::ranges::find(probe.options, key, &OptionSpec::name);
         if (option == probe.options.end())
             throw wrong_question(
-                path_of(place.path(), key), "",
+                here.path(), "",
                 fmt::format("'{}' has {}", probe.name, probe.options.empty() ? "no options" : in_words(known)),
                 nearest_word(key, known));
-        options.set(key, option_value(place[key], *option, reading));
+        options.set(key, option_value(here, *option, reading));
     }
     for (const OptionSpec& option : probe.options)
         if (option.required && !options.has(option.name))
