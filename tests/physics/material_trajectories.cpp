@@ -153,4 +153,42 @@ TEST(MaterialTrajectories, MixedPrecisionEqualsTheReference) {
     }
 }
 
+/// A small hard sphere about to hit a large soft one; the step (s) is far too long for two of the small ones.
+dem::Setup small_on_large(double time_step) {
+    dem::Setup s;
+    s.domain = {{-0.01, -0.01, -0.01}, {0.01, 0.01, 0.01}, {}};
+    s.gravity = {};
+    s.time_step = time_step;
+    Material soft, hard, both;
+    soft.youngs_modulus = both.youngs_modulus = 1e6;
+    hard.youngs_modulus = 1e9;
+    both.partner = dem::Elasticity{1e9, 0.3};
+    s.kinds = {{2500, 2500}, {soft, both, hard}};
+    s.spheres = {{{}, {}, {}, 2e-3, true, 0}, {{0, 0, 2.5001e-3}, {0, 0, -0.5}, {}, 5e-4, true, 1}};
+    return s;
+}
+
+// Each contact is judged by its own masses and moduli, as in double precision.
+TEST(MaterialTrajectories, ContactsOfUnlikeKindsAreJudgedOneByOne) {
+    for (const auto path : paths()) {
+        const dem::Setup sound = small_on_large(5e-6);
+        const auto clear = dem::make_engine(sound, {});
+        const auto mixed = dem::make_engine(sound, {Method::Precision::mixed, path});
+        clear->run(200), mixed->run(200);
+        EXPECT_EQ(clear->fault() + mixed->fault(), "");
+        EXPECT_GT(mixed->peak_overlap(), 0.03);
+        EXPECT_LT(mixed->peak_overlap() / clear->peak_overlap() - 1, 1e-4);
+        dem::Setup hard = sound;  // two of the small ones at that step
+        hard.spheres[0] = {{0, 0, 1.4999e-3}, {}, {}, 5e-4, true, 1};
+        hard.spheres[1].velocity[2] = -1;
+        for (const dem::Setup& unsound : {small_on_large(9e-5), hard}) {
+            const auto one = dem::make_engine(unsound, {});
+            const auto other = dem::make_engine(unsound, {Method::Precision::mixed, path});
+            one->run(30), other->run(30);
+            EXPECT_NE(one->fault().find("the time step is too large"), std::string::npos) << one->fault();
+            EXPECT_NE(other->fault().find("the time step is too large"), std::string::npos) << other->fault();
+        }
+    }
+}
+
 }  // namespace grainsweep::tests::material_trajectories_test

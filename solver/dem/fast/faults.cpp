@@ -32,13 +32,14 @@ const char* reason_of(float limit) {
     return limit < static_cast<float>(overlap_limit) ? ": beyond, the time step is too long for the contact" : "";
 }
 
-/// In largest diameters.
-double overlap_of(const FaultView& s, const Record& a, const Record& b) {
+/// In largest diameters; `ahead`: steps by which positions are further than where the overlap is asked for.
+double overlap_of(const FaultView& s, const Record& a, const Record& b, double ahead) {
     double square = 0;
     for (int q = 0; q < 3; ++q) {
         const auto offset = static_cast<std::int32_t>(static_cast<std::uint32_t>(a.position[q]) -
                                                       static_cast<std::uint32_t>(b.position[q]));
-        square += std::pow(offset * s.field.constants.unit[q], 2);
+        const double moved = ahead * (static_cast<double>(a.velocity[q]) - static_cast<double>(b.velocity[q]));
+        square += std::pow(offset * s.field.constants.unit[q] - moved, 2);
     }
     return static_cast<double>(a.radius) + static_cast<double>(b.radius) - std::sqrt(square);
 }
@@ -126,8 +127,9 @@ std::string describe(const FaultView& s, const std::string& what, std::int32_t i
     return what + where_and_when(s, i);
 }
 
-std::string unsound_contact(const FaultView& s) {
+std::string unsound_contact(const FaultView& s, bool advanced) {
     const Scale& scale = s.scale;
+    const double ahead = advanced ? 1 : 0;
     const auto judge = [&](const Material& m, double overlap, double smaller, double radius, double inverse_mass) {
         const double over = m.normal_law == NormalLaw::linear ? 1 : std::sqrt(radius * std::max(overlap, 0.0));
         return flaw_of_contact(overlap / (2 * smaller),
@@ -139,7 +141,7 @@ std::string unsound_contact(const FaultView& s) {
         const Record &a = s.field.records[i], &b = s.field.records[j];
         const double one = radius_of(a, scale), other = radius_of(b, scale);
         const Material& m = s.table.pairs()[place_of_pair(s.field.kind[i], s.field.kind[j])];
-        const std::string flaw = judge(m, overlap_of(s, a, b) * scale.length, std::min(one, other),
+        const std::string flaw = judge(m, overlap_of(s, a, b, ahead) * scale.length, std::min(one, other),
                                        one * other / (one + other), double{a.inverse_mass} + double{b.inverse_mass});
         if (!flaw.empty()) return flaw + "particle " + std::to_string(s.id[j]) + where_and_when(s, i);
     }
@@ -152,7 +154,9 @@ std::string unsound_contact(const FaultView& s) {
             const double radius = radius_of(r, scale);
             const Material m = s.table.at_wall(s.walls[w].wall(), s.field.kind[i]);
             touched.clear();
-            s.walls[w].find(0, position_of(r, scale), radius, touched);
+            Vec3 x = position_of(r, scale);
+            for (std::size_t q = 0; q < 3; ++q) x[q] -= ahead * static_cast<double>(r.velocity[q]) * scale.length;
+            s.walls[w].find(0, x, radius, touched);
             for (const WallTouch& touch : touched) {
                 const std::string flaw =
                     judge(m, radius - touch.place.distance, radius, radius, double{r.inverse_mass});
@@ -169,7 +173,7 @@ std::string describe_overlap(const FaultView& s, const Tally& tally) {
     for (std::int32_t k = 0; k < s.field.inner_count; ++k) {
         const std::int32_t i = index_at(s.field.inner_first[k]), j = index_at(s.field.inner_second[k]);
         const Record &a = s.field.records[i], &b = s.field.records[j];
-        const double share = overlap_of(s, a, b) / (2 * static_cast<double>(std::min(a.radius, b.radius)));
+        const double share = overlap_of(s, a, b, 0) / (2 * static_cast<double>(std::min(a.radius, b.radius)));
         if (share > most) most = share, first = i, second = j;
     }
     char text[240];

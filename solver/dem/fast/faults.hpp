@@ -26,8 +26,6 @@ struct SoundOverlaps {
 /// Whether contacts beyond resolved_overlaps() may be sound: a small hard sphere sinks into a large soft one farther
 /// than it may into its like. Such contacts are judged one by one (unsound_contact).
 [[nodiscard]] bool contacts_differ(const Setup& setup);
-/// Steps between two judgements of contacts one by one, where one is beyond resolved_overlaps().
-inline constexpr std::int64_t judging_interval = 16;
 
 /// Input of a description.
 struct FaultView {
@@ -47,7 +45,8 @@ struct FaultView {
 /// `what` is wrong, with particle number `i` of the records.
 [[nodiscard]] std::string describe(const FaultView& view, const std::string& what, std::int32_t i);
 /// The first contact, as forces were computed last, that is too deep or not resolved by the time step; empty: none.
-[[nodiscard]] std::string unsound_contact(const FaultView& view);
+/// `advanced`: the particles have moved on by a step since.
+[[nodiscard]] std::string unsound_contact(const FaultView& view, bool advanced);
 [[nodiscard]] std::string describe_overlap(const FaultView& view, const Tally& tally);
 
 }  // namespace grainsweep::dem::fast

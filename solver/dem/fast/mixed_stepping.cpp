@@ -43,8 +43,7 @@ void MixedEngine::run(std::int64_t steps) {
         stand_walls();
         make_lists();
         const bool checked = watch_.due(work_.steps);  // at the full step: no particle is advanced before
-        const bool judged = suspicious() && work_.steps % judging_interval == 0;
-        const bool goes_on = std::exchange(advanced, s + 1 < steps && !checked && !judged);
+        const bool goes_on = std::exchange(advanced, s + 1 < steps && !checked);
         begin_tally();
         walls_.sum_up(s + 1 == steps);
         press_walls(true);
@@ -52,7 +51,7 @@ void MixedEngine::run(std::int64_t steps) {
         peak_overlap_ = std::max(peak_overlap_, overlap());
         work_.pair_visits += field_.inner_count;
         if (beyond(sound_) && fault_.empty()) fault_ = describe_overlap(view(), tally_);
-        if (judged && fault_.empty()) fault_ = unsound_contact(view());
+        if (suspicious() && fault_.empty()) fault_ = unsound_contact(view(), advanced);
         if (checked && fault_.empty()) check_energy();
     }
 }
@@ -261,7 +260,7 @@ void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
         leave_over(field_, i, residual);
     }
     if (beyond(sound_)) fault_ = describe_overlap(view(), tally_);
-    if (suspicious() && fault_.empty()) fault_ = unsound_contact(view());
+    if (suspicious() && fault_.empty()) fault_ = unsound_contact(view(), false);
 }
 
 void MixedEngine::set_walls(std::vector<Wall> walls) {
