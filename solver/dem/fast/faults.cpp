@@ -38,7 +38,8 @@ double overlap_of(const FaultView& s, const Record& a, const Record& b, double a
     for (int q = 0; q < 3; ++q) {
         const auto offset = static_cast<std::int32_t>(static_cast<std::uint32_t>(a.position[q]) -
                                                       static_cast<std::uint32_t>(b.position[q]));
-        const double moved = ahead * (static_cast<double>(a.velocity[q]) - static_cast<double>(b.velocity[q]));
+        const double step = static_cast<double>(a.velocity[q]) - static_cast<double>(b.velocity[q]);
+        const double moved = ahead > 0 ? ahead * step : 0;  // a step that is no number
         square += std::pow(offset * s.field.constants.unit[q] - moved, 2);
     }
     return static_cast<double>(a.radius) + static_cast<double>(b.radius) - std::sqrt(square);
