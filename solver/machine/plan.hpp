@@ -10,8 +10,7 @@ namespace grainsweep::machine {
 
 /// Particles that fillings and feeds ask for, times steps of all phases; phases that may end early count for half.
 [[nodiscard]] CostEstimate cost_of(const Spec& spec);
-/// Warns of particles too soft for the fall, walls that move too far in a step, feeds that cannot keep up, phases whose
-/// powder is still falling.
+/// Warns of particles too soft for the fall and of feeds that cannot keep up.
 [[nodiscard]] std::vector<Warning> warnings_of(const Spec& spec);
 
 }  // namespace grainsweep::machine
