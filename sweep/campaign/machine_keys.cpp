@@ -69,7 +69,7 @@ constexpr auto contact_keys = std::to_array<Key>({
     {"restitution", MachineKey::value, "coefficient of restitution", "0.5"},
     {"friction", MachineKey::value, "Coulomb friction", "0.5"},
     {"rolling_friction", MachineKey::value, "tangent of the steepest slope a sphere stands on", "0"},
-    {"rolling_damping", MachineKey::value, "damping of the rolling spring over the critical one", "0.3"},
+    {"rolling_damping", MachineKey::value, "damping of the rolling spring divided by the critical one", "0.3"},
     {"cohesion", MachineKey::value, "cohesion energy density of sjkr, sjkr2, paper, J/m3", "0"},
     {"surface_energy", MachineKey::value, "work of adhesion of jkr and dmt, J/m2", "0"},
     {"rolling_law", MachineKey::word, "how rolling is resisted", "\"epsd\"", {}, rolling_words},
@@ -97,7 +97,7 @@ constexpr auto size_keys = std::to_array<Key>({
      {},
      {},
      spread_words},
-    {"half_width", MachineKey::value, "of uniform, over D", "0.1"},
+    {"half_width", MachineKey::value, "of uniform: half of the range divided by D", "0.1"},
     {"sigma", MachineKey::value, "of lognormal: standard deviation of ln d", "0.2"},
     {"file", MachineKey::text, "a CSV file with measured sizes, as size_file of the scenes"},
 });

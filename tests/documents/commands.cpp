@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
@@ -192,6 +193,7 @@ TEST_P(Commands, OfThePageRun) {
     const auto& page = GetParam();
     const Clone clone;
     json base;
+    std::map<std::string, json> written;
     for (const auto& block : page.blocks) {
         const std::string where = place(page, block);
         const std::string kind = block.language + (block.what.empty() ? "" : " " + block.what);
@@ -209,7 +211,13 @@ TEST_P(Commands, OfThePageRun) {
             if (block.what == "part") {
                 clone.write("part.json", replaced(base, value).dump(1));
                 expect_success(clone.grainsweep({"plan", "part.json", "--format", "csv"}), where);
+            } else if (block.what.ends_with('+')) {
+                const auto name = block.what.substr(0, block.what.size() - 1);
+                ASSERT_TRUE(written.contains(name)) << where << ": no block wrote " << name << " before";
+                written[name] = replaced(written[name], value);
+                clone.write(name, written[name].dump(1));
             } else if (!block.what.empty()) {
+                written[block.what] = value;
                 clone.write(block.what, block.text);
                 if (base.is_null()) base = value;
             }

@@ -2,7 +2,9 @@
 // anew after a change: GRAINSWEEP_WRITE_DOCUMENTS=1 build/tests/test_documents --gtest_filter='Tables.*'
 #include "sweep/campaign/reader.hpp"
 #include "sweep/store/store.hpp"
+#include "tests/documents/machine_tables.hpp"
 #include "tests/documents/page.hpp"
+#include "tests/documents/table_rows.hpp"
 #include "tests/support/archive.hpp"
 #include "tests/support/process.hpp"
 
@@ -14,6 +16,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -24,25 +27,6 @@ using nlohmann::ordered_json;
 ordered_json catalogue(std::vector<std::string> arguments) {
     arguments.insert(arguments.end(), {"--format", "json"});
     return ordered_json::parse(answer_of(arguments));
-}
-
-/// A cell must not break its row.
-std::string escaped(const std::string& text) {
-    std::string cell;
-    for (const char c : text) cell += c == '|' ? std::string("\\|") : std::string(1, c);
-    return cell;
-}
-
-std::string row(const std::vector<std::string>& cells) {
-    std::string line = "|";
-    for (const auto& cell : cells) line += " " + escaped(cell) + " |";
-    return line + "\n";
-}
-
-std::string head(const std::vector<std::string>& cells) {
-    std::string rule = "|";
-    for (std::size_t k = 0; k < cells.size(); ++k) rule += "---|";
-    return row(cells) + rule + "\n";
 }
 
 std::string shown(const ordered_json& value) {
@@ -96,6 +80,28 @@ std::string parameters_table(const ordered_json& scene) {
         table += row({"`" + shown(parameter["name"]) + "`", shown(parameter["unit"]), bounds_of(parameter),
                       shown(parameter["default"]), meaning});
     }
+    return table;
+}
+
+/// What a machine declares itself, without what every machine has.
+ordered_json own_part_of_machine(const std::string& name, const std::string& part) {
+    static const std::set<std::string> common = {"particles_scale", "time_step", "time_step_fraction", "precision",
+                                                 "particles",       "lost",      "max_overlap"};
+    ordered_json own = ordered_json::array();
+    for (const auto& one : catalogue({"machines", name})[part]) {
+        const std::string what = one["name"];
+        if (!common.contains(what) || (what == "particles" && part == "parameters"))
+            if (!what.ends_with("_error")) own.push_back(one);
+    }
+    ordered_json machine;
+    machine[part] = own;
+    return machine;
+}
+
+std::string machines_table() {
+    std::string table = head({"machine", "what it is"});
+    for (const auto& machine : catalogue({"machines"}))
+        table += row({fmt::format("[`{0}`](#{0})", shown(machine["machine"])), shown(machine["summary"])});
     return table;
 }
 
@@ -209,6 +215,12 @@ std::string generated(const std::string& what) {
         if (part == "observables") return observables_table(scene);
         if (part == "accuracy") return accuracy_table(scene);
     }
+    if (kind == "machines") return machines_table();
+    if (kind == "machine") return name == "keys" ? machine_keys_tables() : machine_table(name);
+    if (kind == "ready") {
+        const auto machine = own_part_of_machine(name, part);
+        return part == "parameters" ? parameters_table(machine) : observables_table(machine);
+    }
     if (kind == "designs") return designs_table();
     if (kind == "design") return options_table(name);
     if (kind == "keys") return keys_table(name);
@@ -273,6 +285,18 @@ TEST(Tables, EverySceneHasItsPageAndEveryDesignItsOptions) {
     }
     for (const auto& design : catalogue({"designs"}))
         EXPECT_NE(all.find("design " + shown(design["design"]) + "\n"), std::string::npos) << design;
+}
+
+TEST(Tables, EveryInstalledMachineHasItsSectionAndItsPicture) {
+    const auto page = read_page("docs/scenes/machines.md");
+    const auto names = with_fresh_tables(page.text).second;
+    for (const auto& machine : catalogue({"machines"})) {
+        const std::string name = shown(machine["machine"]);
+        EXPECT_NE(page.text.find("\n## " + name + "\n"), std::string::npos) << name;
+        EXPECT_NE(page.text.find("](../pictures/machine_" + name + ".png)"), std::string::npos) << name;
+        for (const char* part : {" parameters", " observables"})
+            EXPECT_NE(std::ranges::find(names, "ready " + name + part), names.end()) << name << part;
+    }
 }
 
 TEST(Tables, EveryCommandHasItsArguments) {

@@ -2,7 +2,7 @@
 # Makes the pictures of README and docs anew: runs the program and opens its pages in headless Chromium.
 #   tests/pictures/make.sh [NAME]...       all, or some of:
 #                                          spreading cell bands report drum heap roller hopper profile layers
-#                                          window
+#                                          window mixer machines
 # PROGRAM (build/grainsweep) and CHROMIUM (chromium) may be given in the environment. The pictures go to docs/pictures,
 # less than 150 kB each. Ten minutes of computing.
 set -euo pipefail
@@ -125,14 +125,37 @@ layers() {
     shoot "layers.html#t=0.93" layers 900 640 0.85
 }
 
-if [ $# -eq 0 ]; then set -- spreading cell bands report drum heap roller hopper profile layers window; fi
+# The mixer of docs/machines.md as its third step draws it: the first two blocks that write it.
+mixer() {
+    awk '/^```json mixer.json/ {++block} /^```/ {inside = /^```json mixer.json/ && block < 3; next} inside {print > "block" block}' \
+        "$here/docs/machines.md"
+    python3 -c 'import json; print(json.dumps({**json.load(open("block1")), **json.load(open("block2"))}))' >mixer.json
+    "$program" draw mixer.json -o mixer.html
+    shoot "mixer.html#t=0.37" machine_draw 1000 700 0.7
+}
+
+# Every installed machine as it is drawn, without the controls of the page; the chute, which starts empty, in a case.
+machines() {
+    local name
+    for name in $("$program" machines --format csv | tail -n +2 | cut -d, -f1); do
+        if [ "$name" = chute ]; then
+            "$program" solve "$here/configs/machine_chute.json" --watch chute.html --frames 20
+        else
+            "$program" draw "$name" -o "$name.html"
+        fi
+        sed -i 's#</head>#<style>header, .watch-bar, .watch-choices, .watch-legends {display: none !important}</style></head>#' "$name.html"
+        shoot "$name.html#t=0.6" "machine_$name" 640 480 0.6
+    done
+}
+
+if [ $# -eq 0 ]; then set -- spreading cell bands report drum heap roller hopper profile layers window mixer machines; fi
 for name in "$@"; do
     case $name in
-        spreading | cell | bands | report | drum | heap | roller | hopper | profile | layers | window)
+        spreading | cell | bands | report | drum | heap | roller | hopper | profile | layers | window | mixer | machines)
             "$name"
             ;;
         *)
-            echo "no picture '$name': there are spreading cell bands report drum heap roller hopper profile layers window" >&2
+            echo "no picture '$name': there are spreading cell bands report drum heap roller hopper profile layers window mixer machines" >&2
             exit 2
             ;;
     esac

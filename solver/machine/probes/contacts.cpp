@@ -47,7 +47,7 @@ const ProbeInfo coordination{
 const ProbeInfo overlap{
     "overlap",
     "1",
-    "deepest overlap of two particles over the diameter of the smaller one",
+    "deepest overlap of two particles divided by the diameter of the smaller one",
     {},
     [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<Overlap>(given); }};
 

@@ -1,0 +1,154 @@
+#include "tests/documents/machine_tables.hpp"
+
+#include "solver/machine/probe.hpp"
+#include "solver/machine/reduction.hpp"
+#include "sweep/campaign/machine_keys.hpp"
+#include "tests/documents/table_rows.hpp"
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+#include <tuple>
+
+namespace grainsweep::tests {
+namespace {
+
+namespace keys = campaign::machine_keys;
+using machine::OptionSpec;
+
+std::string kind_of(const campaign::Key& key) {
+    using Kind = campaign::Key::Kind;
+    switch (key.kind) {
+        case Kind::text:
+            return "text";
+        case Kind::word:
+            return "word";
+        case Kind::words:
+            return "words";
+        case Kind::value:
+            return "value";
+        case Kind::whole:
+        case Kind::number:
+            return "number";
+        case Kind::flag:
+            return "true, false";
+        case Kind::object:
+            return "object";
+        case Kind::array:
+            return "list";
+    }
+    throw std::logic_error("a kind of key without a word");
+}
+
+std::string kind_of(const OptionSpec& option) {
+    switch (option.kind) {
+        case OptionSpec::Kind::number:
+            return "number";
+        case OptionSpec::Kind::vector:
+            return "point";
+        case OptionSpec::Kind::direction:
+            return "direction";
+        case OptionSpec::Kind::region:
+            return "region";
+        case OptionSpec::Kind::species:
+            return "species";
+        case OptionSpec::Kind::walls:
+            return "walls";
+        case OptionSpec::Kind::word:
+            return "word";
+    }
+    throw std::logic_error("a kind of option without a word");
+}
+
+std::string standard_of(const campaign::Key& key) {
+    return key.required ? "required" : code(std::string(key.standard));
+}
+
+std::string meaning_of(const campaign::Key& key) {
+    std::string words;
+    for (const auto word : key.words) words += (words.empty() ? "`" : ", `") + std::string(word) + "`";
+    return std::string(key.meaning) + (words.empty() ? "" : "; one of " + words);
+}
+
+std::string forms_table(std::string_view what, std::span<const keys::Form> forms) {
+    std::string table = head({std::string(what), "key", "value", "default", "meaning"});
+    for (const auto& form : forms) {
+        const std::string name = code(std::string(form.name));
+        table += row({name, "", form.keys.empty() ? (form.name == "not" ? "region" : "list") : "object", "",
+                      std::string(form.meaning)});
+        for (const auto& key : form.keys)
+            table += row({name, code(std::string(key.name)), kind_of(key), standard_of(key), meaning_of(key)});
+    }
+    return table;
+}
+
+std::string probes_table() {
+    std::string table = head({"probe", "unit", "measures", "options, the required ones first"});
+    for (const auto& probe : machine::probe_catalogue()) {
+        std::string required, others;
+        for (const auto& option : probe.options) {
+            auto& list = option.required ? required : others;
+            list += (list.empty() ? "" : " ") + code(std::string(option.name));
+        }
+        if (!required.empty()) required = "**needs** " + required + (others.empty() ? "" : "; ");
+        table += row({code(std::string(probe.name)), std::string(probe.unit),
+                      std::string(probe.meaning) + (probe.over.empty() ? "" : "; a profile"), required + others});
+    }
+    return table;
+}
+
+/// One row for an option that means the same in several probes.
+std::string options_table() {
+    using Meaning = std::tuple<std::string, std::string, std::string, std::string>;
+    std::map<Meaning, std::vector<std::string>> rows;
+    for (const auto& probe : machine::probe_catalogue())
+        for (const auto& option : probe.options)
+            rows[{std::string(option.name), kind_of(option), std::string(option.unit), std::string(option.meaning)}]
+                .push_back(std::string(probe.name));
+    std::string table = head({"option", "value", "unit", "meaning", "of"});
+    for (const auto& [meaning, probes] : rows) {
+        const auto& [name, kind, unit, words] = meaning;
+        std::string of;
+        for (const auto& probe : probes) of += (of.empty() ? "`" : ", `") + probe + "`";
+        table += row({code(name), kind, unit, words, of});
+    }
+    return table;
+}
+
+std::string reductions_table() {
+    std::string table = head({"`as`", "unit", "gives", "becomes"});
+    for (const auto& reduction : machine::reduction_catalogue()) {
+        const std::string unit = reduction.unit.empty()
+                                     ? "of the probe"
+                                     : "of the probe, times " + std::string(reduction.unit == "/s" ? "1/s" : "s");
+        const std::string shape = reduction.shape == Shape::scalar   ? "a scalar"
+                                  : reduction.shape == Shape::series ? "a series"
+                                                                     : "a profile";
+        table += row({code(std::string(reduction.name)), unit, std::string(reduction.meaning), shape});
+    }
+    return table;
+}
+
+}  // namespace
+
+std::string machine_keys_tables() {
+    std::string all;
+    for (const auto& table : keys::all()) {
+        all += (all.empty() ? "### " : "\n### ") + std::string(table.title) + "\n\n" +
+               head({"key", "value", "default", "meaning"});
+        for (const auto& key : table.keys)
+            all += row({code(std::string(key.name)), kind_of(key), standard_of(key), meaning_of(key)});
+    }
+    return all;
+}
+
+std::string machine_table(std::string_view what) {
+    if (what == "shapes") return forms_table("shape", keys::shapes());
+    if (what == "regions") return forms_table("region", keys::regions());
+    if (what == "probes") return probes_table();
+    if (what == "options") return options_table();
+    if (what == "reductions") return reductions_table();
+    throw std::invalid_argument("no table of machines is called '" + std::string(what) + "'");
+}
+
+}  // namespace grainsweep::tests
