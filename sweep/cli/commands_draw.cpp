@@ -55,6 +55,7 @@ Json about_machine(const SceneInfo& scene, const Inputs& inputs) {
     return {{"title", title},
             {"name", scene.shown()},
             {"case", ""},
+            {"drawing", true},
             {"subtitle", "the machine before it runs: walls move, particles stay where they are filled in"},
             {"message", ""},
             {"inputs", shown},

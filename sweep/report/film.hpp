@@ -36,7 +36,7 @@ public:
     [[nodiscard]] std::size_t frames() const { return times_.size(); }
     [[nodiscard]] std::size_t spheres() const { return spheres_.size(); }
     /// Anything to see: particles or a flow.
-    [[nodiscard]] bool shows_anything() const { return !spheres_.empty() || !slices_.empty(); }
+    [[nodiscard]] bool shows_anything() const { return !spheres_.empty() || !slices_.empty() || !walls_.empty(); }
 
     /// Returns the film: "GSF2", the length of the header (32 bits, little endian), the header (JSON, UTF-8) and the
     /// blocks, whose lengths and numbers are in the header. `about`: text on the case.

@@ -50,7 +50,7 @@ Json about_case(const campaign::Case& question, const campaign::CaseResult& resu
 }
 
 std::string watch_page(const Film& film, const Json& about) {
-    if (!film.shows_anything()) throw std::invalid_argument("a film without particles or a flow");
+    if (!film.shows_anything()) throw std::invalid_argument("a film without particles, walls or a flow");
     const auto files = page_files();
     const auto program = enclosed(files.watch), sources = script_sources({program});
     const std::string text = base64(film.bytes(about));
