@@ -3,6 +3,7 @@
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/case.hpp"
 #include "sweep/campaign/keys.hpp"
+#include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/program_keys.hpp"
 
@@ -11,6 +12,7 @@
 
 #include <cmath>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace grainsweep::campaign {
@@ -191,20 +193,22 @@ OrderedJson design_schema(const designs::DesignInfo& design) {
     return schema;
 }
 
-/// Of a scene that a program answers: names and values are the campaign's own.
-OrderedJson program_rule() {
+/// Of a scene that the key of the same name defines: names of parameters are not known here.
+OrderedJson defined_scene_rule(std::string_view word, OrderedJson accuracy) {
     OrderedJson then = OrderedJson::object();
     const OrderedJson name = {{"type", "string"}, {"pattern", "^[A-Za-z_][A-Za-z0-9_]*$"}};
     then["factors"]["items"] = section(factor_keys());
     then["factors"]["items"]["properties"]["name"].update(name);
     then["fixed"] = {{"additionalProperties", {{"type", {"number", "string"}}}},
                      {"properties", {{std::string(notes_key), notes_schema()}}}};
-    then["accuracy"] = false;
-    OrderedJson condition;
-    condition["properties"]["scene"]["const"] = program_word;
+    then["accuracy"] = std::move(accuracy);
+    const std::string key(word);
+    OrderedJson condition, absent;
+    condition["properties"]["scene"]["const"] = key;
+    absent[key] = false;
     return {{"if", condition},
-            {"then", {{"properties", then}, {"required", {"program"}}}},
-            {"else", {{"properties", {{"program", false}}}}}};
+            {"then", {{"properties", then}, {"required", OrderedJson::array({key})}}},
+            {"else", {{"properties", absent}}}};
 }
 
 OrderedJson program_schema() {
@@ -274,7 +278,10 @@ std::string campaign_schema(int indentation) {
         schema["allOf"].push_back(scene_rule(scene));
     }
     scenes.push_back(program_word);
-    schema["allOf"].push_back(program_rule());
+    schema["allOf"].push_back(defined_scene_rule(program_word, false));
+    scenes.push_back(machine_word);
+    schema["allOf"].push_back(defined_scene_rule(machine_word, {{"enum", {"fast", "balanced", "reference"}}}));
+    properties["machine"]["type"] = {"string", "object"};
     properties["scene"]["enum"] = scenes;
     return schema.dump(indentation);
 }

@@ -91,8 +91,9 @@ TEST(Schema, RefusesTheNamesTheReaderRefuses) {
 
 TEST(Schema, HasEveryParameterOfEveryScene) {
     const auto scenes = scene_catalogue();
-    ASSERT_EQ(schema()["allOf"].size(), scenes.size() + 1);  // and that of a program
-    EXPECT_EQ(schema()["allOf"].back()["if"]["properties"]["scene"]["const"], "program");
+    ASSERT_EQ(schema()["allOf"].size(), scenes.size() + 2);  // and those of a program and of a machine
+    EXPECT_EQ(schema()["allOf"][scenes.size()]["if"]["properties"]["scene"]["const"], "program");
+    EXPECT_EQ(schema()["allOf"].back()["if"]["properties"]["scene"]["const"], "machine");
     for (std::size_t k = 0; k < scenes.size(); ++k) {
         const auto& rule = schema()["allOf"][k];
         EXPECT_EQ(rule["if"]["properties"]["scene"]["const"], scenes[k].name);
