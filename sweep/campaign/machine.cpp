@@ -167,6 +167,8 @@ machine::Spec spec_of(const Section& top, const Machine& machine, const Inputs& 
 std::shared_ptr<const Machine> checked(Json document, const std::string& root, const FileReader& read_file) {
     auto machine = std::make_shared<Machine>();
     machine->document = std::make_shared<const Json>(std::move(document));
+    if (machine->document->is_object() && machine->document->contains("campaign"))
+        throw wrong_question(root, "", "this is a campaign file, not a machine file; its key \"machine\" names one");
     const Section top(Cursor(*machine->document, root), machine_keys::top());
     machine->name = top.at("name").text();
     require_name(top.at("name"), machine->name);

@@ -385,4 +385,11 @@ TEST(CampaignText, WrongTypesNeverCrash) {
     }
 }
 
+TEST(WrongFile, OfAMachineIsCalledSo) {
+    EXPECT_EQ(
+        sentence_of(R"({"name": "mixer", "phases": [], "measure": {}})"),
+        "$: this is a machine file; a campaign file names it, with \"scene\": \"machine\" and \"machine\": the name "
+        "of this file.");
+}
+
 }  // namespace grainsweep::tests::campaign_errors_test
