@@ -214,7 +214,7 @@ TEST_P(Commands, OfThePageRun) {
             } else if (block.what.ends_with('+')) {
                 const auto name = block.what.substr(0, block.what.size() - 1);
                 ASSERT_TRUE(written.contains(name)) << where << ": no block wrote " << name << " before";
-                written[name] = replaced(written[name], value);
+                written[name].merge_patch(value);
                 clone.write(name, written[name].dump(1));
             } else if (!block.what.empty()) {
                 written[block.what] = value;

@@ -6,7 +6,7 @@
 //   sh long       too long to run: the commands, options and campaign files it names must exist, `run` is planned
 //   sql FILE      one statement, asked of that database with `grainsweep query`; it must return rows
 //   json FILE     written to the folder under that name
-//   json FILE+    keys that replace those of that file, as an earlier block of the page wrote it
+//   json FILE+    a JSON merge patch of that file, as an earlier block of the page wrote it
 //   json part     keys that replace those of the page's first campaign file; the result must pass `plan`
 //   json          must be JSON
 //   python, r     run where the interpreter and its libraries are installed, else only parsed, where it is installed

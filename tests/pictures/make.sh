@@ -129,7 +129,8 @@ layers() {
 mixer() {
     awk '/^```json mixer.json/ {++block} /^```/ {inside = /^```json mixer.json/ && block < 3; next} inside {print > "block" block}' \
         "$here/docs/machines.md"
-    python3 -c 'import json; print(json.dumps({**json.load(open("block1")), **json.load(open("block2"))}))' >mixer.json
+    python3 -c 'import json; a, b = (json.load(open(f)) for f in ("block1", "block2")); \
+b["walls"].update(a["walls"]); print(json.dumps({**a, **b}))' >mixer.json
     "$program" draw mixer.json -o mixer.html
     shoot "mixer.html#t=0.37" machine_draw 1000 700 0.7
 }
