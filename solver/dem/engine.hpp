@@ -6,6 +6,7 @@
 // for the laws a case needs; make_engine chooses once per case.
 #pragma once
 
+#include "solver/dem/limits.hpp"
 #include "solver/dem/material.hpp"
 #include "solver/dem/walls/wall.hpp"
 
@@ -74,6 +75,9 @@ struct Setup {
     std::vector<ToCome> to_come;  ///< what is not announced here cannot be added
     std::vector<Wall> walls;
     Surface frozen;  ///< what differs from the material in contacts with frozen spheres; without kinds
+    /// Overlap with a wall over the diameter beyond which the state is not sound. Bodies that pinch a particle between
+    /// them, as a screw and its trough do, drive it deeper than the law means; at 0.5 the centre passes the wall.
+    double deepest_in_walls = largest_sound_overlap;
 };
 
 /// How to compute it; never changes what is asked beyond the stated error of the precision.

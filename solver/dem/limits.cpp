@@ -4,10 +4,10 @@
 
 namespace grainsweep::dem {
 
-std::string flaw_of_contact(double share, double swing) {
+std::string flaw_of_contact(double share, double swing, double deepest) {
     char text[200];
-    if (!(share <= largest_sound_overlap)) {
-        std::snprintf(text, sizeof text, "overlap of %.3g diameters (limit %.3g) with ", share, largest_sound_overlap);
+    if (!(share <= deepest)) {
+        std::snprintf(text, sizeof text, "overlap of %.3g diameters (limit %.3g) with ", share, deepest);
         return text;
     }
     if (share <= 0 || swing <= largest_sound_swing) return {};

@@ -30,7 +30,7 @@ inline constexpr double largest_sound_speed_factor = 10;
 inline constexpr double largest_sound_energy_gain = 15;
 
 /// What is wrong with a contact, in words that "with" and its partner complete; empty: nothing. `share`: its overlap
-/// over the smaller diameter. `swing`: rad per step.
-[[nodiscard]] std::string flaw_of_contact(double share, double swing);
+/// over the smaller diameter, at most `deepest`. `swing`: rad per step.
+[[nodiscard]] std::string flaw_of_contact(double share, double swing, double deepest = largest_sound_overlap);
 
 }  // namespace grainsweep::dem

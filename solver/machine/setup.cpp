@@ -18,8 +18,9 @@ using geometry::operator+;
 using geometry::operator*;
 
 constexpr double never = std::numeric_limits<double>::infinity();
-constexpr int poses = 400;    // of a moving wall at which its extent is taken
-constexpr double margin = 2;  // largest diameters around the walls
+constexpr double deepest_in_walls = 0.45;  // diameters: what walls pinch between them goes on
+constexpr int poses = 400;                 // of a moving wall at which its extent is taken
+constexpr double margin = 2;               // largest diameters around the walls
 
 /// The motion as it acts where some phases have begun; none while its first one has not.
 std::optional<Motion> acting(const WallMotion& given, const PhaseTimes& times) {
@@ -120,6 +121,7 @@ dem::Setup setup_of(const Spec& spec, const Filled& filled) {
     setup.gravity = spec.gravity;
     setup.time_step = spec.time_step;
     setup.spheres = filled.spheres;
+    setup.deepest_in_walls = deepest_in_walls;
     setup.walls = walls_in(spec, 0, {{0.0}, {}});
     return setup;
 }
@@ -130,17 +132,16 @@ double time_step_of(const Spec& spec, double fraction, double speed) {
     for (const Species& a : spec.species) {
         dem::Material own = pair_of(a.material, a.material);
         own.density = spec.densities[a.material];
-        shortest = std::min(shortest, dem::rayleigh_time(own, a.smallest() / 2));
+        shortest = std::min(shortest, dem::shortest_time(own, a.smallest() / 2, speed));
         for (const Species& b : spec.species) {
             dem::Material pair = pair_of(a.material, b.material);
             pair.density = std::min(spec.densities[a.material], spec.densities[b.material]);
-            shortest =
-                std::min(shortest, dem::hertz_contact_time(pair, std::min(a.smallest(), b.smallest()) / 2, speed));
+            shortest = std::min(shortest, dem::shortest_time(pair, std::min(a.smallest(), b.smallest()) / 2, speed));
         }
         for (const MachineWall& wall : spec.walls) {
             dem::Material pair = wall.materials[a.material];
             pair.density = spec.densities[a.material];
-            shortest = std::min(shortest, dem::hertz_contact_time(pair, a.smallest() / 2, speed));
+            shortest = std::min(shortest, dem::shortest_time(pair, a.smallest() / 2, speed));
         }
     }
     return fraction * shortest;

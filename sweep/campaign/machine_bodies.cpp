@@ -35,6 +35,9 @@ void read_values(const Section& section, const MachineScope& scope, dem::Materia
     contact.friction = scope.number(section, "friction", "1", contact.friction, {0, 10});
     contact.rolling_friction = scope.number(section, "rolling_friction", "1", contact.rolling_friction, {0, 1});
     contact.rolling_damping = scope.number(section, "rolling_damping", "1", contact.rolling_damping, {0, 1});
+    contact.stiffness = scope.number(section, "stiffness", "N/m", contact.stiffness, positive_number);
+    contact.tangential_ratio =
+        scope.number(section, "tangential_ratio", "1", contact.tangential_ratio, {0, 1, true, false});
     contact.cohesion = scope.number(section, "cohesion", "J/m3", contact.cohesion, {0, 1e9});
     contact.surface_energy = scope.number(section, "surface_energy", "J/m2", contact.surface_energy, {0, 100});
 }
@@ -152,6 +155,7 @@ void read_contacts(const Section& top, MachineReading& reading) {
         read_values(section, reading.scope, standard);
         standard.rolling_law = law_of(section, reading.scope, "rolling_law", standard.rolling_law);
         standard.cohesion_law = law_of(section, reading.scope, "cohesion_law", standard.cohesion_law);
+        standard.normal_law = law_of(section, reading.scope, "normal_law", standard.normal_law);
         standard.friction_limit = law_of(section, reading.scope, "friction_limit", standard.friction_limit);
         if (const auto pairs = section.find("pairs")) {
             if (!pairs->json().is_object()) pairs->refuse("must be an object of pairs: \"glass steel\"");
@@ -169,6 +173,12 @@ void read_contacts(const Section& top, MachineReading& reading) {
         for (std::size_t b = 0; b < count; ++b) {
             dem::Material contact = standard;
             if (own[a][b]) read_values(Section(*own[a][b], machine_keys::pair()), reading.scope, contact);
+            const bool linear = contact.normal_law == dem::NormalLaw::linear;
+            if (linear != (contact.stiffness > 0))
+                throw wrong_question(top.find("contacts")->path(), "",
+                                     fmt::format("between {} and {}: {}", reading.materials[a], reading.materials[b],
+                                                 linear ? "key 'stiffness' is missing: the linear law needs it"
+                                                        : "'stiffness' belongs to \"normal_law\": \"linear\""));
             contact.youngs_modulus = reading.elasticities[a].youngs_modulus;
             contact.poisson_ratio = reading.elasticities[a].poisson_ratio;
             if (reading.elasticities[a] != reading.elasticities[b]) contact.partner = reading.elasticities[b];

@@ -13,6 +13,7 @@ constexpr std::array<std::string_view, 3> by_words = {"count", "mass", "volume"}
 constexpr std::array<std::string_view, 2> as_words = {"lattice", "random"};
 constexpr std::array<std::string_view, 3> rolling_words = {"epsd", "epsd_liggghts", "cdt"};
 constexpr std::array<std::string_view, 5> cohesion_words = {"sjkr", "sjkr2", "paper", "jkr", "dmt"};
+constexpr std::array<std::string_view, 2> normal_words = {"hertz", "linear"};
 constexpr std::array<std::string_view, 2> limit_words = {"contact", "net"};
 
 constexpr auto top_keys = std::to_array<Key>({
@@ -70,6 +71,9 @@ constexpr auto contact_keys = std::to_array<Key>({
     {"friction", MachineKey::value, "Coulomb friction", "0.5"},
     {"rolling_friction", MachineKey::value, "tangent of the steepest slope a sphere stands on", "0"},
     {"rolling_damping", MachineKey::value, "damping of the rolling spring divided by the critical one", "0.3"},
+    {"stiffness", MachineKey::value, "of the linear law, N/m"},
+    {"tangential_ratio", MachineKey::value, "of the linear law: stiffness of the tangential spring over the normal one",
+     "2/7"},
     {"cohesion", MachineKey::value, "cohesion energy density of sjkr, sjkr2, paper, J/m3", "0"},
     {"surface_energy", MachineKey::value, "work of adhesion of jkr and dmt, J/m2", "0"},
     {"rolling_law", MachineKey::word, "how rolling is resisted", "\"epsd\"", {}, rolling_words},
@@ -80,6 +84,12 @@ constexpr auto contact_keys = std::to_array<Key>({
      "\"contact\"",
      {},
      limit_words},
+    {"normal_law",
+     MachineKey::word,
+     "hertz; linear: spring and dashpot of a given stiffness",
+     "\"hertz\"",
+     {},
+     normal_words},
     {"pairs", MachineKey::object, "\"MATERIAL MATERIAL\": what differs between these two", "{}"},
 });
 
@@ -349,7 +359,7 @@ std::span<const Key> contacts() {
 }
 /// Contacts without the laws, which are one for all pairs.
 std::span<const Key> pair() {
-    return std::span(contact_keys).first<6>();
+    return std::span(contact_keys).first<8>();
 }
 std::span<const Key> species() {
     return species_keys;

@@ -19,7 +19,7 @@ namespace grainsweep::tests {
 namespace {
 
 using dem::Vec3;
-using geometry::operator+;
+using namespace geometry;
 using std::numbers::pi;
 
 constexpr double grain = 5e-3;  // mean diameter of the powder of drum, hopper and heap, m

@@ -155,6 +155,7 @@ private:
     Radii radii_;                               // of all spheres, those to come too
     std::pair<double, double> inverse_masses_;  // least and largest of them
     bool linear_;                               // the normal law
+    double deepest_in_walls_;
     double swing_factor_;  // dt^2 normal_slope() of the first pair: times stiffest_ the square of a contact's phase per
                            // step
     double skin_;

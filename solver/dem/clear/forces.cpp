@@ -81,7 +81,7 @@ void ClearEngine::evaluate(bool advance) {
     work_.pair_visits += static_cast<double>(list_.size());
     // Negated, so that a value that is not a number is reported too.
     const double swing2 = swing_factor_ * stiffest_;
-    if (!(largest_overlap_ <= largest_sound_overlap) || !(largest_wall_overlap_ <= largest_sound_overlap) ||
+    if (!(largest_overlap_ <= largest_sound_overlap) || !(largest_wall_overlap_ <= deepest_in_walls_) ||
         !(swing2 <= largest_sound_swing * largest_sound_swing))
         report_contacts();
 }

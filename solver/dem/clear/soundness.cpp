@@ -124,8 +124,8 @@ void ClearEngine::report(const std::string& what, std::size_t i) {
 }
 
 void ClearEngine::report_contacts() {
-    const auto judge = [&](std::size_t i, double share, double stiffness, const std::string& partner) {
-        const std::string flaw = flaw_of_contact(share, std::sqrt(swing_factor_ * stiffness));
+    const auto judge = [&](std::size_t i, double share, double deepest, double stiffness, const std::string& partner) {
+        const std::string flaw = flaw_of_contact(share, std::sqrt(swing_factor_ * stiffness), deepest);
         if (!flaw.empty()) report(flaw + partner, i);
     };
     for (std::size_t i = 0; i < p_.size(); ++i)
@@ -133,7 +133,7 @@ void ClearEngine::report_contacts() {
             const std::size_t j = list_[k].j();
             const double r = norm(p_.position[i] - (p_.position[j] + image_shifts_[list_[k].image()]));
             const double overlap = radius(i) + radius(j) - r;
-            judge(i, overlap / (2 * std::min(radius(i), radius(j))),
+            judge(i, overlap / (2 * std::min(radius(i), radius(j))), largest_sound_overlap,
                   slope_over(std::sqrt(effective_radius(i, j) * overlap)) / reduced_mass(i, j) * stiffness_[pair(i, j)],
                   "particle " + std::to_string(p_.id[j]));
         }
@@ -141,7 +141,7 @@ void ClearEngine::report_contacts() {
         for (const auto& [entry, place] : walls_[w].touches) {
             const std::size_t i = walls_[w].near[entry];
             const double overlap = radius(i) - place.distance;
-            judge(i, overlap / (2 * radius(i)),
+            judge(i, overlap / (2 * radius(i)), deepest_in_walls_,
                   slope_over(std::sqrt(radius(i) * overlap)) * inverse_mass(i) * walls_[w].stiffness[p_.kind[i]],
                   "wall " + std::to_string(w));
         }

@@ -46,6 +46,7 @@ ClearEngine::ClearEngine(const Setup& setup, const Method& method, const AnyCont
       equal_(equal),
       radii_(radii_of(setup)),
       linear_(table_.pairs().front().normal_law == NormalLaw::linear),
+      deepest_in_walls_(setup.deepest_in_walls),
       swing_factor_(normal_slope(table_.pairs().front()) * setup.time_step * setup.time_step),
       skin_(method.skin),
       densities_(setup.kinds.densities),

@@ -73,23 +73,27 @@ bool contacts_differ(const Setup& setup) {
     return setup.kinds.densities.size() > 1;
 }
 
+SoundOverlaps deepest_overlaps(const Setup& setup) {
+    return {static_cast<float>(overlap_limit), static_cast<float>(setup.deepest_in_walls)};
+}
+
 SoundOverlaps resolved_overlaps(const Setup& setup) {
     double radius = std::numeric_limits<double>::infinity(), density = radius, slope = 0;
     for_each_extreme_sphere(setup, [&](const Sphere& sphere) {
         radius = std::min(radius, sphere.radius);
         density = std::min(density, density_of(setup, sphere));
     });
-    if (!std::isfinite(radius)) return {};
+    if (!std::isfinite(radius)) return deepest_overlaps(setup);
     for (const Material& m : materials_of(setup)) slope = std::max(slope, normal_slope(m));
     const bool linear = materials_of(setup).front().normal_law == NormalLaw::linear;
     const double mass = 4.0 / 3 * std::numbers::pi * radius * radius * radius * density;
-    const auto limit = [&](double share) {  // R* = share R, m* = share m
+    const auto limit = [&](double share, double deepest) {  // R* = share R, m* = share m
         const double root =
             largest_sound_swing * largest_sound_swing * share * mass / (slope * setup.time_step * setup.time_step);
-        if (linear) return static_cast<float>(root >= 1 ? overlap_limit : 0);  // at any overlap
-        return static_cast<float>(std::min(overlap_limit, root * root / (share * radius) / (2 * radius)));
+        if (linear) return static_cast<float>(root >= 1 ? deepest : 0);  // at any overlap
+        return static_cast<float>(std::min(deepest, root * root / (share * radius) / (2 * radius)));
     };
-    return {limit(0.5), limit(1)};
+    return {limit(0.5, overlap_limit), limit(1, setup.deepest_in_walls)};
 }
 
 std::string describe_fast_particle(const FaultView& s) {
@@ -131,10 +135,11 @@ std::string describe(const FaultView& s, const std::string& what, std::int32_t i
 std::string unsound_contact(const FaultView& s, bool advanced) {
     const Scale& scale = s.scale;
     const double ahead = advanced ? 1 : 0;
-    const auto judge = [&](const Material& m, double overlap, double smaller, double radius, double inverse_mass) {
+    const auto judge = [&](const Material& m, double overlap, double smaller, double radius, double inverse_mass,
+                           double deepest) {
         const double over = m.normal_law == NormalLaw::linear ? 1 : std::sqrt(radius * std::max(overlap, 0.0));
         return flaw_of_contact(overlap / (2 * smaller),
-                               scale.time * std::sqrt(normal_slope(m) * over * inverse_mass / scale.mass));
+                               scale.time * std::sqrt(normal_slope(m) * over * inverse_mass / scale.mass), deepest);
     };
     for (std::int32_t k = 0; k < s.field.inner_count; ++k) {
         const std::int32_t i = index_at(s.field.inner_first[k]), j = index_at(s.field.inner_second[k]);
@@ -142,8 +147,9 @@ std::string unsound_contact(const FaultView& s, bool advanced) {
         const Record &a = s.field.records[i], &b = s.field.records[j];
         const double one = radius_of(a, scale), other = radius_of(b, scale);
         const Material& m = s.table.pairs()[place_of_pair(s.field.kind[i], s.field.kind[j])];
-        const std::string flaw = judge(m, overlap_of(s, a, b, ahead) * scale.length, std::min(one, other),
-                                       one * other / (one + other), double{a.inverse_mass} + double{b.inverse_mass});
+        const std::string flaw =
+            judge(m, overlap_of(s, a, b, ahead) * scale.length, std::min(one, other), one * other / (one + other),
+                  double{a.inverse_mass} + double{b.inverse_mass}, overlap_limit);
         if (!flaw.empty()) return flaw + "particle " + std::to_string(s.id[j]) + where_and_when(s, i);
     }
     std::string found;
@@ -159,8 +165,8 @@ std::string unsound_contact(const FaultView& s, bool advanced) {
             for (std::size_t q = 0; q < 3; ++q) x[q] -= ahead * static_cast<double>(r.velocity[q]) * scale.length;
             s.walls[w].find(0, x, radius, touched);
             for (const WallTouch& touch : touched) {
-                const std::string flaw =
-                    judge(m, radius - touch.place.distance, radius, radius, double{r.inverse_mass});
+                const std::string flaw = judge(m, radius - touch.place.distance, radius, radius, double{r.inverse_mass},
+                                               double{s.sound.wall});
                 if (found.empty() && !flaw.empty()) found = flaw + "wall " + std::to_string(w) + where_and_when(s, i);
             }
         });

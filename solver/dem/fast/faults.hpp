@@ -11,7 +11,7 @@
 
 namespace grainsweep::dem::fast {
 
-/// Overlaps over the smaller diameter.
+/// Overlaps over the smaller diameter; of walls over the diameter.
 struct SoundOverlaps {
     float pair = static_cast<float>(overlap_limit);
     float wall = static_cast<float>(overlap_limit);
@@ -23,6 +23,8 @@ struct SoundOverlaps {
 /// largest_sound_swing d = (swing^2 m*/(2 E* dt^2))^2/R*. Of all contacts those of the smallest and lightest sphere in
 /// the stiffest contact come first.
 [[nodiscard]] SoundOverlaps resolved_overlaps(const Setup& setup);
+/// Up to which a contact is meant by the law, or by the setup.
+[[nodiscard]] SoundOverlaps deepest_overlaps(const Setup& setup);
 /// Whether contacts beyond resolved_overlaps() may be sound: a small hard sphere sinks into a large soft one farther
 /// than it may into its like. Such contacts are judged one by one (unsound_contact).
 [[nodiscard]] bool contacts_differ(const Setup& setup);

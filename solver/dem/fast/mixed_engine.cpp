@@ -35,7 +35,7 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
       walls_(setup.walls, setup.domain, space_.scale, needs_.combination, table_, materials_),
       contacts_differ_(contacts_differ(setup)),
       resolved_(resolved_overlaps(setup)),
-      sound_(contacts_differ_ ? SoundOverlaps{} : resolved_),
+      sound_(contacts_differ_ ? deepest_overlaps(setup) : resolved_),
       watch_(setup, space_.scale),
       resting_(setup, laws_, space_.scale, rest_speed),
       subdomains_(*kernels_, threads),
