@@ -335,8 +335,12 @@ void Run::restore(std::span<const std::byte> from) {
                times_.end.size() == phase_ && ended_early_.size() == phase_);
     in.require(species_.size() == density_.size() &&
                std::ranges::all_of(species_, [this](std::uint8_t s) { return s < spec_.species.size(); }));
-    in.require(step_ >= phase_begin_ && phase_begin_ >= 0 && frame_ >= 0 && check_ >= 0 &&
-               (finished() || (step_ <= phase_begin_ + phase_steps() && phase_begin_ <= most_steps)));
+    const auto finite = [](const std::vector<double>& times) {
+        return std::ranges::all_of(times, [](double t) { return std::isfinite(t); });
+    };
+    in.require(finite(times_.begin) && finite(times_.end) && phase_begin_ >= 0 && step_ >= phase_begin_);
+    in.require(finished() || (phase_begin_ <= most_steps && step_ - phase_begin_ <= phase_steps() && frame_ >= 0 &&
+                              frame_ <= phase().frames + 1 && check_ >= 0 && check_ <= phase_steps()));
     for (const auto& record : records_)
         in.require(record.bins.size() == record.sums.size() && record.bins.size() == record.counts.size());
     engine_->restore(kit::engine_at_end(in));

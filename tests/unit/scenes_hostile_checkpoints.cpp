@@ -3,6 +3,7 @@
 // writes beside its memory.
 #include "solver/scenes/scene.hpp"
 #include "stats/random.hpp"
+#include "tests/support/machines.hpp"
 
 #include <gtest/gtest.h>
 
@@ -157,7 +158,10 @@ std::vector<Hostile> kinds() {
     const auto thermo = [](const char* coupling) {
         return Inputs{{"coupling", std::string(coupling)}, {"cells", std::int64_t{8}}, {"particles", std::int64_t{64}}};
     };
+    static const std::string bin = campaign::enter_machine(machine_of(small_machine())).name;
     std::vector<Hostile> all = {
+        {bin, {{"precision", mixed}}, 0.055, "MachineMixed"},
+        {bin, {{"precision", in_double}}, 0.055, "MachineDouble"},
         {"rehearsal", {{"wait_seconds", 0.05}}, 0.01, "Rehearsal"},
         {"tpms_discharge", {{"edge", 12.0}, {"precision", mixed}}, 0.004, "TpmsMixed"},
         {"tpms_discharge", {{"edge", 12.0}, {"precision", in_double}}, 0.004, "TpmsDouble"},
