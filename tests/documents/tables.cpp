@@ -87,8 +87,9 @@ std::string parameters_table(const ordered_json& scene) {
 ordered_json own_part_of_machine(const std::string& name, const std::string& part) {
     static const std::set<std::string> common = {"particles_scale", "time_step", "time_step_fraction", "precision",
                                                  "particles",       "lost",      "max_overlap"};
+    const auto declared = catalogue({"machines", name});
     ordered_json own = ordered_json::array();
-    for (const auto& one : catalogue({"machines", name})[part]) {
+    for (const auto& one : declared[part]) {
         const std::string what = one["name"];
         if (!common.contains(what) || (what == "particles" && part == "parameters"))
             if (!what.ends_with("_error")) own.push_back(one);
