@@ -126,6 +126,12 @@ dem::Setup setup_of(const Spec& spec, const Filled& filled) {
     return setup;
 }
 
+/// Duration of an impact of two equal spheres of these, s. Rayleigh waves are those of one body.
+static double impact_time(const dem::Material& pair, double radius, double speed) {
+    return pair.normal_law == dem::NormalLaw::linear ? dem::linear_contact_time(pair, radius)
+                                                     : dem::hertz_contact_time(pair, radius, speed);
+}
+
 double time_step_of(const Spec& spec, double fraction, double speed) {
     double shortest = never;
     const auto pair_of = [&](std::size_t a, std::size_t b) { return spec.pairs[dem::place_of_pair(a, b)]; };
@@ -136,12 +142,12 @@ double time_step_of(const Spec& spec, double fraction, double speed) {
         for (const Species& b : spec.species) {
             dem::Material pair = pair_of(a.material, b.material);
             pair.density = std::min(spec.densities[a.material], spec.densities[b.material]);
-            shortest = std::min(shortest, dem::shortest_time(pair, std::min(a.smallest(), b.smallest()) / 2, speed));
+            shortest = std::min(shortest, impact_time(pair, std::min(a.smallest(), b.smallest()) / 2, speed));
         }
         for (const MachineWall& wall : spec.walls) {
             dem::Material pair = wall.materials[a.material];
             pair.density = spec.densities[a.material];
-            shortest = std::min(shortest, dem::shortest_time(pair, a.smallest() / 2, speed));
+            shortest = std::min(shortest, impact_time(pair, a.smallest() / 2, speed));
         }
     }
     return fraction * shortest;

@@ -50,6 +50,8 @@ using FileReader = std::function<std::string(const std::string& name)>;
 /// The machine as numbers, for complete inputs. Throws WrongQuestion.
 [[nodiscard]] machine::Spec machine_spec(const Machine& machine, const Inputs& inputs);
 
+/// What a machine is, in one line.
+[[nodiscard]] std::string_view machine_summary();
 /// "machine:" and 32 hexadecimal digits.
 [[nodiscard]] std::string machine_scene_name(const Machine& machine);
 /// The document and the hashes of its files, as JSON; and back, with the contents by their hash. The second throws

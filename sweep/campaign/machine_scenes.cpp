@@ -64,6 +64,10 @@ SceneInfo scene_of_machine(const std::shared_ptr<const Machine>& machine, std::s
 
 }  // namespace
 
+std::string_view machine_summary() {
+    return "your own granular experiment as one JSON file: walls, motions, powders, phases, measurements";
+}
+
 const SceneInfo& enter_machine(std::shared_ptr<const Machine> machine) {
     auto scene = scene_of_machine(machine, machine_scene_name(*machine));
     auto& all = machines();

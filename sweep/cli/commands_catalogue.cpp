@@ -3,6 +3,7 @@
 #include "sweep/campaign/cursor.hpp"
 #include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/machine.hpp"
+#include "sweep/campaign/machine_keys.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/program_keys.hpp"
 #include "sweep/campaign/schema.hpp"
@@ -168,18 +169,31 @@ void show_scene(const SceneInfo& scene, Format format) {
     if (!scene.accuracy.empty()) std::cout << '\n';
 }
 
+/// Appends the keys of an object.
+void add_keys(store::Table& table, std::string_view object, std::span<const campaign::Key> keys) {
+    for (const auto& key : keys) {
+        const auto one_of = key.words.empty() ? "" : "; one of " + alternatives(key.words);
+        table.rows.push_back({std::string(object), std::string(key.name),
+                              key.required ? Cell{std::string("required")} : text_or_none(std::string(key.standard)),
+                              std::string(key.meaning) + one_of});
+    }
+}
+
+/// The keys of a machine file, object by object, shapes and regions among them.
+store::Table machine_table() {
+    store::Table table{{"object", "key", "default", "meaning"}, {}};
+    for (const auto& [title, keys] : campaign::machine_keys::all()) add_keys(table, title, keys);
+    for (const auto& form : campaign::machine_keys::shapes())
+        add_keys(table, fmt::format("shape {}", form.name), form.keys);
+    for (const auto& form : campaign::machine_keys::regions())
+        add_keys(table, fmt::format("region {}", form.name), form.keys);
+    return table;
+}
+
 /// The keys of the section "program", object by object.
 store::Table program_table() {
     store::Table table{{"object", "key", "default", "meaning"}, {}};
-    const auto add = [&](const char* object, std::span<const campaign::Key> keys) {
-        for (const auto& key : keys) {
-            const auto one_of = key.words.empty() ? "" : "; one of " + alternatives(key.words);
-            table.rows.push_back(
-                {std::string(object), std::string(key.name),
-                 key.required ? Cell{std::string("required")} : text_or_none(std::string(key.standard)),
-                 std::string(key.meaning) + one_of});
-        }
-    };
+    const auto add = [&](const char* object, std::span<const campaign::Key> keys) { add_keys(table, object, keys); };
     add("program", campaign::program_keys());
     add("parameters.NAME", campaign::program_parameter_keys());
     add("observables.NAME", campaign::program_observable_keys());
@@ -188,29 +202,37 @@ store::Table program_table() {
     return table;
 }
 
-void show_program(Format format) {
-    const store::Table table = program_table();
+/// A scene whose parameters and observables a file gives: the keys of that file, and `last`.
+void show_keys(std::string_view word, std::string_view summary, const store::Table& table, std::string_view last,
+               Format format) {
     if (format == Format::csv) return report::write(std::cout, table, format);
     if (format == Format::json) {
-        return report::write(std::cout, {{"name", campaign::program_word},
-                                         {"summary", campaign::program_summary()},
+        return report::write(std::cout, {{"name", word},
+                                         {"summary", summary},
                                          {"revision", 1},
-                                         {"parameters", Json::array()},  // the campaign file's own
+                                         {"parameters", Json::array()},  // the file's own
                                          {"observables", Json::array()},
                                          {"accuracy", Json::object()},
                                          {"section", report::to_json(table)}});
     }
-    std::cout << fmt::format("{}: {}\n\n", campaign::program_word, campaign::program_summary());
+    std::cout << fmt::format("{}: {}\n\n", word, summary);
     report::write(std::cout, table, format);
-    std::cout
-        << "\nThe parameters are the factors and fixed values of the campaign file; the observables are those of its "
-           "\"program\".\n";
+    std::cout << '\n' << last << '\n';
 }
 
 int list_scenes(const std::string& name, Format format) {
     const std::vector<std::string> known = campaign::scene_words();
     if (name == campaign::program_word) {
-        show_program(format);
+        show_keys(name, campaign::program_summary(), program_table(),
+                  "The parameters are the factors and fixed values of the campaign file; the observables are those of "
+                  "its \"program\".",
+                  format);
+        return 0;
+    }
+    if (name == campaign::machine_word) {
+        show_keys(name, campaign::machine_summary(), machine_table(),
+                  "Parameters and observables are those of the machine file; docs/machines_reference.md lists probes.",
+                  format);
         return 0;
     }
     if (!name.empty()) {
@@ -228,6 +250,8 @@ int list_scenes(const std::string& name, Format format) {
                               static_cast<std::int64_t>(scene.parameters.size()),
                               static_cast<std::int64_t>(scene.observables.size()), scene.summary});
     }
+    table.rows.push_back({std::string(campaign::machine_word), std::int64_t{1}, Cell{}, Cell{},
+                          std::string(campaign::machine_summary())});
     table.rows.push_back({std::string(campaign::program_word), std::int64_t{1}, Cell{}, Cell{},
                           std::string(campaign::program_summary())});
     report::write(std::cout, table, format);

@@ -277,6 +277,7 @@ TEST(Tables, EverySceneHasItsPageAndEveryDesignItsOptions) {
         for (const auto& name : with_fresh_tables(page.text).second) all += name + '\n';
     for (const auto& scene : catalogue({"scenes"})) {
         const std::string name = shown(scene["scene"]);
+        if (name == "machine") continue;  // its parameters are those of a file: the reference of machines
         EXPECT_NE(all.find("scene " + name + " parameters\n"), std::string::npos) << name;
         EXPECT_NE(all.find("scene " + name + " observables\n"), std::string::npos) << name;
         const auto page = read_page("docs/scenes/" + name + ".md");
@@ -289,6 +290,7 @@ TEST(Tables, EverySceneHasItsPageAndEveryDesignItsOptions) {
 }
 
 TEST(Tables, EveryInstalledMachineHasItsSectionAndItsPicture) {
+    EXPECT_NE(read_page("docs/machines_reference.md").text.find("## What it cannot do\n"), std::string::npos);
     const auto page = read_page("docs/scenes/machines.md");
     const auto names = with_fresh_tables(page.text).second;
     for (const auto& machine : catalogue({"machines"})) {
