@@ -3,6 +3,7 @@
 #include "sweep/campaign/json_text.hpp"
 #include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/wrong_question.hpp"
+#include "sweep/files/whole_file.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -12,6 +13,7 @@ namespace grainsweep::campaign {
 namespace {
 
 constexpr std::string_view machine_ending = ".json";
+constexpr std::size_t largest_campaign_text = 64ULL << 20U;
 
 const InstalledFile* find_installed(std::string_view name) {
     const auto all = installed_files();
@@ -45,6 +47,15 @@ std::shared_ptr<const Machine> machine_named(std::string_view where, const std::
     if (auto machine = installed_machine(name)) return machine;
     throw wrong_question(where, name, "there is no such machine file, and no machine of this name is installed",
                          nearest_word(name, installed_machines()));
+}
+
+std::shared_ptr<const Machine> machine_if_any(const std::string& argument) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(argument, error)) return installed_machine(argument);
+    const std::string text = files::whole_file(argument, error, largest_campaign_text);
+    // What is no JSON is refused where it is read as a campaign file.
+    const Json document = error ? Json() : Json::parse(text, nullptr, false);
+    return is_machine_document(document) ? read_machine(argument) : nullptr;
 }
 
 }  // namespace grainsweep::campaign

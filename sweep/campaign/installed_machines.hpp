@@ -23,4 +23,7 @@ struct InstalledFile {
 /// A machine file, or one that is installed, by a path or a name. Throws WrongQuestion, naming `where`.
 [[nodiscard]] std::shared_ptr<const Machine> machine_named(std::string_view where, const std::string& name);
 
+/// The machine that an argument names: a machine file, or one that is installed; nullptr where it is something else.
+[[nodiscard]] std::shared_ptr<const Machine> machine_if_any(const std::string& argument);
+
 }  // namespace grainsweep::campaign

@@ -219,6 +219,10 @@ FileReader beside(const fs::path& folder) {
     };
 }
 
+bool is_machine_document(const Json& document) {
+    return document.is_object() && !document.contains("campaign") && document.contains("phases");
+}
+
 std::shared_ptr<const Machine> read_machine(const fs::path& file) {
     std::error_code error;
     const std::string text = files::whole_file(file, error, largest_machine_file);

@@ -45,6 +45,8 @@ using FileReader = std::function<std::string(const std::string& name)>;
                                                           const FileReader& read_file);
 /// Reads files of a folder.
 [[nodiscard]] FileReader beside(const std::filesystem::path& folder);
+/// Whether a JSON document looks like a machine and not like a campaign.
+[[nodiscard]] bool is_machine_document(const nlohmann::json& document);
 /// A machine file, and the files beside it.
 [[nodiscard]] std::shared_ptr<const Machine> read_machine(const std::filesystem::path& file);
 /// The machine as numbers, for complete inputs. Throws WrongQuestion.

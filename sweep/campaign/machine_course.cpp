@@ -22,7 +22,13 @@ EntryKind entry_kind(const Cursor& place) {
     if (place.json().is_string()) return EntryKind::expression;
     if (!place.json().is_object())
         place.refuse("must be an object with a probe, or a text: an expression of other measurements");
+    if (place.json().contains("expression")) return EntryKind::expression;
     return place.json().contains("time_of") ? EntryKind::time_of : EntryKind::probe;
+}
+
+/// The text of an expression, alone or with its unit and meaning.
+Cursor expression_of(const Cursor& place) {
+    return place.json().is_string() ? place : Section(place, machine_keys::expression()).at("expression");
 }
 
 /// The probe of an entry: its one key that is none of a measurement's own.
@@ -253,8 +259,9 @@ void read_measures(const Section& top, MachineReading& reading) {
         if (entry_kind(place) != EntryKind::expression) continue;
         auto names = known;
         names.insert(names.end(), constants.begin(), constants.end());
-        const auto parsed = Formula::parse(place.text(), names);
-        if (const auto* why = std::get_if<std::string>(&parsed)) place.refuse(*why);
+        const Cursor text = expression_of(place);
+        const auto parsed = Formula::parse(text.text(), names);
+        if (const auto* why = std::get_if<std::string>(&parsed)) text.refuse(*why);
         const auto& formula = std::get<Formula>(parsed);
         machine::Derived derived{name, {}, {}};
         std::map<std::string, double, std::less<>> given;
@@ -288,7 +295,12 @@ std::vector<ObservableSpec> machine_observables(const Section& top) {
         require_name(place, name);
         const EntryKind kind = entry_kind(place);
         if (kind == EntryKind::expression)
-            all.push_back({name, "SI", place.text(), Shape::scalar, {}, "something in the expression has no value"});
+            all.push_back({name,
+                           place.json().is_object() && place.json().contains("unit") ? place["unit"].text() : "SI",
+                           meaning_of(place, expression_of(place).text()),
+                           Shape::scalar,
+                           {},
+                           "something in the expression has no value"});
         if (kind == EntryKind::time_of)
             all.push_back({name,
                            "s",

@@ -7,7 +7,6 @@ namespace {
 
 using MachineKey = Key::Kind;
 
-constexpr std::array<std::string_view, 2> side_words = {"inside", "outside"};
 constexpr std::array<std::string_view, 4> spread_words = {"uniform", "lognormal", "weibull_wide", "weibull_narrow"};
 constexpr std::array<std::string_view, 3> by_words = {"count", "mass", "volume"};
 constexpr std::array<std::string_view, 2> as_words = {"lattice", "random"};
@@ -248,94 +247,11 @@ constexpr auto time_of_keys = std::to_array<Key>({
     {"meaning", MachineKey::text, "in words"},
 });
 
-constexpr auto plane_keys = std::to_array<Key>({
-    {"point", MachineKey::array, "on it, m", "[0, 0, 0]"},
-    needed({"normal", MachineKey::array, "direction, to the side of the particles"}),
+constexpr auto expression_keys = std::to_array<Key>({
+    needed({"expression", MachineKey::text, "of other measurements, parameters and \"let\""}),
+    {"unit", MachineKey::text, "its unit, as shown", "\"SI\""},
+    {"meaning", MachineKey::text, "in words"},
 });
-constexpr auto rectangle_keys = std::to_array<Key>({
-    needed({"corner", MachineKey::array, "m"}),
-    needed({"along", MachineKey::array, "one side, m"}),
-    needed({"across", MachineKey::array, "the other side, m"}),
-});
-constexpr auto disc_keys = std::to_array<Key>({
-    {"centre", MachineKey::array, "m", "[0, 0, 0]"},
-    {"normal", MachineKey::array, "direction across it", "[0, 0, 1]"},
-    needed({"radius", MachineKey::value, "m"}),
-    {"inner", MachineKey::value, "radius of a hole in the middle, m", "0"},
-});
-constexpr auto box_keys = std::to_array<Key>({
-    needed({"low", MachineKey::array, "lower corner, m"}),
-    needed({"high", MachineKey::array, "upper corner, m"}),
-    {"open", MachineKey::words, "of walls: faces that are left out, '-x', '+x', '-y', '+y', '-z', '+z'", "[]"},
-});
-constexpr auto region_box_keys = std::to_array<Key>({
-    needed({"low", MachineKey::array, "lower corner, m"}),
-    needed({"high", MachineKey::array, "upper corner, m"}),
-});
-constexpr auto cylinder_keys = std::to_array<Key>({
-    {"point", MachineKey::array, "on the axis; of one with a length its middle, m", "[0, 0, 0]"},
-    {"axis", MachineKey::array, "direction", "[0, 0, 1]"},
-    needed({"radius", MachineKey::value, "m"}),
-    {"length", MachineKey::value, "m; default: without end"},
-    {"side", MachineKey::word, "where the particles are", "\"inside\"", {}, side_words},
-});
-constexpr auto cone_keys = std::to_array<Key>({
-    needed({"base", MachineKey::array, "centre of the first end, m"}),
-    {"axis", MachineKey::array, "direction to the second end", "[0, 0, 1]"},
-    needed({"base_radius", MachineKey::value, "at the first end, m"}),
-    needed({"end_radius", MachineKey::value, "at the second end, m"}),
-    needed({"length", MachineKey::value, "m"}),
-    {"side", MachineKey::word, "where the particles are", "\"inside\"", {}, side_words},
-});
-constexpr auto tube_keys = std::to_array<Key>({
-    needed({"base", MachineKey::array, "centre of the first end, m"}),
-    {"axis", MachineKey::array, "direction to the second end", "[0, 0, 1]"},
-    needed({"inner", MachineKey::value, "inner radius, m"}),
-    needed({"outer", MachineKey::value, "outer radius, m"}),
-    needed({"length", MachineKey::value, "m"}),
-});
-constexpr auto bar_keys = std::to_array<Key>({
-    needed({"front", MachineKey::value, "largest x, m"}),
-    needed({"thickness", MachineKey::value, "along x, m"}),
-    needed({"bottom", MachineKey::value, "lowest z, m"}),
-    needed({"top", MachineKey::value, "highest z, m"}),
-    {"edge_radius", MachineKey::value, "of the two lower edges, m", "0"},
-});
-constexpr auto round_keys = std::to_array<Key>({
-    needed({"base", MachineKey::array, "centre of the first end, m"}),
-    {"axis", MachineKey::array, "direction to the second end", "[0, 0, 1]"},
-    needed({"radius", MachineKey::value, "m"}),
-    {"inner", MachineKey::value, "radius of a hollow, m", "0"},
-    needed({"length", MachineKey::value, "m"}),
-});
-constexpr auto ball_keys = std::to_array<Key>({
-    needed({"centre", MachineKey::array, "m"}),
-    needed({"radius", MachineKey::value, "m"}),
-});
-constexpr auto half_keys = std::to_array<Key>({
-    {"point", MachineKey::array, "on the plane, m", "[0, 0, 0]"},
-    needed({"normal", MachineKey::array, "direction, into the region"}),
-});
-
-constexpr std::array shape_forms = {
-    Form{"plane", "an infinite plane", plane_keys},
-    Form{"rectangle", "a parallelogram, two sides from a corner", rectangle_keys},
-    Form{"disc", "a flat disc or ring of 64 facets", disc_keys},
-    Form{"box", "the faces of a box", box_keys},
-    Form{"cylinder", "a drum from inside, a roller from outside", cylinder_keys},
-    Form{"cone", "a funnel from inside, a solid from outside", cone_keys},
-    Form{"tube", "the wall between two cylinders, with flat ends", tube_keys},
-    Form{"bar", "a bar without end along y, its lower edges rounded", bar_keys},
-};
-constexpr std::array region_forms = {
-    Form{"box", "a box", region_box_keys},
-    Form{"cylinder", "a cylinder, hollow or not", round_keys},
-    Form{"ball", "a ball", ball_keys},
-    Form{"half_space", "one side of a plane", half_keys},
-    Form{"all", "a list of regions: where all of them are", {}},
-    Form{"any", "a list of regions: where one of them is", {}},
-    Form{"not", "a region: outside of it", {}},
-};
 
 }  // namespace
 
@@ -406,14 +322,11 @@ std::span<const Key> flow_stops() {
 std::span<const Key> measure() {
     return measure_keys;
 }
+std::span<const Key> expression() {
+    return expression_keys;
+}
 std::span<const Key> time_of() {
     return time_of_keys;
-}
-std::span<const Form> shapes() {
-    return shape_forms;
-}
-std::span<const Form> regions() {
-    return region_forms;
 }
 
 std::span<const Table> all() {
@@ -440,6 +353,7 @@ std::span<const Table> all() {
         Table{"flow_stops", flow_stops_keys},
         Table{"A measurement", measure_keys},
         Table{"The time of a measurement", time_of_keys},
+        Table{"An expression of measurements", expression_keys},
     };
     return tables;
 }

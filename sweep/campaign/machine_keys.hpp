@@ -38,6 +38,7 @@ struct Table {
 [[nodiscard]] std::span<const Key> flow_stops();
 [[nodiscard]] std::span<const Key> measure();
 [[nodiscard]] std::span<const Key> time_of();
+[[nodiscard]] std::span<const Key> expression();
 
 /// Shapes and regions: the key that names one, and the keys of its object.
 struct Form {

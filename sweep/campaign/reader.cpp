@@ -128,7 +128,7 @@ std::string read_text(const fs::path& file) {
 Campaign parse_campaign(std::string_view text, const fs::path& folder) {
     if (text.size() > largest_text) throw wrong_question("", "", "a campaign file has at most 64 MiB");
     const Json document = parse_json(text);
-    if (document.is_object() && !document.contains("campaign") && document.contains("phases"))
+    if (is_machine_document(document))
         throw wrong_question("$", "",
                              "this is a machine file; a campaign file names it, with \"scene\": \"machine\" and "
                              "\"machine\": the name of this file");

@@ -2,6 +2,8 @@
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/expressions.hpp"
 #include "sweep/campaign/forecast.hpp"
+#include "sweep/campaign/installed_machines.hpp"
+#include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/relevance.hpp"
@@ -95,10 +97,22 @@ struct Asked {
     double limit_seconds = 0;
 };
 
+/// A campaign file; or a machine, which is a campaign without factors.
+Campaign campaign_of(const std::string& config) {
+    if (auto machine = campaign::machine_if_any(config)) {
+        Campaign campaign;
+        campaign.name = machine->name;
+        campaign.space.scene = &campaign::enter_machine(std::move(machine));
+        return campaign;
+    }
+    Campaign campaign = read_with_program(config);
+    campaign::asked_in(config, [&] { campaign::check_design(campaign); });
+    campaign::asked_in(config, [&] { study::check_features(campaign); });
+    return campaign;
+}
+
 Asked question_of(const SolveRequest& request) {
-    Campaign campaign = read_with_program(request.config);
-    campaign::asked_in(request.config, [&] { campaign::check_design(campaign); });
-    campaign::asked_in(request.config, [&] { study::check_features(campaign); });
+    Campaign campaign = campaign_of(request.config);
     apply(request.settings, campaign, std::filesystem::path(request.config).parent_path());
     const Inputs inputs = middle_of(campaign.space);
     campaign::asked_in(request.config, [&] { campaign::check_expressions(campaign.space, inputs); });
@@ -268,7 +282,7 @@ int solve(const SolveRequest& request, Format format) {
 
 std::vector<Command> solve_commands() {
     const auto arguments = [](Parser& parser, SolveRequest& request) {
-        parser.add_option("CONFIG", request.config, "campaign file");
+        parser.add_option("CONFIG", request.config, "campaign file, machine file, or the name of an installed machine");
         parser
             .add_option("--set NAME=VALUE", request.settings,
                         "value of a parameter, a number with or without a unit, or a word; other factors take the "
@@ -284,8 +298,8 @@ std::vector<Command> solve_commands() {
         declare_path(parser, request.path);
         declare_threads(parser, request.threads);
     };
-    return {command<SolveRequest>("solve", "computes one case of a campaign in this process, without a database",
-                                  arguments, solve)};
+    return {command<SolveRequest>(
+        "solve", "computes one case of a campaign or machine in this process, without a database", arguments, solve)};
 }
 
 }  // namespace grainsweep::cli

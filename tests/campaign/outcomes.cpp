@@ -130,7 +130,7 @@ TEST(Outcomes, ALauncherMayTidyUp) {
     const Folder folder;
     folder.write("c.json",
                  R"({"campaign": "trouble", "scene": "rehearsal", "factors": [{"name": "x1", "between": [0, 1]}],
-      "design": {"kind": "random", "points": 4},
+      "fixed": {"wait_seconds": 0.5}, "design": {"kind": "random", "points": 4},
       "execution": {"launcher": ["/bin/sh", "-c", "\"$@\"; sleep 0.3; echo tidy >> tidied", "sh"]}})");
     ASSERT_EQ(run_program({"run", "c.json", "-j", "2", "--quiet"}, folder.path()).code, 0);
     std::ifstream tidied(folder / "tidied");

@@ -185,7 +185,7 @@ TEST(Tube, FindsTheClosestPointOfItsWall) {
 }
 
 TEST(Motions, ComposeInClosedForm) {
-    const std::vector<Motion> motions = {
+    const std::vector<geometry::Motion> motions = {
         Translation{.velocity = {0.3, -0.2, 0.1}, .start = 0.5, .end = 2.5},
         Rotation{.point = {1, 0, 0}, .axis = {0, 0, 1}, .speed = 2},
         Vibration{.amplitude = {0, 0.05, 0}, .frequency = 0.7, .phase = 0.4},
@@ -202,7 +202,7 @@ TEST(Motions, ComposeInClosedForm) {
         EXPECT_NEAR(norm(twist_at(motions, t).at(pose.from_body(body)) - rate), 0, 1e-8) << t;
     }
     // A million turns leave it where it is: nothing adds up.
-    const std::vector<Motion> turns = {Rotation{.axis = {0, 0, 1}, .speed = 2 * std::numbers::pi}};
+    const std::vector<geometry::Motion> turns = {Rotation{.axis = {0, 0, 1}, .speed = 2 * std::numbers::pi}};
     EXPECT_NEAR(norm(pose_at(turns, 1e6).from_body({1, 0, 0}) - Vec3{1, 0, 0}), 0, 1e-9);
 }
 

@@ -1,0 +1,142 @@
+// Ready machines against ensembles of LIGGGHTS: means over as many seeds, within three standard errors of their
+// difference; minutes: slow_machines. Reference: tests/reference/machines/ensembles.csv, definitions in its README.
+#include "solver/scenes/scene.hpp"
+#include "sweep/campaign/csv_table.hpp"
+#include "sweep/campaign/installed_machines.hpp"
+#include "sweep/campaign/machine.hpp"
+#include "tests/support/places.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+using namespace grainsweep;
+
+namespace {
+
+using Scalars = std::map<std::string, double, std::less<>>;
+
+struct Reference {
+    double mean = 0, tolerance = 0;
+    int seeds = 0;
+};
+
+/// By case and quantity. `tolerance`: for the mean over as many seeds.
+const std::map<std::pair<std::string, std::string>, Reference>& references() {
+    static const auto all = [] {
+        std::ifstream file(tests::source("tests/reference/machines/ensembles.csv"));
+        std::stringstream text;
+        text << file.rdbuf();
+        const std::string contents = text.str();
+        campaign::CsvTable table(contents, [](const std::string& rule) { throw std::invalid_argument(rule); });
+        std::map<std::pair<std::string, std::string>, Reference> found;
+        while (const auto row = table.next()) {
+            if ((*row)[9].empty()) continue;  // no scatter is known
+            found[{(*row)[0], (*row)[3]}] = {std::stod((*row)[4]), std::stod((*row)[9]), std::stoi((*row)[1])};
+        }
+        return found;
+    }();
+    return all;
+}
+
+Scalars answer(const SceneInfo& scene, const Inputs& set, std::uint64_t seed) {
+    Inputs inputs = scene.defaults();
+    for (const auto& [name, value] : set) inputs[name] = value;
+    NoArtefacts none;
+    const auto run = scene.make(inputs, seed, none);
+    while (!run->finished() && run->health().stable()) run->advance(run->time() + 0.5);
+    EXPECT_TRUE(run->health().stable()) << run->health().reason;
+    Observations observations;
+    run->observe(observations);
+    return observations.scalars;
+}
+
+/// A measured number of the reference, and how a machine's observables give it.
+struct Quantity {
+    std::string name;
+    std::function<double(const Scalars&)> of;
+};
+
+Quantity same(std::string name, std::string observable) {
+    return {std::move(name), [observable](const Scalars& scalars) { return scalars.at(observable); }};
+}
+
+struct Case {
+    std::string reference, machine;
+    Inputs set;
+    std::vector<Quantity> quantities;
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& one) {
+    return out << one.reference;
+}
+
+std::vector<Quantity> of_drum() {
+    constexpr double radius = 0.06;
+    const auto over_radius = [](std::string observable) {
+        return [observable](const Scalars& scalars) { return scalars.at(observable) / radius; };
+    };
+    return {same("lacey_3", "lacey"),
+            {"radius_bed_A", over_radius("radius_a")},
+            {"radius_bed_B", over_radius("radius_b")},
+            same("radius_bed_A_minus_B", "segregation"),
+            same("angle_cm_deg", "angle")};
+}
+
+std::vector<Quantity> of_chute() {
+    return {same("velocity_s1", "velocity_upper"), same("velocity_s2", "velocity_lower"),
+            same("depth_s1", "depth_upper"),       same("depth_s2", "depth_lower"),
+            same("holdup_kg", "holdup"),           same("height_A_s2", "small_lower"),
+            same("height_B_s2", "large_lower"),    same("flux_s2_kg_s", "flux_lower")};
+}
+
+const std::vector<Quantity> of_blender = {same("lacey_5", "lacey"), same("crossed_5", "crossed")};
+const std::vector<Quantity> of_screw = {same("rate_kg_s", "rate"), same("mass_per_revolution_kg", "per_revolution"),
+                                        same("fill_tube", "fill_tube")};
+const std::vector<Quantity> of_silo = {same("rate_kg_s", "rate")};
+
+class MachinesAgainstLiggghts : public testing::TestWithParam<Case> {};
+
+TEST_P(MachinesAgainstLiggghts, AgreeWithinThreeStandardErrors) {
+    const Case& asked = GetParam();
+    const SceneInfo& scene = campaign::enter_machine(campaign::installed_machine(asked.machine));
+    const int seeds = references().at({asked.reference, asked.quantities.front().name}).seeds;
+    std::vector<Scalars> answers;
+    for (int seed = 1; seed <= seeds; ++seed)
+        answers.push_back(answer(scene, asked.set, static_cast<std::uint64_t>(seed)));
+    for (const Quantity& quantity : asked.quantities) {
+        const Reference& reference = references().at({asked.reference, quantity.name});
+        double mean = 0;
+        for (const Scalars& scalars : answers) mean += quantity.of(scalars) / seeds;
+        std::printf("%-15s %-24s reference %9.4g here %9.4g difference over tolerance %5.2f\n", asked.reference.c_str(),
+                    quantity.name.c_str(), reference.mean, mean, (mean - reference.mean) / reference.tolerance);
+        EXPECT_NEAR(mean, reference.mean, reference.tolerance) << quantity.name;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    , MachinesAgainstLiggghts,
+    testing::Values(Case{"drum_density1", "binary_drum", {}, of_drum()},
+                    Case{"drum_density3", "binary_drum", {{"density_b", 7500.0}}, of_drum()},
+                    Case{"drum_size2", "binary_drum", {{"diameter_a", 0.007}, {"diameter_b", 0.0035}}, of_drum()},
+                    Case{"blender_rpm40", "v_blender", {{"speed", 40.0}}, of_blender},
+                    Case{"blender_rpm80", "v_blender", {{"speed", 80.0}}, of_blender},
+                    Case{"screw_rpm60", "screw_feeder", {{"speed", 60.0}}, of_screw},
+                    Case{"screw_rpm120", "screw_feeder", {{"speed", 120.0}}, of_screw},
+                    Case{"silo_insert15", "silo_insert", {}, of_silo},
+                    Case{"silo_no_insert", "silo_insert", {{"insert", std::string("no")}}, of_silo},
+                    Case{"chute_24", "chute", {{"angle", 24.0}}, of_chute()},
+                    Case{"chute_28", "chute", {{"angle", 28.0}}, of_chute()}),
+    [](const auto& info) { return info.param.reference; });
+
+}  // namespace
