@@ -200,7 +200,7 @@ void read_species(const Section& top, MachineReading& reading) {
         reading.species.push_back(name);
         spec.species.push_back(std::move(species));
     }
-    if (spec.species.size() > 200) all.refuse("at most 200 species are told apart");
+    if (spec.species.size() > 200) all.refuse("a machine has at most 200 species");
 }
 
 void read_fills(const Section& top, MachineReading& reading) {

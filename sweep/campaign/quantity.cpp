@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::size_t longest_quantity = 100;  // characters
 
-// Suggested in this order to whoever writes a unit that does not exist or does not fit.
+// Order in which units are suggested for one that does not exist or does not fit.
 constexpr auto usual_units = std::to_array<std::string_view>(
     {"um",    "mm",  "m",    "nm",    "cm",    "km",   "mm/s",  "m/s", "cm/s",  "km/h",  "m/s2",  "mm/s2", "s",
      "ms",    "us",  "min",  "h",     "Hz",    "kHz",  "1/s",   "rpm", "1/min", "rad/s", "deg/s", "deg",   "rad",

@@ -1,5 +1,5 @@
 // The protocol of main program and host (host.hpp), on one page. A frame is a line of words. The bytes and a newline
-// follow a frame with a length. SUM, the last word, is the CRC of cksum(1) over the line without SUM, a newline, and
+// follow a frame with a length. SUM, the last field, is the CRC of cksum(1) over the line without SUM, a newline, and
 // the bytes. The host refuses a frame with another CRC. The main program numbers workers and never reuses a number.
 // Messages of workers (message.hpp) travel in the pieces that a pipe delivers: the host does not read them.
 //

@@ -1,4 +1,4 @@
-// A machine as it runs: slices, checkpoints and threads change no bit; phases end as they are told; walls come, go and
+// A machine as it runs: slices, checkpoints and threads change no bit; phases end by their conditions; walls come, go and
 // move with phases.
 #include "stats/random.hpp"
 #include "tests/support/machines.hpp"
