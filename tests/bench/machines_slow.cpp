@@ -137,6 +137,6 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"silo_no_insert", "silo_insert", {{"insert", std::string("no")}}, of_silo},
                     Case{"chute_24", "chute", {{"angle", 24.0}}, of_chute()},
                     Case{"chute_28", "chute", {{"angle", 28.0}}, of_chute()}),
-    [](const auto& info) { return info.param.reference; });
+    [](const auto& one) { return one.param.reference; });
 
 }  // namespace
