@@ -237,7 +237,8 @@ std::string dump_of(const Folder& folder) {
 }
 
 TEST(Programs, OneWorkerTwoWorkersAndAKilledRunGiveTheSameDump) {
-    const std::string script = "sleep 0.02\n" + std::string(sound_script);
+    // Twice the time that the three kills leave to two workers, so that the third still meets a run.
+    const std::string script = "sleep 0.1\n" + std::string(sound_script);
     const auto campaign = script_campaign(24, {{"observables", {{"e", {{"from", {{"output", "e=([0-9.]+)"}}}}}}}});
     const std::string with_output = script + "echo noise; echo e=1.5; echo e=2.5\n";
     const Folder one, two, killed;
