@@ -137,9 +137,10 @@ public:
             dem::Sphere sphere;
             sphere.position = centres[n];
             sphere.radius = particles[n].radius;
-            sphere.velocity = fill.velocity;
+            sphere.mobile = !fill.glued;
+            if (!fill.glued) sphere.velocity = fill.velocity;
             for (std::size_t k = 0; k < 3; ++k)
-                if (fill.shaken > 0)
+                if (fill.shaken > 0 && !fill.glued)
                     sphere.velocity[k] += fill.shaken * (2 * draws.uniform(velocity_draw, 3 * n + k) - 1);
             add(sphere, particles[n].species);
         }

@@ -32,7 +32,7 @@ double mean_volume(const Spec& spec, const Mix& mix) {
 double duration_of(const Spec& spec, const Phases& during) {
     double seconds = 0;
     for (std::size_t p = 0; p < spec.phases.size(); ++p)
-        if (holds(during, p)) seconds += spec.phases[p].duration * (spec.phases[p].until ? early : 1);
+        if (holds(during, p)) seconds += spec.phases[p].duration * (spec.phases[p].until.empty() ? 1 : early);
     return seconds;
 }
 
@@ -93,7 +93,7 @@ CostEstimate cost_of(const Spec& spec) {
 }
 
 std::vector<Warning> warnings_of(const Spec& spec) {
-    std::vector<Warning> warnings;
+    std::vector<Warning> warnings = spec.warnings;
     warn_of_softness(spec, warnings);
     warn_of_feeds(spec, warnings);
     return warnings;

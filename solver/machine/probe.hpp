@@ -34,7 +34,8 @@ struct Sight {
     std::span<const double> density;                 ///< by id, kg/m3
     const geometry::Domain& domain;
     Vec3 gravity{};
-    double time = 0;  ///< s since the start
+    double time = 0;          ///< s since the start
+    double peak_overlap = 0;  ///< the deepest at any step since the phase began
 
     [[nodiscard]] std::size_t size() const { return state.id.size(); }
     [[nodiscard]] std::size_t id(std::size_t i) const { return static_cast<std::size_t>(state.id[i]); }

@@ -12,7 +12,7 @@ namespace grainsweep::machine {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t blocks = 10;
+constexpr std::size_t blocks = 10, rate_blocks = 5;
 
 double last_of(std::span<const Sample> samples) {
     return samples.empty() ? unknown : samples.back().value;
@@ -65,18 +65,40 @@ double integral_of(std::span<const Sample> samples) {
     return samples.size() < 2 ? unknown : sum;
 }
 
+double change_of(std::span<const Sample> samples) {
+    return samples.size() < 2 ? unknown : samples.back().value - samples.front().value;
+}
+
+/// Standard error of the mean of a correlated series.
+double error_of_mean(std::span<const Sample> samples) {
+    std::vector<double> values;
+    for (const Sample& sample : samples) values.push_back(sample.value);
+    return observables::block_standard_error(values, blocks);
+}
+
+/// From the rates between frames.
+double error_of_slope(std::span<const Sample> samples) {
+    std::vector<double> rates;
+    for (std::size_t k = 1; k < samples.size(); ++k)
+        rates.push_back((samples[k].value - samples[k - 1].value) / (samples[k].time - samples[k - 1].time));
+    return observables::block_standard_error(rates, rate_blocks);
+}
+
 constexpr std::array all_reductions = {
     ReductionInfo{"mean", "mean over the frames, with a standard error from ten blocks of them", Shape::scalar, mean_of,
-                  true},
+                  error_of_mean},
     ReductionInfo{"last", "value at the last frame", Shape::scalar, last_of},
     ReductionInfo{"first", "value at the first frame", Shape::scalar, first_of},
     ReductionInfo{"sd", "standard deviation over the frames", Shape::scalar, deviation_of},
     ReductionInfo{"min", "least value over the frames", Shape::scalar, least_of},
     ReductionInfo{"max", "largest value over the frames", Shape::scalar, greatest_of},
-    ReductionInfo{"slope", "least-squares slope over time", Shape::scalar, slope_of, false, "/s"},
-    ReductionInfo{"integral", "integral over time, by trapezia", Shape::scalar, integral_of, false, " s"},
+    ReductionInfo{"change", "value at the last frame less that at the first", Shape::scalar, change_of},
+    ReductionInfo{"slope", "least-squares slope over time, with a standard error from five blocks of frames",
+                  Shape::scalar, slope_of, error_of_slope, "/s"},
+    ReductionInfo{"integral", "integral over time, by trapezia", Shape::scalar, integral_of, nullptr, " s"},
     ReductionInfo{"series", "value at every frame", Shape::series},
     ReductionInfo{"profile", "mean over the frames, bin by bin", Shape::profile},
+    ReductionInfo{"last_profile", "at the last frame", Shape::profile, nullptr, nullptr, {}, true},
 };
 
 }  // namespace
@@ -88,12 +110,6 @@ std::span<const ReductionInfo> reduction_catalogue() {
 const ReductionInfo* find_reduction(std::string_view name) {
     const auto found = std::ranges::find(all_reductions, name, &ReductionInfo::name);
     return found == all_reductions.end() ? nullptr : &*found;
-}
-
-double error_of_mean(std::span<const Sample> samples) {
-    std::vector<double> values;
-    for (const Sample& sample : samples) values.push_back(sample.value);
-    return observables::block_standard_error(values, blocks);
 }
 
 }  // namespace grainsweep::machine

@@ -14,15 +14,14 @@ struct ReductionInfo {
     Shape shape = Shape::scalar;
     /// Returns the number; NaN where it is undefined. Of a series nothing: the values are the answer.
     double (*of)(std::span<const Sample>) = nullptr;
-    bool has_error = false;  ///< a standard error from blocks goes with it
+    double (*error)(std::span<const Sample>) = nullptr;  ///< its standard error, where it has one
     /// What to append to the unit of the probe.
     std::string_view unit = {};
+    bool last = false;  ///< of a profile: that of the last frame
 };
 
 [[nodiscard]] std::span<const ReductionInfo> reduction_catalogue();
 /// Returns nullptr where there is none of that name.
 [[nodiscard]] const ReductionInfo* find_reduction(std::string_view name);
-/// Returns the standard error of the mean of a correlated series, from ten blocks.
-[[nodiscard]] double error_of_mean(std::span<const Sample> samples);
 
 }  // namespace grainsweep::machine

@@ -54,10 +54,14 @@ Run::Run(Spec spec, std::uint64_t seed) : spec_(std::move(spec)), records_(spec_
         needs_contacts_ = needs_contacts_ || probe.contacts;
     }
     for (const Phase& phase : spec_.phases) {
-        const auto* passes = phase.until ? std::get_if<Passes>(&*phase.until) : nullptr;
-        const Measure* measure = passes != nullptr ? &spec_.measures[passes->measure] : nullptr;
-        watching_.push_back(measure != nullptr ? find_probe(measure->probe)->make(measure->options) : nullptr);
+        auto& watching = watching_.emplace_back();
+        for (const Until& until : phase.until) {
+            const auto* passes = std::get_if<Passes>(&until);
+            const Measure* measure = passes != nullptr ? &spec_.measures[passes->measure] : nullptr;
+            watching.push_back(measure != nullptr ? find_probe(measure->probe)->make(measure->options) : nullptr);
+        }
     }
+    glued_ = std::ranges::count(start.spheres, false, &dem::Sphere::mobile);
     for (std::size_t k = 0; k < spec_.feeds.size(); ++k) {
         feeders_.emplace_back(spec_, k, seed);
         feeders_.back().require_room();
@@ -84,7 +88,7 @@ static std::int64_t check_steps(const Spec& spec, const Phase& phase) {
 std::int64_t Run::next_stop() const {
     std::int64_t stop = phase_begin_ + phase_steps();
     if (frame_ <= phase().frames) stop = std::min(stop, step_of_frame(frame_));
-    if (phase().until) stop = std::min(stop, phase_begin_ + (check_ + 1) * check_steps(spec_, phase()));
+    if (!phase().until.empty()) stop = std::min(stop, phase_begin_ + (check_ + 1) * check_steps(spec_, phase()));
     for (const Feed& feed : spec_.feeds)
         if (holds(feed.during, phase_)) {
             const std::int64_t every = steps_in(feed.interval);
@@ -105,32 +109,36 @@ void Run::begin_phase() {
     times_.begin.push_back(time());
     phase_begin_ = step_;
     frame_ = check_ = 0;
-    calm_since_ = time();
-    watched_ = undefined;
+    calm_since_.assign(phase().until.size(), time());
+    watched_.assign(phase().until.size(), undefined);
+    peak_overlap_ = std::max(peak_overlap_, engine_->peak_overlap());
+    engine_->forget_peak_overlap();
     if (phase_ > 0) engine_->change_walls(walls_in(spec_, phase_, times_));
     feed();
     take_frame();
 }
 
-void Run::end_phase(bool early) {
+void Run::end_phase(std::uint8_t condition) {
     times_.end.push_back(time());
-    for (std::size_t k = 0; early && k < feeders_.size(); ++k)
+    for (std::size_t k = 0; condition > 0 && k < feeders_.size(); ++k)
         if (holds(spec_.feeds[k].during, phase_))
             feeders_[k].owe(-static_cast<double>(credited_ahead(spec_.feeds[k])) * spec_.time_step);
-    ended_early_.push_back(early ? 1 : 0);
+    ended_by_.push_back(condition);
     ++phase_;
     if (!finished()) begin_phase();
 }
 
 void Run::stop_here() {
     if (step_ > phase_begin_) feed();
-    if (frame_ <= phase().frames && step_ == step_of_frame(frame_)) take_frame();
-    bool early = false;
-    if (phase().until && step_ == phase_begin_ + (check_ + 1) * check_steps(spec_, phase())) {
+    const bool framed = frame_ <= phase().frames && step_ == step_of_frame(frame_);
+    if (framed) take_frame();
+    std::uint8_t condition = 0;
+    if (!phase().until.empty() && step_ == phase_begin_ + (check_ + 1) * check_steps(spec_, phase())) {
         ++check_;
-        early = ends_early();
+        condition = ended_by();
     }
-    if (early || step_ == phase_begin_ + phase_steps()) end_phase(early);
+    if (condition > 0 && !framed) take_frame();
+    if (condition > 0 || step_ == phase_begin_ + phase_steps()) end_phase(condition);
 }
 
 std::int64_t Run::credited_ahead(const Feed& feed) const {
@@ -163,7 +171,8 @@ Sight Run::look(bool contacts) {
     engine_->state(state_);
     contacts_.clear();
     if (contacts) engine_->contacts(contacts_);
-    return {*engine_, state_, contacts_, species_, density_, spec_.domain, spec_.gravity, time()};
+    return {
+        *engine_, state_, contacts_, species_, density_, spec_.domain, spec_.gravity, time(), engine_->peak_overlap()};
 }
 
 void Run::take_frame() {
@@ -182,9 +191,11 @@ void Run::take_frame() {
         probes_[m]->profile(sight, profile);
         record.sums.resize(profile.size(), 0.0), record.counts.resize(profile.size(), 0.0);
         record.bins.resize(profile.size(), 0.0);
+        record.last.assign(profile.size(), undefined);
         for (std::size_t b = 0; b < profile.size(); ++b) {
             record.bins[b] = profile[b].bin;
             if (!std::isfinite(profile[b].value)) continue;
+            record.last[b] = profile[b].value;
             record.sums[b] += profile[b].value;
             record.counts[b] += 1;
         }
@@ -197,31 +208,42 @@ double Run::mass_in(const Region& region) {
     const Sight sight = look(false);
     double mass = 0;
     for (std::size_t i = 0; i < sight.size(); ++i)
-        if (region.contains(state_.position[i])) mass += sight.mass(i);
+        if (state_.mobile[i] != 0 && region.contains(state_.position[i])) mass += sight.mass(i);
     return mass;
 }
 
-bool Run::ends_early() {
-    const Until& until = *phase().until;
+std::uint8_t Run::ended_by() {
+    std::uint8_t first = 0;
+    // Each of them looks, so that none misses when powder came to rest.
+    for (std::size_t k = 0; k < phase().until.size(); ++k)
+        if (holds_now(k) && first == 0) first = static_cast<std::uint8_t>(k + 1);
+    return first;
+}
+
+bool Run::holds_now(std::size_t condition) {
+    const Until& until = phase().until[condition];
+    double& calm_since = calm_since_[condition];
     if (std::holds_alternative<AtRest>(until)) {
         const Sight sight = look(false);
         double energy = 0, scale = 0;
         for (std::size_t i = 0; i < sight.size(); ++i) {
+            if (state_.mobile[i] == 0) continue;
             energy += sight.mass(i) / 2 * dot(state_.velocity[i], state_.velocity[i]);
             scale += sight.mass(i) * norm(spec_.gravity) * 2 * state_.radius[i];
         }
-        if (!(energy < calm * scale)) calm_since_ = time();
-        return time() - calm_since_ >= falling_time(spec_);
+        if (!(energy < calm * scale)) calm_since = time();
+        return time() - calm_since >= falling_time(spec_);
     }
     if (const auto* empty = std::get_if<Empty>(&until)) return mass_in(empty->region) == 0;
     if (const auto* flow = std::get_if<FlowStops>(&until)) {
         const double mass = mass_in(flow->region);
-        if (mass != watched_) calm_since_ = time();
-        watched_ = mass;
-        return time() - calm_since_ >= flow->quiet;
+        if (mass != watched_[condition]) calm_since = time();
+        watched_[condition] = mass;
+        return time() - calm_since >= flow->quiet;
     }
     const auto& passes = std::get<Passes>(until);
-    const double value = watching_[phase_]->look(look(find_probe(spec_.measures[passes.measure].probe)->contacts));
+    const double value =
+        watching_[phase_][condition]->look(look(find_probe(spec_.measures[passes.measure].probe)->contacts));
     return passes.above ? value > passes.value : value < passes.value;
 }
 
@@ -233,16 +255,17 @@ double Run::progress() const {
         if (p < phase_) done += spec_.phases[p].duration;
     }
     done += phase().duration * static_cast<double>(step_ - phase_begin_) / static_cast<double>(phase_steps());
-    return std::min(done / all, 1 - 1e-9);
+    return all > 0 ? std::min(done / all, 1 - 1e-9) : 0;
 }
 
 void Run::observe(const Measure& measure, const Record& record, Observations& into) const {
     const ReductionInfo& reduction = *find_reduction(measure.reduction);
     if (reduction.shape == Shape::profile) {
         auto& profile = into.series[measure.name];
-        for (std::size_t b = 0; b < record.bins.size(); ++b)
-            if (record.counts[b] > 0)
-                profile.push_back({.bin = record.bins[b], .value = record.sums[b] / record.counts[b]});
+        for (std::size_t b = 0; b < record.bins.size(); ++b) {
+            const double value = reduction.last ? record.last[b] : record.sums[b] / record.counts[b];
+            if (std::isfinite(value)) profile.push_back({.bin = record.bins[b], .value = value});
+        }
         return;
     }
     std::vector<Sample> samples;
@@ -257,24 +280,28 @@ void Run::observe(const Measure& measure, const Record& record, Observations& in
         return;
     }
     if (const double value = reduction.of(samples); std::isfinite(value)) into.scalars[measure.name] = value;
-    if (!reduction.has_error) return;
-    if (const double error = error_of_mean(samples); std::isfinite(error))
+    if (reduction.error == nullptr) return;
+    if (const double error = reduction.error(samples); std::isfinite(error))
         into.scalars[measure.name + "_error"] = error;
 }
 
 void Run::observe(Observations& into) const {
-    into.scalars["particles"] = static_cast<double>(engine_->size());
+    into.scalars["particles"] = static_cast<double>(engine_->size()) - static_cast<double>(glued_);
     into.scalars["lost"] = static_cast<double>(species_.size()) - static_cast<double>(engine_->size());
-    into.scalars["max_overlap"] = engine_->peak_overlap();
+    into.scalars["max_overlap"] = std::max(peak_overlap_, engine_->peak_overlap());
     for (std::size_t k = 0; k < feeders_.size(); ++k) {
         into.scalars[spec_.feeds[k].name + "_fed"] = feeders_[k].fed();
         into.scalars[spec_.feeds[k].name + "_waiting"] = std::max(0.0, feeders_[k].waiting());
     }
     for (std::size_t p = 0; p < times_.end.size(); ++p) {
-        if (!spec_.phases[p].until) continue;
+        if (spec_.phases[p].until.empty()) continue;
         into.scalars[spec_.phases[p].name + "_time"] = times_.end[p] - times_.begin[p];
-        into.scalars[spec_.phases[p].name + "_ended"] = ended_early_[p];
+        into.scalars[spec_.phases[p].name + "_ended"] = ended_by_[p];
     }
+    // What a machine measures under one of these names stands in its place.
+    for (const auto& measure : spec_.measures) into.scalars.erase(measure.name);
+    for (const auto& derived : spec_.derived) into.scalars.erase(derived.name);
+    for (const auto& time_of : spec_.times) into.scalars.erase(time_of.name);
     for (std::size_t m = 0; m < spec_.measures.size(); ++m) observe(spec_.measures[m], records_[m], into);
     for (const TimeOf& time_of : spec_.times)
         for (const Sample& sample : records_[time_of.measure].samples)
@@ -305,13 +332,21 @@ Snapshot Run::snapshot() const {
     return picture;
 }
 
+double Run::picture_focus() const {
+    double start = 0;
+    for (std::size_t p = 0; p + 1 < spec_.phases.size(); ++p)
+        start = p < times_.end.size() ? times_.end[p] : start + spec_.phases[p].duration;
+    return start;
+}
+
 template <class State, class Visit>
 void Run::fields(State& run, Visit&& visit) {
     visit(run.step_), visit(run.phase_), visit(run.phase_begin_), visit(run.frame_), visit(run.check_);
-    visit(run.calm_since_), visit(run.watched_), visit(run.times_.begin), visit(run.times_.end);
-    visit(run.ended_early_), visit(run.species_), visit(run.density_);
+    visit(run.calm_since_), visit(run.watched_), visit(run.peak_overlap_), visit(run.times_.begin);
+    visit(run.times_.end), visit(run.ended_by_), visit(run.species_), visit(run.density_);
     for (auto& record : run.records_)
-        visit(record.samples), visit(record.bins), visit(record.sums), visit(record.counts), visit(record.profiled);
+        visit(record.samples), visit(record.bins), visit(record.sums), visit(record.counts), visit(record.last),
+            visit(record.profiled);
 }
 
 void Run::save(Bytes& into) const {
@@ -319,8 +354,9 @@ void Run::save(Bytes& into) const {
         fields(*this, [&out](const auto& value) { out.put(value); });
         for (const auto& feeder : feeders_) feeder.save(out);
         for (const auto& probe : probes_) probe->save(out);
-        for (const auto& probe : watching_)
-            if (probe) probe->save(out);
+        for (const auto& watching : watching_)
+            for (const auto& probe : watching)
+                if (probe) probe->save(out);
     });
 }
 
@@ -329,10 +365,12 @@ void Run::restore(std::span<const std::byte> from) {
     fields(*this, [&in](auto& value) { in.get(value); });
     for (auto& feeder : feeders_) feeder.restore(in);
     for (auto& probe : probes_) probe->restore(in);
-    for (auto& probe : watching_)
-        if (probe) probe->restore(in);
+    for (const auto& watching : watching_)
+        for (const auto& probe : watching)
+            if (probe) probe->restore(in);
     in.require(phase_ <= spec_.phases.size() && times_.begin.size() == std::min(phase_ + 1, spec_.phases.size()) &&
-               times_.end.size() == phase_ && ended_early_.size() == phase_);
+               times_.end.size() == phase_ && ended_by_.size() == phase_);
+    in.require(finished() || (calm_since_.size() == phase().until.size() && watched_.size() == calm_since_.size()));
     in.require(species_.size() == density_.size() &&
                std::ranges::all_of(species_, [this](std::uint8_t s) { return s < spec_.species.size(); }));
     const auto finite = [](const std::vector<double>& times) {
@@ -342,7 +380,8 @@ void Run::restore(std::span<const std::byte> from) {
     in.require(finished() || (phase_begin_ <= most_steps && step_ - phase_begin_ <= phase_steps() && frame_ >= 0 &&
                               frame_ <= phase().frames + 1 && check_ >= 0 && check_ <= phase_steps()));
     for (const auto& record : records_)
-        in.require(record.bins.size() == record.sums.size() && record.bins.size() == record.counts.size());
+        in.require(record.bins.size() == record.sums.size() && record.bins.size() == record.counts.size() &&
+                   record.bins.size() == record.last.size());
     engine_->restore(kit::engine_at_end(in));
     engine_->state(state_);
     in.require(state_.id.empty() || static_cast<std::size_t>(state_.id.back()) < species_.size());

@@ -32,13 +32,14 @@ public:
     void save(Bytes& into) const override;
     void restore(std::span<const std::byte> from) override;
     [[nodiscard]] Snapshot snapshot() const override;
+    [[nodiscard]] double picture_focus() const override;
 
 private:
     /// Samples of a measurement so far.
     struct Record {
         std::vector<Sample> samples;
-        std::vector<double> bins, sums, counts;  // of a profile
-        double profiled = undefined;             // time of the last one, s
+        std::vector<double> bins, sums, counts, last;  // of a profile
+        double profiled = undefined;                   // time of the last one, s
     };
 
     [[nodiscard]] std::int64_t steps_in(double seconds) const;
@@ -47,13 +48,15 @@ private:
     [[nodiscard]] std::int64_t step_of_frame(std::int64_t frame) const;
     [[nodiscard]] std::int64_t next_stop() const;
     void begin_phase();
-    void end_phase(bool early);
+    void end_phase(std::uint8_t condition);
     void stop_here();
     void feed();
     /// Steps from now on that a feed has been credited with.
     [[nodiscard]] std::int64_t credited_ahead(const Feed& feed) const;
     void take_frame();
-    [[nodiscard]] bool ends_early();
+    /// Number of the condition that ends the phase now, from 1; 0: none.
+    [[nodiscard]] std::uint8_t ended_by();
+    [[nodiscard]] bool holds_now(std::size_t condition);
     [[nodiscard]] Sight look(bool contacts);
     [[nodiscard]] double mass_in(const Region& region);
     void add(const Filled& filled);
@@ -65,18 +68,21 @@ private:
     std::vector<std::uint8_t> species_;  // by id
     std::vector<double> density_;        // by id
     std::unique_ptr<dem::Engine> engine_;
-    std::vector<std::unique_ptr<Probe>> probes_, watching_;  // of measures; those that end a phase
+    std::vector<std::unique_ptr<Probe>> probes_;                 // of measures
+    std::vector<std::vector<std::unique_ptr<Probe>>> watching_;  // those that end a phase, by its conditions
     std::vector<Feeder> feeders_;
     bool needs_contacts_ = false;
 
     std::int64_t step_ = 0;
     std::size_t phase_ = 0;
-    std::int64_t phase_begin_ = 0;  // step
-    std::int64_t frame_ = 0;        // next one of the phase
-    std::int64_t check_ = 0;        // next one of the phase, counted from 1
-    double calm_since_ = 0, watched_ = 0;
+    std::int64_t phase_begin_ = 0;              // step
+    std::int64_t frame_ = 0;                    // next one of the phase
+    std::int64_t check_ = 0;                    // next one of the phase, counted from 1
+    std::vector<double> calm_since_, watched_;  // by condition that ends the phase
+    double peak_overlap_ = 0;                   // of the phases before
+    std::int64_t glued_ = 0;
     PhaseTimes times_;
-    std::vector<std::uint8_t> ended_early_;
+    std::vector<std::uint8_t> ended_by_;  // by phase: number of the condition, from 1; 0: its time
     std::vector<Record> records_;
     dem::State state_;
     std::vector<dem::ContactForce> contacts_;

@@ -1,4 +1,4 @@
-// Which particles a probe counts: by species and by region, centres deciding.
+// Which particles a probe counts: by species and by region, centres deciding. Glued ones are part of a wall.
 #pragma once
 
 #include "solver/machine/probe.hpp"
@@ -20,7 +20,8 @@ public:
         return of_.empty() || std::ranges::find(of_, sight.species_of(i)) != of_.end();
     }
     [[nodiscard]] bool holds(const Sight& sight, std::size_t i) const {
-        return species_counts(sight, i) && (!in_ || in_->contains(sight.state.position[i]));
+        return sight.state.mobile[i] != 0 && species_counts(sight, i) &&
+               (!in_ || in_->contains(sight.state.position[i]));
     }
     /// Calls visit(i) for every particle that counts.
     template <class Visit>

@@ -66,6 +66,7 @@ struct Fill {
     As as = As::lattice;
     Vec3 velocity{};    ///< m/s
     double shaken = 0;  ///< m/s: random velocities up to this in each direction
+    bool glued = false;
 };
 
 /// Spheres one by one.
@@ -105,8 +106,8 @@ using Until = std::variant<AtRest, Empty, FlowStops, Passes>;
 
 struct Phase {
     std::string name;
-    double duration = 0;  ///< s, at most
-    std::optional<Until> until;
+    double duration = 0;        ///< s, at most; 0: one step
+    std::vector<Until> until;   ///< whatever holds first
     std::int64_t frames = 100;  ///< intervals between measurements
 };
 
@@ -148,7 +149,8 @@ struct Spec {
     std::vector<Measure> measures;
     std::vector<TimeOf> times;
     std::vector<Derived> derived;
-    double time_step = 0;  ///< s
+    std::vector<Warning> warnings;  ///< what the machine file warns of
+    double time_step = 0;           ///< s
     dem::Method method;
 };
 

@@ -55,7 +55,7 @@ Cursor cursor_at(const Json& document, const std::string& root, const Json::json
     return cursor;
 }
 
-/// All texts that a text with "{NAME}" can become, in the order of the words.
+/// All texts that a text with "{NAME}" can become, in the order of the words; none where a case names the file.
 std::vector<std::string> expansions(const std::string& text, const std::vector<ParameterSpec>& parameters) {
     const std::size_t open = text.find('{'), close = text.find('}', open);
     if (open == std::string::npos || close == std::string::npos) return {text};
@@ -63,7 +63,7 @@ std::vector<std::string> expansions(const std::string& text, const std::vector<P
     std::vector<std::string> all;
     for (const auto& parameter : parameters) {
         const auto* words = std::get_if<Words>(&parameter.bounds);
-        if (words == nullptr || "{" + parameter.name + "}" != braced) continue;
+        if (words == nullptr || "{" + parameter.name + "}" != braced || words->file_allowed) continue;
         for (const auto& word : words->allowed) {
             std::string one = text;
             for (std::size_t at = open; at != std::string::npos; at = one.find(braced, at))
@@ -99,6 +99,10 @@ Json answering_part(const Machine& machine) {
     identity.erase("name"), identity.erase("summary");
     if (identity.contains("parameters"))
         for (auto& parameter : identity["parameters"]) parameter.erase("meaning"), parameter.erase("bounds");
+    if (identity.contains("checks"))
+        for (auto& check : identity["checks"])
+            for (const char* words : {"refuse", "warn", "that"})
+                if (check.contains(words)) check[words] = "";
     for (auto& measure : identity["measure"])
         if (measure.is_object()) measure.erase("meaning");
     return without_notes(identity);
@@ -140,13 +144,18 @@ void set_time_step(machine::Spec& spec, const Inputs& inputs, const std::string&
                 fmt::format("a phase has at most {:.0e} time steps, here of {:.4g} s", most_steps, spec.time_step));
 }
 
-machine::Spec spec_of(const Section& top, const Machine& machine, const Inputs& inputs) {
+machine::Spec spec_of(const Section& top, const Machine& machine, const Inputs& inputs, const Files& files) {
     MachineReading reading(machine.files, machine_scope(top, machine.parameters, inputs));
+    for (const auto& [parameter, contents] : files)
+        reading.chosen.emplace(std::get<std::string>(inputs.find(parameter)->second), contents);
+    reading.shown = machine.name;
     reading.particles_scale = input_number(inputs, "particles_scale");
     reading.spec.gravity = gravity_of(top, reading.scope);
     read_phase_names(top, reading);
     read_materials(top, reading);
     read_species(top, reading);
+    add_species_numbers(top, reading.spec, reading.scope);
+    read_checks(top, reading);
     read_contacts(top, reading);
     read_walls(top, reading);
     read_fills(top, reading);
@@ -191,16 +200,19 @@ std::shared_ptr<const Machine> checked(Json document, const std::string& root, c
     });
     Inputs defaults;
     for (const auto& parameter : machine->parameters) defaults.emplace(parameter.name, parameter.default_value);
-    (void)spec_of(top, *machine, defaults);
+    (void)spec_of(top, *machine, defaults, {});
     return machine;
 }
 
 }  // namespace
 
-const std::string& MachineReading::contents(const Cursor& place) const {
+std::string_view MachineReading::contents(const Cursor& place) const {
     const std::string name = scope.text(place);
+    if (const auto given = chosen.find(name); given != chosen.end()) return given->second;
     const auto found = files.find(name);
-    if (found == files.end()) place.refuse(fmt::format("there is no file '{}'", name));
+    if (found == files.end())
+        place.refuse(name == place.text() ? fmt::format("there is no file '{}'", name)
+                                          : fmt::format("the case names no file here, but '{}'", name));
     return found->second;
 }
 
@@ -231,9 +243,9 @@ std::shared_ptr<const Machine> read_machine(const fs::path& file) {
     return asked_in(file, [&] { return make_machine(parse_json(text), "$", beside(file.parent_path())); });
 }
 
-machine::Spec machine_spec(const Machine& machine, const Inputs& inputs) {
+machine::Spec machine_spec(const Machine& machine, const Inputs& inputs, const Files& files) {
     return asked_in(machine.name, [&] {
-        return spec_of(Section(Cursor(*machine.document, "$"), machine_keys::top()), machine, inputs);
+        return spec_of(Section(Cursor(*machine.document, "$"), machine_keys::top()), machine, inputs, files);
     });
 }
 

@@ -49,8 +49,8 @@ using FileReader = std::function<std::string(const std::string& name)>;
 [[nodiscard]] bool is_machine_document(const nlohmann::json& document);
 /// A machine file, and the files beside it.
 [[nodiscard]] std::shared_ptr<const Machine> read_machine(const std::filesystem::path& file);
-/// The machine as numbers, for complete inputs. Throws WrongQuestion.
-[[nodiscard]] machine::Spec machine_spec(const Machine& machine, const Inputs& inputs);
+/// The machine as numbers, for complete inputs and the contents of files that they name. Throws WrongQuestion.
+[[nodiscard]] machine::Spec machine_spec(const Machine& machine, const Inputs& inputs, const Files& files = {});
 
 /// What a machine is, in one line.
 [[nodiscard]] std::string_view machine_summary();

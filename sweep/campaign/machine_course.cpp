@@ -205,9 +205,12 @@ void read_phases(const Section& top, MachineReading& reading) {
             place.refuse("a phase lasts \"for\" a time, or \"until\" something and \"at_most\" a time");
         machine::Phase phase;
         phase.name = section.at("name").text();
-        phase.duration = reading.scope.number(given ? *given : *most, "s", positive_number);
+        phase.duration = reading.scope.number(given ? *given : *most, "s", no_negative_number);
         if (const auto frames = section.find("frames")) phase.frames = reading.scope.whole(*frames, {1, 1e6});
-        if (until) phase.until = read_until(*until, reading);
+        if (until && !until->json().is_array()) phase.until.push_back(read_until(*until, reading));
+        if (until && until->json().is_array())
+            for (const auto& one : until->elements()) phase.until.push_back(read_until(one, reading));
+        if (phase.until.size() > 100) until->refuse("a phase has at most 100 conditions");
         reading.spec.phases.push_back(std::move(phase));
     }
 }
@@ -215,8 +218,6 @@ void read_phases(const Section& top, MachineReading& reading) {
 void read_measures(const Section& top, MachineReading& reading) {
     const Cursor all = top.at("measure");
     auto& spec = reading.spec;
-    for (const auto& [name, value] : all.json().items())
-        if (reading.scope.knows(name)) all[name].refuse("a parameter or \"let\" has this name; take another one");
     for (const auto& [name, value] : all.json().items()) {
         const Cursor place = all[name];
         if (entry_kind(place) != EntryKind::probe) continue;
@@ -266,10 +267,13 @@ void read_measures(const Section& top, MachineReading& reading) {
         machine::Derived derived{name, {}, {}};
         std::map<std::string, double, std::less<>> given;
         for (const auto& used : formula.names()) {
-            if (std::ranges::find(known, used) != known.end())
+            const bool measured = std::ranges::find(known, used) != known.end();
+            if (measured && reading.scope.knows(used))
+                text.refuse(fmt::format("'{}' is a parameter or in \"let\", and a measurement; rename one", used));
+            if (measured)
                 derived.needs.push_back(used);
             else
-                given.emplace(used, reading.scope.number(Cursor(Json(used), place.path()), "1"));
+                given.emplace(used, reading.scope.value(used));
         }
         derived.value = [formula, given](const std::map<std::string, double, std::less<>>& measured) {
             return formula([&](std::string_view used) {
@@ -318,23 +322,22 @@ std::vector<ObservableSpec> machine_observables(const Section& top) {
         const std::string unit = std::string(probe.unit) + std::string(reduction.unit);
         all.push_back({name, unit, meaning, reduction.shape, over,
                        reduction.shape == Shape::scalar ? "there was nothing to measure" : ""});
-        if (reduction.has_error)
+        if (reduction.error != nullptr)
             all.push_back({name + "_error",
                            unit,
-                           fmt::format("standard error of {} from ten blocks of frames", name),
+                           fmt::format("standard error of {} from blocks of frames", name),
                            Shape::scalar,
                            {},
-                           "fewer than twenty frames"});
+                           "fewer than two frames in a block"});
     }
     if (all.empty()) measures.refuse("a machine needs a measurement");
-    all.push_back({"particles", "1", "particles present at the end", Shape::scalar, {}, {}});
-    all.push_back({"lost", "1", "particles that passed an open face of the domain", Shape::scalar, {}, {}});
-    all.push_back({"max_overlap",
-                   "1",
-                   "deepest overlap of two particles over the diameter of the smaller one",
-                   Shape::scalar,
-                   {},
-                   {}});
+    const auto automatic = [&all](const char* name, const char* meaning) {
+        if (std::ranges::find(all, name, &ObservableSpec::name) == all.end())
+            all.push_back({name, "1", meaning, Shape::scalar, {}, {}});
+    };
+    automatic("particles", "particles present at the end");
+    automatic("lost", "particles that passed an open face of the domain");
+    automatic("max_overlap", "deepest overlap of two particles over the diameter of the smaller one");
     if (const auto feeds = top.find("feed")) {
         std::set<std::string> feeders;
         for (const auto& feed : feeds->elements()) {
@@ -357,7 +360,7 @@ std::vector<ObservableSpec> machine_observables(const Section& top) {
         all.push_back({name + "_time", "s", fmt::format("how long phase '{}' lasted", name), Shape::scalar, {}, {}});
         all.push_back({name + "_ended",
                        "1",
-                       fmt::format("1: phase '{}' ended by its condition, 0: by its time", name),
+                       fmt::format("number of the condition that ended phase '{}', from 1; 0: its time", name),
                        Shape::scalar,
                        {},
                        {}});

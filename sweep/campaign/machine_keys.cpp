@@ -7,7 +7,9 @@ namespace {
 
 using MachineKey = Key::Kind;
 
-constexpr std::array<std::string_view, 4> spread_words = {"uniform", "lognormal", "weibull_wide", "weibull_narrow"};
+constexpr std::array<std::string_view, 6> spread_words = {"monodisperse", "uniform",        "lognormal",
+                                                          "weibull_wide", "weibull_narrow", "file"};
+constexpr std::array<std::string_view, 2> file_words = {"sizes", "stl"};
 constexpr std::array<std::string_view, 3> by_words = {"count", "mass", "volume"};
 constexpr std::array<std::string_view, 2> as_words = {"lattice", "random"};
 constexpr std::array<std::string_view, 3> rolling_words = {"epsd", "epsd_liggghts", "cdt"};
@@ -19,7 +21,11 @@ constexpr auto top_keys = std::to_array<Key>({
     needed({"name", MachineKey::text, "the name shown everywhere: letters, digits and _"}),
     {"summary", MachineKey::text, "what it is, in one line"},
     {"parameters", MachineKey::object, "by name: what factors and fixed values of a campaign may set", "{}"},
-    {"let", MachineKey::object, "by name: expressions that other expressions may use", "{}"},
+    {"let", MachineKey::object,
+     "by name: expressions that other expressions may use; those that use numbers of species are known from \"walls\" "
+     "on",
+     "{}"},
+    {"checks", MachineKey::array, "what a case is refused for, or warned of", "[]"},
     {"gravity", MachineKey::value, "[x, y, z] in m/s2, or size, tilt and azimuth", "[0, 0, -9.81]"},
     {"domain", MachineKey::object,
      "the box outside of which particles are gone; default: around walls, fillings and feeds at all times", "{}"},
@@ -45,6 +51,14 @@ constexpr auto parameter_keys = std::to_array<Key>({
     {"words", MachineKey::words,
      "it is a word, one of these: \"{NAME}\" in a text is replaced by it, and NAME_is_WORD "
      "is 1 or 0 in expressions"},
+    {"file",
+     MachineKey::word,
+     "it is a file, of sizes or an stl: \"{NAME}\" where a file is named stands for it; its default is a word",
+     {},
+     {},
+     file_words},
+    {"only_if", MachineKey::object,
+     "where it has an effect: by the name of another parameter 0, \"set\" (not 0), a word or a list of words"},
 });
 
 constexpr auto gravity_keys = std::to_array<Key>({
@@ -57,6 +71,7 @@ constexpr auto domain_keys = std::to_array<Key>({
     {"low", MachineKey::array, "lower corner, m; null along an axis: around the walls"},
     {"high", MachineKey::array, "upper corner, m; null along an axis: around the walls"},
     {"sides", MachineKey::words, "along x, y and z: 'open' or 'periodic'", "[\"open\", \"open\", \"open\"]"},
+    {"periodic", MachineKey::array, "or along x, y and z a value: 0 is open", "[0, 0, 0]"},
 });
 
 constexpr auto material_keys = std::to_array<Key>({
@@ -101,8 +116,8 @@ constexpr auto species_keys = std::to_array<Key>({
 constexpr auto size_keys = std::to_array<Key>({
     {"spread",
      MachineKey::word,
-     "uniform: between (1 - half_width) D and (1 + half_width) D; lognormal: sigma; weibull_wide, weibull_narrow: five "
-     "classes",
+     "monodisperse: all equal; uniform: between (1 - half_width) D and (1 + half_width) D; lognormal: sigma; "
+     "weibull_wide, weibull_narrow: five classes; file: as \"file\" says",
      {},
      {},
      spread_words},
@@ -183,6 +198,7 @@ constexpr auto fill_keys = std::to_array<Key>({
      as_words},
     {"velocity", MachineKey::array, "m/s", "[0, 0, 0]"},
     {"shaken", MachineKey::value, "random velocity in each direction, up to so many m/s", "0"},
+    {"glued", MachineKey::flag, "true: they never move, and are touched as a wall is", "false"},
     {"spheres", MachineKey::value,
      "spheres one by one: a list, or a CSV file with the header x,y,z and diameter, vx,vy,vz, wx,wy,wz as far as "
      "known"},
@@ -214,7 +230,7 @@ constexpr auto feed_keys = std::to_array<Key>({
 constexpr auto phase_keys = std::to_array<Key>({
     needed({"name", MachineKey::text, "by which others name it"}),
     {"for", MachineKey::value, "how long it lasts, s"},
-    {"until", MachineKey::object, "what ends it"},
+    {"until", MachineKey::value, "what ends it; of a list whatever holds first"},
     {"at_most", MachineKey::value, "with until: how long it lasts at most, s"},
     {"frames", MachineKey::value, "it is measured at its beginning and after each of so many equal intervals", "100"},
 });
@@ -226,6 +242,13 @@ constexpr auto until_keys = std::to_array<Key>({
     {"measure", MachineKey::text, "a measurement passes a value: above or below"},
     {"above", MachineKey::value, "of measure"},
     {"below", MachineKey::value, "of measure"},
+});
+
+constexpr auto check_keys = std::to_array<Key>({
+    needed({"when", MachineKey::value, "not 0: it is said"}),
+    {"refuse", MachineKey::text, "the case is impossible: why; \"{NAME}\" is a number or word"},
+    {"warn", MachineKey::text, "the case says little: a name for all cases of this kind"},
+    {"that", MachineKey::text, "with warn: why; \"{NAME}\" is a number or word"},
 });
 
 constexpr auto flow_stops_keys = std::to_array<Key>({
@@ -316,6 +339,9 @@ std::span<const Key> phase() {
 std::span<const Key> until() {
     return until_keys;
 }
+std::span<const Key> check() {
+    return check_keys;
+}
 std::span<const Key> flow_stops() {
     return flow_stops_keys;
 }
@@ -351,6 +377,7 @@ std::span<const Table> all() {
         Table{"A phase", phase_keys},
         Table{"until, of a phase", until_keys},
         Table{"flow_stops", flow_stops_keys},
+        Table{"A check", check_keys},
         Table{"A measurement", measure_keys},
         Table{"The time of a measurement", time_of_keys},
         Table{"An expression of measurements", expression_keys},

@@ -35,6 +35,7 @@ struct Table {
 [[nodiscard]] std::span<const Key> feed();
 [[nodiscard]] std::span<const Key> phase();
 [[nodiscard]] std::span<const Key> until();
+[[nodiscard]] std::span<const Key> check();
 [[nodiscard]] std::span<const Key> flow_stops();
 [[nodiscard]] std::span<const Key> measure();
 [[nodiscard]] std::span<const Key> time_of();

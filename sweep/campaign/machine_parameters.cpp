@@ -4,11 +4,15 @@
 #include "sweep/campaign/machine_reading.hpp"
 #include "sweep/campaign/quantity.hpp"
 
+#include "solver/machine/shapes.hpp"
+#include "solver/particles/size_table.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -53,6 +57,55 @@ ParameterSpec word_parameter(const Section& section, ParameterSpec spec) {
     spec.default_value = section.at("default").word(words.allowed);
     spec.bounds = std::move(words);
     return spec;
+}
+
+/// A file, or the default word that stands for none.
+ParameterSpec file_parameter(const Section& section, ParameterSpec spec) {
+    for (const char* key : {"unit", "bounds", "whole", "words"})
+        if (const auto too = section.find(key)) too->refuse("a parameter that is a file has none");
+    const auto rows = machine_keys::parameter();
+    const auto kind = section.at("file").word(std::ranges::find(rows, std::string_view("file"), &Key::name)->words);
+    spec.unit = "";
+    const std::string none = section.at("default").text();
+    require_name(section.at("default"), none);
+    spec.default_value = none;
+    if (kind == "sizes")
+        spec.bounds = Words{{none}, true, [](std::string_view csv) { (void)particles::SizeTable::read(csv); }};
+    else
+        spec.bounds = Words{{none}, true, [](std::string_view stl) { (void)machine::stl_mesh(stl, 1, 0, {}); }};
+    return spec;
+}
+
+/// "only_if": all must hold.
+std::vector<Relevance> relevance_of(const Section& section, const std::vector<ParameterSpec>& parameters) {
+    std::vector<Relevance> all;
+    const auto conditions = section.find("only_if");
+    if (!conditions) return all;
+    for (const auto& [name, value] : conditions->members("must be an object of conditions by parameter")) {
+        const auto other = std::ranges::find(parameters, name, &ParameterSpec::name);
+        if (other == parameters.end())
+            throw wrong_question(value.path(), "", "there is no such parameter",
+                                 nearest_word(name, names_of(parameters)));
+        const auto* words = std::get_if<Words>(&other->bounds);
+        Relevance one{name, Relevance::Condition::is_word, {}};
+        if (words != nullptr && words->file_allowed) {
+            if (value.word(std::array<std::string_view, 1>{"set"}) == "set")
+                one.condition = Relevance::Condition::is_file;
+        } else if (words != nullptr) {
+            if (value.json().is_array())
+                for (const auto& word : value.elements()) one.words.push_back(word.word(words->allowed));
+            else
+                one.words.push_back(value.word(words->allowed));
+        } else if (value.json().is_number() && value.json().get<double>() == 0) {
+            one.condition = Relevance::Condition::zero;
+        } else {
+            one.condition = Relevance::Condition::nonzero;
+            if (!value.json().is_string() || value.json().get<std::string>() != "set")
+                value.refuse("a number is 0 or \"set\"");
+        }
+        all.push_back(std::move(one));
+    }
+    return all;
 }
 
 ParameterSpec number_parameter(const Section& section, ParameterSpec spec) {
@@ -111,7 +164,8 @@ std::string suffix_of(const std::string& unit) {
 std::vector<std::string> names_in_expressions(const ParameterSpec& parameter) {
     std::vector<std::string> names{parameter.name};
     if (const auto* words = std::get_if<Words>(&parameter.bounds))
-        for (const auto& word : words->allowed) names.push_back(parameter.name + "_is_" + word);
+        for (const auto& word : words->file_allowed ? std::vector<std::string>{} : words->allowed)
+            names.push_back(parameter.name + "_is_" + word);
     else if (const auto suffix = suffix_of(parameter.unit); parameter.unit != "1" && !suffix.empty())
         names.push_back(parameter.name + "_" + suffix);
     return names;
@@ -126,6 +180,66 @@ void refuse_names_twice(const Cursor& place, const std::vector<ParameterSpec>& p
                     path_of(place.path(), place.json().contains(parameter.name) ? parameter.name : owner->second), "",
                     fmt::format("'{}' in expressions would be of '{}' and of '{}'; rename one", name, owner->second,
                                 parameter.name));
+}
+
+/// Numbers that expressions know once species are read.
+std::set<std::string> species_names(const Section& top) {
+    std::set<std::string> names;
+    const auto species = top.find("species");
+    if (species && species->json().is_object())
+        for (const auto& [name, value] : species->json().items())
+            for (const char* ending : {"_largest", "_smallest", "_volume"}) names.insert(name + ending);
+    return names;
+}
+
+/// A quantity in SI units, whichever they are.
+double any_quantity(const Cursor& place) {
+    std::string why;
+    for (const auto si : si_units) {
+        const auto converted = in_si(place.text(), si);
+        if (const auto* value = std::get_if<double>(&converted)) return *value;
+        if (why.empty()) why = std::get<std::string>(converted);
+    }
+    place.refuse(why);
+}
+
+/// Adds what "let" defines, except what needs a name that is still to come. Refuses a circle.
+void evaluate_lets(const Section& top, const std::set<std::string>& to_come, MachineScope& scope) {
+    const auto lets = top.find("let");
+    if (!lets) return;
+    if (!lets->json().is_object()) lets->refuse("must be an object of expressions by name");
+    std::set<std::string> open;
+    for (const auto& [name, value] : lets->json().items()) {
+        const Cursor here = (*lets)[name];
+        require_name(here, name);
+        if (scope.is_let(name)) continue;
+        if (name == "pi" || scope.knows(name) || to_come.contains(name))
+            here.refuse("a parameter or number has this name; take another one");
+        open.insert(name);
+    }
+    // Whatever needs nothing that is open is next.
+    while (!open.empty()) {
+        const auto ready = std::ranges::find_if(open, [&](const std::string& name) {
+            const auto& text = lets->json()[name];
+            if (!text.is_string() || is_quantity(text.get_ref<const std::string&>())) return true;
+            auto names = scope.names();
+            names.insert(names.end(), open.begin(), open.end());
+            names.insert(names.end(), to_come.begin(), to_come.end());
+            const auto parsed = Formula::parse(text.get<std::string>(), names);
+            if (const auto* why = std::get_if<std::string>(&parsed)) (*lets)[name].refuse(*why);
+            return std::ranges::none_of(std::get<Formula>(parsed).names(), [&](const auto& used) {
+                return open.contains(used) || to_come.contains(used);
+            });
+        });
+        if (ready == open.end()) {
+            if (!to_come.empty()) return;
+            (*lets)[*open.begin()].refuse("it depends on itself");
+        }
+        const Cursor here = (*lets)[*ready];
+        const bool quantity = here.json().is_string() && is_quantity(here.json().get_ref<const std::string&>());
+        scope.set_let(*ready, quantity ? any_quantity(here) : scope.number(here, "1"));
+        open.erase(ready);
+    }
 }
 
 }  // namespace
@@ -163,9 +277,13 @@ std::vector<ParameterSpec> read_machine_parameters(const Section& top) {
         const Section section(here, machine_keys::parameter());
         const auto meaning = section.find("meaning");
         ParameterSpec spec{name, "1", meaning ? meaning->text() : name, 0.0, Interval{}, {}};
-        all.push_back(section.find("words") ? word_parameter(section, std::move(spec))
-                                            : number_parameter(section, std::move(spec)));
+        all.push_back(section.find("file")    ? file_parameter(section, std::move(spec))
+                      : section.find("words") ? word_parameter(section, std::move(spec))
+                                              : number_parameter(section, std::move(spec)));
     }
+    for (auto& parameter : all)
+        if (place->json().contains(parameter.name))
+            parameter.relevant_if = relevance_of(Section((*place)[parameter.name], machine_keys::parameter()), all);
     refuse_names_twice(*place, all);
     std::ranges::sort(all, {}, &ParameterSpec::name);
     return all;
@@ -178,6 +296,7 @@ MachineScope machine_scope(const Section& top, const std::vector<ParameterSpec>&
         if (const auto* words = std::get_if<Words>(&parameter.bounds)) {
             const auto& word = std::get<std::string>(value);
             scope.set_word(parameter.name, word);
+            if (words->file_allowed) continue;
             for (const auto& one : words->allowed) scope.set(parameter.name + "_is_" + one, one == word ? 1 : 0);
             continue;
         }
@@ -188,52 +307,18 @@ MachineScope machine_scope(const Section& top, const std::vector<ParameterSpec>&
         if (const auto suffix = suffix_of(parameter.unit); parameter.unit != "1" && !suffix.empty())
             scope.set(parameter.name + "_" + suffix, number);
     }
-    const auto lets = top.find("let");
-    if (!lets) return scope;
-    if (!lets->json().is_object()) lets->refuse("must be an object of expressions by name");
-    std::set<std::string> open;
-    for (const auto& [name, value] : lets->json().items()) {
-        const Cursor here = (*lets)[name];
-        require_name(here, name);
-        if (name == "pi" || scope.knows(name)) here.refuse("a parameter or number has this name; take another one");
-        open.insert(name);
-    }
-    // Whatever needs nothing that is open is next.
-    while (!open.empty()) {
-        const auto ready = std::ranges::find_if(open, [&](const std::string& name) {
-            const auto& text = lets->json()[name];
-            if (!text.is_string() || is_quantity(text.get_ref<const std::string&>())) return true;
-            auto names = scope.names();
-            names.insert(names.end(), open.begin(), open.end());
-            const auto parsed = Formula::parse(text.get<std::string>(), names);
-            if (const auto* why = std::get_if<std::string>(&parsed)) (*lets)[name].refuse(*why);
-            return std::ranges::none_of(std::get<Formula>(parsed).names(),
-                                        [&](const auto& used) { return open.contains(used); });
-        });
-        if (ready == open.end()) (*lets)[*open.begin()].refuse("it depends on itself");
-        const Cursor here = (*lets)[*ready];
-        double number = 0;
-        if (here.json().is_string() && is_quantity(here.json().get_ref<const std::string&>())) {
-            // A quantity in SI units, whichever they are.
-            std::string why;
-            bool read = false;
-            for (const auto si : si_units) {
-                const auto converted = in_si(here.text(), si);
-                if (const auto* value = std::get_if<double>(&converted)) {
-                    number = *value;
-                    read = true;
-                    break;
-                }
-                if (why.empty()) why = std::get<std::string>(converted);
-            }
-            if (!read) here.refuse(why);
-        } else {
-            number = scope.number(here, "1");
-        }
-        scope.set(*ready, number);
-        open.erase(ready);
-    }
+    scope.set("nan", std::numeric_limits<double>::quiet_NaN());
+    evaluate_lets(top, species_names(top), scope);
     return scope;
+}
+
+void add_species_numbers(const Section& top, const machine::Spec& spec, MachineScope& scope) {
+    for (const auto& species : spec.species) {
+        scope.set(species.name + "_largest", species.largest());
+        scope.set(species.name + "_smallest", species.smallest());
+        scope.set(species.name + "_volume", species.mean_volume());
+    }
+    evaluate_lets(top, {}, scope);
 }
 
 }  // namespace grainsweep::campaign

@@ -5,6 +5,8 @@
 #include "sweep/campaign/cursor.hpp"
 #include "sweep/campaign/machine_scope.hpp"
 
+#include "solver/machine/spec.hpp"
+
 #include <vector>
 
 namespace grainsweep::campaign {
@@ -12,8 +14,10 @@ namespace grainsweep::campaign {
 /// Parameters of the machine, and those that every machine has.
 [[nodiscard]] std::vector<ParameterSpec> read_machine_parameters(const Section& top);
 /// What expressions may name, for complete inputs: parameters in SI units, NAME_UNIT, NAME_is_WORD, and "let", whose
-/// expressions may use one another in any order. Refuses a circle of them.
+/// expressions may use one another in any order; what needs numbers of species is still missing. Refuses a circle.
 [[nodiscard]] MachineScope machine_scope(const Section& top, const std::vector<ParameterSpec>& parameters,
                                          const Inputs& inputs);
+/// Adds SPECIES_largest, SPECIES_smallest, SPECIES_volume, and the rest of "let".
+void add_species_numbers(const Section& top, const machine::Spec& spec, MachineScope& scope);
 
 }  // namespace grainsweep::campaign

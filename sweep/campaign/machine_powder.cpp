@@ -21,24 +21,32 @@ constexpr double most_particles = 5e6;
 particles::SizeDistribution sizes_of(const Section& section, const MachineReading& reading, double& diameter) {
     using particles::SizeDistribution;
     const auto& scope = reading.scope;
-    if (const auto file = section.find("file")) {
-        for (const char* key : {"spread", "half_width", "sigma"})
-            if (const auto too = section.find(key)) too->refuse("beside \"file\" it has no effect");
+    const auto place = section.find("spread"), file = section.find("file");
+    if (!place && !file) throw wrong_question(section.place().path(), "", "sizes have a \"spread\" or a \"file\"");
+    // Where a parameter chooses, the values of all choices stand beside it.
+    const bool chosen = place && place->json().is_string() && place->text().find('{') != std::string::npos;
+    const auto words = std::ranges::find(machine_keys::sizes(), std::string_view("spread"), &Key::name)->words;
+    const auto spread = place ? scope.word(*place, words) : std::string("file");
+    for (const auto& [key, of] :
+         {std::pair{"half_width", "uniform"}, std::pair{"sigma", "lognormal"}, std::pair{"file", "file"}})
+        if (const auto given = section.find(key); given && spread != of && !chosen)
+            given->refuse(fmt::format("it belongs to \"spread\": \"{}\"", of));
+    if (spread == "file") {
+        if (!file) throw wrong_question(section.place().path(), "", "key 'file' is missing");
         try {
             const auto table = particles::SizeTable::read(reading.contents(*file));
             if (!(diameter > 0)) diameter = SizeDistribution::table(table.over(1)).moment(1);
-            return SizeDistribution::table(table.over(diameter));
+            const auto sizes = SizeDistribution::table(table.over(diameter));
+            if (!(sizes.smallest() <= 1 && sizes.largest() >= 1))
+                file->refuse(
+                    fmt::format("the sizes are {:.4g} to {:.4g} m, and the diameter {:.4g} m is not among them",
+                                sizes.smallest() * diameter, sizes.largest() * diameter, diameter));
+            return sizes;
         } catch (const std::invalid_argument& why) {
             file->refuse(why.what());
         }
     }
-    const auto place = section.find("spread");
-    if (!place) throw wrong_question(section.place().path(), "", "sizes have a \"spread\" or a \"file\"");
-    const auto words = std::ranges::find(machine_keys::sizes(), std::string_view("spread"), &Key::name)->words;
-    const auto spread = scope.word(*place, words);
-    for (const auto& [key, of] : {std::pair{"half_width", "uniform"}, std::pair{"sigma", "lognormal"}})
-        if (const auto given = section.find(key); given && spread != of)
-            given->refuse(fmt::format("it belongs to \"spread\": \"{}\"", of));
+    if (spread == "monodisperse") return {};
     if (spread == "uniform") return SizeDistribution::uniform(scope.number(section, "half_width", "1", 0.1, {0, 0.9}));
     if (spread == "lognormal") return SizeDistribution::lognormal(scope.number(section, "sigma", "1", 0.2, {0, 1}));
     return SizeDistribution::weibull_classes(spread == "weibull_wide" ? 0.15 : 0.1);
@@ -213,6 +221,7 @@ void read_fills(const Section& top, MachineReading& reading) {
             for (const char* key : {"mix", "by", "count", "mass", "volume", "in", "as", "velocity", "shaken"})
                 if (const auto too = section.find(key)) too->refuse("beside \"spheres\" it has no effect");
             if (!section.find("species")) throw wrong_question(place.path(), "", "key 'species' is missing");
+            const bool glued = section.flag("glued", false);
             const std::size_t species = reading.scope.place_in(section.at("species"), reading.species, "species");
             std::vector<machine::Placed> placed;
             if (spheres->json().is_array())
@@ -221,6 +230,7 @@ void read_fills(const Section& top, MachineReading& reading) {
                 placed = spheres_in_file(*spheres, reading, species);
             else
                 spheres->refuse("must be a list of spheres, or the name of a CSV file");
+            for (auto& one : placed) one.sphere.mobile = !glued;
             reading.spec.fills.emplace_back(std::move(placed));
             continue;
         }
@@ -234,6 +244,7 @@ void read_fills(const Section& top, MachineReading& reading) {
                                                                                    : machine::Fill::As::random;
         fill.velocity = reading.scope.vector(section, "velocity", "m/s");
         fill.shaken = reading.scope.number(section, "shaken", "m/s", 0, no_negative_number);
+        fill.glued = section.flag("glued", false);
         reading.spec.fills.emplace_back(std::move(fill));
     }
 }

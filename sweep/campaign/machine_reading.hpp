@@ -21,8 +21,10 @@ struct MachineReading {
         : files(given), scope(std::move(names)) {}
 
     const std::map<std::string, std::string, std::less<>>& files;
+    std::map<std::string, std::string_view, std::less<>> chosen;  ///< contents of parameters that are files, by value
     MachineScope scope;
     double particles_scale = 1;
+    std::string shown;  ///< name of the machine
 
     machine::Spec spec;
     std::vector<std::string> materials;                ///< all of them, those of walls too
@@ -36,7 +38,7 @@ struct MachineReading {
     std::vector<std::string> measures;              ///< those with a probe, as the Spec has them
 
     /// Contents of a file that a text names.
-    [[nodiscard]] const std::string& contents(const Cursor& place) const;
+    [[nodiscard]] std::string_view contents(const Cursor& place) const;
 };
 
 void read_materials(const Section& top, MachineReading& reading);
@@ -49,6 +51,7 @@ void read_feeds(const Section& top, MachineReading& reading);
 void read_phases(const Section& top, MachineReading& reading);
 void read_measures(const Section& top, MachineReading& reading);
 void read_surroundings(const Section& top, MachineReading& reading);
+void read_checks(const Section& top, MachineReading& reading);
 
 [[nodiscard]] geometry::Shape read_shape(const Section& wall, const MachineReading& reading);
 /// Phases of "during"; empty: all.

@@ -27,9 +27,9 @@ Machines& machines() {
 }
 
 /// A case that is impossible is no wrong question of the campaign file: it is rejected.
-machine::Spec possible_spec(const Machine& machine, const Inputs& inputs) {
+machine::Spec possible_spec(const Machine& machine, const Inputs& inputs, const Files& files) {
     try {
-        return machine_spec(machine, inputs);
+        return machine_spec(machine, inputs, files);
     } catch (const WrongQuestion& wrong) {
         throw std::invalid_argument(wrong.what());
     }
@@ -50,14 +50,14 @@ SceneInfo scene_of_machine(const std::shared_ptr<const Machine>& machine, std::s
                       {"balanced", numerics(0.2, "mixed")},
                       {"reference", numerics(0.05, "double")}};
     scene.maker = [machine](const Inputs& inputs, std::uint64_t seed, Artefacts&,
-                            const Files&) -> std::unique_ptr<Scene> {
-        return std::make_unique<machine::Run>(possible_spec(*machine, inputs), seed);
+                            const Files& files) -> std::unique_ptr<Scene> {
+        return std::make_unique<machine::Run>(possible_spec(*machine, inputs, files), seed);
     };
-    scene.estimate_cost = [machine](const Inputs& inputs, const Files&) {
-        return machine::cost_of(possible_spec(*machine, inputs));
+    scene.estimate_cost = [machine](const Inputs& inputs, const Files& files) {
+        return machine::cost_of(possible_spec(*machine, inputs, files));
     };
-    scene.warnings = [machine](const Inputs& inputs, const Files&) {
-        return machine::warnings_of(possible_spec(*machine, inputs));
+    scene.warnings = [machine](const Inputs& inputs, const Files& files) {
+        return machine::warnings_of(possible_spec(*machine, inputs, files));
     };
     return scene;
 }

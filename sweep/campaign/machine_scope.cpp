@@ -120,6 +120,28 @@ std::string MachineScope::text(const Cursor& place) const {
     return text;
 }
 
+std::string MachineScope::sentence(const Cursor& place) const {
+    std::string text = place.text();
+    for (std::size_t open = text.find('{'); open != std::string::npos; open = text.find('{', open)) {
+        const std::size_t close = text.find('}', open);
+        if (close == std::string::npos) place.refuse("a '{' without its '}'");
+        const std::string name = text.substr(open + 1, close - open - 1);
+        std::string value;
+        if (const auto word = words_.find(name); word != words_.end()) {
+            value = word->second;
+        } else {
+            const auto known = names();
+            const auto parsed = Formula::parse(name, known);
+            if (const auto* why = std::get_if<std::string>(&parsed)) place.refuse(*why);
+            value = fmt::format("{:.4g}", std::get<Formula>(parsed)(
+                                              [this](std::string_view used) { return numbers_.find(used)->second; }));
+        }
+        text.replace(open, close - open + 1, value);
+        open += value.size();
+    }
+    return text;
+}
+
 std::string MachineScope::word(const Cursor& place, const WordList& words) const {
     const std::string rule = fmt::format("must be {}", in_words(words));
     if (!place.json().is_string() || place.json().get_ref<const std::string&>().empty()) place.refuse(rule);

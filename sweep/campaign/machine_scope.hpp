@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +22,9 @@ public:
     /// Numbers and words that expressions and texts may name.
     void set(std::string name, double value) { numbers_.insert_or_assign(std::move(name), value); }
     void set_word(std::string name, std::string word) { words_.insert_or_assign(std::move(name), std::move(word)); }
+    /// A number that "let" defines.
+    void set_let(const std::string& name, double value) { set(name, value), lets_.insert(name); }
+    [[nodiscard]] bool is_let(const std::string& name) const { return lets_.contains(name); }
     [[nodiscard]] bool knows(std::string_view name) const { return numbers_.contains(name) || words_.contains(name); }
 
     /// A finite SI number of the unit, within the bounds. Refuses everything else.
@@ -38,8 +42,10 @@ public:
     [[nodiscard]] machine::Vec3 direction(const Cursor& place) const;
     [[nodiscard]] machine::Vec3 direction(const Section& section, std::string_view key,
                                           const machine::Vec3& standard) const;
-    /// A text with "{NAME}" replaced.
+    /// A text with "{NAME}" replaced by a word.
     [[nodiscard]] std::string text(const Cursor& place) const;
+    /// The same with numbers, too: what a check says.
+    [[nodiscard]] std::string sentence(const Cursor& place) const;
     [[nodiscard]] std::string word(const Cursor& place, const WordList& words) const;
     [[nodiscard]] std::string word(const Section& section, std::string_view key, const WordList& words,
                                    std::string_view standard) const;
@@ -52,10 +58,13 @@ public:
                                                      std::string_view what) const;
 
     [[nodiscard]] std::vector<std::string> names() const;
+    /// Of a name that is known, which may be without a value.
+    [[nodiscard]] double value(std::string_view name) const { return numbers_.find(name)->second; }
 
 private:
     std::map<std::string, double, std::less<>> numbers_;
     std::map<std::string, std::string, std::less<>> words_;
+    std::set<std::string> lets_;
 };
 
 /// Whether a text begins as a number with or without a unit behind it, not as an expression.

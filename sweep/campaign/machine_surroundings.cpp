@@ -1,4 +1,4 @@
-// "domain" of a machine.
+// "domain" and "checks" of a machine.
 #include "sweep/campaign/machine_reading.hpp"
 
 #include "solver/machine/setup.hpp"
@@ -24,6 +24,11 @@ void read_surroundings(const Section& top, MachineReading& reading) {
             for (std::size_t k = 0; k < 3; ++k)
                 spec.domain.periodic[k] =
                     scope.word((*sides)[k], std::array<std::string_view, 2>{"open", "periodic"}) == "periodic";
+        }
+        if (const auto periods = section.find("periodic")) {
+            if (const auto sides = section.find("sides")) sides->refuse("beside \"periodic\" it says too much");
+            const auto given = scope.vector(*periods, "1");
+            for (std::size_t k = 0; k < 3; ++k) spec.domain.periodic[k] = given[k] != 0;
         }
         const auto read_corner = [&](std::string_view key, std::array<std::optional<double>, 3>& into) {
             const auto corner = section.find(key);
@@ -57,6 +62,21 @@ void read_surroundings(const Section& top, MachineReading& reading) {
         spec.domain.high[k] = high[k].value_or(around.high[k]);
         if (!(spec.domain.low[k] < spec.domain.high[k]))
             place->refuse(fmt::format("\"low\" must lie below \"high\" along {}", "xyz"[k]));
+    }
+}
+
+void read_checks(const Section& top, MachineReading& reading) {
+    const auto all = top.find("checks");
+    if (!all) return;
+    for (const auto& place : all->elements()) {
+        const Section section(place, machine_keys::check());
+        const auto refuse = section.find("refuse"), warn = section.find("warn"), that = section.find("that");
+        if (refuse.has_value() == warn.has_value() || warn.has_value() != that.has_value())
+            place.refuse("a check has \"refuse\", or \"warn\" and \"that\"");
+        const bool holds = reading.scope.present(section);
+        const std::string sentence = reading.scope.sentence(refuse ? *refuse : *that);
+        if (holds && refuse) throw wrong_question(reading.shown, "", sentence);
+        if (holds) reading.spec.warnings.push_back({warn->text(), sentence});
     }
 }
 

@@ -29,11 +29,26 @@ private:
 
 class Overlap final : public machine::Probe {
 public:
-    explicit Overlap(const Options&) {}
-    double look(const Sight& sight) override { return sight.engine.largest_overlap(); }
+    explicit Overlap(const Options& options) : over_steps_(options.word("over", "frames") == "steps") {}
+    double look(const Sight& sight) override {
+        return over_steps_ ? sight.peak_overlap : sight.engine.largest_overlap();
+    }
+
+private:
+    bool over_steps_;
 };
 
 constexpr std::array contacts_options = {of_option, in_option};
+constexpr std::array<std::string_view, 2> over_words = {"frames", "steps"};
+constexpr std::array overlap_options = {
+    OptionSpec{"over",
+               OptionSpec::Kind::word,
+               "",
+               "'frames': now, 'steps': the deepest at any step since the phase began; default: "
+               "'frames'",
+               false,
+               {},
+               over_words}};
 
 }  // namespace
 
@@ -45,10 +60,7 @@ const ProbeInfo coordination{
     [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<Coordination>(given); },
     true};
 const ProbeInfo overlap{
-    "overlap",
-    "1",
-    "deepest overlap of two particles divided by the diameter of the smaller one",
-    {},
+    "overlap", "1", "deepest overlap of two particles divided by the diameter of the smaller one", overlap_options,
     [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<Overlap>(given); }};
 
 }  // namespace grainsweep::machine::probes
