@@ -210,6 +210,7 @@ void read_phases(const Section& top, MachineReading& reading) {
         if (until && !until->json().is_array()) phase.until.push_back(read_until(*until, reading));
         if (until && until->json().is_array())
             for (const auto& one : until->elements()) phase.until.push_back(read_until(one, reading));
+        if (until && phase.until.empty()) until->refuse("must name a condition");
         if (phase.until.size() > 100) until->refuse("a phase has at most 100 conditions");
         reading.spec.phases.push_back(std::move(phase));
     }

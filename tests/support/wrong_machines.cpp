@@ -15,6 +15,7 @@ using nlohmann::json;
 /// Files that wrong machines name.
 const FileTexts& wrong_files() {
     static const FileTexts files = {{"sizes.csv", "diameter,mass\n"},
+                                    {"fine.csv", "diameter,number_below\n0.0001,0\n0.0002,1\n"},
                                     {"bad.stl", "x"},
                                     {"s.csv", "x,y\n1,2\n"},
                                     {"t.csv", "x,y,z\n0.01,0.01,b\n"},

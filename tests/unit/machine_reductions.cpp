@@ -48,16 +48,16 @@ TEST(MachineReductions, OfNothingAreUndefined) {
 }
 
 TEST(MachineReductions, TheErrorOfAMeanIsThatOfIndependentBlocks) {
-    EXPECT_TRUE(std::isnan(machine::error_of_mean(samples({{0, 1}, {1, 2}})))) << "too few frames";
+    EXPECT_TRUE(std::isnan(machine::find_reduction("mean")->error(samples({{0, 1}, {1, 2}})))) << "too few frames";
     // Independent values of variance 1/12: the error of the mean of 4000 is 1/sqrt(12*4000), from ten blocks within 80
     // %.
     std::vector<Sample> all;
     for (std::uint64_t n = 0; n < 4000; ++n)
         all.push_back({.time = static_cast<double>(n), .value = stats::Stream(5, n).uniform(0)});
     const double expected = 1 / std::sqrt(12.0 * 4000);
-    EXPECT_GT(machine::error_of_mean(all), 0.4 * expected);
-    EXPECT_LT(machine::error_of_mean(all), 1.8 * expected);
-    EXPECT_NEAR(machine::error_of_mean(std::vector<Sample>(40, {.time = 0, .value = 7})), 0, 1e-14);
+    EXPECT_GT(machine::find_reduction("mean")->error(all), 0.4 * expected);
+    EXPECT_LT(machine::find_reduction("mean")->error(all), 1.8 * expected);
+    EXPECT_NEAR(machine::find_reduction("mean")->error(std::vector<Sample>(40, {.time = 0, .value = 7})), 0, 1e-14);
 }
 
 TEST(MachineReductions, HaveOneNameEach) {
