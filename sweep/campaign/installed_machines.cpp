@@ -41,6 +41,19 @@ std::shared_ptr<const Machine> installed_machine(std::string_view name) {
     });
 }
 
+const SceneInfo* scene_named(std::string_view word) {
+    if (const SceneInfo* scene = find_scene(word)) return scene;
+    auto machine = installed_machine(word);
+    return machine == nullptr ? nullptr : &enter_machine(std::move(machine));
+}
+
+std::vector<const SceneInfo*> named_scenes() {
+    std::vector<const SceneInfo*> all;
+    for (const auto& scene : scene_catalogue()) all.push_back(&scene);
+    for (const auto& name : installed_machines()) all.push_back(&enter_machine(installed_machine(name)));
+    return all;
+}
+
 std::shared_ptr<const Machine> machine_named(std::string_view where, const std::string& name) {
     std::error_code none;
     if (std::filesystem::is_regular_file(name, none)) return read_machine(name);

@@ -7,6 +7,10 @@
 #include <string_view>
 #include <vector>
 
+namespace grainsweep {
+struct SceneInfo;
+}
+
 namespace grainsweep::campaign {
 
 struct Machine;
@@ -20,6 +24,11 @@ struct InstalledFile {
 [[nodiscard]] std::vector<std::string> installed_machines();
 /// One of them; nullptr where there is none of that name.
 [[nodiscard]] std::shared_ptr<const Machine> installed_machine(std::string_view name);
+/// The scene of this name, or of the installed machine of this name; nullptr where there is none.
+[[nodiscard]] const SceneInfo* scene_named(std::string_view word);
+/// What a campaign file may name as its scene: scenes of the program, then installed machines.
+[[nodiscard]] std::vector<const SceneInfo*> named_scenes();
+
 /// A machine file, or one that is installed, by a path or a name. Throws WrongQuestion, naming `where`.
 [[nodiscard]] std::shared_ptr<const Machine> machine_named(std::string_view where, const std::string& name);
 

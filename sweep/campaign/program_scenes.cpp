@@ -1,4 +1,5 @@
 // The scenes of programs, as far as this process has met them.
+#include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/program.hpp"
 
@@ -67,6 +68,7 @@ std::string why_absent(std::string_view scene, std::string_view observable) {
 std::vector<std::string> scene_words() {
     std::vector<std::string> words;
     for (const auto& scene : scene_catalogue()) words.push_back(scene.name);
+    for (auto& machine : installed_machines()) words.push_back(std::move(machine));
     words.emplace_back(machine_word);
     words.emplace_back(program_word);
     return words;

@@ -78,7 +78,7 @@ const SceneInfo& read_scene(const Section& top, const fs::path& folder) {
     if (const auto program = top.find("program"))
         throw wrong_question(program->path(), "",
                              fmt::format("belongs to \"scene\": \"program\", and this is {}", word));
-    return *find_scene(word);
+    return *scene_named(word);
 }
 
 std::string read_accuracy(const Cursor& place, const SceneInfo& scene) {

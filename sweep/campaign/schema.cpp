@@ -2,6 +2,7 @@
 
 #include "solver/scenes/scene.hpp"
 #include "sweep/campaign/case.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/keys.hpp"
 #include "sweep/campaign/machine.hpp"
 #include "sweep/campaign/program.hpp"
@@ -164,7 +165,7 @@ OrderedJson scene_rule(const SceneInfo& scene) {
     for (const auto& [name, inputs] : scene.accuracy) offered.push_back(name);
     then["accuracy"] = offered.empty() ? OrderedJson(false) : OrderedJson{{"enum", offered}};
     OrderedJson condition;
-    condition["properties"]["scene"]["const"] = scene.name;
+    condition["properties"]["scene"]["const"] = scene.shown();
     return {{"if", condition}, {"then", {{"properties", then}}}};
 }
 
@@ -273,9 +274,9 @@ std::string campaign_schema(int indentation) {
     for (const auto& design : designs::design_catalogue())
         properties["design"]["oneOf"].push_back(design_schema(design));
     OrderedJson scenes = OrderedJson::array();
-    for (const auto& scene : scene_catalogue()) {
-        scenes.push_back(scene.name);
-        schema["allOf"].push_back(scene_rule(scene));
+    for (const auto* scene : named_scenes()) {
+        scenes.push_back(scene->shown());
+        schema["allOf"].push_back(scene_rule(*scene));
     }
     scenes.push_back(program_word);
     schema["allOf"].push_back(defined_scene_rule(program_word, false));

@@ -236,7 +236,7 @@ int list_scenes(const std::string& name, Format format) {
         return 0;
     }
     if (!name.empty()) {
-        const auto* scene = find_scene(name);
+        const auto* scene = campaign::scene_named(name);
         if (scene == nullptr) {
             throw campaign::wrong_question("NAME", name, "there is no such scene; grainsweep scenes lists them",
                                            campaign::nearest_word(name, known));
@@ -245,11 +245,10 @@ int list_scenes(const std::string& name, Format format) {
         return 0;
     }
     store::Table table{{"scene", "revision", "parameters", "observables", "summary"}, {}};
-    for (const auto& scene : scene_catalogue()) {
-        table.rows.push_back({scene.name, std::int64_t{scene.revision},
-                              static_cast<std::int64_t>(scene.parameters.size()),
-                              static_cast<std::int64_t>(scene.observables.size()), scene.summary});
-    }
+    for (const auto* scene : campaign::named_scenes())
+        table.rows.push_back({scene->shown(), std::int64_t{scene->revision},
+                              static_cast<std::int64_t>(scene->parameters.size()),
+                              static_cast<std::int64_t>(scene->observables.size()), scene->summary});
     table.rows.push_back({std::string(campaign::machine_word), std::int64_t{1}, Cell{}, Cell{},
                           std::string(campaign::machine_summary())});
     table.rows.push_back({std::string(campaign::program_word), std::int64_t{1}, Cell{}, Cell{},

@@ -1,6 +1,7 @@
 #include "sweep/cli/completion.hpp"
 
 #include "sweep/campaign/case.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/program.hpp"
 #include "sweep/designs/design.hpp"
 
@@ -33,8 +34,8 @@ std::vector<std::string> design_names() {
 /// "friction=" and so on, every parameter of every scene once.
 std::vector<std::string> settings() {
     std::set<std::string> names;
-    for (const auto& scene : scene_catalogue())
-        for (const auto& parameter : scene.parameters) names.insert(parameter.name + "=");
+    for (const auto* scene : campaign::named_scenes())
+        for (const auto& parameter : scene->parameters) names.insert(parameter.name + "=");
     return {names.begin(), names.end()};
 }
 
