@@ -23,6 +23,7 @@ using kit::sentence;
 constexpr double most_jitter = 0.05, lowest = 0.1;      // D
 constexpr double spacing = 1.15, least_spacing = 1.02;  // D, largest diameters
 constexpr double most_sites = 2e8;
+constexpr double rounding = 1e-9;  // of a radius: a layer one diameter thick holds spheres
 
 double widest_in(const Spec& spec, const Mix& mix) {
     double largest = 0;
@@ -204,7 +205,7 @@ private:
         std::vector<Vec3> centres;
         lattice.each([&](const Vec3& site) {
             if (centres.size() == wanted) return false;
-            if (fits(spec_, obstacles, fill.in, site, room * (1 - 1e-9))) centres.push_back(site);
+            if (fits(spec_, obstacles, fill.in, site, room * (1 - rounding))) centres.push_back(site);
             return true;
         });
         require(centres.size() == wanted,
@@ -223,9 +224,10 @@ private:
         std::vector<double> radii;
         for (const auto& particle : particles) radii.push_back(particle.radius);
         const Bounds bounds = bounds_in(spec_, fill.in);
-        const particles::Room room{
-            bounds.low, bounds.high, periodic_in(spec_, bounds),
-            [&](const Vec3& centre, double radius) { return fits(spec_, obstacles, fill.in, centre, radius); }};
+        const particles::Room room{bounds.low, bounds.high, periodic_in(spec_, bounds),
+                                   [&](const Vec3& centre, double radius) {
+                                       return fits(spec_, obstacles, fill.in, centre, radius * (1 - rounding));
+                                   }};
         const auto seed = static_cast<std::uint64_t>(draws.uniform(order_draw, 1) * 0x1p53);
         auto centres = particles::random_addition(room, radii, seed);
         require(centres.has_value(), name_of(spec_, fill.mix) +

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <mutex>
 #include <stdexcept>
 
 namespace grainsweep::campaign {
@@ -43,14 +45,19 @@ std::shared_ptr<const Machine> installed_machine(std::string_view name) {
 
 const SceneInfo* scene_named(std::string_view word) {
     if (const SceneInfo* scene = find_scene(word)) return scene;
+    // Entered once: who holds a scene keeps it.
+    static std::mutex mutex;
+    static std::map<std::string, const SceneInfo*, std::less<>> entered;
+    const std::lock_guard lock(mutex);
+    if (const auto known = entered.find(word); known != entered.end()) return known->second;
     auto machine = installed_machine(word);
-    return machine == nullptr ? nullptr : &enter_machine(std::move(machine));
+    return machine == nullptr ? nullptr : (entered[machine->name] = &enter_machine(machine));
 }
 
 std::vector<const SceneInfo*> named_scenes() {
     std::vector<const SceneInfo*> all;
     for (const auto& scene : scene_catalogue()) all.push_back(&scene);
-    for (const auto& name : installed_machines()) all.push_back(&enter_machine(installed_machine(name)));
+    for (const auto& name : installed_machines()) all.push_back(scene_named(name));
     return all;
 }
 

@@ -5,7 +5,6 @@
 #include "sweep/campaign/quantity.hpp"
 
 #include "solver/machine/shapes.hpp"
-#include "solver/particles/size_table.hpp"
 
 #include <fmt/format.h>
 

@@ -15,6 +15,7 @@
 // standard deviation over the seeds. Draws drum_RPM_SEED.svg in the current folder: the grains of the last frame, and
 // over them the surfaces at cover 0.5 of the photograph and of both programs. Minutes per run.
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "tests/support/drum_picture.hpp"
 #include "tests/support/places.hpp"
@@ -210,7 +211,7 @@ void compare(const std::filesystem::path& folder, int rpm, std::uint64_t seed, d
 }
 
 void run(const std::filesystem::path& folder, Span span, int rpm, std::uint64_t seed, Summary& summary) {
-    const SceneInfo& info = *find_scene("rotating_drum");
+    const SceneInfo& info = *campaign::scene_named("rotating_drum");
     const Question question = asked(info, folder, span, rpm);
     NoArtefacts none;
     const auto start = std::chrono::steady_clock::now();

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 #include "tests/support/trade_off.hpp"
 
 using namespace grainsweep;
@@ -98,7 +99,7 @@ double answer(const SceneInfo& scene, const Question& q, const Inputs& numerics,
 }
 
 void ask(const Question& q, int seeds, int double_share) {
-    const SceneInfo& scene = *find_scene(q.scene);
+    const SceneInfo& scene = *campaign::scene_named(q.scene);
     std::vector<Setting> settings;
     std::vector<Runs> runs;
     for (const auto& choice : choices_of(scene, double_share)) {

@@ -2,6 +2,7 @@
 // section 4 of its README), through what a campaign calls. A mean over m seeds must lie within 3 s sqrt(1/m + 1/n) of
 // the reference's over n, s the standard deviation of one run: the reference's, pooled over the cases of a scene.
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 #include "tests/support/reference_table.hpp"
 
 #include <gtest/gtest.h>
@@ -81,7 +82,7 @@ Inputs of_powder(const SceneInfo& scene, const Inputs& given) {
 void compare(const std::string& scene, const std::string& name, const Inputs& given,
              const std::vector<Compared>& quantities) {
     static const auto all = references();
-    const SceneInfo& info = *find_scene(scene);
+    const SceneInfo& info = *campaign::scene_named(scene);
     std::map<std::string, double> mean;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         NoArtefacts none;

@@ -1,6 +1,7 @@
 // The scenes hopper and heap: closed forms, limits and the promises of a scene. Comparison with LIGGGHTS:
 // tests/bench/scenes_slow.cpp.
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +12,7 @@ namespace grainsweep::tests::hopper_and_heap_test {
 
 std::unique_ptr<Scene> make(const char* scene, const Inputs& changed, std::uint64_t seed = 1) {
     NoArtefacts none;
-    const SceneInfo& info = *find_scene(scene);
+    const SceneInfo& info = *campaign::scene_named(scene);
     Inputs inputs = info.defaults();
     for (const auto& [name, value] : changed) inputs.at(name) = value;
     return info.make(inputs, seed, none);

@@ -1,6 +1,7 @@
 // The scene rotating_drum: balance of torques, what ends and gravity do, and the promises of a scene. Comparison with
 // LIGGGHTS: tests/bench/scenes_slow.cpp.
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +11,7 @@
 namespace grainsweep::tests::rotating_drum_test {
 
 const SceneInfo& info() {
-    return *find_scene("rotating_drum");
+    return *campaign::scene_named("rotating_drum");
 }
 
 Inputs small_drum() {

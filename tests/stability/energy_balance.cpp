@@ -1,5 +1,6 @@
 // The check of the energy in cases of a few spheres, which bounce, roll and come to rest: sound steps are not called
 // unstable, steps beyond the limit are. All 500 cases of each scene: tests/bench/few_spheres_slow.cpp.
+#include "sweep/campaign/installed_machines.hpp"
 #include "tests/support/few_spheres.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +25,7 @@ TEST(EnergyBalance, FewSpheresAtASoundStepCreateNone) {
 TEST(EnergyBalance, OneBouncingSphereIsSound) {
     for (const char* precision : {"mixed", "double"})
         for (const double restitution : {0.7, 0.9, 1.0}) {
-            tests::FewSpheres one{find_scene("heap")->defaults(), 1, 0};
+            tests::FewSpheres one{campaign::scene_named("heap")->defaults(), 1, 0};
             one.inputs["particles"] = std::int64_t{1};
             one.inputs["restitution"] = restitution;
             one.inputs["settle_time"] = 3.0;

@@ -1,4 +1,5 @@
 // The heap over its declared ranges: refused in a sentence, reported unstable, or answered in numbers.
+#include "sweep/campaign/installed_machines.hpp"
 #include "tests/support/scene_corners.hpp"
 
 #include <gtest/gtest.h>
@@ -6,7 +7,7 @@
 namespace grainsweep::tests::heap_corners_test {
 
 const SceneInfo& heap() {
-    return *find_scene("heap");
+    return *campaign::scene_named("heap");
 }
 
 TEST(HeapCorners, EveryBoundIsMadeOrRefused) {

@@ -1,4 +1,5 @@
 // The hopper over its declared ranges: refused in a sentence, reported unstable, or answered in numbers.
+#include "sweep/campaign/installed_machines.hpp"
 #include "tests/support/scene_corners.hpp"
 
 #include <gtest/gtest.h>
@@ -6,7 +7,7 @@
 namespace grainsweep::tests::hopper_corners_test {
 
 const SceneInfo& hopper() {
-    return *find_scene("hopper");
+    return *campaign::scene_named("hopper");
 }
 
 TEST(HopperCorners, EveryBoundIsMadeOrRefused) {

@@ -1,4 +1,5 @@
 // The drum over its declared ranges: refused in a sentence, reported unstable, or answered in numbers.
+#include "sweep/campaign/installed_machines.hpp"
 #include "tests/support/scene_corners.hpp"
 
 #include <gtest/gtest.h>
@@ -6,7 +7,7 @@
 namespace grainsweep::tests::rotating_drum_corners_test {
 
 const SceneInfo& drum() {
-    return *find_scene("rotating_drum");
+    return *campaign::scene_named("rotating_drum");
 }
 
 Inputs small_case() {

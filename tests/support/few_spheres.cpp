@@ -1,4 +1,5 @@
 #include "tests/support/few_spheres.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 
 #include "solver/dem/material.hpp"
 #include "solver/dem/time_step.hpp"
@@ -155,7 +156,7 @@ double step_limit(std::string_view scene, const FewSpheres& question, const Unit
     in["time_step"] = 0.0;
     in["time_step_fraction"] = 1.0;
     NoArtefacts none;
-    const auto made = find_scene(scene)->make(in, question.seed, none, {});
+    const auto made = campaign::scene_named(scene)->make(in, question.seed, none, {});
     made->advance(1e-300);
     return made->time();
 }
@@ -183,7 +184,7 @@ const std::vector<std::string_view>& granular_scenes() {
 FewSpheres few_spheres(std::string_view scene, std::uint64_t number, double step) {
     Draws draw(stats::bits_at(36, std::hash<std::string_view>{}(scene), number));
     FewSpheres made;
-    made.inputs = find_scene(scene)->defaults();
+    made.inputs = campaign::scene_named(scene)->defaults();
     made.seed = number + 1;
     const Units unit = draw_powder(made.inputs, scene != "tpms_discharge", draw);
     lay_out(scene, made.inputs, unit, draw);
@@ -200,7 +201,7 @@ Fate fate_of(std::string_view scene, const FewSpheres& question) {
     Fate fate;
     NoArtefacts none;
     try {
-        const auto run = find_scene(scene)->make(question.inputs, question.seed, none, {});
+        const auto run = campaign::scene_named(scene)->make(question.inputs, question.seed, none, {});
         const double look = std::sqrt(std::get<double>(question.inputs.at("diameter")) /
                                       std::get<double>(question.inputs.at("gravity")));  // half a fall by D
         while (!run->finished() && run->health().stable()) {

@@ -1,6 +1,7 @@
 // Numbers with units and expressions in campaign files: the cases are those of plain numbers, and what is wrong gets
 // its sentence.
 #include "sweep/campaign/expressions.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 
 #include "sweep/campaign/identity.hpp"
 #include "sweep/campaign/reader.hpp"
@@ -71,14 +72,14 @@ TEST(QuantitiesInCampaigns, StandInFilesOfRowsAndOnCommandLines) {
     EXPECT_EQ(cases_of(file, folder), cases_of(spreading()));
     std::filesystem::remove(folder / "quantity_rows.csv");
 
-    const auto& scene = *find_scene("powder_spreading");
+    const auto& scene = *campaign::scene_named("powder_spreading");
     const auto value = [&](const char* name, const char* text) {
         return parse_value(*scene.find_parameter(name), text, ".", "--set");
     };
     EXPECT_EQ(value("gap", "200 um"), Value{2e-4});
     EXPECT_EQ(value("gap", "2e-4"), Value{2e-4});
     EXPECT_EQ(value("cohesion_law", "sjkr2"), Value{std::string("sjkr2")});
-    const auto& drum = *find_scene("rotating_drum");
+    const auto& drum = *campaign::scene_named("rotating_drum");
     EXPECT_EQ(parse_value(*drum.find_parameter("rpm"), "0.5 Hz", ".", ""), Value{30.0});
     EXPECT_EQ(parse_value(*drum.find_parameter("particles"), "1e3", ".", ""), Value{std::int64_t{1000}});
 }

@@ -1,4 +1,5 @@
 // The schema and the reader know the same keys: whatever one refuses, so does the other.
+#include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/keys.hpp"
 #include "sweep/campaign/reader.hpp"
 #include "sweep/campaign/schema.hpp"
@@ -90,18 +91,18 @@ TEST(Schema, RefusesTheNamesTheReaderRefuses) {
 }
 
 TEST(Schema, HasEveryParameterOfEveryScene) {
-    const auto scenes = scene_catalogue();
+    const auto scenes = campaign::named_scenes();
     ASSERT_EQ(schema()["allOf"].size(), scenes.size() + 2);  // and those of a program and of a machine
     EXPECT_EQ(schema()["allOf"][scenes.size()]["if"]["properties"]["scene"]["const"], "program");
     EXPECT_EQ(schema()["allOf"].back()["if"]["properties"]["scene"]["const"], "machine");
     for (std::size_t k = 0; k < scenes.size(); ++k) {
         const auto& rule = schema()["allOf"][k];
-        EXPECT_EQ(rule["if"]["properties"]["scene"]["const"], scenes[k].name);
+        EXPECT_EQ(rule["if"]["properties"]["scene"]["const"], scenes[k]->shown());
         const auto& fixed = rule["then"]["properties"]["fixed"]["properties"];
         const auto& factors = rule["then"]["properties"]["factors"]["items"]["oneOf"];
-        ASSERT_EQ(factors.size(), scenes[k].parameters.size());
+        ASSERT_EQ(factors.size(), scenes[k]->parameters.size());
         for (std::size_t j = 0; j < factors.size(); ++j) {
-            const auto& parameter = scenes[k].parameters[j];
+            const auto& parameter = scenes[k]->parameters[j];
             EXPECT_EQ(factors[j]["properties"]["name"]["const"], parameter.name);
             ASSERT_TRUE(fixed.contains(parameter.name));
             const auto* bounds = std::get_if<Interval>(&parameter.bounds);

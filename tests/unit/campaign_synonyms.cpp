@@ -1,5 +1,6 @@
 // Words of other programs and of the field lead to the names used here.
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/keys.hpp"
 #include "sweep/campaign/synonyms.hpp"
 #include "sweep/campaign/wrong_question.hpp"
@@ -16,7 +17,7 @@ using campaign::nearest_word;
 
 std::vector<std::string> parameters_of(const char* scene) {
     std::vector<std::string> names;
-    for (const auto& parameter : find_scene(scene)->parameters) names.push_back(parameter.name);
+    for (const auto& parameter : campaign::scene_named(scene)->parameters) names.push_back(parameter.name);
     return names;
 }
 

@@ -2,6 +2,7 @@
 #include "solver/particles/packing.hpp"
 #include "solver/particles/random_addition.hpp"
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,7 +22,7 @@ using testing::ThrowsMessage;
 const std::string file_input = "file:" + std::string(32, '0') + ":/there";
 
 Inputs sized(const char* scene, double diameter) {
-    Inputs inputs = find_scene(scene)->defaults();
+    Inputs inputs = campaign::scene_named(scene)->defaults();
     inputs["diameter"] = diameter;
     inputs["size_distribution"] = std::string("file");
     inputs["size_file"] = file_input;
@@ -57,12 +58,13 @@ std::string solid(const std::string& facets) {
 
 std::vector<std::string> kinds(const Inputs& inputs, const Files& files) {
     std::vector<std::string> found;
-    for (const auto& warning : find_scene("powder_spreading")->warnings(inputs, files)) found.push_back(warning.kind);
+    for (const auto& warning : campaign::scene_named("powder_spreading")->warnings(inputs, files))
+        found.push_back(warning.kind);
     return found;
 }
 
 Inputs with_tool(double scale) {
-    Inputs inputs = find_scene("powder_spreading")->defaults();
+    Inputs inputs = campaign::scene_named("powder_spreading")->defaults();
     inputs["tool"] = file_input;
     inputs["tool_scale"] = scale;
     return inputs;
@@ -70,7 +72,7 @@ Inputs with_tool(double scale) {
 
 // The smallest size sets the step, and their number follows from the mean volume.
 TEST(SceneEstimates, CountWhatIsDrawnFromAFile) {
-    const auto& spreading = *find_scene("powder_spreading");
+    const auto& spreading = *campaign::scene_named("powder_spreading");
     const double d = 1e-3;
     const auto one = spreading.estimate_cost(sized("powder_spreading", d), sizes("1e-3,1\n"));
     const auto half = spreading.estimate_cost(sized("powder_spreading", d), sizes("0.5e-3,0.5\n1e-3,0.5\n"));
@@ -80,7 +82,7 @@ TEST(SceneEstimates, CountWhatIsDrawnFromAFile) {
     EXPECT_LT(half.particle_steps, 2.1 * more * one.particle_steps);
     // Steps are 2.5 times as many. A hopper holds 0.53 of the volume and is empty so much sooner: 1.33 times at least.
     for (const auto& [scene, least] : {std::pair("hopper", 1.33), {"heap", 1.8}, {"rotating_drum", 1.8}}) {
-        const auto& info = *find_scene(scene);
+        const auto& info = *campaign::scene_named(scene);
         Inputs inputs = sized(scene, 5e-3);
         const double coarse = info.estimate_cost(inputs, sizes("5e-3,1\n")).seconds;
         const double fine = info.estimate_cost(inputs, sizes("2e-3,0.5\n5e-3,0.5\n")).seconds;
@@ -109,7 +111,7 @@ TEST(SceneEstimates, AToolFromAFileDrawsTheWarningOfABar) {
 
 TEST(SceneEstimates, AToolOfAWrongUnitIsRefusedWithItsSize) {
     const auto ask = [](double scale, const std::string& stl) {
-        return [=] { (void)find_scene("powder_spreading")->warnings(with_tool(scale), {{"tool", stl}}); };
+        return [=] { (void)campaign::scene_named("powder_spreading")->warnings(with_tool(scale), {{"tool", stl}}); };
     };
     EXPECT_THAT(ask(1, solid(bar(0, 5, 0, 40, 200))),
                 ThrowsMessage<std::invalid_argument>(HasSubstr("5 m thick along x and 40 m high")));
@@ -144,22 +146,22 @@ TEST(SceneEstimates, AFillingTakesMemoryByItsSpheres) {
 
 // Grids of the section are by the room, whatever the number of particles: memory that is predicted.
 TEST(SceneEstimates, CountTheSectionOfADrumAndTheGluedSpheres) {
-    Inputs drum = find_scene("rotating_drum")->defaults();
+    Inputs drum = campaign::scene_named("rotating_drum")->defaults();
     drum["diameter"] = 1e-6;
     drum["drum_diameter"] = 10.0;
     drum["occupancy_cell"] = 0.05;
     drum["particles"] = std::int64_t{400};
-    EXPECT_GT(find_scene("rotating_drum")->estimate_cost(drum, {}).bytes, 25e14 * 24);
-    Inputs rough = find_scene("powder_spreading")->defaults();
+    EXPECT_GT(campaign::scene_named("rotating_drum")->estimate_cost(drum, {}).bytes, 25e14 * 24);
+    Inputs rough = campaign::scene_named("powder_spreading")->defaults();
     rough["diameter"] = 1e-6;
     rough["gap"] = 1e-5;
     rough["travel"] = 1.0;
     rough["layer_area"] = 1e-9;
     rough["blade_thickness"] = 1e-4;
-    const double smooth_bytes = find_scene("powder_spreading")->estimate_cost(rough, {}).bytes;
+    const double smooth_bytes = campaign::scene_named("powder_spreading")->estimate_cost(rough, {}).bytes;
     rough["base"] = std::string("rough");
     const double glued = 1.02e6 * 10 / (1.2 * 1.2);
-    EXPECT_NEAR(find_scene("powder_spreading")->estimate_cost(rough, {}).bytes - smooth_bytes, 1500 * glued,
+    EXPECT_NEAR(campaign::scene_named("powder_spreading")->estimate_cost(rough, {}).bytes - smooth_bytes, 1500 * glued,
                 0.05 * 1500 * glued);
 }
 

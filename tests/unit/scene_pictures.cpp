@@ -10,13 +10,14 @@
 
 #include "solver/scenes/dem_picture.hpp"
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 #include "tests/support/surfaces.hpp"
 
 namespace grainsweep::tests::scene_pictures_test {
 
 std::unique_ptr<Scene> scene_of(const std::string& name, const Inputs& given) {
     static NoArtefacts none;
-    const SceneInfo& info = *find_scene(name);
+    const SceneInfo& info = *campaign::scene_named(name);
     Inputs inputs = info.defaults();
     for (const auto& [parameter, value] : given) inputs.at(parameter) = value;
     return info.make(inputs, 1, none);

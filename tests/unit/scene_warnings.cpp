@@ -1,5 +1,6 @@
 // Inputs that make little sense together draw a warning of their kind; defaults and reasonable ones draw none.
 #include "solver/scenes/scene.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +11,7 @@
 namespace grainsweep::tests::scene_warnings_test {
 
 std::set<std::string> kinds(const std::string& scene, const Inputs& changed) {
-    const auto* info = find_scene(scene);
+    const auto* info = campaign::scene_named(scene);
     Inputs inputs = info->defaults();
     for (const auto& [name, value] : changed) inputs.at(name) = value;
     std::set<std::string> found;

@@ -3,6 +3,7 @@
 // writes beside its memory.
 #include "solver/scenes/scene.hpp"
 #include "stats/random.hpp"
+#include "sweep/campaign/installed_machines.hpp"
 #include "tests/support/machines.hpp"
 
 #include <gtest/gtest.h>
@@ -101,7 +102,7 @@ class HostileCheckpoints : public testing::TestWithParam<Hostile> {};
 
 TEST_P(HostileCheckpoints, AreRestoredOrRefused) {
     const auto& kind = GetParam();
-    const SceneInfo& scene = *find_scene(kind.scene);
+    const SceneInfo& scene = *campaign::scene_named(kind.scene);
     const Inputs inputs = with(scene, kind.inputs);
     Kept artefacts;
     Bytes sound;
