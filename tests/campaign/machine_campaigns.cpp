@@ -212,6 +212,40 @@ TEST(MachineCampaigns, AFileMayDependOnAWord) {
     EXPECT_NO_THROW((void)id_of(triangle, triangle)) << "names of numbers, not of files";
 }
 
+// A file that a case names, not the machine: its contents are part of the question, and the database keeps them.
+TEST(MachineCampaigns, ACaseMayNameAFile) {
+    json machine = machine_with_files();
+    machine["parameters"]["measured"] = {{"file", "sizes"}, {"default", "none"}};
+    machine["parameters"]["law"] = {{"words", {"monodisperse", "file"}}, {"default", "monodisperse"}};
+    machine["species"]["light"]["sizes"] = {{"spread", "{law}"}, {"file", "{measured}"}};
+    const Workshop shop(machine);
+    json campaign = campaign_of("machine.json");
+    campaign["fixed"] = {{"law", "file"}, {"measured", "sizes.csv"}};
+    campaign["design"]["points"] = 4;
+    shop.write("c.json", campaign.dump());
+    shop.complete();
+    const auto ids = shop.ids();
+    ASSERT_EQ(ids.size(), 4U);
+
+    const Folder empty(in_memory());
+    fs::copy_file(shop / "m.db", empty / "m.db");
+    const auto replayed = run_program({"replay", "m.db", *ids.begin()}, empty.path());
+    EXPECT_EQ(replayed.code, 0) << replayed.err;
+    EXPECT_THAT(replayed.out, HasSubstr("equal to the last bit"));
+
+    shop.write("other.csv", "diameter,volume_fraction\n2.6e-3,0.5\n3.1e-3,0.5\n");
+    campaign["fixed"]["measured"] = "other.csv";
+    shop.write("c.json", campaign.dump());
+    shop.complete("other.db");
+    EXPECT_EQ(shop.ids("other.db").count(*ids.begin()), 0U);
+
+    campaign["fixed"]["measured"] = "c.json";
+    shop.write("wrong.json", campaign.dump());
+    const auto wrong = shop.run({"run", "wrong.json", "--db", "wrong.db"});
+    EXPECT_EQ(wrong.code, 2);
+    EXPECT_THAT(wrong.err, HasSubstr("$.fixed.measured: got \"c.json\"; the file is none of the kind asked for"));
+}
+
 TEST(MachineCampaigns, OneDatabaseHoldsTwoMachines) {
     const Workshop shop;
     shop.complete();
