@@ -1,8 +1,8 @@
 #include "solver/machine/filling.hpp"
 
+#include "solver/machine/placing.hpp"
 #include "solver/machine/setup.hpp"
 #include "solver/particles/near_pairs.hpp"
-#include "solver/particles/random_addition.hpp"
 #include "solver/scenes/kit/sentence.hpp"
 #include "stats/random.hpp"
 
@@ -16,103 +16,8 @@ namespace grainsweep::machine {
 namespace {
 
 using geometry::norm;
-using geometry::operator-;
 using kit::require;
 using kit::sentence;
-
-constexpr double most_jitter = 0.05, lowest = 0.1;      // D
-constexpr double spacing = 1.15, least_spacing = 1.02;  // D, largest diameters
-constexpr double most_sites = 2e8;
-constexpr double rounding = 1e-9;  // of a radius: a layer one diameter thick holds spheres
-
-double widest_in(const Spec& spec, const Mix& mix) {
-    double largest = 0;
-    for (const auto& [species, share] : mix)
-        if (share > 0) largest = std::max(largest, spec.species[species].largest());
-    return largest;
-}
-
-/// Places of a lattice: their distance, and how far particles are off them in each direction, so that none touch.
-struct Pitch {
-    double distance = 0, jitter = 0, largest = 0;
-
-    Pitch(const Spec& spec, const Mix& mix) : largest(widest_in(spec, mix)) {
-        double diameter = 0;
-        for (const auto& [species, share] : mix)
-            if (share > 0) diameter = std::max(diameter, spec.species[species].diameter);
-        distance = std::max(spacing * diameter, least_spacing * largest);
-        jitter = std::min(most_jitter * diameter, (distance - largest) / 2);
-    }
-};
-
-std::string name_of(const Spec& spec, const Mix& mix) {
-    std::string names;
-    for (const auto& [species, share] : mix) names += (names.empty() ? "" : " and ") + spec.species[species].name;
-    return names;
-}
-
-/// The region as far as it is in the domain.
-Bounds bounds_in(const Spec& spec, const Region& region) {
-    Bounds bounds = region.bounds();
-    for (std::size_t k = 0; k < 3; ++k) {
-        bounds.low[k] = std::max(bounds.low[k], spec.domain.low[k]);
-        bounds.high[k] = std::min(bounds.high[k], spec.domain.high[k]);
-    }
-    return bounds;
-}
-
-/// Axes along which the bounds reach from one periodic face to the other.
-std::array<bool, 3> periodic_in(const Spec& spec, const Bounds& bounds) {
-    std::array<bool, 3> periodic{};
-    for (std::size_t k = 0; k < 3; ++k)
-        periodic[k] =
-            spec.domain.periodic[k] && bounds.low[k] <= spec.domain.low[k] && bounds.high[k] >= spec.domain.high[k];
-    return periodic;
-}
-
-/// A cubic lattice, stretched across so that it reaches from side to side, layers from the bottom up.
-class Lattice {
-public:
-    /// `room`: between the bounds and the outermost places.
-    Lattice(const Bounds& bounds, const std::array<bool, 3>& periodic, double distance, double room) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            const double width = bounds.high[k] - bounds.low[k], between = width - 2 * room;
-            if (periodic[k]) {
-                count_[k] = std::floor(width / distance + 1e-9);
-                step_[k] = width / count_[k];
-                first_[k] = bounds.low[k] + step_[k] / 2;
-                continue;
-            }
-            count_[k] = between < 0 ? 0 : 1 + std::floor(between / distance + 1e-9);
-            step_[k] = k < 2 && count_[k] > 1 ? between / (count_[k] - 1) : distance;
-            first_[k] = k < 2 && count_[k] == 1 ? bounds.low[k] + width / 2 : bounds.low[k] + room;
-        }
-    }
-    [[nodiscard]] double sites() const { return count_[0] * count_[1] * count_[2]; }
-    /// Calls visit(centre) layer by layer until it returns false.
-    template <class Visit>
-    void each(Visit&& visit) const {
-        for (double z = 0; z < count_[2]; ++z)
-            for (double y = 0; y < count_[1]; ++y)
-                for (double x = 0; x < count_[0]; ++x)
-                    if (!visit(Vec3{first_[0] + x * step_[0], first_[1] + y * step_[1], first_[2] + z * step_[2]}))
-                        return;
-    }
-
-private:
-    std::array<double, 3> count_{}, step_{}, first_{};
-};
-
-/// Whether a sphere of the radius, somewhat away from the centre, lies in the region, in the domain and touches no
-/// wall.
-bool fits(const Spec& spec, const Obstacles& obstacles, const Region& region, const Vec3& centre, double room) {
-    if (region.depth(centre) < room) return false;
-    for (std::size_t k = 0; k < 3; ++k) {
-        if (spec.domain.periodic[k]) continue;
-        if (centre[k] < spec.domain.low[k] || centre[k] > spec.domain.high[k]) return false;
-    }
-    return !obstacles.touch(centre, room);
-}
 
 class Filler {
 public:
@@ -132,8 +37,7 @@ public:
         const auto particles = draws.in_numbers(fill.count);
         const double largest = widest_in(spec_, fill.mix);
         const Obstacles obstacles(walls_in(spec_, 0, {{0.0}, {}}), spec_.domain, largest, 0);
-        const auto centres = fill.as == Fill::As::lattice ? on_lattice(fill, draws, obstacles)
-                                                          : at_random(fill, draws, particles, obstacles);
+        const auto centres = places_of(spec_, fill, draws, particles, obstacles);
         for (std::size_t n = 0; n < particles.size(); ++n) {
             dem::Sphere sphere;
             sphere.position = centres[n];
@@ -192,48 +96,6 @@ private:
         sphere.kind = spec_.species[species].material;
         into_.spheres.push_back(sphere);
         into_.species.push_back(static_cast<std::uint8_t>(species));
-    }
-
-    std::vector<Vec3> on_lattice(const Fill& fill, const Draws& draws, const Obstacles& obstacles) {
-        const Pitch pitch(spec_, fill.mix);
-        const double room = pitch.largest / 2 + std::numbers::sqrt3 * pitch.jitter;
-        const Bounds bounds = bounds_in(spec_, fill.in);
-        const Lattice lattice(bounds, periodic_in(spec_, bounds), pitch.distance, room);
-        require(lattice.sites() < most_sites,
-                "the region of a filling has more than 2e8 places for particles: make it smaller");
-        const auto wanted = static_cast<std::size_t>(fill.count);
-        std::vector<Vec3> centres;
-        lattice.each([&](const Vec3& site) {
-            if (centres.size() == wanted) return false;
-            if (fits(spec_, obstacles, fill.in, site, room * (1 - rounding))) centres.push_back(site);
-            return true;
-        });
-        require(centres.size() == wanted,
-                name_of(spec_, fill.mix) +
-                    sentence(": %.0f of %.0f particles fit into the region on a lattice of 1.15 diameters: make the "
-                             "region larger or the number smaller",
-                             static_cast<double>(centres.size()), static_cast<double>(wanted)));
-        for (std::size_t n = 0; n < centres.size(); ++n)
-            for (std::size_t k = 0; k < 3; ++k)
-                centres[n][k] += pitch.jitter * (2 * draws.uniform(place_draw, 3 * n + k) - 1);
-        return centres;
-    }
-
-    std::vector<Vec3> at_random(const Fill& fill, const Draws& draws, const std::vector<Draws::Particle>& particles,
-                                const Obstacles& obstacles) {
-        std::vector<double> radii;
-        for (const auto& particle : particles) radii.push_back(particle.radius);
-        const Bounds bounds = bounds_in(spec_, fill.in);
-        const particles::Room room{bounds.low, bounds.high, periodic_in(spec_, bounds),
-                                   [&](const Vec3& centre, double radius) {
-                                       return fits(spec_, obstacles, fill.in, centre, radius * (1 - rounding));
-                                   }};
-        const auto seed = static_cast<std::uint64_t>(draws.uniform(order_draw, 1) * 0x1p53);
-        auto centres = particles::random_addition(room, radii, seed);
-        require(centres.has_value(), name_of(spec_, fill.mix) +
-                                         ": so many particles find no place at random without overlap: make the region "
-                                         "larger, the number smaller, or fill \"as\": \"lattice\"");
-        return *centres;
     }
 
     const Spec& spec_;

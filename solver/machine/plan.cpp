@@ -1,11 +1,14 @@
 #include "solver/machine/plan.hpp"
 
+#include "solver/dem/walls/moving_wall.hpp"
 #include "solver/machine/setup.hpp"
 #include "solver/scenes/kit/pace.hpp"
+#include "solver/scenes/kit/rare_sizes.hpp"
 #include "solver/scenes/kit/sentence.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace grainsweep::machine {
 namespace {
@@ -15,6 +18,9 @@ using kit::sentence;
 constexpr double early = 0.5;        // of a phase that may end before its time
 constexpr double softest = 0.1;      // overlap over diameter
 constexpr double most_loose = 0.35;  // solid fraction of what is thrown in at random
+constexpr double most_on_lattice = 0.345, most_packed = 0.62, most_rain = 0.16;  // of fillings
+constexpr double longest_way = 0.05;     // of a wall in a time step, smallest diameters
+constexpr double steps_per_period = 20;  // of a vibration
 
 double mean_mass(const Spec& spec, const Mix& mix) {
     double mass = 0;
@@ -43,6 +49,22 @@ double particles_at_start(const Spec& spec) {
         count += region != nullptr ? static_cast<double>(region->count)
                                    : static_cast<double>(std::get<std::vector<Placed>>(fill).size());
     }
+    return count;
+}
+
+/// Particles of a species at the start, or fed.
+double count_of(const Spec& spec, const Species& species) {
+    double count = 0;
+    const auto share_in = [&](const Mix& mix) {
+        double share = 0;
+        for (const auto& [number, part] : mix) share += &spec.species[number] == &species ? part : 0;
+        return share;
+    };
+    for (const auto& filling : spec.fills)
+        if (const auto* fill = std::get_if<Fill>(&filling))
+            count += static_cast<double>(fill->count) * share_in(fill->mix);
+    for (const Feed& feed : spec.feeds)
+        count += feed.rate * duration_of(spec, feed.during) / mean_mass(spec, feed.mix) * share_in(feed.mix);
     return count;
 }
 
@@ -77,6 +99,98 @@ void warn_of_feeds(const Spec& spec, std::vector<Warning>& warnings) {
     }
 }
 
+/// Height of a filling, along gravity, m: what its region has, or what its particles need loosely.
+double height_of(const Spec& spec, const Fill& fill) {
+    const double g = geometry::norm(spec.gravity);
+    const Bounds bounds = fill.in.bounds();
+    double height = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+        height += (std::min(bounds.high[k], spec.domain.high[k]) - std::max(bounds.low[k], spec.domain.low[k])) *
+                  std::abs(spec.gravity[k]) / g;
+    const auto volume = fill.in.volume();
+    const double solid = static_cast<double>(fill.count) * mean_volume(spec, fill.mix);
+    return fill.as == Fill::As::random || !volume ? height
+                                                  : height * std::min(1.0, solid / (most_on_lattice * *volume));
+}
+
+void warn_of_falling(const Spec& spec, std::vector<Warning>& warnings) {
+    const double g = geometry::norm(spec.gravity);
+    const Phase& first = spec.phases.front();
+    if (!(g > 0) || spec.phases.size() < 2 || !first.until.empty()) return;
+    for (const auto& filling : spec.fills) {
+        const auto* fill = std::get_if<Fill>(&filling);
+        if (fill == nullptr || fill->glued || fill->as == Fill::As::packed) continue;
+        const double fall = std::sqrt(2 * height_of(spec, *fill) / g);
+        if (first.duration >= fall) continue;
+        warnings.push_back({"powder still falling",
+                            first.name + sentence(" lasts %.3g s and ends before a particle has fallen the height of "
+                                                  "the loose filling, in %.3g s",
+                                                  first.duration, fall)});
+        return;
+    }
+}
+
+void warn_of_fillings(const Spec& spec, std::vector<Warning>& warnings) {
+    for (const auto& filling : spec.fills) {
+        const auto* fill = std::get_if<Fill>(&filling);
+        const auto volume = fill == nullptr ? std::nullopt : fill->in.volume();
+        if (!volume) continue;
+        const double most = fill->as == Fill::As::packed ? most_packed
+                            : fill->as == Fill::As::rain ? most_rain
+                                                         : most_on_lattice;
+        const double solid = static_cast<double>(fill->count) * mean_volume(spec, fill->mix) / *volume;
+        if (solid > most && !fill->glued)
+            warnings.push_back({"a filling that does not fit",
+                                spec.species[fill->mix.front().first].name +
+                                    sentence(": %.2g of the region would be spheres, and at most about %.2g can be: "
+                                             "enlarge the region or take fewer",
+                                             solid, most)});
+    }
+}
+
+void warn_of_walls(const Spec& spec, std::vector<Warning>& warnings) {
+    double smallest = std::numeric_limits<double>::infinity(), largest = 0;
+    for (const Species& species : spec.species)
+        smallest = std::min(smallest, species.smallest()), largest = std::max(largest, species.largest());
+    for (const MachineWall& wall : spec.walls) {
+        std::vector<geometry::Motion> motions;
+        for (const WallMotion& motion : wall.motions) motions.push_back(motion.motion);
+        if (motions.empty()) continue;
+        const double speed = dem::MovingWall(dem::Wall(wall.shape, motions), spec.domain, largest).fastest();
+        if (speed * spec.time_step > longest_way * smallest)
+            warnings.push_back({"walls faster than the time step allows",
+                                wall.name + sentence(" moves at up to %.3g m/s, %.2g of the smallest diameter in a "
+                                                     "time step of %.3g s: take a shorter one",
+                                                     speed, speed * spec.time_step / smallest, spec.time_step)});
+        for (const auto& motion : motions)
+            if (const auto* shaken = std::get_if<geometry::Vibration>(&motion);
+                shaken != nullptr && shaken->frequency * spec.time_step > 1 / steps_per_period)
+                warnings.push_back({"vibration faster than the time step",
+                                    wall.name + sentence(": a period of %.3g s has %.2g time steps, and at least "
+                                                         "%.0f follow it",
+                                                         1 / shaken->frequency,
+                                                         1 / (shaken->frequency * spec.time_step), steps_per_period)});
+    }
+}
+
+/// Rest and the end of a flow are waited for in vain where something is moved or fed.
+void warn_of_phases(const Spec& spec, std::vector<Warning>& warnings) {
+    for (std::size_t p = 0; p < spec.phases.size(); ++p) {
+        const Phase& phase = spec.phases[p];
+        const bool waits = std::ranges::all_of(phase.until, [](const Until& until) {
+            return std::holds_alternative<AtRest>(until) || std::holds_alternative<FlowStops>(until) ||
+                   std::holds_alternative<Empty>(until);
+        });
+        if (phase.until.empty() || !waits) continue;
+        const auto feed =
+            std::ranges::find_if(spec.feeds, [&](const Feed& one) { return one.rate > 0 && holds(one.during, p); });
+        if (feed == spec.feeds.end()) continue;
+        warnings.push_back(
+            {"a phase that cannot end before its time",
+             phase.name + ": it ends when nothing moves or is left, and " + feed->name + " adds particles meanwhile"});
+    }
+}
+
 }  // namespace
 
 CostEstimate cost_of(const Spec& spec) {
@@ -95,7 +209,13 @@ CostEstimate cost_of(const Spec& spec) {
 std::vector<Warning> warnings_of(const Spec& spec) {
     std::vector<Warning> warnings = spec.warnings;
     warn_of_softness(spec, warnings);
+    warn_of_fillings(spec, warnings);
+    warn_of_falling(spec, warnings);
     warn_of_feeds(spec, warnings);
+    warn_of_walls(spec, warnings);
+    warn_of_phases(spec, warnings);
+    for (const Species& species : spec.species)
+        kit::warn_of_rare_sizes(warnings, species.sizes, species.diameter, count_of(spec, species));
     return warnings;
 }
 

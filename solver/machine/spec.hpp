@@ -59,7 +59,7 @@ struct MachineWall {
 using Mix = std::vector<std::pair<std::size_t, double>>;
 
 struct Fill {
-    enum class As { lattice, random };
+    enum class As { lattice, random, rain, packed };
     Mix mix;
     std::int64_t count = 0;
     Region in;

@@ -11,7 +11,7 @@ constexpr std::array<std::string_view, 6> spread_words = {"monodisperse", "unifo
                                                           "weibull_wide", "weibull_narrow", "file"};
 constexpr std::array<std::string_view, 2> file_words = {"sizes", "stl"};
 constexpr std::array<std::string_view, 3> by_words = {"count", "mass", "volume"};
-constexpr std::array<std::string_view, 2> as_words = {"lattice", "random"};
+constexpr std::array<std::string_view, 4> as_words = {"lattice", "random", "rain", "packed"};
 constexpr std::array<std::string_view, 3> rolling_words = {"epsd", "epsd_liggghts", "cdt"};
 constexpr std::array<std::string_view, 5> cohesion_words = {"sjkr", "sjkr2", "paper", "jkr", "dmt"};
 constexpr std::array<std::string_view, 2> normal_words = {"hertz", "linear"};
@@ -192,7 +192,8 @@ constexpr auto fill_keys = std::to_array<Key>({
     {"in", MachineKey::object, "the region they lie in"},
     {"as",
      MachineKey::word,
-     "lattice: 1.15 diameters apart, shaken by a twentieth, from the bottom up; random: at random places",
+     "lattice: 1.15 diameters apart, shaken by a twentieth, from the bottom up; random: at random places; rain: layer "
+     "above layer at random places, to fall one after the other; packed: cut from a random close packing, touching",
      "\"lattice\"",
      {},
      as_words},

@@ -240,8 +240,8 @@ void read_fills(const Section& top, MachineReading& reading) {
         if (!section.find("in")) throw wrong_question(place.path(), "", "key 'in' is missing: the region they lie in");
         fill.in = reading.scope.region(section.at("in"));
         const auto words = std::ranges::find(machine_keys::fill(), std::string_view("as"), &Key::name)->words;
-        fill.as = reading.scope.word(section, "as", words, "lattice") == "lattice" ? machine::Fill::As::lattice
-                                                                                   : machine::Fill::As::random;
+        fill.as = static_cast<machine::Fill::As>(
+            std::ranges::find(words, reading.scope.word(section, "as", words, words.front())) - words.begin());
         fill.velocity = reading.scope.vector(section, "velocity", "m/s");
         fill.shaken = reading.scope.number(section, "shaken", "m/s", 0, no_negative_number);
         fill.glued = section.flag("glued", false);

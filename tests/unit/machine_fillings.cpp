@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -62,6 +63,8 @@ void expect_apart(const Spec& spec, const Filled& filled) {
         }
 }
 
+constexpr std::array every_way = {Fill::As::lattice, Fill::As::random, Fill::As::rain, Fill::As::packed};
+
 std::string refusal(const Spec& spec) {
     try {
         (void)machine::filled(spec, 1);
@@ -73,7 +76,7 @@ std::string refusal(const Spec& spec) {
 
 TEST(MachineFillings, AreInTheirRegionApartAndComplete) {
     for (const Region& region : regions())
-        for (const auto as : {Fill::As::lattice, Fill::As::random}) {
+        for (const auto as : every_way) {
             Spec spec = two_species();
             spec.fills = {filling(100, region, as)};
             const Filled filled = machine::filled(spec, 3);
@@ -98,7 +101,7 @@ TEST(MachineFillings, AreInTheirRegionApartAndComplete) {
 }
 
 TEST(MachineFillings, AreGivenBySpecAndSeed) {
-    for (const auto as : {Fill::As::lattice, Fill::As::random}) {
+    for (const auto as : every_way) {
         Spec spec = two_species();
         spec.fills = {filling(60, regions()[0], as)};
         const auto same = [](const Filled& a, const Filled& b) {
@@ -123,14 +126,42 @@ TEST(MachineFillings, RefuseWhatDoesNotFit) {
     EXPECT_NE(refusal(spec).find("0 of 10 particles"), std::string::npos) << "outside of the domain";
     spec.fills = {filling(800, {Region::Box{{0, 0, 0}, {0.02, 0.02, 0.02}}}, Fill::As::random)};
     EXPECT_NE(refusal(spec).find("find no place at random"), std::string::npos);
+    spec.fills = {filling(800, {Region::Box{{0, 0, 0}, {0.02, 0.02, 0.02}}}, Fill::As::rain)};
+    EXPECT_NE(refusal(spec).find("of 800 particles fills the region up to its top"), std::string::npos);
+    spec.fills = {filling(800, {Region::Box{{0, 0, 0}, {0.02, 0.02, 0.02}}}, Fill::As::packed)};
+    EXPECT_NE(refusal(spec).find("of 800 particles fit into the region in a close packing"), std::string::npos);
     spec.fills = {filling(60, regions()[0], Fill::As::random), filling(60, regions()[0], Fill::As::random)};
     EXPECT_NE(refusal(spec).find("two fillings overlap"), std::string::npos);
     spec.fills = {filling(60, regions()[0], Fill::As::random)};
     EXPECT_EQ(refusal(spec), "no complaint");
 }
 
+// Of equal spheres the packing has its fraction, and the lowest come first; rain is loose, and layers do not mix.
+TEST(MachineFillings, PackedIsDenseAndRainIsLoose) {
+    Spec spec = two_species();
+    const Region box{Region::Box{{0, 0, 0}, {0.04, 0.04, 0.04}}};
+    Fill fill = filling(2000, box, Fill::As::packed);
+    fill.mix = {{1, 1.0}};
+    spec.fills = {fill};
+    double top = 0;
+    for (const auto& sphere : machine::filled(spec, 1).spheres) top = std::max(top, sphere.position[2] + 0.0015);
+    // 2000 spheres of 3 mm at 0.62, centres half a diameter off every face: (2000 pi/6 d^3/0.62)/(37 mm)^2 + d.
+    EXPECT_NEAR(top, 0.0363, 0.001);
+    fill.as = Fill::As::rain;
+    fill.count = 400;
+    spec.fills = {fill};
+    const Filled rain = machine::filled(spec, 1);
+    top = 0;
+    for (std::size_t n = 0; n < 400; ++n) {
+        const double z = rain.spheres[n].position[2];
+        EXPECT_GT(z, top - 0.003) << n;
+        top = std::max(top, z);
+    }
+    EXPECT_GT(top, 400 * std::numbers::pi / 6 * 2.7e-8 / 0.17 / 0.0016) << "at most 0.17 of the space";
+}
+
 TEST(MachineFillings, KeepOffWallsWhereTheyStandAtTheStart) {
-    for (const auto as : {Fill::As::lattice, Fill::As::random}) {
+    for (const auto as : every_way) {
         Spec spec = two_species();
         const Region box{Region::Box{{0.002, 0.002, 0.002}, {0.038, 0.038, 0.038}}};
         spec.fills = {filling(100, box, as)};
@@ -153,7 +184,7 @@ TEST(MachineFillings, KeepOffWallsWhereTheyStandAtTheStart) {
 }
 
 TEST(MachineFillings, RepeatThemselvesWithThePeriod) {
-    for (const auto as : {Fill::As::lattice, Fill::As::random}) {
+    for (const auto as : every_way) {
         Spec spec = two_species();
         spec.domain = {{0, 0, 0}, {0.01, 0.04, 0.04}, {true, false, false}};
         // Beyond both faces along x: particles may reach across them.

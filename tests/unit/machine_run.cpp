@@ -1,5 +1,5 @@
-// A machine as it runs: slices, checkpoints and threads change no bit; phases end by their conditions; walls come, go and
-// move with phases.
+// A machine as it runs: slices, checkpoints and threads change no bit; phases end by their conditions; walls come, go
+// and move with phases.
 #include "stats/random.hpp"
 #include "tests/support/machines.hpp"
 

@@ -1,0 +1,264 @@
+// Places of a filling's particles.
+#include "solver/machine/placing.hpp"
+
+#include "solver/particles/packing.hpp"
+#include "solver/particles/random_addition.hpp"
+#include "solver/scenes/kit/sentence.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string>
+
+namespace grainsweep::machine {
+namespace {
+
+using kit::require;
+using kit::sentence;
+
+constexpr double most_jitter = 0.05, lowest = 0.1;      // D
+constexpr double spacing = 1.15, least_spacing = 1.02;  // D, largest diameters
+constexpr double most_sites = 2e8;
+constexpr double rain_layer = 1.05, rain_cover = 0.25;                    // largest diameters, share of the area
+constexpr double packed_fraction = 0.62, least_edge = 6, most_edge = 16;  // diameters
+constexpr double rounding = 1e-9;  // of a radius: a layer one diameter thick holds spheres
+
+/// Places of a lattice: their distance, and how far particles are off them in each direction, so that none touch.
+struct Pitch {
+    double distance = 0, jitter = 0, largest = 0;
+
+    Pitch(const Spec& spec, const Mix& mix) : largest(widest_in(spec, mix)) {
+        double diameter = 0;
+        for (const auto& [species, share] : mix)
+            if (share > 0) diameter = std::max(diameter, spec.species[species].diameter);
+        distance = std::max(spacing * diameter, least_spacing * largest);
+        jitter = std::min(most_jitter * diameter, (distance - largest) / 2);
+    }
+};
+
+std::string name_of(const Spec& spec, const Mix& mix) {
+    std::string names;
+    for (const auto& [species, share] : mix) names += (names.empty() ? "" : " and ") + spec.species[species].name;
+    return names;
+}
+
+/// The region as far as it is in the domain.
+Bounds bounds_in(const Spec& spec, const Region& region) {
+    Bounds bounds = region.bounds();
+    for (std::size_t k = 0; k < 3; ++k) {
+        bounds.low[k] = std::max(bounds.low[k], spec.domain.low[k]);
+        bounds.high[k] = std::min(bounds.high[k], spec.domain.high[k]);
+    }
+    return bounds;
+}
+
+/// Axes along which the bounds reach from one periodic face to the other.
+std::array<bool, 3> periodic_in(const Spec& spec, const Bounds& bounds) {
+    std::array<bool, 3> periodic{};
+    for (std::size_t k = 0; k < 3; ++k)
+        periodic[k] =
+            spec.domain.periodic[k] && bounds.low[k] <= spec.domain.low[k] && bounds.high[k] >= spec.domain.high[k];
+    return periodic;
+}
+
+/// A cubic lattice, stretched across so that it reaches from side to side, layers from the bottom up.
+class Lattice {
+public:
+    /// `room`: between the bounds and the outermost places.
+    Lattice(const Bounds& bounds, const std::array<bool, 3>& periodic, double distance, double room) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double width = bounds.high[k] - bounds.low[k], between = width - 2 * room;
+            if (periodic[k]) {
+                count_[k] = std::floor(width / distance + 1e-9);
+                step_[k] = width / count_[k];
+                first_[k] = bounds.low[k] + step_[k] / 2;
+                continue;
+            }
+            count_[k] = between < 0 ? 0 : 1 + std::floor(between / distance + 1e-9);
+            step_[k] = k < 2 && count_[k] > 1 ? between / (count_[k] - 1) : distance;
+            first_[k] = k < 2 && count_[k] == 1 ? bounds.low[k] + width / 2 : bounds.low[k] + room;
+        }
+    }
+    [[nodiscard]] double sites() const { return count_[0] * count_[1] * count_[2]; }
+    /// Calls visit(centre) layer by layer until it returns false.
+    template <class Visit>
+    void each(Visit&& visit) const {
+        for (double z = 0; z < count_[2]; ++z)
+            for (double y = 0; y < count_[1]; ++y)
+                for (double x = 0; x < count_[0]; ++x)
+                    if (!visit(Vec3{first_[0] + x * step_[0], first_[1] + y * step_[1], first_[2] + z * step_[2]}))
+                        return;
+    }
+
+private:
+    std::array<double, 3> count_{}, step_{}, first_{};
+};
+
+/// Whether a sphere of the radius, somewhat away from the centre, lies in the region, in the domain and touches no
+/// wall.
+bool fits(const Spec& spec, const Obstacles& obstacles, const Region& region, const Vec3& centre, double room) {
+    if (region.depth(centre) < room) return false;
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (spec.domain.periodic[k]) continue;
+        if (centre[k] < spec.domain.low[k] || centre[k] > spec.domain.high[k]) return false;
+    }
+    return !obstacles.touch(centre, room);
+}
+
+/// Whether a sphere lies between the faces, periodic ones too: so that no image meets it.
+bool within(const Bounds& bounds, const Vec3& centre, double radius) {
+    for (std::size_t k = 0; k < 3; ++k)
+        if (centre[k] - radius < bounds.low[k] || centre[k] + radius > bounds.high[k]) return false;
+    return true;
+}
+
+std::vector<Vec3> on_lattice(const Spec& spec, const Fill& fill, const Draws& draws, const Obstacles& obstacles) {
+    const Pitch pitch(spec, fill.mix);
+    const double room = pitch.largest / 2 + std::numbers::sqrt3 * pitch.jitter;
+    const Bounds bounds = bounds_in(spec, fill.in);
+    const Lattice lattice(bounds, periodic_in(spec, bounds), pitch.distance, room);
+    require(lattice.sites() < most_sites,
+            "the region of a filling has more than 2e8 places for particles: make it smaller");
+    const auto wanted = static_cast<std::size_t>(fill.count);
+    std::vector<Vec3> centres;
+    lattice.each([&](const Vec3& site) {
+        if (centres.size() == wanted) return false;
+        if (fits(spec, obstacles, fill.in, site, room * (1 - rounding))) centres.push_back(site);
+        return true;
+    });
+    require(centres.size() == wanted,
+            name_of(spec, fill.mix) +
+                sentence(": %.0f of %.0f particles fit into the region on a lattice of 1.15 diameters: make the "
+                         "region larger or the number smaller",
+                         static_cast<double>(centres.size()), static_cast<double>(wanted)));
+    for (std::size_t n = 0; n < centres.size(); ++n)
+        for (std::size_t k = 0; k < 3; ++k)
+            centres[n][k] += pitch.jitter * (2 * draws.uniform(place_draw, 3 * n + k) - 1);
+    return centres;
+}
+
+std::vector<Vec3> at_random(const Spec& spec, const Fill& fill, const Draws& draws,
+                            const std::vector<Draws::Particle>& particles, const Obstacles& obstacles) {
+    std::vector<double> radii;
+    for (const auto& particle : particles) radii.push_back(particle.radius);
+    const Bounds bounds = bounds_in(spec, fill.in);
+    const particles::Room room{bounds.low, bounds.high, periodic_in(spec, bounds),
+                               [&](const Vec3& centre, double radius) {
+                                   return fits(spec, obstacles, fill.in, centre, radius * (1 - rounding));
+                               }};
+    const auto seed = static_cast<std::uint64_t>(draws.uniform(order_draw, 1) * 0x1p53);
+    auto centres = particles::random_addition(room, radii, seed);
+    require(centres.has_value(), name_of(spec, fill.mix) +
+                                     ": so many particles find no place at random without overlap: make the region "
+                                     "larger, the number smaller, or fill \"as\": \"lattice\"");
+    return *centres;
+}
+
+/// As many of the next particles as cover a share of the layer; fewer where the region is narrower there.
+std::vector<Vec3> layer_of(const particles::Room& room, const std::vector<Draws::Particle>& particles, std::size_t next,
+                           std::uint64_t seed) {
+    std::vector<double> radii;
+    double free = rain_cover * (room.high[0] - room.low[0]) * (room.high[1] - room.low[1]);
+    for (; next < particles.size() && free > 0; ++next) {
+        radii.push_back(particles[next].radius);
+        free -= std::numbers::pi * particles[next].radius * particles[next].radius;
+    }
+    while (!radii.empty()) {
+        if (auto centres = particles::random_addition(room, radii, seed)) return *centres;
+        radii.resize(radii.size() / 2);
+    }
+    return {};
+}
+
+/// Layers as high as the widest particle, from the bottom up, each filled at random.
+std::vector<Vec3> as_rain(const Spec& spec, const Fill& fill, const Draws& draws,
+                          const std::vector<Draws::Particle>& particles, const Obstacles& obstacles) {
+    const Bounds bounds = bounds_in(spec, fill.in);
+    const double height = rain_layer * widest_in(spec, fill.mix);
+    const auto periodic = periodic_in(spec, bounds);
+    std::vector<Vec3> centres;
+    for (std::uint64_t layer = 0; centres.size() < particles.size(); ++layer) {
+        particles::Room room{
+            bounds.low, bounds.high, {periodic[0], periodic[1], false}, [&](const Vec3& centre, double radius) {
+                return fits(spec, obstacles, fill.in, centre, radius * (1 - rounding));
+            }};
+        room.low[2] += height * static_cast<double>(layer);
+        room.high[2] = std::min(room.high[2], room.low[2] + height);
+        require(room.high[2] - room.low[2] >= height * (1 - rounding),
+                name_of(spec, fill.mix) +
+                    sentence(": rain of %.0f of %.0f particles fills the region up to its top: make it higher or "
+                             "wider",
+                             static_cast<double>(centres.size()), static_cast<double>(particles.size())));
+        const auto seed = static_cast<std::uint64_t>(draws.uniform(order_draw, 2 + layer) * 0x1p53);
+        for (const Vec3& centre : layer_of(room, particles, centres.size(), seed)) centres.push_back(centre);
+    }
+    return centres;
+}
+
+/// The lowest spheres of a random close packing of the widest ones, which repeats itself.
+std::vector<Vec3> packed(const Spec& spec, const Fill& fill, const Draws& draws, const Obstacles& obstacles) {
+    const double largest = widest_in(spec, fill.mix);
+    const Bounds bounds = bounds_in(spec, fill.in);
+    double widest = 0;
+    for (std::size_t k = 0; k < 3; ++k) widest = std::max(widest, (bounds.high[k] - bounds.low[k]) / largest);
+    const particles::PackingRequest request{.edge = std::clamp(widest, least_edge, most_edge),
+                                            .fraction = packed_fraction,
+                                            .seed = static_cast<std::uint64_t>(draws.uniform(order_draw, 1) * 0x1p53)};
+    const auto packing = particles::random_close_packing(request);
+    const double scale = largest * (1 + 2 * packing.largest_overlap), edge = packing.edge * scale;
+    std::array<std::int64_t, 3> copies{};
+    double sites = static_cast<double>(packing.positions.size());
+    for (std::size_t k = 0; k < 3; ++k) {
+        copies[k] = static_cast<std::int64_t>(std::ceil((bounds.high[k] - bounds.low[k]) / edge));
+        sites *= static_cast<double>(copies[k]);
+    }
+    require(sites < most_sites, "the region of a filling has more than 2e8 places for particles: make it smaller");
+    std::vector<Vec3> centres;
+    for (std::int64_t z = 0; z < copies[2]; ++z)
+        for (std::int64_t y = 0; y < copies[1]; ++y)
+            for (std::int64_t x = 0; x < copies[0]; ++x)
+                for (const auto& place : packing.positions) {
+                    const Vec3 centre{bounds.low[0] + scale * place[0] + edge * static_cast<double>(x),
+                                      bounds.low[1] + scale * place[1] + edge * static_cast<double>(y),
+                                      bounds.low[2] + scale * place[2] + edge * static_cast<double>(z)};
+                    if (within(bounds, centre, largest / 2) &&
+                        fits(spec, obstacles, fill.in, centre, largest / 2 * (1 - rounding)))
+                        centres.push_back(centre);
+                }
+    std::ranges::sort(centres, {}, [](const Vec3& c) { return std::array{c[2], c[1], c[0]}; });
+    require(centres.size() >= static_cast<std::size_t>(fill.count),
+            name_of(spec, fill.mix) +
+                sentence(": %.0f of %.0f particles fit into the region in a close packing: make the region larger "
+                         "or the number smaller",
+                         static_cast<double>(centres.size()), static_cast<double>(fill.count)));
+    centres.resize(static_cast<std::size_t>(fill.count));
+    return centres;
+}
+
+}  // namespace
+
+std::vector<Vec3> places_of(const Spec& spec, const Fill& fill, const Draws& draws,
+                            const std::vector<Draws::Particle>& particles, const Obstacles& obstacles) {
+    switch (fill.as) {
+        case Fill::As::random:
+            return at_random(spec, fill, draws, particles, obstacles);
+        case Fill::As::rain:
+            return as_rain(spec, fill, draws, particles, obstacles);
+        case Fill::As::packed:
+            return packed(spec, fill, draws, obstacles);
+        case Fill::As::lattice:
+            break;
+    }
+    return on_lattice(spec, fill, draws, obstacles);
+}
+
+double widest_in(const Spec& spec, const Mix& mix) {
+    double largest = 0;
+    for (const auto& [species, share] : mix)
+        if (share > 0) largest = std::max(largest, spec.species[species].largest());
+    return largest;
+}
+
+}  // namespace grainsweep::machine

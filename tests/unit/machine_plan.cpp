@@ -1,0 +1,75 @@
+// What is said of a machine before it runs: warnings, each by a machine that deserves it, and its cost.
+#include "solver/machine/plan.hpp"
+#include "tests/support/machines.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace grainsweep::tests::machine_plan_test {
+
+using nlohmann::json;
+
+/// Kinds of warnings of the small machine with a change.
+std::set<std::string> kinds(const char* patch, const Inputs& inputs = {}) {
+    std::set<std::string> found;
+    json machine = small_machine().patch(json::parse(patch));
+    machine["species"]["heavy"].erase("sizes");  // of ten particles
+    for (const auto& warning : machine::warnings_of(spec_of(machine, inputs))) {
+        found.insert(warning.kind);
+        EXPECT_EQ(warning.sentence.find("nan"), std::string::npos) << warning.sentence;
+        EXPECT_EQ(warning.sentence.find("inf"), std::string::npos) << warning.sentence;
+    }
+    return found;
+}
+
+using Kinds = std::set<std::string>;
+
+TEST(MachinePlan, ASoundMachineHasNoWarning) {
+    EXPECT_EQ(kinds("[]"), Kinds{});
+}
+
+TEST(MachinePlan, WarnsOfPowderThatStillFalls) {
+    const char* short_fall = R"([{"op": "replace", "path": "/phases/0", "value": {"name": "fall", "for": 0.01}}])";
+    EXPECT_EQ(kinds(short_fall), Kinds{"powder still falling"});
+    const char* packed = R"([{"op": "replace", "path": "/phases/0", "value": {"name": "fall", "for": 0.01}},
+                             {"op": "add", "path": "/fill/0/as", "value": "packed"}])";
+    EXPECT_EQ(kinds(packed), Kinds{});
+    const char* long_fall = R"([{"op": "replace", "path": "/phases/0", "value": {"name": "fall", "for": 0.1}}])";
+    EXPECT_EQ(kinds(long_fall), Kinds{});
+}
+
+TEST(MachinePlan, WarnsOfAFillingThatDoesNotFit) {
+    const char* many = R"([{"op": "replace", "path": "/fill/0/count", "value": 400}])";
+    EXPECT_EQ(kinds(many), Kinds{"a filling that does not fit"});
+    const char* packed = R"([{"op": "replace", "path": "/fill/0/count", "value": 300},
+                             {"op": "add", "path": "/fill/0/as", "value": "packed"}])";
+    EXPECT_EQ(kinds(packed), Kinds{});
+}
+
+TEST(MachinePlan, WarnsOfWallsTooFastForTheStep) {
+    const char* fast = R"([{"op": "add", "path": "/walls/paddle/motion/-",
+                            "value": {"vibrate": {"amplitude": [0, 0, 1e-6], "frequency": 3000}}}])";
+    EXPECT_EQ(kinds(fast), Kinds{"vibration faster than the time step"});
+    const char* thrown = R"([{"op": "add", "path": "/walls/paddle/motion/-",
+                              "value": {"shift": {"velocity": [0, 0, 30]}, "during": "stop"}}])";
+    EXPECT_EQ(kinds(thrown, {{"time_step", 5e-6}}).count("walls faster than the time step allows"), 1U);
+}
+
+TEST(MachinePlan, WarnsOfAPhaseThatWaitsInVain) {
+    const char* fed = R"([{"op": "add", "path": "/feed/0/during", "value": ["fall", "turn"]}])";
+    EXPECT_EQ(kinds(fed), Kinds{"a phase that cannot end before its time"});
+}
+
+TEST(MachinePlan, WarnsOfAFeedThatCannotKeepUp) {
+    const char* much = R"([{"op": "replace", "path": "/feed/0/rate", "value": "500 g/s"}])";
+    EXPECT_EQ(kinds(much).count("a feed that cannot keep up"), 1U);
+}
+
+TEST(MachinePlan, WarnsOfSizesTooRare) {
+    const char* wide = R"([{"op": "add", "path": "/species/light/sizes",
+                            "value": {"spread": "lognormal", "sigma": 0.9}}])";
+    EXPECT_EQ(kinds(wide).count("sizes too rare for the number of particles"), 1U);
+}
+
+}  // namespace grainsweep::tests::machine_plan_test
