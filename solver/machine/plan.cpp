@@ -15,9 +15,10 @@ namespace {
 
 using kit::sentence;
 
-constexpr double early = 0.5;        // of a phase that may end before its time
-constexpr double softest = 0.1;      // overlap over diameter
-constexpr double most_loose = 0.35;  // solid fraction of what is thrown in at random
+constexpr double early = 0.5;                          // of a phase that may end before its time
+constexpr double still_mesh = 1.2, moving_mesh = 1.7;  // cost of a step with them
+constexpr double softest = 0.1;                        // overlap over diameter
+constexpr double most_loose = 0.35;                    // solid fraction of what is thrown in at random
 constexpr double most_on_lattice = 0.345, most_packed = 0.62, most_rain = 0.16;  // of fillings
 constexpr double longest_way = 0.05;     // of a wall in a time step, smallest diameters
 constexpr double steps_per_period = 20;  // of a vibration
@@ -191,6 +192,15 @@ void warn_of_phases(const Spec& spec, std::vector<Warning>& warnings) {
     }
 }
 
+/// How much longer a step takes with walls of triangles: as in blender, screw feeder and silo.
+double cost_of_meshes(const Spec& spec) {
+    double factor = 1;
+    for (const MachineWall& wall : spec.walls)
+        if (std::holds_alternative<geometry::Mesh>(wall.shape))
+            factor = std::max(factor, wall.motions.empty() ? still_mesh : moving_mesh);
+    return factor;
+}
+
 }  // namespace
 
 CostEstimate cost_of(const Spec& spec) {
@@ -203,7 +213,8 @@ CostEstimate cost_of(const Spec& spec) {
         most += fed;
     }
     const double steps = duration_of(spec, {}) / spec.time_step;
-    return kit::estimate(spec.method, spec.pairs.front(), most, most > 0 ? work / spec.time_step / most : steps);
+    return kit::estimate(spec.method, spec.pairs.front(), most,
+                         cost_of_meshes(spec) * (most > 0 ? work / spec.time_step / most : steps));
 }
 
 std::vector<Warning> warnings_of(const Spec& spec) {

@@ -2,6 +2,7 @@
 #include "sweep/campaign/csv_table.hpp"
 #include "sweep/campaign/machine_reading.hpp"
 
+#include "solver/machine/filling.hpp"
 #include "solver/plain_text.hpp"
 
 #include <fmt/format.h>
@@ -17,6 +18,7 @@ namespace {
 using machine::Species;
 
 constexpr double most_particles = 5e6;
+constexpr std::size_t most_fillings = machine::first_feed;  // each draws random numbers of its own
 
 particles::SizeDistribution sizes_of(const Section& section, const MachineReading& reading, double& diameter) {
     using particles::SizeDistribution;
@@ -214,6 +216,8 @@ void read_species(const Section& top, MachineReading& reading) {
 void read_fills(const Section& top, MachineReading& reading) {
     const auto all = top.find("fill");
     if (!all) return;
+    if (all->json().size() > most_fillings)
+        all->refuse(fmt::format("a machine has at most {} fillings", most_fillings));
     for (const auto& place : all->elements()) {
         const Section section(place, machine_keys::fill());
         if (!reading.scope.present(section)) continue;
