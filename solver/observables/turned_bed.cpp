@@ -35,6 +35,20 @@ double lean(const dem::State& state) {
     return state.position.empty() ? nan : std::atan2(-x, -z) / (std::numbers::pi / 180);
 }
 
+SectionSphere SectionView::sphere(const dem::State& state, std::size_t i) const {
+    using geometry::dot;
+    const dem::Vec3 from_axis = geometry::operator-(state.position[i], through);
+    const auto& v = state.velocity[i];
+    return {dot(from_axis, across), dot(from_axis, up), dot(v, across), dot(v, up), state.radius[i]};
+}
+
+Section section_of(const dem::State& state, const SectionView& view) {
+    Section section;
+    section.reserve(state.position.size());
+    for (std::size_t i = 0; i < state.position.size(); ++i) section.push_back(view.sphere(state, i));
+    return section;
+}
+
 SectionGrid::SectionGrid(double radius, double its_cell)
     : cell(its_cell), count(2 * std::max<std::int64_t>(1, std::llround(std::ceil(radius / its_cell - 1e-9)))) {}
 
@@ -60,11 +74,11 @@ std::vector<std::array<double, 2>> falling_through(const SectionGrid& grid, std:
 SolidFraction::SolidFraction(double radius, double length, double diameter)
     : grid_(radius, diameter), length_(length), volume_(grid_.cells(), 0) {}
 
-void SolidFraction::add(const dem::State& state) {
-    for (std::size_t i = 0; i < state.position.size(); ++i) {
-        const auto column = grid_.column(state.position[i][0]), row = grid_.column(state.position[i][2]);
+void SolidFraction::add(std::span<const SectionSphere> spheres) {
+    for (const auto& s : spheres) {
+        const auto column = grid_.column(s.x), row = grid_.column(s.z);
         if (column < 0 || column >= grid_.count || row < 0 || row >= grid_.count) continue;
-        volume_[grid_.number(column, row)] += 4.0 / 3 * std::numbers::pi * cube(state.radius[i]);
+        volume_[grid_.number(column, row)] += 4.0 / 3 * std::numbers::pi * cube(s.radius);
     }
     ++frames_;
 }
@@ -87,13 +101,13 @@ SectionFlow::SectionFlow(double radius, double diameter)
       vz_(grid_.cells(), 0),
       centres_(grid_.cells(), 0) {}
 
-void SectionFlow::add(const dem::State& state) {
-    for (std::size_t i = 0; i < state.position.size(); ++i) {
-        const auto column = grid_.column(state.position[i][0]), row = grid_.column(state.position[i][2]);
+void SectionFlow::add(std::span<const SectionSphere> spheres) {
+    for (const auto& s : spheres) {
+        const auto column = grid_.column(s.x), row = grid_.column(s.z);
         if (column < 0 || column >= grid_.count || row < 0 || row >= grid_.count) continue;
         const std::size_t at = grid_.number(column, row);
-        vx_[at] += state.velocity[i][0];
-        vz_[at] += state.velocity[i][2];
+        vx_[at] += s.vx;
+        vz_[at] += s.vz;
         ++centres_[at];
     }
 }
@@ -106,11 +120,17 @@ SectionFlow::DownhillProfile SectionFlow::below(const Line& surface) const {
     std::vector<std::int64_t> seen(layers, 0);
     double top_speed = 0;
     std::int64_t top_seen = 0;
-    for (std::int64_t j = 0; j < grid_.count; ++j)
-        for (std::int64_t i = 0; i < grid_.count; ++i) {
+    const double end = grid_.cell * static_cast<double>(grid_.count);
+    for (std::int64_t j = 0; j < grid_.count; ++j) {
+        const double z = grid_.centre(j);
+        const auto near = [&](double side) {  // the column where the strip ends
+            return grid_.column(std::clamp((z * sine + side * strip * diameter_) / cosine, -end, end));
+        };
+        const auto first = std::max<std::int64_t>(0, near(-1) - 1), last = std::min(grid_.count - 1, near(1) + 1);
+        for (std::int64_t i = first; i <= last; ++i) {
             const std::size_t at = grid_.number(i, j);
             if (centres_[at] == 0) continue;
-            const double x = grid_.centre(i), z = grid_.centre(j);
+            const double x = grid_.centre(i);
             if (std::abs(x * cosine - z * sine) > strip * diameter_) continue;
             const double depth = (surface.height * cosine - x * sine - z * cosine) / diameter_;
             const double downhill = vx_[at] * cosine - vz_[at] * sine;
@@ -120,6 +140,7 @@ SectionFlow::DownhillProfile SectionFlow::below(const Line& surface) const {
             speed[static_cast<std::size_t>(place)] += downhill;
             seen[static_cast<std::size_t>(place)] += centres_[at];
         }
+    }
     DownhillProfile profile{top_seen > 0 ? top_speed / static_cast<double>(top_seen) : nan, nan};
     for (std::size_t k = 0; k + 1 < layers; ++k) {
         const double middle = (static_cast<double>(k) + 0.5) * layer - profile_above;
@@ -142,21 +163,34 @@ double section_bytes(double radius, double diameter, double cover_cell) {
 
 Cover::Cover(double radius, double cell) : grid_(radius, cell), hidden_(grid_.cells(), 0) {}
 
-void Cover::add(const dem::State& state) {
+std::span<const char> Cover::hidden_by(std::span<const SectionSphere> spheres) {
     now_.assign(grid_.cells(), 0);
-    for (std::size_t i = 0; i < state.position.size(); ++i) {
-        const double x = state.position[i][0], z = state.position[i][2], r = state.radius[i];
-        const auto first_row = std::max<std::int64_t>(0, grid_.column(z - r));
-        const auto last_row = std::min(grid_.count - 1, grid_.column(z + r));
-        const auto first = std::max<std::int64_t>(0, grid_.column(x - r));
-        const auto last = std::min(grid_.count - 1, grid_.column(x + r));
-        for (auto row = first_row; row <= last_row; ++row)
-            for (auto column = first; column <= last; ++column) {
-                const double dx = grid_.centre(column) - x, dz = grid_.centre(row) - z;
-                if (dx * dx + dz * dz <= r * r) now_[grid_.number(column, row)] = 1;
-            }
+    // Off by one where an edge lies between two cells, whose centres are half a cell away from it.
+    const auto column_of = [middle = grid_.count / 2, per_cell = 1 / grid_.cell](double x) {
+        return static_cast<std::int64_t>(std::floor(x * per_cell)) + middle;
+    };
+    for (const auto& [x, z, vx, vz, r] : spheres) {
+        const auto first_row = std::max<std::int64_t>(0, column_of(z - r));
+        const auto last_row = std::min(grid_.count - 1, column_of(z + r));
+        for (auto row = first_row; row <= last_row; ++row) {
+            const double dz = grid_.centre(row) - z, half = std::sqrt(std::max(0.0, r * r - dz * dz));
+            const auto hides = [&, x = x, r = r](std::int64_t column) {
+                const double dx = grid_.centre(column) - x;
+                return dx * dx + dz * dz <= r * r;
+            };
+            auto first = std::max<std::int64_t>(0, column_of(x - half));
+            auto last = std::min(grid_.count - 1, column_of(x + half));
+            while (first <= last && !hides(first)) ++first;
+            while (first <= last && !hides(last)) --last;
+            if (first <= last) std::fill_n(&now_[grid_.number(first, row)], last - first + 1, char{1});
+        }
     }
-    for (std::size_t k = 0; k < now_.size(); ++k) hidden_[k] += now_[k];
+    return now_;
+}
+
+void Cover::add(std::span<const SectionSphere> spheres) {
+    const auto now = hidden_by(spheres);
+    for (std::size_t k = 0; k < now.size(); ++k) hidden_[k] += now[k];
     ++frames_;
 }
 
@@ -167,15 +201,13 @@ std::vector<double> Cover::share() const {
     return share;
 }
 
-std::optional<double> wall_layer_speed(const dem::State& state, double radius, double diameter) {
+std::optional<double> wall_layer_speed(std::span<const SectionSphere> spheres, double radius, double diameter) {
     double speed = 0;
     std::int64_t seen = 0;
-    for (std::size_t i = 0; i < state.position.size(); ++i) {
-        const auto& x = state.position[i];
-        const auto& v = state.velocity[i];
-        const double from_axis = std::hypot(x[0], x[2]);
-        if (!(x[2] < 0 && from_axis > radius - state.radius[i] - wall_layer * diameter)) continue;
-        speed += (v[0] * x[2] - v[2] * x[0]) / from_axis;
+    for (const auto& s : spheres) {
+        const double from_axis = std::hypot(s.x, s.z);
+        if (!(s.z < 0 && from_axis > radius - s.radius - wall_layer * diameter)) continue;
+        speed += (s.vx * s.z - s.vz * s.x) / from_axis;
         ++seen;
     }
     if (seen == 0) return std::nullopt;

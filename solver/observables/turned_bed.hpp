@@ -1,7 +1,8 @@
 // What is measured of a bed in a rotating drum: sums over frames in the plane across the drum's axis.
 //
-// The axis is y through the origin, x horizontal, z up. The drum turns about +y, so that the bed is raised towards
-// negative x; its angles are positive. Lengths in m. Volumes belong to the centres of their spheres.
+// In the plane x runs across and z up; the drum turns from z to x, so that the bed is raised towards negative x; its
+// angles are positive. Without a view of its own the axis is y through the origin. Lengths in m. Volumes belong to the
+// centres of their spheres.
 //
 //     lean              atan2(-x_c, -z_c) of the mass centre: the slope of the surface of a bed that is a segment of a
 //                       circle
@@ -10,13 +11,14 @@
 //     flow              mean velocity down that line, in layers below it, within 2.5 D of the foot of the perpendicular
 //                       from the axis
 //     cover             share of the frames in which any sphere hides the cell's centre from a view along the axis:
-//     what
-//                       a photograph averaged over time shows of a drum with light behind it
+//                       what a photograph averaged over time shows of a drum with light behind it
 #pragma once
 
 #include "solver/dem/engine.hpp"
 #include "solver/observables/line_fit.hpp"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -26,6 +28,24 @@ namespace grainsweep::observables {
 
 /// Degrees; NaN without particles.
 [[nodiscard]] double lean(const dem::State& state);
+
+/// A sphere in the plane: its centre from the axis, m, and its velocity, m/s.
+struct SectionSphere {
+    double x = 0, z = 0, vx = 0, vz = 0;
+    double radius = 0;
+};
+using Section = std::vector<SectionSphere>;
+
+/// The plane across an axis; unit vectors.
+struct SectionView {
+    dem::Vec3 through{};  ///< a point on the axis, m
+    dem::Vec3 across{1, 0, 0}, up{0, 0, 1};
+
+    [[nodiscard]] SectionSphere sphere(const dem::State& state, std::size_t i) const;
+};
+
+/// Returns all spheres as a view shows them.
+[[nodiscard]] Section section_of(const dem::State& state, const SectionView& view = {});
 
 /// Square cells in the plane, their edges at whole multiples of `cell` from the axis, covering the drum. Numbered from
 /// the least x and z, x fastest.
@@ -57,7 +77,7 @@ struct SectionGrid {
 class SolidFraction {
 public:
     SolidFraction(double radius, double length, double diameter);
-    void add(const dem::State& state);
+    void add(std::span<const SectionSphere> spheres);
 
     [[nodiscard]] const SectionGrid& grid() const { return grid_; }
     [[nodiscard]] std::vector<double> mean() const;
@@ -77,7 +97,7 @@ private:
 class SectionFlow {
 public:
     SectionFlow(double radius, double diameter);
-    void add(const dem::State& state);
+    void add(std::span<const SectionSphere> spheres);
 
     struct DownhillProfile {
         double surface_speed = 0;  ///< m/s: centres 0 to 1 D below the line; NaN: none
@@ -99,10 +119,12 @@ private:
 class Cover {
 public:
     Cover(double radius, double cell);
-    void add(const dem::State& state);
+    void add(std::span<const SectionSphere> spheres);
 
     [[nodiscard]] const SectionGrid& grid() const { return grid_; }
     [[nodiscard]] std::vector<double> share() const;
+    /// Returns 1 for each cell whose centre a sphere hides, else 0; valid until the next call.
+    [[nodiscard]] std::span<const char> hidden_by(std::span<const SectionSphere> spheres);
 
     static void fields(auto& s, auto&& visit) { visit(s.hidden_), visit(s.frames_); }
 
@@ -118,7 +140,8 @@ private:
 
 /// Mean tangential speed, in the drum's sense, of the spheres nearer than a tenth of D to the lower half of the wall;
 /// nothing: there is none. m/s.
-[[nodiscard]] std::optional<double> wall_layer_speed(const dem::State& state, double radius, double diameter);
+[[nodiscard]] std::optional<double> wall_layer_speed(std::span<const SectionSphere> spheres, double radius,
+                                                     double diameter);
 
 /// Mean number of other particles that a particle touches, 2 contacts/N.
 [[nodiscard]] double coordination(const dem::State& state, std::span<const dem::ContactForce> contacts);

@@ -66,7 +66,8 @@ TEST(TurnedBed, TheSurfaceOfAnEvenBedIsItsLine) {
     for (const double angle : {0.0, 25.0, 37.0}) {
         SolidFraction solid(radius, length, diameter);
         const double slope = -std::tan(angle * degree);
-        for (const double up : {-1e-4, 1e-4}) solid.add(segment(radius, length, slope, -0.011 + up, 1e-4, 0.58));
+        for (const double up : {-1e-4, 1e-4})
+            solid.add(section_of(segment(radius, length, slope, -0.011 + up, 1e-4, 0.58)));
         const Line line = solid.surface_line(radius);
         // Within a cell that the surface cuts the fraction falls over a cell's height: the level 0.3 of 0.58 lies
         // within a few hundredths of a cell of the line, wherever it cuts.
@@ -91,7 +92,7 @@ TEST(TurnedBed, TheFlowIsReadDownTheLine) {
         state.velocity[i] = {u * std::cos(30 * degree), 7, -u * std::sin(30 * degree)};
     }
     SectionFlow flow(radius, diameter);
-    flow.add(state);
+    flow.add(section_of(state));
     const auto below = flow.below({slope, height, 0});
     EXPECT_NEAR(below.depth, 4.3, 0.02);
     EXPECT_NEAR(below.surface_speed / (u0 * (1 - 0.5 / 4.3)), 1, 5e-3);
@@ -104,9 +105,9 @@ TEST(TurnedBed, CoverCountsTheFramesThatHideACell) {
     one.id = {0}, one.position = {{0.02, 0.5, -0.03}}, one.velocity = {{}}, one.radius = {0.01}, one.mobile = {1};
     Cover cover(0.1, 1e-3);
     EXPECT_EQ(cover.grid().count, 200);
-    cover.add(one);
+    cover.add(section_of(one));
     one.position[0][0] = 0.025;
-    cover.add(one);
+    cover.add(section_of(one));
     const auto share = cover.share();
     double area = 0;
     for (const double s : share) area += s * 1e-6;
@@ -152,10 +153,10 @@ TEST(TurnedBed, TheWallLayerIsWhatTouchesTheLowerHalf) {
     add(-2.0, radius - r - 0.05 * 2 * r, 0.5);
     add(-1.5, radius - 3 * r, 9);  // not at the wall
     add(1.0, radius - r, 9);       // in the upper half
-    const auto seen = wall_layer_speed(state, radius, 2 * r);
+    const auto seen = wall_layer_speed(section_of(state), radius, 2 * r);
     ASSERT_TRUE(seen);
     EXPECT_NEAR(*seen, speed * (radius - r + 0.5 * (radius - 1.1 * r)) / 2, 1e-12);
-    EXPECT_FALSE(wall_layer_speed({}, radius, 2 * r));
+    EXPECT_FALSE(wall_layer_speed(Section{}, radius, 2 * r));
 }
 
 TEST(TurnedBed, CoordinationCountsPairsTwiceAndWallsNever) {

@@ -63,10 +63,11 @@ void Experiment::take_frame() {
     engine_->state(state_);
     engine_->contacts(contacts_);
     angle_.push_back(observables::lean(state_));
-    solid_.add(state_);
-    flow_.add(state_);
-    cover_.add(state_);
-    if (const auto speed = observables::wall_layer_speed(state_, study_.radius, study_.diameter)) {
+    const auto section = observables::section_of(state_);
+    solid_.add(section);
+    flow_.add(section);
+    cover_.add(section);
+    if (const auto speed = observables::wall_layer_speed(section, study_.radius, study_.diameter)) {
         wall_layer_sum_ += *speed;
         ++wall_layer_frames_;
     }
