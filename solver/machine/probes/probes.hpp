@@ -7,8 +7,10 @@ namespace grainsweep::machine::probes {
 
 extern const ProbeInfo amount_count, amount_mass, amount_volume;
 extern const ProbeInfo bed_angle;
+extern const ProbeInfo bed_surface_angle, bed_surface_residual, bed_surface_speed, bed_layer_depth;
 extern const ProbeInfo centre;
 extern const ProbeInfo coordination;
+extern const ProbeInfo cover, cover_angle, cover_area, cover_outline;
 extern const ProbeInfo flow_mass, flow_number;
 extern const ProbeInfo granular_temperature;
 extern const ProbeInfo height_of_share, mean_height;
@@ -19,6 +21,8 @@ extern const ProbeInfo profile;
 extern const ProbeInfo radius;
 extern const ProbeInfo solid_fraction;
 extern const ProbeInfo velocity, momentum;
+extern const ProbeInfo wall_layer_speed;
+extern const ProbeInfo rolling_torque;
 extern const ProbeInfo wall_force, wall_torque, wall_work, wall_pressure;
 
 }  // namespace grainsweep::machine::probes

@@ -1,6 +1,7 @@
 // What the powder does to walls: force, torque, work, and the pressure of the normal component.
 //
-// Of several walls together. Work is that of the walls on the powder since the start.
+// Of several walls together. Work is that of the walls on the powder since the start: of their forces, so that what
+// turns a drum against rolling resistance is not in it.
 #include "solver/machine/probes/probes.hpp"
 #include "solver/machine/selection.hpp"
 
@@ -59,12 +60,33 @@ private:
     Walls walls_;
 };
 
+class RollingTorque final : public machine::Probe {
+public:
+    explicit RollingTorque(const Options& options) : walls_(options), axis_(options.vector("axis")) {}
+    double look(const Sight& sight) override {
+        double sum = walls_.numbers.empty() ? undefined : 0;
+        for (const auto& contact : sight.contacts) {
+            if (contact.second >= 0) continue;
+            const auto wall = static_cast<std::size_t>(-1 - contact.second);
+            if (std::ranges::find(walls_.numbers, wall) != walls_.numbers.end())
+                sum += dot(contact.rolling_moment, axis_);
+        }
+        return sum;
+    }
+
+private:
+    Walls walls_;
+    Vec3 axis_;
+};
+
 constexpr OptionSpec wall_option{"wall", OptionSpec::Kind::walls, "", "the wall, or a list of walls", true};
 constexpr std::array force_options = {
     wall_option, OptionSpec{"along", OptionSpec::Kind::direction, "", "the direction of the component", true}};
 constexpr std::array torque_options = {
     wall_option, OptionSpec{"axis", OptionSpec::Kind::direction, "", "the axis, right hand", true},
     OptionSpec{"about", OptionSpec::Kind::vector, "m", "a point on the axis; default: the origin"}};
+constexpr std::array rolling_options = {
+    wall_option, OptionSpec{"axis", OptionSpec::Kind::direction, "", "the axis, right hand", true}};
 constexpr std::array work_options = {wall_option};
 constexpr std::array pressure_options = {
     wall_option, OptionSpec{"along", OptionSpec::Kind::direction, "", "the direction of the component", true},
@@ -72,6 +94,13 @@ constexpr std::array pressure_options = {
 
 }  // namespace
 
+const ProbeInfo rolling_torque{
+    "rolling_torque",
+    "N m",
+    "sum of the moments on particles by which walls resist rolling, about an axis",
+    rolling_options,
+    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<RollingTorque>(given); },
+    true};
 const ProbeInfo wall_force{
     "wall_force", "N", "force of the powder on walls, a component", force_options,
     [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<Force>(given); }};

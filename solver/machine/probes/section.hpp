@@ -1,0 +1,84 @@
+// What the probes of a bed in a drum share: the view along its axis, and sums over the frames.
+#pragma once
+
+#include "solver/machine/selection.hpp"
+#include "solver/observables/turned_bed.hpp"
+
+#include <optional>
+
+namespace grainsweep::machine {
+
+inline constexpr OptionSpec section_axis_option{
+    "axis", OptionSpec::Kind::direction, "",
+    "the axis of the drum; angles are positive where turning about it, right hand, raises the bed", true};
+inline constexpr OptionSpec section_through_option{"through", OptionSpec::Kind::vector, "m",
+                                                   "a point on the axis; default: the origin"};
+inline constexpr OptionSpec section_radius_option{"radius", OptionSpec::Kind::number, "m", "inner radius of the drum",
+                                                  true,     {0, 1e3, true, false}};
+inline constexpr OptionSpec section_diameter_option{
+    "diameter", OptionSpec::Kind::number, "m", "diameter D of the particles", true, {0, 1e3, true, false}};
+
+/// The particles that count, in the plane across an axis with "up" against gravity.
+class SectionLook {
+public:
+    explicit SectionLook(const Options& options)
+        : selection_(options), axis_(options.vector("axis")), through_(options.vector("through", {})) {}
+
+    /// Returns nothing where gravity has no part across the axis: there is no surface to look for.
+    [[nodiscard]] std::optional<observables::Section> operator()(const Sight& sight) const {
+        using geometry::operator-;
+        using geometry::operator*;
+        const Vec3 down = sight.gravity - geometry::dot(sight.gravity, axis_) * axis_;
+        const double size = geometry::norm(down);
+        if (!(size > 0)) return std::nullopt;
+        const Vec3 up = (-1 / size) * down;
+        const observables::SectionView view{through_, geometry::cross(axis_, up), up};
+        observables::Section section;
+        section.reserve(sight.size());
+        selection_.each(sight, [&](std::size_t i) { section.push_back(view.sphere(sight.state, i)); });
+        return section;
+    }
+
+private:
+    Selection selection_;
+    Vec3 axis_, through_;
+};
+
+/// Moment of the last frame of a sum, so that one that ends a phase and begins the next one counts once.
+class FramesOnce {
+public:
+    /// Returns true at the first call for this moment.
+    [[nodiscard]] bool operator()(const Sight& sight) {
+        const bool again = sight.time == last_;
+        last_ = sight.time;
+        return !again;
+    }
+    void save(ByteWriter& out) const { out.put(last_); }
+    void restore(ByteReader& in) { in.get(last_); }
+
+private:
+    double last_ = undefined;  // s
+};
+
+/// Writes a sum of solver/observables/turned_bed.hpp.
+template <class Sum>
+void save_sum(const Sum& sum, ByteWriter& out) {
+    Sum::fields(sum, [&out](const auto& value) { out.put(value); });
+}
+
+/// Reads it back. The options fix the lengths of its columns.
+template <class Sum>
+void restore_sum(Sum& sum, ByteReader& in) {
+    Sum::fields(sum, [&in](auto& value) {
+        if constexpr (requires { value.size(); }) {
+            const std::size_t size = value.size();
+            in.get(value);
+            in.require(value.size() == size);
+        } else {
+            in.get(value);
+            in.require(value >= 0);
+        }
+    });
+}
+
+}  // namespace grainsweep::machine

@@ -1,0 +1,36 @@
+// Speed of the particles that a turning drum carries along.
+#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/probes/section.hpp"
+
+#include <array>
+
+namespace grainsweep::machine::probes {
+namespace {
+
+class WallLayer final : public machine::Probe {
+public:
+    explicit WallLayer(const Options& options)
+        : look_(options), radius_(options.number("radius")), diameter_(options.number("diameter")) {}
+    double look(const Sight& sight) override {
+        const auto section = look_(sight);
+        if (!section) return undefined;
+        return observables::wall_layer_speed(*section, radius_, diameter_).value_or(undefined);
+    }
+
+private:
+    SectionLook look_;
+    double radius_, diameter_;
+};
+
+constexpr std::array wall_layer_options = {
+    of_option, in_option, section_axis_option, section_through_option, section_radius_option, section_diameter_option};
+
+}  // namespace
+
+const ProbeInfo wall_layer_speed{
+    "wall_layer_speed", "m/s",
+    "mean speed about the axis of a drum, of the particles nearer than 0.1 D to the lower half of its wall",
+    wall_layer_options,
+    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<WallLayer>(given); }};
+
+}  // namespace grainsweep::machine::probes
