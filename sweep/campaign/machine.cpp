@@ -98,7 +98,8 @@ Json answering_part(const Machine& machine) {
     });
     identity.erase("name"), identity.erase("summary");
     if (identity.contains("parameters"))
-        for (auto& parameter : identity["parameters"]) parameter.erase("meaning"), parameter.erase("bounds");
+        for (auto& parameter : identity["parameters"])
+            parameter.erase("meaning"), parameter.erase("bounds"), parameter.erase("above");
     if (identity.contains("checks"))
         for (auto& check : identity["checks"])
             for (const char* words : {"refuse", "warn", "that"})

@@ -46,6 +46,7 @@ constexpr auto parameter_keys = std::to_array<Key>({
      "\"1\""},
     needed({"default", MachineKey::value, "value where a campaign does not set it"}),
     {"bounds", MachineKey::array, "[low, high], null: open"},
+    {"above", MachineKey::value, "a lower bound that is no value itself, in its unit"},
     {"meaning", MachineKey::text, "in words"},
     {"whole", MachineKey::flag, "true: whole numbers only", "false"},
     {"words", MachineKey::words,

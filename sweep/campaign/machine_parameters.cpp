@@ -44,7 +44,7 @@ double own_number(const Cursor& place, const std::string& unit) {
 }
 
 ParameterSpec word_parameter(const Section& section, ParameterSpec spec) {
-    for (const char* key : {"unit", "bounds", "whole"})
+    for (const char* key : {"unit", "bounds", "above", "whole"})
         if (const auto too = section.find(key)) too->refuse("a parameter that is a word has none");
     Words words;
     for (const auto& word : section.at("words").elements()) {
@@ -60,7 +60,7 @@ ParameterSpec word_parameter(const Section& section, ParameterSpec spec) {
 
 /// A file, or the default word that stands for none.
 ParameterSpec file_parameter(const Section& section, ParameterSpec spec) {
-    for (const char* key : {"unit", "bounds", "whole", "words"})
+    for (const char* key : {"unit", "bounds", "above", "whole", "words"})
         if (const auto too = section.find(key)) too->refuse("a parameter that is a file has none");
     const auto rows = machine_keys::parameter();
     const auto kind = section.at("file").word(std::ranges::find(rows, std::string_view("file"), &Key::name)->words);
@@ -117,6 +117,12 @@ ParameterSpec number_parameter(const Section& section, ParameterSpec spec) {
         if (const Cursor low = (*ends)[std::size_t{0}]; !low.json().is_null()) bounds.low = own_number(low, spec.unit);
         if (const Cursor high = (*ends)[1]; !high.json().is_null()) bounds.high = own_number(high, spec.unit);
         if (!(bounds.low <= bounds.high)) ends->refuse("the lower bound must not be above the upper one");
+    }
+    if (const auto above = section.find("above")) {
+        if (std::isfinite(bounds.low)) above->refuse("beside a lower bound in \"bounds\" it says too much");
+        bounds.low = own_number(*above, spec.unit);
+        bounds.low_open = true;
+        if (!(bounds.low < bounds.high)) above->refuse("must lie below the upper bound");
     }
     const Cursor standard = section.at("default");
     const double value = own_number(standard, spec.unit);
