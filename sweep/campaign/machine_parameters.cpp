@@ -13,6 +13,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <mutex>
+#include <optional>
 #include <set>
 
 namespace grainsweep::campaign {
@@ -25,15 +27,30 @@ constexpr std::array<std::string_view, 24> si_units = {
     "1",   "m",  "s",    "kg",    "m/s",  "rad", "rad/s", "Hz", "m2",  "m3",        "m/s2", "N",
     "N m", "Pa", "J/m2", "kg/m3", "kg/s", "1/s", "J",     "W",  "N/m", "kg/(m2 s)", "m3/s", "Pa s"};
 
+/// Returns the unit that a machine calculates in for a given one; none: the reason is in `why`. Remembers it, because
+/// every case converts every parameter.
+std::optional<std::string_view> calculating_unit(const std::string& unit, std::string& why) {
+    static std::mutex mutex;
+    static std::map<std::string, std::string_view, std::less<>> known;
+    const std::lock_guard lock(mutex);
+    if (const auto found = known.find(unit); found != known.end()) return found->second;
+    for (const auto si : si_units) {
+        const auto converted = in_si(fmt::format("1 {}", unit), si);
+        if (std::holds_alternative<double>(converted)) return known.emplace(unit, si).first->second;
+        if (why.empty()) why = std::get<std::string>(converted);
+    }
+    return std::nullopt;
+}
+
 /// A value in SI units. Refuses a unit that is none.
 double in_si_units(const Cursor& place, double value, const std::string& unit) {
     if (unit == "1") return value;
-    const std::string text = fmt::format("{} {}", value, unit);
     std::string why;
-    for (const auto si : si_units) {
-        const auto converted = in_si(text, si);
+    if (const auto si = calculating_unit(unit, why)) {
+        if (*si == unit) return value;
+        const auto converted = in_si(fmt::format("{} {}", value, unit), *si);
         if (const auto* number = std::get_if<double>(&converted)) return *number;
-        if (why.empty()) why = std::get<std::string>(converted);
+        why = std::get<std::string>(converted);
     }
     place.refuse(fmt::format("'{}' is no unit that a machine calculates with: {}", unit, why));
 }
@@ -222,19 +239,22 @@ void evaluate_lets(const Section& top, const std::set<std::string>& to_come, Mac
             here.refuse("a parameter or number has this name; take another one");
         open.insert(name);
     }
+    std::map<std::string, std::vector<std::string>, std::less<>> used;  // by an expression
+    auto names = scope.names();
+    names.insert(names.end(), open.begin(), open.end());
+    names.insert(names.end(), to_come.begin(), to_come.end());
+    for (const auto& name : open) {
+        const auto& text = lets->json()[name];
+        if (!text.is_string() || is_quantity(text.get_ref<const std::string&>())) continue;
+        const auto parsed = Formula::parse(text.get<std::string>(), names);
+        if (const auto* why = std::get_if<std::string>(&parsed)) (*lets)[name].refuse(*why);
+        used[name] = std::get<Formula>(parsed).names();
+    }
     // Whatever needs nothing that is open is next.
     while (!open.empty()) {
         const auto ready = std::ranges::find_if(open, [&](const std::string& name) {
-            const auto& text = lets->json()[name];
-            if (!text.is_string() || is_quantity(text.get_ref<const std::string&>())) return true;
-            auto names = scope.names();
-            names.insert(names.end(), open.begin(), open.end());
-            names.insert(names.end(), to_come.begin(), to_come.end());
-            const auto parsed = Formula::parse(text.get<std::string>(), names);
-            if (const auto* why = std::get_if<std::string>(&parsed)) (*lets)[name].refuse(*why);
-            return std::ranges::none_of(std::get<Formula>(parsed).names(), [&](const auto& used) {
-                return open.contains(used) || to_come.contains(used);
-            });
+            return std::ranges::none_of(
+                used[name], [&](const auto& needed) { return open.contains(needed) || to_come.contains(needed); });
         });
         if (ready == open.end()) {
             if (!to_come.empty()) return;
