@@ -87,12 +87,13 @@ double error_of_slope(std::span<const Sample> samples) {
 constexpr std::array all_reductions = {
     ReductionInfo{"mean", "mean over the frames, with a standard error from ten blocks of them", Shape::scalar, mean_of,
                   error_of_mean},
-    ReductionInfo{"last", "value at the last frame", Shape::scalar, last_of},
+    ReductionInfo{"last", "value at the last frame", Shape::scalar, last_of, nullptr, {}, true},
     ReductionInfo{"first", "value at the first frame", Shape::scalar, first_of},
     ReductionInfo{"sd", "standard deviation over the frames", Shape::scalar, deviation_of},
     ReductionInfo{"min", "least value over the frames", Shape::scalar, least_of},
     ReductionInfo{"max", "largest value over the frames", Shape::scalar, greatest_of},
-    ReductionInfo{"change", "value at the last frame less that at the first", Shape::scalar, change_of},
+    ReductionInfo{
+        "change", "value at the last frame less that at the first", Shape::scalar, change_of, nullptr, {}, true},
     ReductionInfo{"slope", "least-squares slope over time, with a standard error from five blocks of frames",
                   Shape::scalar, slope_of, error_of_slope, "/s"},
     ReductionInfo{"integral", "integral over time, by trapezia", Shape::scalar, integral_of, nullptr, " s"},

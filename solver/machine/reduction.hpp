@@ -17,7 +17,7 @@ struct ReductionInfo {
     double (*error)(std::span<const Sample>) = nullptr;  ///< its standard error, where it has one
     /// What to append to the unit of the probe.
     std::string_view unit = {};
-    bool last = false;  ///< of a profile: that of the last frame
+    bool last = false;  ///< the last frame decides: undefined where the probe has no value there
 };
 
 [[nodiscard]] std::span<const ReductionInfo> reduction_catalogue();

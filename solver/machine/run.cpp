@@ -183,10 +183,11 @@ void Run::take_frame() {
         Record& record = records_[m];
         const double value = probes_[m]->look(sight);
         // The end of a phase is the beginning of the next one.
-        const bool again = !record.samples.empty() && record.samples.back().time == sight.time;
-        if (std::isfinite(value) && !again) record.samples.push_back({.time = sight.time, .value = value});
-        if (find_probe(measure.probe)->over.empty() || record.profiled == sight.time) continue;
-        record.profiled = sight.time;
+        const bool again = record.looked == sight.time;
+        record.looked = sight.time;
+        if (again) continue;
+        if (std::isfinite(value)) record.samples.push_back({.time = sight.time, .value = value});
+        if (find_probe(measure.probe)->over.empty()) continue;
         std::vector<Sample> profile;
         probes_[m]->profile(sight, profile);
         record.sums.resize(profile.size(), 0.0), record.counts.resize(profile.size(), 0.0);
@@ -279,6 +280,7 @@ void Run::observe(const Measure& measure, const Record& record, Observations& in
         into.series[measure.name] = std::move(samples);
         return;
     }
+    if (reduction.last && !record.samples.empty() && record.samples.back().time != record.looked) return;
     if (const double value = reduction.of(samples); std::isfinite(value)) into.scalars[measure.name] = value;
     if (reduction.error == nullptr) return;
     if (const double error = reduction.error(samples); std::isfinite(error))
@@ -346,7 +348,7 @@ void Run::fields(State& run, Visit&& visit) {
     visit(run.times_.end), visit(run.ended_by_), visit(run.species_), visit(run.density_);
     for (auto& record : run.records_)
         visit(record.samples), visit(record.bins), visit(record.sums), visit(record.counts), visit(record.last),
-            visit(record.profiled);
+            visit(record.looked);
 }
 
 void Run::save(Bytes& into) const {

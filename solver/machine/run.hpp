@@ -39,7 +39,7 @@ private:
     struct Record {
         std::vector<Sample> samples;
         std::vector<double> bins, sums, counts, last;  // of a profile
-        double profiled = undefined;                   // time of the last one, s
+        double looked = undefined;                     // time of the last look, s
     };
 
     [[nodiscard]] std::int64_t steps_in(double seconds) const;

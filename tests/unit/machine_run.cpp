@@ -227,6 +227,31 @@ TEST(MachineRun, AMomentIsMeasuredOnce) {
     for (const auto& sample : answer.series.at("solid")) EXPECT_NEAR(sample.value, third, 1e-6 * third);
 }
 
+// A sphere leaves the region in which it is measured: its last frame there is not the last one.
+TEST(MachineRun, WhatTheLastFrameLacksHasNoLastValue) {
+    json document = falling_sphere();
+    document["gravity"] = {0, 0, 0};
+    document["fill"][0]["spheres"][0]["velocity"] = {0.1, 0, 0};
+    document["phases"] = json::parse(R"([{"name": "one", "for": 0.02, "frames": 4}])");
+    const auto measured = [](double end, const char* as) {
+        json measure = json::parse(R"({"centre": {"along": [1, 0, 0], "in": {"box": {"low": [-1, -1, -1]}}}})");
+        measure["centre"]["in"]["box"]["high"] = {end, 1, 1};
+        measure["as"] = as;
+        return measure;
+    };
+    for (const std::string as : {"first", "max", "last", "change"}) {
+        document["measure"][as + "_near"] = measured(0.0012, as.c_str());
+        document["measure"][as + "_far"] = measured(0.5, as.c_str());
+    }
+    const auto answer = of(document);
+    EXPECT_NEAR(answer.scalars.at("max_near"), 0.001, 1e-5);
+    EXPECT_TRUE(answer.scalars.contains("first_near"));
+    EXPECT_FALSE(answer.scalars.contains("last_near"));
+    EXPECT_FALSE(answer.scalars.contains("change_near"));
+    EXPECT_NEAR(answer.scalars.at("last_far"), 0.002, 1e-5);
+    EXPECT_NEAR(answer.scalars.at("change_far"), 0.002, 1e-5);
+}
+
 TEST(MachineRun, ExpressionsUseMeasurementsAndOneAnother) {
     json document = falling_sphere();
     document["measure"]["a_quarter"] = "z_half/2";
