@@ -34,8 +34,9 @@ struct Sight {
     std::span<const double> density;                 ///< by id, kg/m3
     const geometry::Domain& domain;
     Vec3 gravity{};
-    double time = 0;          ///< s since the start
-    double peak_overlap = 0;  ///< the deepest at any step since the phase began
+    double time = 0;                      ///< s since the start
+    double peak_overlap = 0;              ///< the deepest at any step since the phase began
+    std::span<const double> radius = {};  ///< by id, of all there ever were, m
 
     [[nodiscard]] std::size_t size() const { return state.id.size(); }
     [[nodiscard]] std::size_t id(std::size_t i) const { return static_cast<std::size_t>(state.id[i]); }

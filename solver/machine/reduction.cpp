@@ -113,4 +113,24 @@ const ReductionInfo* find_reduction(std::string_view name) {
     return found == all_reductions.end() ? nullptr : &*found;
 }
 
+std::vector<Sample> between_shares(std::span<const Sample> samples, double low, double high) {
+    std::vector<Sample> counted;
+    for (const Sample& sample : samples) {
+        const double first = samples.front().value;
+        if (sample.value >= low * first && sample.value <= high * first) counted.push_back(sample);
+    }
+    return counted;
+}
+
+std::vector<Sample> while_between(std::span<const Sample> samples, std::span<const Sample> others, double low,
+                                  double high) {
+    std::vector<Sample> counted;
+    for (const Sample& sample : samples) {
+        const auto other = std::ranges::lower_bound(others, sample.time, {}, &Sample::time);
+        if (other != others.end() && other->time == sample.time && other->value >= low && other->value <= high)
+            counted.push_back(sample);
+    }
+    return counted;
+}
+
 }  // namespace grainsweep::machine

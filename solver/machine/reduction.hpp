@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace grainsweep::machine {
 
@@ -23,5 +24,11 @@ struct ReductionInfo {
 [[nodiscard]] std::span<const ReductionInfo> reduction_catalogue();
 /// Returns nullptr where there is none of that name.
 [[nodiscard]] const ReductionInfo* find_reduction(std::string_view name);
+
+/// Returns the samples between two shares of the first one.
+[[nodiscard]] std::vector<Sample> between_shares(std::span<const Sample> samples, double low, double high);
+/// Returns the samples at times at which there is another one between two values. Both in the order of time.
+[[nodiscard]] std::vector<Sample> while_between(std::span<const Sample> samples, std::span<const Sample> others,
+                                                double low, double high);
 
 }  // namespace grainsweep::machine

@@ -16,7 +16,7 @@ namespace {
 using geometry::dot;
 using geometry::norm;
 
-constexpr std::uint64_t checkpoint_format = 0x6772'6e73'6d63'0001ULL;  // "grnsmc", version 1
+constexpr std::uint64_t checkpoint_format = 0x6772'6e73'6d63'0002ULL;  // "grnsmc", version 2
 constexpr std::int64_t most_steps = 1'000'000'000'000'000;             // of a phase
 constexpr double calm = 1e-3;                                          // kinetic energy of a particle at rest, in m g d
 constexpr double checks = 0.25;                                        // interval of checks, in sqrt(d/g)
@@ -43,10 +43,7 @@ Run::Run(Spec spec, std::uint64_t seed) : spec_(std::move(spec)), records_(spec_
             const Species& species = spec_.species[number];
             setup.to_come.push_back({species.smallest() / 2, species.largest() / 2, species.material});
         }
-    for (const std::uint8_t species : start.species) {
-        species_.push_back(species);
-        density_.push_back(spec_.densities[spec_.species[species].material]);
-    }
+    enlist(start);
     engine_ = dem::make_engine(setup, spec_.method);
     for (const Measure& measure : spec_.measures) {
         const ProbeInfo& probe = *find_probe(measure.probe);
@@ -88,7 +85,8 @@ static std::int64_t check_steps(const Spec& spec, const Phase& phase) {
 std::int64_t Run::next_stop() const {
     std::int64_t stop = phase_begin_ + phase_steps();
     if (frame_ <= phase().frames) stop = std::min(stop, step_of_frame(frame_));
-    if (!phase().until.empty()) stop = std::min(stop, phase_begin_ + (check_ + 1) * check_steps(spec_, phase()));
+    if (!phase().until.empty() && !phase().ends_at_frames)
+        stop = std::min(stop, phase_begin_ + (check_ + 1) * check_steps(spec_, phase()));
     for (const Feed& feed : spec_.feeds)
         if (holds(feed.during, phase_)) {
             const std::int64_t every = steps_in(feed.interval);
@@ -132,13 +130,17 @@ void Run::stop_here() {
     if (step_ > phase_begin_) feed();
     const bool framed = frame_ <= phase().frames && step_ == step_of_frame(frame_);
     if (framed) take_frame();
-    std::uint8_t condition = 0;
-    if (!phase().until.empty() && step_ == phase_begin_ + (check_ + 1) * check_steps(spec_, phase())) {
-        ++check_;
-        condition = ended_by();
-    }
+    const std::uint8_t condition = checks_here(framed) ? ended_by() : std::uint8_t{0};
     if (condition > 0 && !framed) take_frame();
     if (condition > 0 || step_ == phase_begin_ + phase_steps()) end_phase(condition);
+}
+
+bool Run::checks_here(bool framed) {
+    if (phase().until.empty()) return false;
+    if (phase().ends_at_frames) return framed;
+    if (step_ != phase_begin_ + (check_ + 1) * check_steps(spec_, phase())) return false;
+    ++check_;
+    return true;
 }
 
 std::int64_t Run::credited_ahead(const Feed& feed) const {
@@ -161,10 +163,15 @@ void Run::feed() {
 void Run::add(const Filled& added) {
     if (added.spheres.empty()) return;
     engine_->add(added.spheres);
-    for (const std::uint8_t species : added.species) {
+    enlist(added);
+}
+
+void Run::enlist(const Filled& filled) {
+    for (const std::uint8_t species : filled.species) {
         species_.push_back(species);
         density_.push_back(spec_.densities[spec_.species[species].material]);
     }
+    for (const auto& sphere : filled.spheres) radius_.push_back(sphere.radius);
 }
 
 Sight Run::look(bool contacts) {
@@ -172,7 +179,8 @@ Sight Run::look(bool contacts) {
     contacts_.clear();
     if (contacts) engine_->contacts(contacts_);
     return {
-        *engine_, state_, contacts_, species_, density_, spec_.domain, spec_.gravity, time(), engine_->peak_overlap()};
+        *engine_, state_, contacts_, species_, density_, spec_.domain, spec_.gravity, time(), engine_->peak_overlap(),
+        radius_};
 }
 
 void Run::take_frame() {
@@ -269,14 +277,12 @@ void Run::observe(const Measure& measure, const Record& record, Observations& in
         }
         return;
     }
-    std::vector<Sample> samples;
-    for (const Sample& sample : record.samples) {
-        const double first = record.samples.front().value;
-        const bool counts = !measure.shares || (sample.value >= measure.shares->first * first &&
-                                                sample.value <= measure.shares->second * first);
-        if (counts) samples.push_back(sample);
-    }
+    std::vector<Sample> samples = record.samples;
+    if (measure.shares) samples = between_shares(samples, measure.shares->first, measure.shares->second);
+    for (const While& only : measure.only)
+        samples = while_between(samples, records_[only.measure].samples, only.low, only.high);
     if (reduction.shape == Shape::series) {
+        for (Sample& sample : samples) sample.time -= measure.since ? times_.begin[*measure.since] : 0;
         into.series[measure.name] = std::move(samples);
         return;
     }
@@ -345,7 +351,7 @@ template <class State, class Visit>
 void Run::fields(State& run, Visit&& visit) {
     visit(run.step_), visit(run.phase_), visit(run.phase_begin_), visit(run.frame_), visit(run.check_);
     visit(run.calm_since_), visit(run.watched_), visit(run.peak_overlap_), visit(run.times_.begin);
-    visit(run.times_.end), visit(run.ended_by_), visit(run.species_), visit(run.density_);
+    visit(run.times_.end), visit(run.ended_by_), visit(run.species_), visit(run.density_), visit(run.radius_);
     for (auto& record : run.records_)
         visit(record.samples), visit(record.bins), visit(record.sums), visit(record.counts), visit(record.last),
             visit(record.looked);
@@ -373,7 +379,7 @@ void Run::restore(std::span<const std::byte> from) {
     in.require(phase_ <= spec_.phases.size() && times_.begin.size() == std::min(phase_ + 1, spec_.phases.size()) &&
                times_.end.size() == phase_ && ended_by_.size() == phase_);
     in.require(finished() || (calm_since_.size() == phase().until.size() && watched_.size() == calm_since_.size()));
-    in.require(species_.size() == density_.size() &&
+    in.require(species_.size() == density_.size() && species_.size() == radius_.size() &&
                std::ranges::all_of(species_, [this](std::uint8_t s) { return s < spec_.species.size(); }));
     const auto finite = [](const std::vector<double>& times) {
         return std::ranges::all_of(times, [](double t) { return std::isfinite(t); });

@@ -56,10 +56,14 @@ private:
     void take_frame();
     /// Number of the condition that ends the phase now, from 1; 0: none.
     [[nodiscard]] std::uint8_t ended_by();
+    /// Whether its conditions are looked at in this step.
+    [[nodiscard]] bool checks_here(bool framed);
     [[nodiscard]] bool holds_now(std::size_t condition);
     [[nodiscard]] Sight look(bool contacts);
     [[nodiscard]] double mass_in(const Region& region);
     void add(const Filled& filled);
+    /// Remembers of what species and size they are.
+    void enlist(const Filled& filled);
     void observe(const Measure& measure, const Record& record, Observations& into) const;
     template <class State, class Visit>
     static void fields(State& run, Visit&& visit);
@@ -67,6 +71,7 @@ private:
     Spec spec_;
     std::vector<std::uint8_t> species_;  // by id
     std::vector<double> density_;        // by id
+    std::vector<double> radius_;         // by id
     std::unique_ptr<dem::Engine> engine_;
     std::vector<std::unique_ptr<Probe>> probes_;                 // of measures
     std::vector<std::vector<std::unique_ptr<Probe>>> watching_;  // those that end a phase, by its conditions

@@ -106,9 +106,16 @@ using Until = std::variant<AtRest, Empty, FlowStops, Passes>;
 
 struct Phase {
     std::string name;
-    double duration = 0;        ///< s, at most; 0: one step
-    std::vector<Until> until;   ///< whatever holds first
-    std::int64_t frames = 100;  ///< intervals between measurements
+    double duration = 0;          ///< s, at most; 0: one step
+    std::vector<Until> until;     ///< whatever holds first
+    std::int64_t frames = 100;    ///< intervals between measurements
+    bool ends_at_frames = false;  ///< its conditions are looked at where probes look, and at no other time
+};
+
+/// Only at frames at which another measurement lies within bounds.
+struct While {
+    std::size_t measure = 0;
+    double low = 0, high = 0;
 };
 
 struct Measure {
@@ -118,6 +125,8 @@ struct Measure {
     std::string reduction;  ///< of reduction_catalogue()
     Phases during;
     std::optional<std::pair<double, double>> shares;  ///< only values between these shares of the first one count
+    std::vector<While> only;
+    std::optional<std::size_t> since;  ///< phase from whose beginning the times of a series count
 };
 
 /// The first time at which a measurement is above or below a value.

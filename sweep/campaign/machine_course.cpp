@@ -54,7 +54,9 @@ const machine::ProbeInfo& probe_of(const Cursor& place) {
         throw wrong_question(path_of(place.path(), unknown), "", "there is no such probe",
                              nearest_word(unknown, known));
     }
-    if (found == nullptr) place.refuse(fmt::format("a measurement needs a probe: {}", in_words(probes)));
+    if (found == nullptr)
+        place.refuse(fmt::format("a measurement needs one of the {} probes, such as 'mass', 'profile' or 'wall_torque'",
+                                 probes.size()));
     return *found;
 }
 
@@ -118,17 +120,6 @@ std::pair<double, bool> threshold_of(const Section& section, const MachineReadin
     if (above.has_value() == below.has_value())
         throw wrong_question(section.place().path(), "", "it has one of \"above\" and \"below\"");
     return {reading.scope.number(above ? *above : *below, unit), above.has_value()};
-}
-
-std::size_t measure_named(const Cursor& place, const MachineReading& reading) {
-    const std::size_t number = reading.scope.place_in(place, reading.measures, "measurement with a probe");
-    if (!machine::find_probe(reading.spec.measures[number].probe)->over.empty())
-        place.refuse("a profile has no single value that could pass another");
-    return number;
-}
-
-std::string_view unit_of_measure(const MachineReading& reading, std::size_t measure) {
-    return machine::find_probe(reading.spec.measures[measure].probe)->unit;
 }
 
 /// Expressions behind those that they need. Refuses circles.
@@ -211,6 +202,8 @@ void read_phases(const Section& top, MachineReading& reading) {
         if (until && until->json().is_array())
             for (const auto& one : until->elements()) phase.until.push_back(read_until(one, reading));
         if (until && phase.until.empty()) until->refuse("must name a condition");
+        phase.ends_at_frames = section.flag("ends_at_frames", false);
+        if (phase.ends_at_frames && !until) section.at("ends_at_frames").refuse("it belongs to \"until\"");
         if (phase.until.size() > 100) until->refuse("a phase has at most 100 conditions");
         reading.spec.phases.push_back(std::move(phase));
     }
@@ -232,17 +225,10 @@ void read_measures(const Section& top, MachineReading& reading) {
             measure.during = reading.scope.places_in(place["during"], reading.phases, "phase");
             std::ranges::sort(measure.during);
         }
-        if (place.json().contains("shares")) {
-            const Cursor shares = place["shares"];
-            if (!probe.over.empty()) shares.refuse("a profile has no first value to be a share of");
-            if (!shares.json().is_array() || shares.json().size() != 2) shares.refuse("must be a list of two shares");
-            measure.shares = {reading.scope.number(shares[std::size_t{0}], "1"), reading.scope.number(shares[1], "1")};
-            if (!(measure.shares->first < measure.shares->second))
-                shares.refuse("the first share must be the smaller one");
-        }
         reading.measures.push_back(name);
         spec.measures.push_back(std::move(measure));
     }
+    for (auto& measure : spec.measures) read_counting(all[measure.name], reading, measure);
     for (const auto& [name, value] : all.json().items()) {
         const Cursor place = all[name];
         if (entry_kind(place) != EntryKind::time_of) continue;

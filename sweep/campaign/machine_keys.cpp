@@ -235,6 +235,8 @@ constexpr auto phase_keys = std::to_array<Key>({
     {"until", MachineKey::value, "what ends it; of a list whatever holds first"},
     {"at_most", MachineKey::value, "with until: how long it lasts at most, s"},
     {"frames", MachineKey::value, "it is measured at its beginning and after each of so many equal intervals", "100"},
+    {"ends_at_frames", MachineKey::flag, "true: its conditions are looked at when it is measured, and not in between",
+     "false"},
 });
 
 constexpr auto until_keys = std::to_array<Key>({
@@ -262,6 +264,9 @@ constexpr auto measure_keys = std::to_array<Key>({
     {"as", MachineKey::word, "what becomes of the values at the frames; default: mean, of a profile profile"},
     {"during", MachineKey::words, "phases in which it is measured; default: all"},
     {"shares", MachineKey::array, "only values from the first to the second of these shares of the first value count"},
+    {"while", MachineKey::object,
+     "by the name of another measurement [low, high], null: open: only values at frames at which it lies there count"},
+    {"since", MachineKey::text, "of a series: the phase from whose beginning its times count; default: the start"},
     {"meaning", MachineKey::text, "in words"},
 });
 

@@ -56,6 +56,11 @@ void read_checks(const Section& top, MachineReading& reading);
 [[nodiscard]] geometry::Shape read_shape(const Section& wall, const MachineReading& reading);
 /// Phases of "during"; empty: all.
 [[nodiscard]] machine::Phases read_during(const Section& section, const MachineReading& reading);
+/// A measurement of one value, by its name.
+[[nodiscard]] std::size_t measure_named(const Cursor& place, const MachineReading& reading);
+[[nodiscard]] std::string_view unit_of_measure(const MachineReading& reading, std::size_t measure);
+/// "shares", "while" and "since" of a measurement, once all measurements have their numbers.
+void read_counting(const Cursor& place, const MachineReading& reading, machine::Measure& into);
 /// Names and observables of "measure", in the order of the names.
 [[nodiscard]] std::vector<ObservableSpec> machine_observables(const Section& top);
 

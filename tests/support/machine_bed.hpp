@@ -17,7 +17,7 @@ namespace grainsweep::tests {
 struct Bed {
     dem::Setup setup = empty_space();
     std::vector<std::uint8_t> species;
-    std::vector<double> density;
+    std::vector<double> density, radius;
     std::unique_ptr<dem::Engine> engine;
     dem::State state;
     std::vector<dem::ContactForce> contacts;
@@ -30,6 +30,7 @@ struct Bed {
         s.velocity = v;
         s.radius = (diameter > 0 ? diameter : of == 0 ? 0.002 : 0.004) / 2;
         setup.spheres.push_back(s);
+        radius.push_back(s.radius);
         species.push_back(of);
         density.push_back(of == 0 ? 1000 : 3000);
     }
@@ -40,7 +41,18 @@ struct Bed {
             engine->state(state);
             engine->contacts(contacts);
         }
-        return {*engine, state, contacts, species, density, domain, {0, 0, -9.81}, time};
+        return {*engine, state, contacts, species, density, domain, {0, 0, -9.81}, time, 0, radius};
+    }
+    /// Takes a sphere away, as one that has left the domain.
+    void lose(std::size_t place) {
+        (void)sight();
+        const auto at = static_cast<std::ptrdiff_t>(place);
+        state.id.erase(state.id.begin() + at);
+        state.position.erase(state.position.begin() + at);
+        state.velocity.erase(state.velocity.begin() + at);
+        state.angular_velocity.erase(state.angular_velocity.begin() + at);
+        state.radius.erase(state.radius.begin() + at);
+        state.mobile.erase(state.mobile.begin() + at);
     }
     double look(const char* probe, const machine::Options& options = {}) {
         return machine::find_probe(probe)->make(options)->look(sight());

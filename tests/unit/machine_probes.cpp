@@ -28,6 +28,8 @@ TEST(MachineProbes, AmountsAreSumsOverSpeciesAndRegion) {
     EXPECT_EQ(bed.look("count", with("in", box({-1, -1, -1}, {0.01, 1, 1}))), 2) << "by centres, the border included";
     EXPECT_EQ(bed.look("count", with("of", of({1}), "in", box({-1, -1, -1}, {0.015, 1, 1}))), 1);
     EXPECT_DOUBLE_EQ(bed.look("volume"), volume(0.002) + 2 * volume(0.004));
+    EXPECT_DOUBLE_EQ(bed.look("mean_diameter"), (0.002 + 2 * 0.004) / 3);
+    EXPECT_TRUE(std::isnan(bed.look("mean_diameter", with("in", box({1, 1, 1}, {2, 2, 2})))));
     EXPECT_DOUBLE_EQ(bed.look("mass"), 1000 * volume(0.002) + 6000 * volume(0.004));
     EXPECT_DOUBLE_EQ(bed.look("mass_share", with("of", of({0}))), volume(0.002) / (volume(0.002) + 6 * volume(0.004)));
     EXPECT_EQ(bed.look("mass_share", with("of", of({0}), "in", box({0.005, -1, -1}, {1, 1, 1}))), 0);

@@ -35,6 +35,23 @@ TEST(MachineReductions, AreTheFiguresOfTheValues) {
     EXPECT_DOUBLE_EQ(reduced("slope", samples({{0, 1}, {2, 7}, {5, 16}})), 3);
 }
 
+TEST(MachineReductions, CountValuesWithinBounds) {
+    const auto values = [](const std::vector<Sample>& all) {
+        std::vector<double> of;
+        for (const Sample& sample : all) of.push_back(sample.value);
+        return of;
+    };
+    const auto five = samples({{0, 10}, {1, 8}, {2, 5}, {3, 2}, {4, 0}});
+    EXPECT_EQ(values(machine::between_shares(five, 0.2, 0.8)), (std::vector<double>{8, 5, 2})) << "bounds included";
+    EXPECT_TRUE(machine::between_shares({}, 0, 1).empty());
+    // Another measurement at some of the times, and at others.
+    const auto other = samples({{1, 0.1}, {1.5, 0.3}, {2, 0.3}, {3, 0.5}, {4, 0.7}});
+    EXPECT_EQ(values(machine::while_between(five, other, 0.1, 0.5)), (std::vector<double>{8, 5, 2}));
+    EXPECT_EQ(values(machine::while_between(five, other, 0.2, 1)), (std::vector<double>{5, 2, 0}));
+    EXPECT_TRUE(machine::while_between(five, {}, 0, 1).empty());
+    EXPECT_TRUE(machine::while_between({}, other, 0, 1).empty());
+}
+
 TEST(MachineReductions, OfNothingAreUndefined) {
     for (const auto& reduction : machine::reduction_catalogue()) {
         if (reduction.of == nullptr) continue;

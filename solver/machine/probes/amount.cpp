@@ -1,4 +1,4 @@
-// Number, mass and solid volume of the particles whose centres lie in a region.
+// Number, mass, solid volume and mean diameter of the particles whose centres lie in a region.
 #include "solver/machine/probes/probes.hpp"
 #include "solver/machine/selection.hpp"
 
@@ -23,6 +23,22 @@ private:
     Selection selection_;
 };
 
+class MeanDiameter final : public machine::Probe {
+public:
+    explicit MeanDiameter(const Options& options) : selection_(options) {}
+    double look(const Sight& sight) override {
+        double diameters = 0, number = 0;
+        selection_.each(sight, [&](std::size_t i) {
+            diameters += 2 * sight.state.radius[i];
+            number += 1;
+        });
+        return number > 0 ? diameters / number : undefined;
+    }
+
+private:
+    Selection selection_;
+};
+
 constexpr std::array amount_options = {of_option, in_option};
 
 template <Amount of>
@@ -38,5 +54,8 @@ const ProbeInfo amount_mass{"mass", "kg", "mass of the particles in a region", a
                             make_amount<Amount::mass>};
 const ProbeInfo amount_volume{"volume", "m3", "solid volume of the particles in a region", amount_options,
                               make_amount<Amount::volume>};
+const ProbeInfo mean_diameter{
+    "mean_diameter", "m", "mean diameter of the particles in a region, by number", amount_options,
+    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<MeanDiameter>(given); }};
 
 }  // namespace grainsweep::machine::probes

@@ -1,6 +1,6 @@
 // Heights against gravity, from a point: below which a share of the solid volume lies, and the mean.
 #include "solver/machine/probes/probes.hpp"
-#include "solver/machine/selection.hpp"
+#include "solver/machine/upright.hpp"
 
 #include <cmath>
 #include <utility>
@@ -9,15 +9,7 @@ namespace grainsweep::machine::probes {
 namespace {
 
 using geometry::dot;
-using geometry::norm;
 using geometry::operator-;
-using geometry::operator*;
-
-Vec3 up_of(const Sight& sight, const std::optional<Vec3>& along) {
-    if (along) return *along;
-    const double g = norm(sight.gravity);
-    return g > 0 ? (-1 / g) * sight.gravity : Vec3{0, 0, 1};
-}
 
 class HeightOfShare final : public machine::Probe {
 public:
@@ -74,9 +66,6 @@ private:
 };
 
 constexpr std::array<std::string_view, 2> ends = {"top", "centre"};
-constexpr OptionSpec from_option{"from", OptionSpec::Kind::vector, "m",
-                                 "the point from which it counts; default: the origin"};
-constexpr OptionSpec along_option{"along", OptionSpec::Kind::direction, "", "upwards; default: against gravity"};
 constexpr std::array height_options = {
     of_option,
     in_option,

@@ -1,0 +1,39 @@
+// Solid fraction of a bed in a vessel of one cross-section: between three diameters above its bottom and three below
+// the height that 95 % of the centres do not reach.
+#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/upright.hpp"
+#include "solver/observables/outflow.hpp"
+
+namespace grainsweep::machine::probes {
+namespace {
+
+class BedFraction final : public machine::Probe {
+public:
+    explicit BedFraction(const Options& options)
+        : upright_(options), diameter_(options.number("diameter")), section_(options.number("section")) {}
+    double look(const Sight& sight) override {
+        return observables::settled_fraction(upright_.state_of(sight), 0, diameter_, section_);
+    }
+
+private:
+    Upright upright_;
+    double diameter_, section_;
+};
+
+constexpr Interval positive_size{0, std::numeric_limits<double>::infinity(), true, true};
+constexpr std::array bed_fraction_options = {
+    of_option,
+    in_option,
+    OptionSpec{"from", OptionSpec::Kind::vector, "m", "a point of the bottom; default: the origin"},
+    along_option,
+    OptionSpec{"diameter", OptionSpec::Kind::number, "m", "diameter of the particles", true, positive_size},
+    OptionSpec{"section", OptionSpec::Kind::number, "m2", "cross-section of the vessel", true, positive_size}};
+
+}  // namespace
+
+const ProbeInfo bed_fraction{
+    "bed_fraction", "1", "solid fraction of a bed, three diameters clear of its bottom and its top",
+    bed_fraction_options,
+    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<BedFraction>(given); }};
+
+}  // namespace grainsweep::machine::probes

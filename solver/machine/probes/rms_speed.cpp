@@ -1,0 +1,26 @@
+// Root mean square speed of the particles that can move; 0 where there are none.
+#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/upright.hpp"
+#include "solver/observables/heap.hpp"
+
+namespace grainsweep::machine::probes {
+namespace {
+
+class RmsSpeed final : public machine::Probe {
+public:
+    explicit RmsSpeed(const Options& options) : particles_(options) {}
+    double look(const Sight& sight) override { return observables::rms_speed(particles_.state_of(sight)); }
+
+private:
+    Upright particles_;
+};
+
+constexpr std::array rms_speed_options = {of_option, in_option};
+
+}  // namespace
+
+const ProbeInfo rms_speed{
+    "rms_speed", "m/s", "root mean square speed; 0 without particles", rms_speed_options,
+    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<RmsSpeed>(given); }};
+
+}  // namespace grainsweep::machine::probes

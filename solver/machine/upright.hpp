@@ -1,0 +1,57 @@
+// The particles that count, as a state with z upwards: what observables that have a floor and a top look at.
+#pragma once
+
+#include "solver/machine/selection.hpp"
+
+#include <cmath>
+
+namespace grainsweep::machine {
+
+inline constexpr OptionSpec from_option{"from", OptionSpec::Kind::vector, "m",
+                                        "the point from which it counts; default: the origin"};
+inline constexpr OptionSpec along_option{"along", OptionSpec::Kind::direction, "", "upwards; default: against gravity"};
+
+/// Returns the option "along"; against gravity where it is not given, z without gravity.
+[[nodiscard]] inline Vec3 up_of(const Sight& sight, const std::optional<Vec3>& along) {
+    if (along) return *along;
+    const double g = geometry::norm(sight.gravity);
+    return g > 0 ? geometry::operator*(-1 / g, sight.gravity) : Vec3{0, 0, 1};
+}
+
+/// Options "of", "in", "from" and "along".
+class Upright {
+public:
+    explicit Upright(const Options& options)
+        : selection_(options),
+          from_(options.vector("from", {})),
+          along_(options.has("along") ? std::optional(options.vector("along")) : std::nullopt) {}
+
+    /// Returns places from "from" and velocities of those that count.
+    [[nodiscard]] dem::State state_of(const Sight& sight) const {
+        using geometry::cross;
+        const Vec3 up = up_of(sight, along_);
+        const bool leans = up != Vec3{0, 0, 1};
+        const Vec3 other = std::abs(up[0]) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+        const Vec3 sideways = cross(up, other), y = geometry::operator*(1 / geometry::norm(sideways), sideways);
+        const Vec3 x = cross(y, up);
+        const auto turned = [&](const Vec3& a) {
+            return leans ? Vec3{geometry::dot(a, x), geometry::dot(a, y), geometry::dot(a, up)} : a;
+        };
+        dem::State state;
+        selection_.each(sight, [&](std::size_t i) {
+            state.id.push_back(sight.state.id[i]);
+            state.position.push_back(turned(geometry::operator-(sight.state.position[i], from_)));
+            state.velocity.push_back(turned(sight.state.velocity[i]));
+            state.radius.push_back(sight.state.radius[i]);
+            state.mobile.push_back(sight.state.mobile[i]);
+        });
+        return state;
+    }
+
+private:
+    Selection selection_;
+    Vec3 from_;
+    std::optional<Vec3> along_;
+};
+
+}  // namespace grainsweep::machine
