@@ -25,16 +25,6 @@ double cube(double r) {
 
 }  // namespace
 
-double lean(const dem::State& state) {
-    double x = 0, z = 0;
-    for (std::size_t i = 0; i < state.position.size(); ++i) {
-        const double volume = cube(state.radius[i]);
-        x += volume * state.position[i][0];
-        z += volume * state.position[i][2];
-    }
-    return state.position.empty() ? nan : std::atan2(-x, -z) / (std::numbers::pi / 180);
-}
-
 SectionSphere SectionView::sphere(const dem::State& state, std::size_t i) const {
     using geometry::dot;
     const dem::Vec3 from_axis = geometry::operator-(state.position[i], through);
@@ -154,13 +144,6 @@ SectionFlow::DownhillProfile SectionFlow::below(const Line& surface) const {
     return profile;
 }
 
-double section_bytes(double radius, double diameter, double cover_cell) {
-    const auto cells = [radius](double edge) { return 4 * (radius / edge + 1) * (radius / edge + 1); };
-    const double fraction = 2 * sizeof(double), flow = 2 * sizeof(double) + sizeof(std::int64_t);  // mean() is a copy
-    const double cover = sizeof(std::int64_t) + sizeof(double) + 1;
-    return fraction * cells(diameter) + flow * cells(diameter / flow_cells_per_d) + cover * cells(cover_cell);
-}
-
 Cover::Cover(double radius, double cell) : grid_(radius, cell), hidden_(grid_.cells(), 0) {}
 
 std::span<const char> Cover::hidden_by(std::span<const SectionSphere> spheres) {
@@ -212,21 +195,6 @@ std::optional<double> wall_layer_speed(std::span<const SectionSphere> spheres, d
     }
     if (seen == 0) return std::nullopt;
     return speed / static_cast<double>(seen);
-}
-
-double coordination(const dem::State& state, std::span<const dem::ContactForce> contacts) {
-    const auto pairs = std::ranges::count_if(contacts, [](const auto& contact) { return contact.second >= 0; });
-    return 2 * static_cast<double>(pairs) / static_cast<double>(state.id.size());
-}
-
-double translational_energy(const dem::State& state, double density) {
-    double energy = 0;
-    for (std::size_t i = 0; i < state.velocity.size(); ++i) {
-        const auto& v = state.velocity[i];
-        const double mass = 4.0 / 3 * std::numbers::pi * cube(state.radius[i]) * density;
-        energy += 0.5 * mass * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    }
-    return energy;
 }
 
 }  // namespace grainsweep::observables

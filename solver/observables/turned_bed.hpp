@@ -4,8 +4,6 @@
 // angles are positive. Without a view of its own the axis is y through the origin. Lengths in m. Volumes belong to the
 // centres of their spheres.
 //
-//     lean              atan2(-x_c, -z_c) of the mass centre: the slope of the surface of a bed that is a segment of a
-//                       circle
 //     surface           per column of cells the height where the mean solid fraction falls through a level, seen from
 //                       above, linear between the cells' centres; a line is fitted through |x| <= 0.4 R
 //     flow              mean velocity down that line, in layers below it, within 2.5 D of the foot of the perpendicular
@@ -25,9 +23,6 @@
 #include <vector>
 
 namespace grainsweep::observables {
-
-/// Degrees; NaN without particles.
-[[nodiscard]] double lean(const dem::State& state);
 
 /// A sphere in the plane: its centre from the axis, m, and its velocity, m/s.
 struct SectionSphere {
@@ -135,18 +130,9 @@ private:
     std::vector<char> now_;  // scratch
 };
 
-/// Memory of the three of them, bytes: it grows with the drum's section, whatever the number of particles.
-[[nodiscard]] double section_bytes(double radius, double diameter, double cover_cell);
-
 /// Mean tangential speed, in the drum's sense, of the spheres nearer than a tenth of D to the lower half of the wall;
 /// nothing: there is none. m/s.
 [[nodiscard]] std::optional<double> wall_layer_speed(std::span<const SectionSphere> spheres, double radius,
                                                      double diameter);
-
-/// Mean number of other particles that a particle touches, 2 contacts/N.
-[[nodiscard]] double coordination(const dem::State& state, std::span<const dem::ContactForce> contacts);
-
-/// Of translation, J; density in kg/m3.
-[[nodiscard]] double translational_energy(const dem::State& state, double density);
 
 }  // namespace grainsweep::observables

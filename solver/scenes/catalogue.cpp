@@ -30,8 +30,10 @@ Inputs SceneInfo::defaults() const {
 
 std::span<const SceneInfo> scene_catalogue() {
     static const std::vector<SceneInfo> scenes = {
-        powder_spreading_scene(), tpms_discharge_scene(),  rotating_drum_scene(), hopper_scene(), heap_scene(),
-        rehearsal_scene(),        thermovibration_scene(),
+        powder_spreading_scene(),
+        tpms_discharge_scene(),
+        rehearsal_scene(),
+        thermovibration_scene(),
     };
     return scenes;
 }

@@ -145,8 +145,16 @@ TEST(RotatingDrum, TheImageHoldsTheFill) {
     // 1644 or less: loose powder stands higher than at 0.58, its silhouette a little higher still.
     EXPECT_GT(seen.scalars.at("cover_area"), 0.35 * section);
     EXPECT_LT(seen.scalars.at("cover_area"), 0.5 * section);
-    EXPECT_NEAR(seen.scalars.at("angle_cover"), seen.scalars.at("angle_surface"), 4);
-    EXPECT_NEAR(seen.scalars.at("angle_cm"), seen.scalars.at("angle_surface"), 4);
+    // One bed of a few hundred spheres scatters by two degrees, the mean of six by less than one.
+    inputs["precision"] = std::string("mixed");
+    double above_cover = 0, above_cm = 0;
+    for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U, 6U}) {
+        const auto one = run(inputs, seed).scalars;
+        above_cover += (one.at("angle_surface") - one.at("angle_cover")) / 6;
+        above_cm += (one.at("angle_surface") - one.at("angle_cm")) / 6;
+    }
+    EXPECT_NEAR(above_cover, 0, 4);
+    EXPECT_NEAR(above_cm, 0, 4);
     double cells = 0;
     for (const auto& cell : seen.series.at("occupancy")) {
         EXPECT_GE(cell.value, 0);

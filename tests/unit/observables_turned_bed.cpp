@@ -50,17 +50,6 @@ TEST(LineFit, IsExactOnALineAndLeastInBetween) {
     EXPECT_EQ(fitted_line(level).residual, 0);
 }
 
-TEST(TurnedBed, LeanIsTheAngleOfASegment) {
-    for (const double angle : {0.0, 20.0, 37.5, 60.0}) {
-        const auto state = segment(0.1, 0.02, -std::tan(angle * degree), -0.01, 2e-4, 0.5);
-        EXPECT_NEAR(lean(state), angle, 0.03) << "the lattice's";
-    }
-    EXPECT_TRUE(std::isnan(lean({})));
-    dem::State unequal = segment(0.1, 0.02, 0, -0.0999, 1e-3, 0.5);
-    unequal.id = {0, 1}, unequal.position = {{0, 0, -1}, {-1, 0, 0}}, unequal.radius = {0.1, 0.2};
-    EXPECT_NEAR(lean(unequal), std::atan2(8.0, 1.0) / degree, 1e-12) << "weighted by volume";
-}
-
 TEST(TurnedBed, TheSurfaceOfAnEvenBedIsItsLine) {
     const double radius = 0.075, length = 0.03, diameter = 0.005;
     for (const double angle : {0.0, 25.0, 37.0}) {
@@ -157,16 +146,6 @@ TEST(TurnedBed, TheWallLayerIsWhatTouchesTheLowerHalf) {
     ASSERT_TRUE(seen);
     EXPECT_NEAR(*seen, speed * (radius - r + 0.5 * (radius - 1.1 * r)) / 2, 1e-12);
     EXPECT_FALSE(wall_layer_speed(Section{}, radius, 2 * r));
-}
-
-TEST(TurnedBed, CoordinationCountsPairsTwiceAndWallsNever) {
-    dem::State state;
-    state.id = {0, 1, 2};
-    std::vector<dem::ContactForce> contacts(3);
-    contacts[0].first = 0, contacts[0].second = 1;
-    contacts[1].first = 1, contacts[1].second = 2;
-    contacts[2].first = 2, contacts[2].second = -1;
-    EXPECT_DOUBLE_EQ(coordination(state, contacts), 4.0 / 3);
 }
 
 }  // namespace grainsweep::tests::observables_turned_bed_test

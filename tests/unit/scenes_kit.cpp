@@ -1,6 +1,5 @@
 // The kit of scenes: what a handle declares is what it reads, and the powder block means what it says.
 #include "solver/dem/material.hpp"
-#include "solver/scenes/kit/filling.hpp"
 #include "solver/scenes/kit/powder.hpp"
 #include "solver/scenes/kit/stl_wall.hpp"
 #include "solver/scenes/scene.hpp"
@@ -14,9 +13,6 @@
 #include <stdexcept>
 
 namespace grainsweep::tests::scenes_kit_test {
-
-using geometry::norm;
-using geometry::operator-;
 
 constexpr kit::Powder powder;
 constexpr kit::Whole count{"count", "how many", 3, {0, 10}, {kit::if_set("friction"), kit::if_zero("cohesion")}};
@@ -94,52 +90,6 @@ TEST(Kit, AWallHasThePropertiesOfThePowderOrItsOwn) {
     EXPECT_THROW((void)powder.wall_surface(inputs), std::invalid_argument) << "of the wall alone";
     inputs["surface_energy"] = 0.2;
     EXPECT_EQ(powder.wall_surface(inputs), (dem::Surface{.surface_energy = 0.1}));
-}
-
-TEST(Kit, ALooseFillingTouchesNothing) {
-    const particles::Room tube{{-1, -1, 0}, {1, 1, 2}, {false, false, true}, [](const dem::Vec3& x, double r) {
-                                   return std::hypot(x[0], x[1]) + r <= 1;
-                               }};
-    const auto sizes = particles::SizeDistribution::uniform(0.2);
-    const auto spheres = kit::loose_filling(sizes, 0.2, 300, tube, 5, "full");
-    ASSERT_EQ(spheres.size(), 300U);
-    for (std::size_t i = 0; i < spheres.size(); ++i) {
-        const auto& a = spheres[i];
-        EXPECT_LE(std::hypot(a.position[0], a.position[1]) + a.radius, 1);
-        for (std::size_t j = 0; j < i; ++j) {
-            double dz = a.position[2] - spheres[j].position[2];
-            dz -= 2 * std::nearbyint(dz / 2);
-            EXPECT_GE(std::hypot(a.position[0] - spheres[j].position[0], a.position[1] - spheres[j].position[1], dz),
-                      a.radius + spheres[j].radius);
-        }
-    }
-    EXPECT_EQ(kit::loose_filling({}, 0.2, 7, tube, 5, "full").at(6).radius, 0.1);
-    EXPECT_THROW((void)kit::loose_filling({}, 0.2, 1000, tube, 5, "full"), std::invalid_argument) << "0.67";
-}
-
-// A lattice in a tube: no contacts, as high as it says, and none at all where spheres or tube are too wide or narrow.
-TEST(Kit, ALatticeInATubeTouchesNothing) {
-    const auto sizes = particles::SizeDistribution::uniform(0.1);
-    const kit::TubeLattice lattice(1, 0.2, sizes.largest() * 0.2, 300);
-    const auto spheres = lattice.filled(sizes, 0.5, 0.3, 7);
-    ASSERT_EQ(spheres.size(), 300U);
-    double top = 0;
-    for (std::size_t i = 0; i < spheres.size(); ++i) {
-        const auto& a = spheres[i];
-        EXPECT_LE(std::hypot(a.position[0], a.position[1]) + a.radius, 1);
-        EXPECT_GE(a.position[2] - a.radius, 0.5);
-        EXPECT_LE(std::abs(a.velocity[0]), 0.3);
-        top = std::max(top, a.position[2] + a.radius);
-        for (std::size_t j = 0; j < i; ++j)
-            EXPECT_GE(norm(a.position - spheres[j].position), a.radius + spheres[j].radius);
-    }
-    EXPECT_NEAR(top - 0.5, lattice.height(), 0.03);
-    constexpr double none = std::numeric_limits<double>::infinity();
-    EXPECT_EQ(kit::TubeLattice(1, 0.2, 0.24, 300).height(), none) << "wide spheres";
-    EXPECT_EQ(kit::TubeLattice(0.1, 0.2, 0.2, 300).height(), none) << "a narrow tube";
-    EXPECT_EQ(kit::TubeLattice(1, 0.2, 0.2, 20).height(), none) << "less than a layer";
-    EXPECT_EQ(kit::TubeLattice(1e6, 1e-6, 1e-6, 2000).height(), none);
-    EXPECT_DOUBLE_EQ(kit::TubeLattice(0.3, 0.2, 0.2, 2).height(), (0.1 + 2 * 1.15) * 0.2) << "one above the other";
 }
 
 TEST(Kit, SizesInAFileAreTakenAsTheyAre) {

@@ -2,7 +2,7 @@
 // the height that 95 % of the centres do not reach.
 #include "solver/machine/probes/probes.hpp"
 #include "solver/machine/upright.hpp"
-#include "solver/observables/outflow.hpp"
+#include "solver/observables/settled.hpp"
 
 namespace grainsweep::machine::probes {
 namespace {

@@ -1,0 +1,70 @@
+// What a run has to answer so far: measurements by their reductions, expressions of them, and what every machine has.
+#include "solver/machine/reduction.hpp"
+#include "solver/machine/run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace grainsweep::machine {
+
+void Run::observe(const Measure& measure, const Record& record, Observations& into) const {
+    const ReductionInfo& reduction = *find_reduction(measure.reduction);
+    if (reduction.shape == Shape::profile) {
+        std::vector<Sample> profile;
+        for (std::size_t b = 0; b < record.bins.size(); ++b) {
+            const double value = reduction.last ? record.last[b] : record.sums[b] / record.counts[b];
+            if (std::isfinite(value)) profile.push_back({.bin = record.bins[b], .value = value});
+        }
+        if (!profile.empty()) into.series[measure.name] = std::move(profile);
+        return;
+    }
+    std::vector<Sample> samples = record.samples;
+    if (measure.shares) samples = between_shares(samples, measure.shares->first, measure.shares->second);
+    for (const While& only : measure.only)
+        samples = while_between(samples, records_[only.measure].samples, only.low, only.high);
+    if (reduction.shape == Shape::series) {
+        for (Sample& sample : samples) sample.time -= measure.since ? times_.begin[*measure.since] : 0;
+        if (!samples.empty()) into.series[measure.name] = std::move(samples);
+        return;
+    }
+    if (reduction.last && !record.samples.empty() && record.samples.back().time != record.looked) return;
+    if (const double value = reduction.of(samples); std::isfinite(value)) into.scalars[measure.name] = value;
+    if (reduction.error == nullptr) return;
+    if (const double error = reduction.error(samples); std::isfinite(error))
+        into.scalars[measure.name + "_error"] = error;
+}
+
+void Run::observe(Observations& into) const {
+    into.scalars["particles"] = static_cast<double>(engine_->size()) - static_cast<double>(glued_);
+    into.scalars["lost"] = static_cast<double>(species_.size()) - static_cast<double>(engine_->size());
+    into.scalars["max_overlap"] = std::max(peak_overlap_, engine_->peak_overlap());
+    for (std::size_t k = 0; k < feeders_.size(); ++k) {
+        into.scalars[spec_.feeds[k].name + "_fed"] = feeders_[k].fed();
+        into.scalars[spec_.feeds[k].name + "_waiting"] = std::max(0.0, feeders_[k].waiting());
+    }
+    for (std::size_t p = 0; p < times_.end.size(); ++p) {
+        if (spec_.phases[p].until.empty()) continue;
+        into.scalars[spec_.phases[p].name + "_time"] = times_.end[p] - times_.begin[p];
+        into.scalars[spec_.phases[p].name + "_ended"] = ended_by_[p];
+    }
+    // What a machine measures under one of these names stands in its place.
+    for (const auto& measure : spec_.measures) into.scalars.erase(measure.name);
+    for (const auto& derived : spec_.derived) into.scalars.erase(derived.name);
+    for (const auto& time_of : spec_.times) into.scalars.erase(time_of.name);
+    for (std::size_t m = 0; m < spec_.measures.size(); ++m) observe(spec_.measures[m], records_[m], into);
+    for (const TimeOf& time_of : spec_.times)
+        for (const Sample& sample : records_[time_of.measure].samples)
+            if (time_of.above ? sample.value > time_of.value : sample.value < time_of.value) {
+                into.scalars[time_of.name] = sample.time;
+                break;
+            }
+    for (const Derived& derived : spec_.derived) {
+        const bool known =
+            std::ranges::all_of(derived.needs, [&](const auto& name) { return into.scalars.contains(name); });
+        if (!known) continue;
+        if (const double value = derived.value(into.scalars); std::isfinite(value)) into.scalars[derived.name] = value;
+    }
+}
+
+}  // namespace grainsweep::machine
