@@ -174,6 +174,32 @@ TEST(MachineRun, APhaseEndsWhenAMeasurementPasses) {
     EXPECT_FALSE(answer.scalars.contains("never"));
 }
 
+TEST(MachineRun, APhaseEndsAtAFrameWhereItShall) {
+    json document = falling_sphere();
+    document["phases"][0] =
+        json::parse(R"({"name": "one", "until": {"measure": "height", "below": "6 mm"}, "at_most": 1,
+                                            "frames": 100, "ends_at_frames": true})");
+    const auto answer = of(document);
+    EXPECT_EQ(answer.scalars.at("one_ended"), 1);
+    EXPECT_NEAR(answer.scalars.at("one_time"), 0.03, 1e-4) << "the first frame after sqrt(2*4 mm/g)";
+    ASSERT_EQ(answer.series.at("height").size(), 4U);
+    EXPECT_DOUBLE_EQ(answer.series.at("height").back().time, answer.scalars.at("one_time"));
+}
+
+// The centre is between 6 and 8 mm from 20.2 to 28.6 ms; frames are each of 1 ms.
+TEST(MachineRun, ValuesCountWhileAnotherMeasurementLiesWithinBounds) {
+    json document = falling_sphere();
+    document["phases"] = json::parse(R"([{"name": "one", "for": 0.01, "frames": 10},
+                                         {"name": "two", "for": 0.03, "frames": 30}])");
+    document["measure"]["fallen"] =
+        json::parse(R"({"centre": {"along": [0, 0, -1]}, "as": "change", "while": {"height": ["6 mm", "8 mm"]}})");
+    document["measure"]["late"] = json::parse(
+        R"({"centre": {"along": [0, 0, 1]}, "as": "series", "during": "two", "since": "two", "while": {"height": [null, 0.006]}})");
+    const auto answer = of(document);
+    EXPECT_NEAR(answer.scalars.at("fallen"), 9.81 / 2 * (0.028 * 0.028 - 0.021 * 0.021), 3e-5);
+    EXPECT_NEAR(answer.series.at("late").front().time, 0.019, 1e-4) << "29 ms, of which 10 in the first phase";
+}
+
 // The floor goes after 60 ms: the sphere falls out of the domain, 0.1 m below, and is lost.
 TEST(MachineRun, WallsArePresentInTheirPhases) {
     json document = falling_sphere();
