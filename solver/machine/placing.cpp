@@ -1,6 +1,8 @@
 // Places of a filling's particles.
 #include "solver/machine/placing.hpp"
 
+#include "solver/machine/setup.hpp"
+
 #include "solver/particles/packing.hpp"
 #include "solver/particles/random_addition.hpp"
 #include "solver/scenes/kit/sentence.hpp"
@@ -23,7 +25,8 @@ constexpr double spacing = 1.15, least_spacing = 1.02;  // D, largest diameters
 constexpr double most_sites = 2e8;
 constexpr double rain_layer = 1.05, rain_cover = 0.25;                    // largest diameters, share of the area
 constexpr double packed_fraction = 0.62, least_edge = 6, most_edge = 16;  // diameters
-constexpr double rounding = 1e-9;  // of a radius: a layer one diameter thick holds spheres
+constexpr std::int64_t most_tried = 20000;  // particles whose places are sought before a case runs
+constexpr double rounding = 1e-9;           // of a radius: a layer one diameter thick holds spheres
 
 /// Places of a lattice: their distance, and how far particles are off them in each direction, so that none touch.
 struct Pitch {
@@ -252,6 +255,15 @@ std::vector<Vec3> places_of(const Spec& spec, const Fill& fill, const Draws& dra
             break;
     }
     return on_lattice(spec, fill, draws, obstacles);
+}
+
+void require_places(const Spec& spec) {
+    for (const auto& filling : spec.fills) {
+        const auto* fill = std::get_if<Fill>(&filling);
+        if (fill == nullptr || fill->as != Fill::As::lattice || fill->count > most_tried) continue;
+        const Obstacles obstacles(walls_in(spec, 0, {{0.0}, {}}), spec.domain, widest_in(spec, fill->mix), 0);
+        (void)on_lattice(spec, *fill, Draws(spec, fill->mix, 1, 0), obstacles);
+    }
 }
 
 double widest_in(const Spec& spec, const Mix& mix) {

@@ -11,6 +11,8 @@ namespace grainsweep::machine {
 /// of the others. Throws std::invalid_argument with one sentence where they do not fit.
 [[nodiscard]] std::vector<Vec3> places_of(const Spec& spec, const Fill& fill, const Draws& draws,
                                           const std::vector<Draws::Particle>& particles, const Obstacles& obstacles);
+/// Throws as the filling of a case would where a lattice has too few places: they do not depend on the seed.
+void require_places(const Spec& spec);
 /// Diameter of the largest particles of a mix, m.
 [[nodiscard]] double widest_in(const Spec& spec, const Mix& mix);
 

@@ -1,6 +1,7 @@
 #include "solver/machine/plan.hpp"
 
 #include "solver/dem/walls/moving_wall.hpp"
+#include "solver/machine/placing.hpp"
 #include "solver/machine/setup.hpp"
 #include "solver/scenes/kit/pace.hpp"
 #include "solver/scenes/kit/rare_sizes.hpp"
@@ -9,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <string>
 
 namespace grainsweep::machine {
 namespace {
@@ -69,8 +72,33 @@ double count_of(const Spec& spec, const Species& species) {
     return count;
 }
 
+/// Height of a filling, along gravity, m: what its region has, or what its particles need loosely.
+double height_of(const Spec& spec, const Fill& fill) {
+    const double g = geometry::norm(spec.gravity);
+    if (!(g > 0)) return 0;
+    const Bounds bounds = fill.in.bounds();
+    double height = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+        height += (std::min(bounds.high[k], spec.domain.high[k]) - std::max(bounds.low[k], spec.domain.low[k])) *
+                  std::abs(spec.gravity[k]) / g;
+    const auto volume = fill.in.volume();
+    const double solid = static_cast<double>(fill.count) * mean_volume(spec, fill.mix);
+    return fill.as == Fill::As::random || !volume ? height
+                                                  : height * std::min(1.0, solid / (most_on_lattice * *volume));
+}
+
+/// Of what is filled in or fed, m/s. Walls that hit powder faster than that show in max_overlap.
+double fastest_fall(const Spec& spec) {
+    const double g = geometry::norm(spec.gravity);
+    double fastest = 0;
+    for (const auto& filling : spec.fills)
+        if (const auto* fill = std::get_if<Fill>(&filling); fill != nullptr && !fill->glued)
+            fastest = std::max(fastest, std::sqrt(2 * g * height_of(spec, *fill)) + geometry::norm(fill->velocity));
+    return spec.feeds.empty() ? fastest : std::max(fastest, fastest_of(spec));
+}
+
 void warn_of_softness(const Spec& spec, std::vector<Warning>& warnings) {
-    const double speed = fastest_of(spec);
+    const double speed = fastest_fall(spec);
     for (const Species& species : spec.species) {
         dem::Material material = spec.pairs[dem::place_of_pair(species.material, species.material)];
         material.density = spec.densities[species.material];
@@ -98,20 +126,6 @@ void warn_of_feeds(const Spec& spec, std::vector<Warning>& warnings) {
                                       "%.2g find a place: enlarge the region, or raise its velocity",
                                       solid, most_loose)});
     }
-}
-
-/// Height of a filling, along gravity, m: what its region has, or what its particles need loosely.
-double height_of(const Spec& spec, const Fill& fill) {
-    const double g = geometry::norm(spec.gravity);
-    const Bounds bounds = fill.in.bounds();
-    double height = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-        height += (std::min(bounds.high[k], spec.domain.high[k]) - std::max(bounds.low[k], spec.domain.low[k])) *
-                  std::abs(spec.gravity[k]) / g;
-    const auto volume = fill.in.volume();
-    const double solid = static_cast<double>(fill.count) * mean_volume(spec, fill.mix);
-    return fill.as == Fill::As::random || !volume ? height
-                                                  : height * std::min(1.0, solid / (most_on_lattice * *volume));
 }
 
 void warn_of_falling(const Spec& spec, std::vector<Warning>& warnings) {
@@ -204,6 +218,7 @@ double cost_of_meshes(const Spec& spec) {
 }  // namespace
 
 CostEstimate cost_of(const Spec& spec) {
+    require_places(spec);
     double work = 0, most = particles_at_start(spec);
     work += most * duration_of(spec, {});
     for (const Feed& feed : spec.feeds) {
@@ -225,6 +240,8 @@ std::vector<Warning> warnings_of(const Spec& spec) {
     warn_of_feeds(spec, warnings);
     warn_of_walls(spec, warnings);
     warn_of_phases(spec, warnings);
+    std::set<std::string> kinds;
+    std::erase_if(warnings, [&](const Warning& warning) { return !kinds.insert(warning.kind).second; });
     for (const Species& species : spec.species)
         kit::warn_of_rare_sizes(warnings, species.sizes, species.diameter, count_of(spec, species));
     return warnings;

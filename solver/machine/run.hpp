@@ -27,7 +27,7 @@ public:
     [[nodiscard]] double time() const override { return spec_.time_step * static_cast<double>(step_); }
     [[nodiscard]] bool finished() const override { return phase_ == spec_.phases.size(); }
     [[nodiscard]] double progress() const override;
-    [[nodiscard]] Health health() const override { return {engine_->fault()}; }
+    [[nodiscard]] Health health() const override { return {with_names(engine_->fault())}; }
     [[nodiscard]] double particle_steps() const override { return engine_->work().particle_steps; }
     void save(Bytes& into) const override;
     void restore(std::span<const std::byte> from) override;
@@ -42,6 +42,8 @@ private:
         double looked = undefined;                     // time of the last look, s
     };
 
+    /// "wall 2" of the engine by its name.
+    [[nodiscard]] std::string with_names(std::string fault) const;
     [[nodiscard]] std::int64_t steps_in(double seconds) const;
     [[nodiscard]] const Phase& phase() const { return spec_.phases[phase_]; }
     [[nodiscard]] std::int64_t phase_steps() const { return steps_in(phase().duration); }

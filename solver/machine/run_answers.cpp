@@ -4,9 +4,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <string_view>
 #include <utility>
 
 namespace grainsweep::machine {
+
+std::string Run::with_names(std::string fault) const {
+    constexpr std::string_view word = "wall ";
+    const std::size_t at = fault.find(word);
+    if (at == std::string::npos) return fault;
+    const std::size_t begin = at + word.size(), end = fault.find_first_not_of("0123456789", begin);
+    if (end == begin || begin == fault.size()) return fault;
+    const auto number = std::stoull(fault.substr(begin, end - begin));
+    if (number < spec_.walls.size())
+        fault.replace(begin, (end == std::string::npos ? fault.size() : end) - begin,
+                      "'" + spec_.walls[number].name + "'");
+    return fault;
+}
 
 void Run::observe(const Measure& measure, const Record& record, Observations& into) const {
     const ReductionInfo& reduction = *find_reduction(measure.reduction);

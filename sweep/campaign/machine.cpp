@@ -96,7 +96,7 @@ Json answering_part(const Machine& machine) {
             hashes.push_back(content_hash(machine.files.find(name)->second));
         identity[place] = std::move(hashes);
     });
-    identity.erase("name"), identity.erase("summary");
+    identity.erase("name"), identity.erase("summary"), identity.erase("main");
     if (identity.contains("parameters"))
         for (auto& parameter : identity["parameters"])
             parameter.erase("meaning"), parameter.erase("bounds"), parameter.erase("above");
@@ -149,7 +149,6 @@ machine::Spec spec_of(const Section& top, const Machine& machine, const Inputs& 
     MachineReading reading(machine.files, machine_scope(top, machine.parameters, inputs));
     for (const auto& [parameter, contents] : files)
         reading.chosen.emplace(std::get<std::string>(inputs.find(parameter)->second), contents);
-    reading.shown = machine.name;
     reading.particles_scale = input_number(inputs, "particles_scale");
     reading.spec.gravity = gravity_of(top, reading.scope);
     read_phase_names(top, reading);

@@ -352,6 +352,11 @@ std::vector<ObservableSpec> machine_observables(const Section& top) {
                        {},
                        {}});
     }
+    if (const auto main = top.find("main")) {
+        const auto found = std::ranges::find(all, main->text(), &ObservableSpec::name);
+        if (found == all.end()) main->refuse("there is no such measurement", nearest_word(main->text(), names_of(all)));
+        std::rotate(all.begin(), found, found + 1);
+    }
     std::set<std::string> names;
     for (const auto& observable : all)
         if (!names.insert(observable.name).second)

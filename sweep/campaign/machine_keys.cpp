@@ -37,6 +37,7 @@ constexpr auto top_keys = std::to_array<Key>({
     {"feed", MachineKey::array, "particles added while it runs", "[]"},
     needed({"phases", MachineKey::array, "what happens, one after the other"}),
     needed({"measure", MachineKey::object, "by name: what a case answers"}),
+    {"main", MachineKey::text, "the measurement that reports and tables show first; default: the first by name"},
 });
 
 constexpr auto parameter_keys = std::to_array<Key>({
@@ -109,7 +110,7 @@ constexpr auto contact_keys = std::to_array<Key>({
 });
 
 constexpr auto species_keys = std::to_array<Key>({
-    {"material", MachineKey::text, "one of the materials; default: the only one"},
+    {"material", MachineKey::text, "one of the materials; default: the only one, or the only one with a density"},
     {"diameter", MachineKey::value, "m; of unequal sizes the unit D; with a file of sizes their mean by default"},
     {"sizes", MachineKey::object, "how diameters are distributed; default: all equal"},
 });

@@ -329,6 +329,9 @@ MachineScope machine_scope(const Section& top, const std::vector<ParameterSpec>&
         const double number = whole != nullptr ? static_cast<double>(*whole) : std::get<double>(value);
         const double si = in_si_units(top.place(), number, parameter.unit);
         scope.set(parameter.name, si);
+        std::string none;
+        if (const auto unit = calculating_unit(parameter.unit, none); unit && parameter.unit != "1")
+            scope.set_unit(parameter.name, std::string(*unit));
         if (const auto suffix = suffix_of(parameter.unit); parameter.unit != "1" && !suffix.empty())
             scope.set(parameter.name + "_" + suffix, number);
     }

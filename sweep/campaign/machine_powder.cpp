@@ -184,9 +184,15 @@ void read_species(const Section& top, MachineReading& reading) {
         require_name(place, name);
         const Section section(place, machine_keys::species());
         const auto named = section.find("material");
-        if (!named && reading.materials.size() > 1)
+        const auto has_density = [](double density) { return density > 0; };
+        if (!named && reading.materials.size() > 1 && std::ranges::count_if(reading.densities, has_density) != 1)
             throw wrong_question(place.path(), "", "key 'material' is missing: there are several materials");
-        const std::size_t material = named ? reading.scope.place_in(*named, reading.materials, "material") : 0;
+        const std::size_t material =
+            named ? reading.scope.place_in(*named, reading.materials, "material")
+            : reading.materials.size() == 1
+                ? 0
+                : static_cast<std::size_t>(std::ranges::find_if(reading.densities, has_density) -
+                                           reading.densities.begin());
         if (!(reading.densities[material] > 0))
             throw wrong_question(path_of(top.at("materials").path(), reading.materials[material]), "",
                                  fmt::format("key 'density' is missing: particles of '{}' are of it", name));

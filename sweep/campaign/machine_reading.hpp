@@ -24,7 +24,6 @@ struct MachineReading {
     std::map<std::string, std::string_view, std::less<>> chosen;  ///< contents of parameters that are files, by value
     MachineScope scope;
     double particles_scale = 1;
-    std::string shown;  ///< name of the machine
 
     machine::Spec spec;
     std::vector<std::string> materials;                ///< all of them, those of walls too

@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <variant>
 
 namespace grainsweep::campaign {
 
@@ -36,6 +38,28 @@ bool is_quantity(std::string_view text) {
            (c == '1' && text.substr(at, 2) == "1/");
 }
 
+/// A name alone keeps its unit, which must fit; units of longer expressions are not known.
+void MachineScope::require_unit(const Cursor& place, const std::string& name, std::string_view unit) const {
+    const auto of = units_.find(name);
+    if (of == units_.end() || unit == "1" || of->second == unit) return;
+    if (std::holds_alternative<double>(in_si("1 " + of->second, unit))) return;
+    const bool turns = (of->second == "Hz" || of->second == "1/s") && unit == "rad/s";
+    place.refuse(fmt::format("'{}' is in {}, and this is in {}{}", name, of->second, unit,
+                             turns ? fmt::format(": write 2*pi*{}, or give it the unit rpm", name) : ""));
+}
+
+/// A word in an expression is named as such.
+void MachineScope::refuse_expression(const Cursor& place, const std::string& text, const std::string& why) const {
+    const auto letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+    for (const auto& [name, word] : words_)
+        for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
+            const std::size_t end = at + name.size();
+            if ((at > 0 && letter(text[at - 1])) || (end < text.size() && letter(text[end]))) continue;
+            place.refuse(fmt::format("'{}' is a word; expressions know {}_is_{}, which is 1 or 0", name, name, word));
+        }
+    place.refuse(why);
+}
+
 double MachineScope::number(const Cursor& place, std::string_view unit, const Interval& bounds) const {
     const auto rule = [&](std::string_view more) {
         return fmt::format("must be a number{}{}{}", in_words(bounds), unit == "1" ? "" : fmt::format(", {}", unit),
@@ -53,7 +77,8 @@ double MachineScope::number(const Cursor& place, std::string_view unit, const In
         } else {
             const auto known = names();
             const auto parsed = Formula::parse(given, known);
-            if (const auto* why = std::get_if<std::string>(&parsed)) place.refuse(*why);
+            if (const auto* why = std::get_if<std::string>(&parsed)) refuse_expression(place, given, *why);
+            require_unit(place, given, unit);
             value = std::get<Formula>(parsed)([this](std::string_view name) { return numbers_.find(name)->second; });
             if (!std::isfinite(value)) place.refuse("the expression has no finite value here");
             if (!bounds.contains(value)) place.refuse(rule(fmt::format("; here it is {:.6g}", value)));

@@ -22,6 +22,8 @@ public:
     /// Numbers and words that expressions and texts may name.
     void set(std::string name, double value) { numbers_.insert_or_assign(std::move(name), value); }
     void set_word(std::string name, std::string word) { words_.insert_or_assign(std::move(name), std::move(word)); }
+    /// The SI unit of a number, where it has one.
+    void set_unit(const std::string& name, std::string unit) { units_.insert_or_assign(name, std::move(unit)); }
     /// A number that "let" defines.
     void set_let(const std::string& name, double value) { set(name, value), lets_.insert(name); }
     [[nodiscard]] bool is_let(const std::string& name) const { return lets_.contains(name); }
@@ -65,6 +67,10 @@ private:
     std::map<std::string, double, std::less<>> numbers_;
     std::map<std::string, std::string, std::less<>> words_;
     std::set<std::string> lets_;
+    std::map<std::string, std::string, std::less<>> units_;
+
+    void require_unit(const Cursor& place, const std::string& name, std::string_view unit) const;
+    [[noreturn]] void refuse_expression(const Cursor& place, const std::string& text, const std::string& why) const;
 };
 
 /// Whether a text begins as a number with or without a unit behind it, not as an expression.

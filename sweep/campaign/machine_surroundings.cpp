@@ -75,7 +75,7 @@ void read_checks(const Section& top, MachineReading& reading) {
             place.refuse("a check has \"refuse\", or \"warn\" and \"that\"");
         const bool holds = reading.scope.present(section);
         const std::string sentence = reading.scope.sentence(refuse ? *refuse : *that);
-        if (holds && refuse) throw wrong_question(reading.shown, "", sentence);
+        if (holds && refuse) throw WrongQuestion(sentence + (sentence.ends_with('.') ? "" : "."));
         if (holds) reading.spec.warnings.push_back({warn->text(), sentence});
     }
 }

@@ -1,4 +1,5 @@
 // Numbers with units: exact where the factor is decimal, angles as an engineer counts them, refusals that name a unit.
+#include "sweep/campaign/installed_machines.hpp"
 #include "sweep/campaign/quantity.hpp"
 
 #include "solver/scenes/scene.hpp"
@@ -184,8 +185,8 @@ TEST(Quantities, ThatAreNoneAreRefused) {
 
 TEST(Quantities, ReadEveryUnitOfTheScenes) {
     std::set<std::string> units;
-    for (const auto& scene : scene_catalogue())
-        for (const auto& parameter : scene.parameters)
+    for (const auto* scene : campaign::named_scenes())
+        for (const auto& parameter : scene->parameters)
             if (!std::holds_alternative<std::string>(parameter.default_value)) units.insert(parameter.unit);
     ASSERT_GT(units.size(), 8U);
     for (const auto& unit : units) EXPECT_EQ(value_of("2 " + unit, unit), 2) << unit;

@@ -132,20 +132,26 @@ TEST(ScenePictures, ADrumShowsItsPlates) {
 }
 
 TEST(ScenePictures, AHopperShowsWhatHoldsThePowder) {
-    const auto walls = [](const Inputs& changed) {
+    const auto picture = [](const Inputs& changed, double time) {
         Inputs inputs = changed;
         inputs["particles"] = std::int64_t{50};
-        return scene_of("hopper", inputs)->snapshot().walls;
+        inputs["settle_time"] = 0.01;
+        const auto scene = scene_of("hopper", inputs);
+        scene->advance(time);
+        return scene->snapshot();
     };
-    const auto flat = walls({});
-    ASSERT_EQ(flat.size(), 2U) << "cylinder, floor";
-    EXPECT_NEAR(highest(flat[0], 0), 0.04, 1e-9);
-    EXPECT_NEAR(highest(flat[1], 2), 0, 1e-12);
-    EXPECT_NEAR(lowest(flat[1], 2), -0.0005, 1e-12);
-    const auto conical = walls({{"shape", std::string("conical")}});
-    ASSERT_EQ(conical.size(), 2U);
-    EXPECT_NEAR(highest(conical[1], 2), 0.0225 * std::sqrt(3.0), 1e-9) << "30 degrees to the vertical";
-    EXPECT_EQ(walls({{"opening", std::string("slot")}}).size(), 4U) << "sides and two plates";
+    const Inputs conical = {{"shape", std::string("conical")}}, slot = {{"opening", std::string("slot")}};
+    EXPECT_EQ(names_of(picture({}, 0).walls), (std::set<std::string>{"container", "plug"}));
+    const auto flat = picture({}, 0.02);
+    EXPECT_EQ(names_of(flat.walls), (std::set<std::string>{"container", "floor"}));
+    EXPECT_NEAR(highest(named(flat, "container"), 0), 0.04, 1e-9);
+    EXPECT_NEAR(highest(named(flat, "floor"), 2), 0, 1e-12);
+    EXPECT_NEAR(lowest(named(flat, "floor"), 2), -0.0005, 1e-12);
+    const auto cone = picture(conical, 0.02);
+    EXPECT_EQ(names_of(cone.walls), (std::set<std::string>{"container", "cone"}));
+    EXPECT_NEAR(highest(named(cone, "cone"), 2), 0.0225 * std::sqrt(3.0), 1e-9) << "30 degrees to the vertical";
+    EXPECT_EQ(names_of(picture(slot, 0.02).walls),
+              (std::set<std::string>{"left", "right", "floor_left", "floor_right"}));
 }
 
 TEST(ScenePictures, ATubeIsLiftedFromItsHeap) {

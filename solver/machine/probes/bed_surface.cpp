@@ -13,7 +13,7 @@ namespace {
 
 enum class Surface { angle, residual, speed, depth };
 
-constexpr double most_section_cells = 4e6;  // of D by D, across the drum
+constexpr double most_section_cells = 4e5;  // of D by D, across the drum
 
 template <Surface of>
 class BedSurfaceProbe final : public machine::Probe {
@@ -61,7 +61,7 @@ private:
 
 std::string flaw_of_bed_surface(const Options& given) {
     const double across = 2 * given.number("radius") / given.number("diameter");
-    return across * across <= most_section_cells ? "" : "\"radius\" is at most 1000 times \"diameter\"";
+    return across * across <= most_section_cells ? "" : "\"radius\" is at most 316 times \"diameter\"";
 }
 
 constexpr std::array bed_surface_options = {
