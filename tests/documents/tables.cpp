@@ -100,10 +100,18 @@ ordered_json own_part_of_machine(const std::string& name, const std::string& par
     return machine;
 }
 
+/// A machine with a page of its own is documented as a scene, the others together.
+bool has_own_page(const std::string& name) {
+    return std::filesystem::exists(source("docs/scenes/" + name + ".md"));
+}
+
 std::string machines_table() {
     std::string table = head({"machine", "what it is"});
-    for (const auto& machine : catalogue({"machines"}))
-        table += row({fmt::format("[`{0}`](#{0})", shown(machine["machine"])), shown(machine["summary"])});
+    for (const auto& machine : catalogue({"machines"})) {
+        const std::string name = shown(machine["machine"]);
+        const std::string place = has_own_page(name) ? name + ".md" : "#" + name;
+        table += row({fmt::format("[`{}`]({})", name, place), shown(machine["summary"])});
+    }
     return table;
 }
 
@@ -270,11 +278,6 @@ TEST(Tables, EqualWhatTheProgramSays) {
             EXPECT_TRUE(page.text == fresh) << page.file << "\n" << difference(page.text, fresh);
         }
     }
-}
-
-/// A machine with a page of its own is documented as a scene, the others together.
-bool has_own_page(const std::string& name) {
-    return std::filesystem::exists(source("docs/scenes/" + name + ".md"));
 }
 
 TEST(Tables, EverySceneHasItsPageAndEveryDesignItsOptions) {
