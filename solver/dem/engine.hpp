@@ -174,6 +174,8 @@ public:
     virtual void forget_peak_overlap() = 0;
     /// Every touching pair with a mobile partner, and every wall touched; the order depends on the state only.
     virtual void contacts(std::vector<ContactForce>& into) const = 0;
+    /// The wall with this number as it is, with way and speed of its free motions.
+    [[nodiscard]] virtual const Wall& wall(std::size_t wall) const = 0;
     /// Of the wall with this number, about a point.
     [[nodiscard]] virtual WallLoad wall_load(std::size_t wall, const Vec3& about) const = 0;
     /// What became unsound, where and when; empty: the state is sound.

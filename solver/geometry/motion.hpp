@@ -1,8 +1,11 @@
-// Motions of a rigid body in closed form: no step adds to another, so that nothing drifts.
+// Motions of a rigid body. Prescribed ones in closed form: no step adds to another, so that nothing drifts. Free ones
+// follow from what acts on the body; their way and speed are state, which an engine advances with the particles.
 //
 //     translation   d = v s                                     s = min(max(t, start), end) - start
 //     vibration     d = A (sin(2 pi f s + phase) - sin(phase))  the body starts where it is given
 //     rotation      by the angle w s, right hand, about an axis through a point
+//     press         d = way k              m dv/dt = F + load . k, |v| at most `fastest`
+//     drive         by `way` about an axis I dw/dt = M + moment of the load about the axis, |w| at most `fastest`
 //
 // A list is added up: displacements to D, rotations one after the other, and all points of rotations travel with D:
 //
@@ -50,7 +53,43 @@ struct Rotation {
     }
 };
 
-using Motion = std::variant<Translation, Vibration, Rotation>;
+/// A body on which a force acts, free to move along one direction between `start` and `end`; held outside of them.
+struct Press {
+    Vec3 along{0, 0, -1};                                             ///< unit
+    double force = 0;                                                 ///< N, along
+    double mass = 1;                                                  ///< kg
+    double fastest = 0;                                               ///< m/s
+    double start = 0, end = std::numeric_limits<double>::infinity();  ///< s
+    double number = 0;                                                ///< that tells it from others of the body
+    double way = 0, speed = 0;                                        ///< m, m/s
+
+    static void fields(auto& m, auto&& visit) {
+        visit(m.along), visit(m.force), visit(m.mass), visit(m.fastest), visit(m.start), visit(m.end);
+        visit(m.number), visit(m.way), visit(m.speed);
+    }
+};
+
+/// A body on which a moment acts, free to turn about an axis.
+struct Drive {
+    Vec3 point{};                                                     ///< on the axis, m
+    Vec3 axis{0, 0, 1};                                               ///< unit
+    double moment = 0;                                                ///< N m, right hand
+    double inertia = 1;                                               ///< kg m2, about the axis
+    double fastest = 0;                                               ///< rad/s
+    double start = 0, end = std::numeric_limits<double>::infinity();  ///< s
+    double number = 0;                                                ///< that tells it from others of the body
+    double way = 0, speed = 0;                                        ///< rad, rad/s
+
+    static void fields(auto& m, auto&& visit) {
+        visit(m.point), visit(m.axis), visit(m.moment), visit(m.inertia), visit(m.fastest), visit(m.start);
+        visit(m.end), visit(m.number), visit(m.way), visit(m.speed);
+    }
+};
+
+using Motion = std::variant<Translation, Vibration, Rotation, Press, Drive>;
+
+/// What an engine advances: Press and Drive.
+[[nodiscard]] bool is_free(const Motion& motion);
 
 /// Where a body stands: x = R X + shift.
 struct Pose {
@@ -77,6 +116,13 @@ struct Twist {
 [[nodiscard]] Pose pose_at(std::span<const Motion> motions, double time);
 /// A motion counts from its start on, up to its end.
 [[nodiscard]] Twist twist_at(std::span<const Motion> motions, double time);
+/// The speed of a free motion after `span` under a load: force on the body, and its moment about a point, at `time`.
+/// Others stay as they are. A motion that is held at that time has no speed.
+void kick(Motion& motion, const Vec3& force, const Vec3& moment, const Vec3& about, double time, double span);
+/// The way of a free motion after `span`.
+void drift(Motion& motion, double span);
+/// Takes way and speed of the free motion of the same kind and number.
+void take_state(Motion& motion, std::span<const Motion> from);
 /// Whether it moves anything at any time.
 [[nodiscard]] bool is_still(const Motion& motion);
 /// What is wrong with it, in one sentence; empty: nothing.

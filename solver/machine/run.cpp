@@ -157,8 +157,14 @@ void Run::feed() {
         if ((step_ - phase_begin_) % steps_in(spec_.feeds[k].interval) != 0 || due == 0) continue;
         feeders_[k].owe(static_cast<double>(due) * spec_.time_step);
         engine_->state(state_);
-        add(feeders_[k].batch(state_, walls_in(spec_, phase_, times_), time()));
+        add(feeders_[k].batch(state_, walls_now(), time()));
     }
+}
+
+std::vector<dem::Wall> Run::walls_now() const {
+    std::vector<dem::Wall> walls;
+    for (std::size_t w = 0; w < spec_.walls.size(); ++w) walls.push_back(engine_->wall(w));
+    return walls;
 }
 
 void Run::add(const Filled& added) {
@@ -275,7 +281,7 @@ Snapshot Run::snapshot() const {
     for (std::size_t k = 0; k < 3; ++k)
         if (spec_.domain.periodic[k]) picture.periods[k] = spec_.domain.length(k);
     if (finished()) return picture;
-    const auto walls = walls_in(spec_, phase_, times_);
+    const auto walls = walls_now();
     for (std::size_t w = 0; w < walls.size(); ++w)
         if (walls[w].present)
             picture.walls.push_back(

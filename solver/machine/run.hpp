@@ -64,6 +64,8 @@ private:
     [[nodiscard]] Sight look(bool contacts);
     [[nodiscard]] double mass_in(const Region& region);
     void add(const Filled& filled);
+    /// As they are, with ways and speeds of those that the powder moves.
+    [[nodiscard]] std::vector<dem::Wall> walls_now() const;
     /// Remembers of what species and size they are.
     void enlist(const Filled& filled);
     void observe(const Measure& measure, const Record& record, Observations& into) const;

@@ -62,7 +62,8 @@ std::size_t material_of_walls(const Cursor& wall, const MachineReading& reading)
     throw wrong_question(wall.path(), "", "key 'material' is missing: several materials could be meant");
 }
 
-machine::WallMotion read_motion(const Cursor& place, const MachineReading& reading, bool& present) {
+/// `number`: of the motion in its wall.
+machine::WallMotion read_motion(const Cursor& place, const MachineReading& reading, double number, bool& present) {
     const auto& scope = reading.scope;
     const Section section(place, machine_keys::motion());
     present = scope.present(section);
@@ -87,7 +88,26 @@ machine::WallMotion read_motion(const Cursor& place, const MachineReading& readi
                                             .phase = scope.number(of, "phase", "rad", 0)};
         ++kinds;
     }
-    if (kinds != 1) place.refuse("a motion is one of \"rotate\", \"shift\" and \"vibrate\"");
+    if (const auto press = section.find("press")) {
+        const Section of(*press, machine_keys::press());
+        motion.motion = geometry::Press{.along = scope.direction(of.at("along")),
+                                        .force = scope.number(of.at("force"), "N"),
+                                        .mass = scope.number(of.at("mass"), "kg", positive_number),
+                                        .fastest = scope.number(of.at("speed_at_most"), "m/s", positive_number),
+                                        .number = number};
+        ++kinds;
+    }
+    if (const auto drive = section.find("drive")) {
+        const Section of(*drive, machine_keys::drive());
+        motion.motion = geometry::Drive{.point = scope.vector(of, "through", "m"),
+                                        .axis = scope.direction(of.at("axis")),
+                                        .moment = scope.number(of.at("torque"), "N m"),
+                                        .inertia = scope.number(of.at("inertia"), "kg m2", positive_number),
+                                        .fastest = scope.number(of.at("speed_at_most"), "rad/s", positive_number),
+                                        .number = number};
+        ++kinds;
+    }
+    if (kinds != 1) place.refuse("a motion is one of \"rotate\", \"shift\", \"vibrate\", \"press\" and \"drive\"");
 
     const auto during = read_during(section, reading);
     const auto from = section.find("from"), to = section.find("to");
@@ -221,7 +241,7 @@ void read_walls(const Section& top, MachineReading& reading) {
                 if (const auto motions = section.find("motion"))
                     for (const auto& one : motions->elements()) {
                         bool acts = true;
-                        auto motion = read_motion(one, reading, acts);
+                        auto motion = read_motion(one, reading, static_cast<double>(wall.motions.size()), acts);
                         if (acts && !geometry::is_still(motion.motion)) wall.motions.push_back(std::move(motion));
                     }
                 const auto material = section.find("material");

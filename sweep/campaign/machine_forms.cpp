@@ -1,4 +1,4 @@
-// Shapes and regions of a machine file.
+// Shapes, regions and motions of a machine file.
 #include "sweep/campaign/machine_keys.hpp"
 
 #include <array>
@@ -99,8 +99,69 @@ constexpr std::array region_forms = {
     Form{"not", "a region: outside of it", {}},
 };
 
+constexpr auto motion_keys = std::to_array<Key>({
+    {"rotate", FormKey::object, "about an axis"},
+    {"shift", FormKey::object, "at a velocity"},
+    {"vibrate", FormKey::object, "to and fro"},
+    {"press", FormKey::object, "a force acts, and the powder resists"},
+    {"drive", FormKey::object, "a torque acts, and the powder resists"},
+    {"from", FormKey::value, "a phase, at whose beginning it starts, or a time, s; default: at the start"},
+    {"to", FormKey::value, "a phase, at whose end it ends, or a time, s; default: never"},
+    {"during", FormKey::words, "phases in which it acts, one after the other"},
+    {"when", FormKey::value, "0: it does not act at all", "1"},
+});
+
+constexpr auto rotate_keys = std::to_array<Key>({
+    needed({"axis", FormKey::array, "direction"}),
+    {"through", FormKey::array, "a point on the axis, m", "[0, 0, 0]"},
+    needed({"speed", FormKey::value, "right hand, rad/s"}),
+});
+
+constexpr auto shift_keys = std::to_array<Key>({
+    needed({"velocity", FormKey::array, "m/s"}),
+});
+
+constexpr auto press_keys = std::to_array<Key>({
+    needed({"along", FormKey::array, "direction of the force, the only one in which the wall can move"}),
+    needed({"force", FormKey::value, "that acts on the wall, with its weight, N"}),
+    needed({"mass", FormKey::value, "of the wall, kg"}),
+    needed({"speed_at_most", FormKey::value, "it never moves faster, m/s; the time step follows from it"}),
+});
+
+constexpr auto drive_keys = std::to_array<Key>({
+    needed({"axis", FormKey::array, "direction"}),
+    {"through", FormKey::array, "a point on the axis, m", "[0, 0, 0]"},
+    needed({"torque", FormKey::value, "that acts on the wall, right hand, N m"}),
+    needed({"inertia", FormKey::value, "moment of inertia of the wall about the axis, kg m2"}),
+    needed({"speed_at_most", FormKey::value, "it never turns faster, rad/s; the time step follows from it"}),
+});
+
+constexpr auto vibrate_keys = std::to_array<Key>({
+    needed({"amplitude", FormKey::array, "m"}),
+    needed({"frequency", FormKey::value, "Hz"}),
+    {"phase", FormKey::value, "rad", "0"},
+});
+
 }  // namespace
 
+std::span<const Key> motion() {
+    return motion_keys;
+}
+std::span<const Key> rotate() {
+    return rotate_keys;
+}
+std::span<const Key> shift() {
+    return shift_keys;
+}
+std::span<const Key> press() {
+    return press_keys;
+}
+std::span<const Key> drive() {
+    return drive_keys;
+}
+std::span<const Key> vibrate() {
+    return vibrate_keys;
+}
 std::span<const Form> shapes() {
     return shape_forms;
 }

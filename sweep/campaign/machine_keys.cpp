@@ -158,32 +158,6 @@ constexpr auto turned_keys = std::to_array<Key>({
     {"through", MachineKey::array, "a point on the axis, m", "[0, 0, 0]"},
 });
 
-constexpr auto motion_keys = std::to_array<Key>({
-    {"rotate", MachineKey::object, "about an axis"},
-    {"shift", MachineKey::object, "at a velocity"},
-    {"vibrate", MachineKey::object, "to and fro"},
-    {"from", MachineKey::value, "a phase, at whose beginning it starts, or a time, s; default: at the start"},
-    {"to", MachineKey::value, "a phase, at whose end it ends, or a time, s; default: never"},
-    {"during", MachineKey::words, "phases in which it acts, one after the other"},
-    {"when", MachineKey::value, "0: it does not act at all", "1"},
-});
-
-constexpr auto rotate_keys = std::to_array<Key>({
-    needed({"axis", MachineKey::array, "direction"}),
-    {"through", MachineKey::array, "a point on the axis, m", "[0, 0, 0]"},
-    needed({"speed", MachineKey::value, "right hand, rad/s"}),
-});
-
-constexpr auto shift_keys = std::to_array<Key>({
-    needed({"velocity", MachineKey::array, "m/s"}),
-});
-
-constexpr auto vibrate_keys = std::to_array<Key>({
-    needed({"amplitude", MachineKey::array, "m"}),
-    needed({"frequency", MachineKey::value, "Hz"}),
-    {"phase", MachineKey::value, "rad", "0"},
-});
-
 constexpr auto fill_keys = std::to_array<Key>({
     {"species", MachineKey::text, "the species; or a mix"},
     {"mix", MachineKey::object, "shares by species"},
@@ -320,18 +294,6 @@ std::span<const Key> wall() {
 std::span<const Key> turned() {
     return turned_keys;
 }
-std::span<const Key> motion() {
-    return motion_keys;
-}
-std::span<const Key> rotate() {
-    return rotate_keys;
-}
-std::span<const Key> shift() {
-    return shift_keys;
-}
-std::span<const Key> vibrate() {
-    return vibrate_keys;
-}
 std::span<const Key> fill() {
     return fill_keys;
 }
@@ -364,7 +326,7 @@ std::span<const Key> time_of() {
 }
 
 std::span<const Table> all() {
-    static constexpr std::array tables = {
+    static const std::array tables = {
         Table{"The file", top_keys},
         Table{"A parameter", parameter_keys},
         Table{"gravity", gravity_keys},
@@ -375,10 +337,12 @@ std::span<const Table> all() {
         Table{"sizes of a species", size_keys},
         Table{"A wall", wall_keys},
         Table{"turned, of a wall", turned_keys},
-        Table{"A motion of a wall", motion_keys},
-        Table{"rotate", rotate_keys},
-        Table{"shift", shift_keys},
-        Table{"vibrate", vibrate_keys},
+        Table{"A motion of a wall", motion()},
+        Table{"rotate", rotate()},
+        Table{"shift", shift()},
+        Table{"vibrate", vibrate()},
+        Table{"press", press()},
+        Table{"drive", drive()},
         Table{"A filling", fill_keys},
         Table{"A sphere of a filling", sphere_keys},
         Table{"A feed", feed_keys},

@@ -74,6 +74,7 @@ void ClearEngine::save(std::vector<std::byte>& into) const {
         write_wall(contacts.wall.wall(), [&out](const auto& value) { out.put(value); });
         out.put(contacts.near);
         out.put(contacts.built);
+        if (contacts.wall.free()) out.put(contacts.pose_when_built);
         std::vector<std::uint32_t> entries;
         std::vector<double> distances;
         std::vector<Vec3> normals;
@@ -140,6 +141,8 @@ void ClearEngine::restore_walls(ByteReader& in) {
         in.get(contacts.near);
         in.get(contacts.built);
         in.require(std::isfinite(contacts.built));
+        contacts.pose_when_built = contacts.wall.pose_at(contacts.built);
+        if (contacts.wall.free()) in.get(contacts.pose_when_built);
         std::vector<std::uint32_t> entries;
         std::vector<double> distances;
         std::vector<Vec3> normals;
@@ -152,7 +155,6 @@ void ClearEngine::restore_walls(ByteReader& in) {
         in.get(contacts.memory);
         in.get(contacts.load);
         in.get(contacts.load_about);
-        contacts.pose_when_built = contacts.wall.pose_at(contacts.built);
         contacts.wall.place(wall_time());
         walls_.push_back(std::move(contacts));
     }

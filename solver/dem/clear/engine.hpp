@@ -54,6 +54,7 @@ public:
     [[nodiscard]] double peak_overlap() const override { return peak_overlap_; }
     void forget_peak_overlap() override { peak_overlap_ = 0; }
     void contacts(std::vector<ContactForce>& into) const override;
+    [[nodiscard]] const Wall& wall(std::size_t wall) const override { return walls_.at(wall).wall.wall(); }
     [[nodiscard]] WallLoad wall_load(std::size_t wall, const Vec3& about) const override;
     [[nodiscard]] const std::string& fault() const override { return fault_; }
     [[nodiscard]] Work work() const override { return work_; }
@@ -113,6 +114,7 @@ private:
     void restart_forces();
     void kick_and_drift();
     void kick();
+    void kick_walls();
     void shake();
     [[nodiscard]] Vec3 momentum() const;
     void rebuild(std::span<const std::int32_t> removed = {});

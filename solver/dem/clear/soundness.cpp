@@ -93,7 +93,7 @@ void ClearEngine::judge_passages(const Contacts& contacts) {
             distance = std::min(distance, contacts.touches[t].place.distance);
         const Vec3 moved = time_step_ * p_.velocity[i];
         if (distance > norm(moved) + way_of_wall) continue;
-        if (wall.passed(wall.pose_at(wall_time() - time_step_), p_.position[i] - moved, p_.position[i]))
+        if (wall.passed(wall.pose_before(wall_time() - time_step_), p_.position[i] - moved, p_.position[i]))
             report("the centre of a particle passed through wall " + std::to_string(&contacts - walls_.data()), i);
     }
 }

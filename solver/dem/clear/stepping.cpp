@@ -113,8 +113,11 @@ void ClearEngine::step() {
     kick_and_drift();
     ++wall_steps_;
     ++work_.steps;
-    for (auto& contacts : walls_)
-        if (contacts.wall.present()) contacts.wall.place(wall_time());
+    for (auto& contacts : walls_) {
+        if (!contacts.wall.present()) continue;
+        contacts.wall.drift(time_step_);
+        contacts.wall.place(wall_time());
+    }
     if (shaken_) shake();
     if (list_is_stale()) {
         if (!sound()) return;
@@ -128,7 +131,16 @@ void ClearEngine::step() {
     if (work_.steps % energy_interval == 0) check_energy();
 }
 
+/// Half a step of the free ones.
+void ClearEngine::kick_walls() {
+    for (auto& contacts : walls_)
+        if (contacts.wall.free() && contacts.wall.present())
+            contacts.wall.kick(contacts.load.force, contacts.load.torque, contacts.load_about, wall_time(),
+                               time_step_ / 2);
+}
+
 void ClearEngine::kick_and_drift() {
+    kick_walls();
     const double half = time_step_ / 2;
     const double far2 = skin_ * skin_ / 4;
     bool displaced = displaced_;
@@ -145,6 +157,7 @@ void ClearEngine::kick_and_drift() {
 }
 
 void ClearEngine::kick() {
+    kick_walls();
     const double half = time_step_ / 2;
     for (std::size_t i = 0; i < p_.size(); ++i) {
         if (!mobile(i)) continue;

@@ -31,6 +31,7 @@ void MixedEngine::run(std::int64_t steps) {
     for (std::int64_t s = 0; s < steps && fault_.empty(); ++s) {
         if (!advanced) {
             begin_tally();
+            walls_.bound_velocities(wall_time(), true, tally_);
             advance_particles();
         }
         ++work_.steps;
@@ -40,6 +41,7 @@ void MixedEngine::run(std::int64_t steps) {
         work_.resting_steps += static_cast<double>(resting_.count());
         account_travel();
         if (!fault_.empty()) return;
+        walls_.drift();
         stand_walls();
         make_lists();
         const bool checked = watch_.due(work_.steps);  // at the full step: no particle is advanced before
@@ -149,6 +151,8 @@ void MixedEngine::press_walls(bool moves) {
     kernels_->walls(field_, tally_);
     watch_.add_wall_work(walls_.book(field_.wall_sums, moves));
     if (!moves) return;
+    walls_.kick(wall_time(), 1);
+    walls_.bound_velocities(wall_time(), true, tally_);
     const double smallest_radius = 0.5 * static_cast<double>(smallest_diameter_);
     if (const auto passage =
             touches_.passage(field_, walls_, space_.scale, wall_time(), drift_.last_step, smallest_radius))
@@ -183,14 +187,15 @@ void MixedEngine::account_travel() {
     watch_.add_travel(static_cast<double>(fastest));
 }
 
-/// The velocities whose spread bounds relative displacements: particles', walls', and rest where something rests.
+/// The velocities whose spread bounds relative displacements: particles', walls', and rest where something rests. Those
+/// of free walls come once their speeds of the next step are known.
 void MixedEngine::begin_tally() {
     const bool rest = box_includes_rest_ || walls_.count() > 0;
     for (int a = 0; a < 8; ++a) {
         tally_.velocity_high[a] = rest ? 0 : -std::numeric_limits<float>::infinity();
         tally_.velocity_low[a] = rest ? 0 : std::numeric_limits<float>::infinity();
     }
-    walls_.bound_velocities(wall_time(), tally_);
+    walls_.bound_velocities(wall_time(), false, tally_);
     tally_.overlap = tally_.wall_overlap = 0;
     for (auto& unused : tally_.unused) unused = 0;
 }
@@ -232,6 +237,7 @@ void MixedEngine::full_step_velocities() {
         field_.forces[i] = Force{};
         leave_over(field_, i, residual);
     }
+    walls_.kick(wall_time(), -0.5);  // they are half a step ahead of the forces
 }
 
 /// Lists anew, forces at the present full-step velocities without touching histories, velocities then set back by
@@ -259,6 +265,7 @@ void MixedEngine::restart_forces(std::span<const std::int32_t> removed) {
         }
         leave_over(field_, i, residual);
     }
+    walls_.kick(wall_time(), 0.5);
     if (beyond(sound_)) fault_ = describe_overlap(view(), tally_);
     if (suspicious() && fault_.empty()) fault_ = unsound_contact(view(), false);
 }

@@ -60,6 +60,7 @@ public:
     [[nodiscard]] double peak_overlap() const override { return static_cast<double>(peak_overlap_); }
     void forget_peak_overlap() override { peak_overlap_ = 0; }
     void contacts(std::vector<ContactForce>& into) const override;
+    [[nodiscard]] const Wall& wall(std::size_t wall) const override { return walls_[wall].wall(); }
     [[nodiscard]] WallLoad wall_load(std::size_t wall, const Vec3& about) const override;
     [[nodiscard]] const std::string& fault() const override { return fault_; }
     [[nodiscard]] Work work() const override { return work_; }

@@ -125,7 +125,7 @@ std::optional<WallTouches::Passage> WallTouches::passage(const Field& f, const W
     for (const PieceWall& p : pieced_) {
         const MovingWall& wall = walls[p.wall];
         if (!wall.thin()) continue;
-        const Pose before = wall.pose_at(time - scale.time);
+        const Pose before = wall.pose_before(time - scale.time);
         for (std::int32_t k = segment_[p.wall].begin; k < segment_[p.wall].end; ++k) {
             if (f.touch_overlap[k] < deep) continue;
             const std::size_t i = record_index(f.touch_particle[k]);

@@ -103,6 +103,7 @@ Walls::Walls(const std::vector<Wall>& walls, const Domain& domain, const Scale& 
         std::copy_n(constants_.back().data(), constants_at_most, placed_[w].laws);
         placed_[w].laws_of_kinds = constants_.back().data();
         moving_.emplace_back(walls[w], geometry::Domain{domain.low, domain.high, domain.periodic}, 0.5 * scale.length);
+        any_free_ = any_free_ || moving_.back().free();
         single_.push_back(std::visit([]<class S>(const S&) { return Vectorised<S>; }, walls[w].shape));
         placed_[w].shape = static_cast<std::int32_t>(walls[w].shape.index());
         place(w, 0);
@@ -119,6 +120,7 @@ std::vector<MovingWall> Walls::moving_as(const std::vector<Wall>& walls, const D
 
 void Walls::take(std::vector<MovingWall> changed, double time) {
     moving_ = std::move(changed);
+    any_free_ = std::ranges::any_of(moving_, &MovingWall::free);
     for (std::size_t w = 0; w < count(); ++w) {
         place(w, time);
         if (!moving_[w].present()) sums_[w] = {};
@@ -137,13 +139,29 @@ void Walls::place(double time) {
         if (moves(w)) place(w, time);
 }
 
+void Walls::kick(double time, double steps) {
+    if (!any_free_) return;
+    for (std::size_t w = 0; w < count(); ++w) {
+        if (!moving_[w].free() || !moving_[w].present()) continue;
+        const WallLoad on = load(w, pivot_[w]);
+        moving_[w].kick(on.force, on.torque, pivot_[w], time, steps * scale_.time);
+    }
+}
+
+void Walls::drift() {
+    if (!any_free_) return;
+    for (MovingWall& wall : moving_)
+        if (wall.present()) wall.drift(scale_.time);
+}
+
 void Walls::sum_up(bool all) {
     for (std::size_t w = 0; w < count(); ++w) placed_[w].summed = all || moves(w) ? 1 : 0;
 }
 
-void Walls::bound_velocities(double time, Tally& tally) const {
+void Walls::bound_velocities(double time, bool free, Tally& tally) const {
+    if (free && !any_free_) return;
     for (const MovingWall& wall : moving_) {
-        if (wall.at_rest() || !wall.present()) continue;
+        if (wall.at_rest() || !wall.present() || wall.free() != free) continue;
         Vec3 low, high;
         wall.surface_velocities(time, scale_.time, low, high);
         for (std::size_t a = 0; a < 3; ++a) {

@@ -38,11 +38,16 @@ public:
 
     /// Lets them stand where, and move as, they do at `time` after they were set, s.
     void place(double time);
+    /// Changes the speeds of free walls by their loads, acting for `steps` steps from `time` on.
+    void kick(double time, double steps);
+    /// Moves free walls on by a step; place() completes them.
+    void drift();
     /// Which of them are summed up from here on: all, or only those that move and do work.
     void sum_up(bool all);
     [[nodiscard]] const PlacedWall* placed() const { return placed_.data(); }
-    /// Extends the extremes of velocity by those of the surfaces during the step after `time`.
-    void bound_velocities(double time, Tally& tally) const;
+    /// Extends the extremes of velocity by those of the surfaces during the step after `time`: of the free walls, or of
+    /// the others.
+    void bound_velocities(double time, bool free, Tally& tally) const;
     /// The first that moves farther than a particle's radius (m) in a step, in one sentence; empty: none.
     [[nodiscard]] std::string too_fast(double smallest_radius, std::int64_t steps) const;
 
@@ -62,6 +67,7 @@ private:
     void place(std::size_t w, double time);
 
     Scale scale_;
+    bool any_free_ = false;
     std::vector<MovingWall> moving_;
     std::vector<std::vector<std::unique_ptr<const AnyContact>>> laws_;
     std::vector<std::vector<double>> constants_;  // of them, a row of constants_at_most each

@@ -21,12 +21,14 @@ constexpr std::array<Vec3, 3> unit_vectors{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 std::vector<Motion> displacing(const Shape& shape, std::span<const Motion> motions) {
     bool turns = false;
     std::vector<bool> moves(motions.size(), true);
-    for (std::size_t k = 0; k < motions.size(); ++k)
-        if (const auto* r = std::get_if<Rotation>(&motions[k])) {
-            moves[k] =
-                turns || !std::visit([r](const auto& s) { return s.unchanged_by_turn(r->point, r->axis); }, shape);
-            turns = turns || moves[k];
-        }
+    const auto turned = [&](std::size_t k, const Vec3& point, const Vec3& axis) {
+        moves[k] = turns || !std::visit([&](const auto& s) { return s.unchanged_by_turn(point, axis); }, shape);
+        turns = turns || moves[k];
+    };
+    for (std::size_t k = 0; k < motions.size(); ++k) {
+        if (const auto* r = std::get_if<Rotation>(&motions[k])) turned(k, r->point, r->axis);
+        if (const auto* d = std::get_if<Drive>(&motions[k])) turned(k, d->point, d->axis);
+    }
     const auto stays = [&](const Vec3& direction) {
         return !turns && std::visit([&](const auto& s) { return s.unchanged_by_shift(direction); }, shape);
     };
@@ -34,6 +36,7 @@ std::vector<Motion> displacing(const Shape& shape, std::span<const Motion> motio
     for (std::size_t k = 0; k < motions.size(); ++k) {
         if (const auto* t = std::get_if<Translation>(&motions[k])) moves[k] = !stays(t->velocity);
         if (const auto* v = std::get_if<Vibration>(&motions[k])) moves[k] = !stays(v->amplitude);
+        if (const auto* p = std::get_if<Press>(&motions[k])) moves[k] = !stays(p->along);
         if (moves[k]) kept.push_back(motions[k]);
     }
     return kept;
@@ -120,7 +123,9 @@ MovingWall MovingWall::moving_as(const Wall& other, const geometry::Domain& doma
         throw std::invalid_argument("walls that change keep their shape, surface and materials");
     MovingWall made = *this;
     made.wall_.present = other.present;
-    made.take_motions(other.motions);
+    std::vector<Motion> motions = other.motions;
+    for (Motion& motion : motions) take_state(motion, wall_.motions);
+    made.take_motions(std::move(motions));
     made.require_possible(domain);
     made.bound_speeds();
     return made;
@@ -131,7 +136,21 @@ void MovingWall::take_motions(std::vector<Motion> motions) {
     std::erase_if(motions, geometry::is_still);
     displacing_ = displacing(wall_.shape, motions);
     switches_ = std::ranges::any_of(displacing_, switches);
+    free_ = std::ranges::any_of(motions, is_free);
     wall_.motions = std::move(motions);
+}
+
+void MovingWall::kick(const Vec3& force, const Vec3& torque, const Vec3& about, double time, double span) {
+    if (!free_) return;
+    for (Motion& motion : wall_.motions) geometry::kick(motion, force, torque, about, time, span);
+    displacing_ = displacing(wall_.shape, wall_.motions);
+}
+
+void MovingWall::drift(double span) {
+    if (!free_) return;
+    before_ = pose_;
+    for (Motion& motion : wall_.motions) geometry::drift(motion, span);
+    displacing_ = displacing(wall_.shape, wall_.motions);
 }
 
 void MovingWall::bound_speeds() {
@@ -142,9 +161,13 @@ void MovingWall::bound_speeds() {
 void MovingWall::require_possible(const geometry::Domain& domain) const {
     for (std::size_t k = 0; k < 3; ++k) {
         if (!domain.periodic[k]) continue;
-        for (const Motion& m : displacing_)
-            if (const auto* r = std::get_if<Rotation>(&m); r != nullptr && !parallel(r->axis, unit_vectors[k]))
+        for (const Motion& m : displacing_) {
+            const auto* r = std::get_if<Rotation>(&m);
+            const auto* d = std::get_if<Drive>(&m);
+            if (r == nullptr && d == nullptr) continue;
+            if (!parallel(r != nullptr ? r->axis : d->axis, unit_vectors[k]))
                 throw std::invalid_argument("a wall that turns about an axis across a periodic one has no image");
+        }
         if (body_image_.period[k] == 0) continue;
         if (!std::isfinite(body_image_.middle[k]))
             throw std::invalid_argument("a wall without end must not cut a periodic axis");
@@ -241,7 +264,10 @@ double MovingWall::bound_of_speed(std::span<const Motion> motions) const {
         const auto* r = std::get_if<Rotation>(&motion);
         const auto* t = std::get_if<Translation>(&motion);
         const auto* v = std::get_if<Vibration>(&motion);
+        const auto* p = std::get_if<Press>(&motion);
+        const auto* d = std::get_if<Drive>(&motion);
         for (std::size_t k = 0; k < 3; ++k) {
+            if (p != nullptr) shifts[k] += p->fastest * std::abs(p->along[k]);
             if (t != nullptr) shifts[k] += std::abs(t->velocity[k]);
             if (v != nullptr) shifts[k] += std::abs(2 * std::numbers::pi * v->frequency * v->amplitude[k]);
         }
@@ -249,6 +275,10 @@ double MovingWall::bound_of_speed(std::span<const Motion> motions) const {
         if (r != nullptr)
             for (const Vec3& x : corners(Pose{})) arm = std::max(arm, norm(cross(r->axis, x - r->point)));
         if (r != nullptr) turns += std::abs(r->speed) * arm;
+        if (d != nullptr) {
+            for (const Vec3& x : corners(Pose{})) arm = std::max(arm, norm(cross(d->axis, x - d->point)));
+            turns += d->fastest * arm;
+        }
     }
     return norm(shifts) + turns;
 }

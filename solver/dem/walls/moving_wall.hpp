@@ -48,10 +48,21 @@ public:
     /// by then.
     void place(double time);
 
+    /// Whether the powder moves it: it has a press or a drive.
+    [[nodiscard]] bool free() const { return free_; }
+    /// Changes the speeds of a free wall by a load, which acts for `span` from `time` on; see geometry::kick.
+    void kick(const Vec3& force, const Vec3& torque, const Vec3& about, double time, double span);
+    /// Moves a free wall on by its speeds; place() completes it.
+    void drift(double span);
+
     [[nodiscard]] const Wall& wall() const { return wall_; }
     /// The shape as particles find it in its body frame: with its images where they can touch more than one.
     [[nodiscard]] const Shape& found() const { return found_; }
     [[nodiscard]] const geometry::Pose& pose() const { return pose_; }
+    /// Where it stood a step before it was placed last; of a free wall as drift() found it.
+    [[nodiscard]] geometry::Pose pose_before(double time) const {
+        return free_ ? before_ : geometry::pose_at(displacing_, time);
+    }
     [[nodiscard]] geometry::Pose pose_at(double time) const { return geometry::pose_at(displacing_, time); }
     [[nodiscard]] const geometry::Twist& twist() const { return twist_; }  ///< of the material
     [[nodiscard]] const NearestImage& image() const { return image_; }
@@ -94,6 +105,8 @@ private:
     Shape found_;
     std::vector<geometry::Motion> displacing_;  // those that move the surface
     bool switches_ = false;                     // one of them starts late or ends
+    bool free_ = false;
+    geometry::Pose before_;  // of a free wall
     bool bounded_ = false;
     bool single_contact_ = true;
     bool thin_ = false;

@@ -25,6 +25,7 @@ extern const ProbeInfo radius;
 extern const ProbeInfo rms_speed;
 extern const ProbeInfo solid_fraction;
 extern const ProbeInfo velocity, momentum;
+extern const ProbeInfo wall_angle, wall_position;
 extern const ProbeInfo wall_layer_speed;
 extern const ProbeInfo rolling_torque;
 extern const ProbeInfo wall_force, wall_torque, wall_work, wall_pressure;

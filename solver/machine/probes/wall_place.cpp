@@ -1,0 +1,75 @@
+// Where walls are: how far a point of one has moved along a direction, and by which angle it has turned.
+#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/selection.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace grainsweep::machine::probes {
+namespace {
+
+using geometry::dot;
+using geometry::operator-;
+
+/// The first of the walls; none: this case is without it.
+const dem::Wall* wall_of(const std::vector<std::size_t>& numbers, const Sight& sight) {
+    return numbers.empty() ? nullptr : &sight.engine.wall(numbers.front());
+}
+
+class PositionOfWall final : public machine::Probe {
+public:
+    explicit PositionOfWall(const Options& options)
+        : walls_(options.numbers("wall")), along_(options.vector("along")), of_(options.vector("of", {})) {}
+    double look(const Sight& sight) override {
+        const dem::Wall* wall = wall_of(walls_, sight);
+        if (wall == nullptr) return undefined;
+        const auto pose = geometry::pose_at(wall->motions, sight.engine.wall_time());
+        return dot(pose.from_body(of_) - of_, along_);
+    }
+
+private:
+    std::vector<std::size_t> walls_;
+    Vec3 along_, of_;
+};
+
+class AngleOfWall final : public machine::Probe {
+public:
+    explicit AngleOfWall(const Options& options) : walls_(options.numbers("wall")), axis_(options.vector("axis")) {}
+    double look(const Sight& sight) override {
+        const dem::Wall* wall = wall_of(walls_, sight);
+        if (wall == nullptr) return undefined;
+        const double time = sight.engine.wall_time();
+        double angle = 0;
+        for (const geometry::Motion& motion : wall->motions) {
+            if (const auto* drive = std::get_if<geometry::Drive>(&motion))
+                angle += drive->way * dot(drive->axis, axis_);
+            if (const auto* turn = std::get_if<geometry::Rotation>(&motion))
+                angle += turn->speed * std::max(0.0, std::min(time, turn->end) - turn->start) * dot(turn->axis, axis_);
+        }
+        return angle * 180 / std::numbers::pi;
+    }
+
+private:
+    std::vector<std::size_t> walls_;
+    Vec3 axis_;
+};
+
+constexpr OptionSpec placed_wall{"wall", OptionSpec::Kind::walls, "", "the wall; of a list the first", true};
+constexpr std::array position_of_wall_options = {
+    placed_wall, OptionSpec{"along", OptionSpec::Kind::direction, "", "the direction", true},
+    OptionSpec{"of", OptionSpec::Kind::vector, "m",
+               "the point of the wall, where it is at the start; default: the origin"}};
+constexpr std::array angle_of_wall_options = {
+    placed_wall, OptionSpec{"axis", OptionSpec::Kind::direction, "", "the axis, right hand", true}};
+
+}  // namespace
+
+const ProbeInfo wall_angle{
+    "wall_angle", "deg", "angle by which a wall has turned since the start", angle_of_wall_options,
+    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<AngleOfWall>(given); }};
+const ProbeInfo wall_position{
+    "wall_position", "m", "way of a point of a wall since the start, along a direction", position_of_wall_options,
+    [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<PositionOfWall>(given); }};
+
+}  // namespace grainsweep::machine::probes

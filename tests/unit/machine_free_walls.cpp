@@ -1,0 +1,120 @@
+// Walls of a machine that the powder moves: a pressed lid, a driven blade; by phases, in pictures and checkpoints.
+#include "tests/support/machines.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace grainsweep::tests::machine_free_walls_test {
+
+using nlohmann::json;
+
+/// 60 spheres of 3 mm in a box of 12 mm, pressed by a lid of 5 g in two of four phases.
+json press_machine() {
+    return json::parse(R"({
+      "name": "press",
+      "parameters": {"force": {"unit": "N", "default": 2}},
+      "materials": {"glass": {"density": 2500, "youngs_modulus": "5 MPa"}},
+      "contacts": {"restitution": 0.5, "friction": 0.3},
+      "species": {"bead": {"diameter": "3 mm"}},
+      "domain": {"low": [0, 0, -0.006], "high": [0.012, 0.012, 0.04], "periodic": [1, 1, 0]},
+      "walls": {
+        "floor": {"plane": {"normal": [0, 0, 1]}},
+        "lid": {"plane": {"point": [0, 0, "34 mm"], "normal": [0, 0, -1]},
+                "motion": [{"press": {"along": [0, 0, -1], "force": "force", "mass": "5 g", "speed_at_most": 0.3},
+                            "during": ["press", "rest"]}]}
+      },
+      "fill": [{"species": "bead", "count": 60, "in": {"box": {"low": [0, 0, 0], "high": [0.012, 0.012, 0.03]}}}],
+      "phases": [{"name": "settle", "for": 0.1}, {"name": "press", "for": 0.2, "frames": 4}, {"name": "rest", "for": 0.2, "frames": 200}, {"name": "hold", "for": 0.05}],
+      "measure": {
+        "before": {"wall_position": {"wall": "lid", "along": [0, 0, -1]}, "during": "settle", "as": "max"},
+        "way": {"wall_position": {"wall": "lid", "along": [0, 0, -1]}, "during": "rest", "as": "last"},
+        "held": {"wall_position": {"wall": "lid", "along": [0, 0, -1]}, "during": "hold", "as": "change"},
+        "load": {"wall_force": {"wall": "lid", "along": [0, 0, 1]}, "during": "rest"},
+        "carried": {"wall_force": {"wall": "floor", "along": [0, 0, -1]}, "during": "rest"}
+      }
+    })");
+}
+
+TEST(MachineFreeWalls, ALidIsPressedInItsPhase) {
+    for (const char* precision : {"mixed", "double"}) {
+        const auto seen = answer_of(spec_of(press_machine(), {{"precision", std::string(precision)}})).scalars;
+        EXPECT_EQ(seen.at("before"), 0);
+        EXPECT_GT(seen.at("way"), 0.008);
+        EXPECT_LT(seen.at("way"), 0.026);
+        EXPECT_EQ(seen.at("held"), 0);
+        EXPECT_NEAR(seen.at("load"), 2, 0.02);
+        const double weight = 60 * 2500 * 3.14159265 / 6 * 27e-9 * 9.81;
+        EXPECT_NEAR(seen.at("carried"), 2 + weight, 0.02);
+    }
+}
+
+TEST(MachineFreeWalls, PicturesAndCheckpointsHaveTheLidWhereItIs) {
+    const auto spec = spec_of(press_machine());
+    machine::Run whole(spec, 5);
+    whole.advance(0.25);
+    const auto top = [](const machine::Run& run) {
+        const auto picture = run.snapshot();
+        const auto lid = std::ranges::find(picture.walls, "lid", &WallSurface::name);
+        return std::ranges::max(lid->corners, {}, [](const auto& x) { return x[2]; })[2];
+    };
+    EXPECT_LT(top(whole), 0.034 - 0.008);
+    Bytes bytes;
+    whole.save(bytes);
+    machine::Run other(spec, 5);
+    EXPECT_NEAR(top(other), 0.034, 1e-12);
+    other.restore(bytes);
+    EXPECT_EQ(top(other), top(whole));
+    whole.advance(1), other.advance(1);
+    Observations a, b;
+    whole.observe(a), other.observe(b);
+    EXPECT_EQ(text_of(a), text_of(b));
+}
+
+// A wheel of 2 g m2 on its axis, driven by 1 mN m without powder: 1/2 M/I t^2 in degrees, up to its speed.
+TEST(MachineFreeWalls, ADrivenWheelTurns) {
+    json document = press_machine();
+    document["walls"]["wheel"] = json::parse(R"({"rectangle": {"corner": [0.004, 0.004, 0.036], "along": [0.002, 0, 0],
+        "across": [0, 0, 0.002]}, "motion": [{"drive": {"axis": [0, 0, 1], "through": [0.005, 0.004, 0],
+        "torque": "1e-3 N m", "inertia": "2e-3 kg m2", "speed_at_most": 2}}]})");
+    document["domain"]["periodic"] = {0, 0, 0};
+    document["phases"] = json::parse(R"([{"name": "settle", "for": 0}, {"name": "press", "for": 0.1, "frames": 2},
+                                         {"name": "rest", "for": 0},
+                                         {"name": "hold", "for": 0}])");
+    document["measure"] =
+        json::parse(R"({"angle": {"wall_angle": {"wall": "wheel", "axis": [0, 0, 1]}, "as": "max"}})");
+    const auto seen = answer_of(spec_of(document)).scalars;
+    EXPECT_NEAR(seen.at("angle"), 0.5 * 0.5 * 0.01 * 180 / 3.14159265, 1e-3);
+}
+
+TEST(MachineFreeWalls, HaveOneSentenceWhereTheyAreWrong) {
+    const auto refusal = [](const char* path, const char* value) {
+        json document = press_machine();
+        document[json::json_pointer(path)] = json::parse(value);
+        try {
+            (void)spec_of(document);
+        } catch (const std::exception& wrong) {
+            return std::string(wrong.what());
+        }
+        return std::string("accepted");
+    };
+    const char* press = "/walls/lid/motion/0/press";
+    EXPECT_NE(refusal(press, R"({"along": [0, 0, -1], "force": 1, "mass": 1})").find("'speed_at_most' is missing"),
+              std::string::npos);
+    EXPECT_NE(refusal(press, R"({"along": [0, 0, -1], "force": "1 kg", "mass": 1, "speed_at_most": 1})")
+                  .find("'kg' does not fit 'N'"),
+              std::string::npos);
+    EXPECT_NE(refusal(press, R"({"along": [0, 0, 0], "force": 1, "mass": 1, "speed_at_most": 1})")
+                  .find("a direction must not be 0"),
+              std::string::npos);
+    EXPECT_NE(refusal(press, R"({"along": [0, 0, -1], "force": 1, "mass": 0, "speed_at_most": 1})")
+                  .find("must be a number above 0, kg"),
+              std::string::npos);
+    EXPECT_NE(refusal("/walls/lid/motion/0/drive", R"({"axis": [0, 0, 1], "torque": 1, "inertia": 1,
+                                                       "speed_at_most": 1})")
+                  .find(R"(a motion is one of "rotate", "shift", "vibrate", "press" and "drive")"),
+              std::string::npos);
+}
+
+}  // namespace grainsweep::tests::machine_free_walls_test
