@@ -111,7 +111,7 @@ bool fits(const Spec& spec, const Obstacles& obstacles, const Region& region, co
 }
 
 /// Whether a sphere lies between the faces, periodic ones too: so that no image meets it.
-bool within(const Bounds& bounds, const Vec3& centre, double radius) {
+bool lies_within(const Bounds& bounds, const Vec3& centre, double radius) {
     for (std::size_t k = 0; k < 3; ++k)
         if (centre[k] - radius < bounds.low[k] || centre[k] + radius > bounds.high[k]) return false;
     return true;
@@ -226,7 +226,7 @@ std::vector<Vec3> packed(const Spec& spec, const Fill& fill, const Draws& draws,
                     const Vec3 centre{bounds.low[0] + scale * place[0] + edge * static_cast<double>(x),
                                       bounds.low[1] + scale * place[1] + edge * static_cast<double>(y),
                                       bounds.low[2] + scale * place[2] + edge * static_cast<double>(z)};
-                    if (within(bounds, centre, largest / 2) &&
+                    if (lies_within(bounds, centre, largest / 2) &&
                         fits(spec, obstacles, fill.in, centre, largest / 2 * (1 - rounding)))
                         centres.push_back(centre);
                 }

@@ -126,11 +126,20 @@ TEST_F(Drum, WhereTheSystemGivesNoMoreThreadsACaseIsComputedAllTheSame) {
     EXPECT_EQ(json::parse(limited.out).at("scalars"), json::parse(free.out).at("scalars"));
 }
 
-// Grids of the section that would take 60 PB, of fifty spheres.
-TEST_F(Drum, ASectionThatFitsNoMemoryIsRefusedBeforeItIsLaidOut) {
-    json config = drum({{"threads", 1}});
-    config["fixed"].merge_patch(
-        {{"particles", 50}, {"diameter", 1e-6}, {"drum_diameter", 10}, {"occupancy_cell", 0.05}});
+// Spheres glued onto a wide base: a terabyte.
+TEST_F(Drum, WhatFitsNoMemoryIsRefusedBeforeItIsLaidOut) {
+    const json config = {{"campaign", "wide"},
+                         {"scene", "powder_spreading"},
+                         {"factors", {{{"name", "friction"}, {"levels", {0.3}}}}},
+                         {"fixed",
+                          {{"diameter", 1e-6},
+                           {"gap", 1e-5},
+                           {"travel", 1.0},
+                           {"width", 1000},
+                           {"layer_area", 1e-9},
+                           {"blade_thickness", 1e-4},
+                           {"base", "rough"}}},
+                         {"design", {{"kind", "lattice"}}}};
     folder.write("wide.json", config.dump());
     for (const auto& command : {std::vector<std::string>{"plan", "wide.json"},
                                 {"solve", "wide.json"},
@@ -139,6 +148,22 @@ TEST_F(Drum, ASectionThatFitsNoMemoryIsRefusedBeforeItIsLaidOut) {
         EXPECT_EQ(refused.code, 2) << command.front();
         EXPECT_THAT(refused.err, HasSubstr("GB of memory, and this machine gives a process")) << command.front();
     }
+}
+
+// Sums over the section grow with the drum, whatever the number of particles.
+TEST_F(Drum, ASectionOfTooManyCellsIsRefused) {
+    json config = drum({{"threads", 1}});
+    config["fixed"].merge_patch(
+        {{"particles", 50}, {"diameter", 1e-6}, {"drum_diameter", 10}, {"occupancy_cell", 0.05}});
+    folder.write("wide.json", config.dump());
+    for (const auto& command :
+         {std::vector<std::string>{"plan", "wide.json"}, {"run", "wide.json", "--db", "wide.db", "--quiet"}}) {
+        const auto refused = run_program(command, folder.path());
+        EXPECT_EQ(refused.code, 2) << command.front();
+        EXPECT_THAT(refused.err, HasSubstr("\"radius\" is at most 316 times \"diameter\"")) << command.front();
+    }
+    const auto rejected = run_program({"solve", "wide.json"}, folder.path());
+    EXPECT_EQ(rejected.code, 1);
 }
 
 TEST_F(Drum, ACaseInDoublePrecisionHasOne) {

@@ -41,10 +41,11 @@ TEST(EnergyBalance, StepsBeyondTheLimitAreFound) {
         for (std::uint64_t k = 0; k < cases; ++k) {
             const double step = 2 + 8 * static_cast<double>(k) / static_cast<double>(cases - 1);
             const auto coarse = tests::fate_of(scene, tests::few_spheres(scene, k, step));
-            if (!coarse.refused.empty()) continue;
+            const bool by_step = coarse.refused.find("time_step: ") != std::string::npos;  // a machine knows its limit
+            if (!coarse.refused.empty() && !by_step) continue;
             ++tried;
-            found += coarse.fault.empty() ? 0 : 1;
-            if (!coarse.fault.empty()) continue;
+            found += coarse.fault.empty() && !by_step ? 0 : 1;
+            if (!coarse.fault.empty() || by_step) continue;
             const auto sound = tests::fate_of(scene, tests::few_spheres(scene, k, sound_step));
             EXPECT_LE(coarse.most_kinetic, 1.5 * sound.most_kinetic) << scene << " " << k;
         }

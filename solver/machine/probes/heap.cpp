@@ -45,18 +45,18 @@ std::string flaw_of_heap(const Options& given) {
 }
 
 constexpr Interval above_zero{0, std::numeric_limits<double>::infinity(), true, true};
-constexpr OptionSpec cell_option{
+constexpr OptionSpec heap_cell_option{
     "cell", OptionSpec::Kind::number, "m", "width of columns and rings: about one particle", true, above_zero};
 constexpr OptionSpec reach_option{
     "reach", OptionSpec::Kind::number, "m", "radius of the outermost ring about the mass centre", true, above_zero};
 constexpr std::array<std::string_view, 2> angles = {"moments", "outline"};
-constexpr std::array heap_options = {of_option, in_option, from_option, along_option, cell_option, reach_option};
+constexpr std::array heap_options = {of_option, in_option, from_option, along_option, heap_cell_option, reach_option};
 constexpr std::array heap_angle_options = {
     of_option,
     in_option,
     from_option,
     along_option,
-    cell_option,
+    heap_cell_option,
     reach_option,
     OptionSpec{"by",
                OptionSpec::Kind::word,
