@@ -125,7 +125,7 @@ Filled Feeder::batch(const dem::State& state, const std::vector<dem::Wall>& wall
 
     Filled added;
     while (fed_ < owed_) {
-        const auto particle = draws.by_chance(number_);
+        const auto particle = draws.of_feed(number_);
         const Species& species = spec_.species[particle.species];
         std::optional<Vec3> place;
         for (std::uint64_t n = 0; n < tries && !place; ++n) {

@@ -15,6 +15,8 @@
 namespace grainsweep::machine {
 namespace {
 
+constexpr double golden = 1 / std::numbers::phi;
+
 using geometry::norm;
 using kit::require;
 using kit::sentence;
@@ -120,8 +122,11 @@ double Draws::radius_of(std::size_t species, std::uint64_t n) const {
     return s.diameter / 2 * (s.sizes.equal() ? 1 : s.sizes.diameter(uniform(size_draw, n)));
 }
 
-Draws::Particle Draws::by_chance(std::uint64_t n) const {
-    double u = mix_.size() > 1 ? uniform(species_draw, n) : 0;
+Draws::Particle Draws::of_feed(std::uint64_t n) const {
+    // Multiples of the golden ratio, shifted by the seed: every stretch of them has the shares within a particle or
+    // two.
+    double u = mix_.size() > 1 ? uniform(species_draw, 0) + golden * static_cast<double>(n) : 0;
+    u -= std::floor(u);
     std::size_t species = mix_.back().first;
     for (const auto& [candidate, share] : mix_) {
         if (u < share) {

@@ -28,8 +28,8 @@ public:
         std::size_t species = 0;
         double radius = 0;
     };
-    /// The n-th particle of a feed: each one by chance.
-    [[nodiscard]] Particle by_chance(std::uint64_t n) const;
+    /// The n-th particle of a feed: its size by chance, species in their shares whatever the number of particles.
+    [[nodiscard]] Particle of_feed(std::uint64_t n) const;
     /// All particles of a filling: species in exact numbers, in random order.
     [[nodiscard]] std::vector<Particle> in_numbers(std::int64_t count) const;
     /// Uniform in [0, 1).
