@@ -123,6 +123,7 @@ void Run::end_phase(std::uint8_t condition) {
         if (holds(spec_.feeds[k].during, phase_))
             feeders_[k].owe(-static_cast<double>(credited_ahead(spec_.feeds[k])) * spec_.time_step);
     ended_by_.push_back(condition);
+    if (phase_ == 0) lost_first_ = static_cast<std::int64_t>(species_.size() - engine_->size());
     ++phase_;
     if (!finished()) begin_phase();
 }
@@ -299,7 +300,8 @@ double Run::picture_focus() const {
 template <class State, class Visit>
 void Run::fields(State& run, Visit&& visit) {
     visit(run.step_), visit(run.phase_), visit(run.phase_begin_), visit(run.frame_), visit(run.check_);
-    visit(run.calm_since_), visit(run.watched_), visit(run.peak_overlap_), visit(run.times_.begin);
+    visit(run.calm_since_), visit(run.watched_), visit(run.peak_overlap_), visit(run.lost_first_),
+        visit(run.times_.begin);
     visit(run.times_.end), visit(run.ended_by_), visit(run.species_), visit(run.density_), visit(run.radius_);
     for (auto& record : run.records_)
         visit(record.samples), visit(record.bins), visit(record.sums), visit(record.counts), visit(record.last),

@@ -31,6 +31,7 @@ public:
     [[nodiscard]] double particle_steps() const override { return engine_->work().particle_steps; }
     void save(Bytes& into) const override;
     void restore(std::span<const std::byte> from) override;
+    [[nodiscard]] std::string remark() const override;
     [[nodiscard]] Snapshot snapshot() const override;
     [[nodiscard]] double picture_focus() const override;
 
@@ -90,6 +91,7 @@ private:
     std::vector<double> calm_since_, watched_;  // by condition that ends the phase
     double peak_overlap_ = 0;                   // of the phases before
     std::int64_t glued_ = 0;
+    std::int64_t lost_first_ = 0;  // particles that left in the first phase
     PhaseTimes times_;
     std::vector<std::uint8_t> ended_by_;  // by phase: number of the condition, from 1; 0: its time
     std::vector<Record> records_;

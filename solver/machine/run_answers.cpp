@@ -1,6 +1,7 @@
 // What a run has to answer so far: measurements by their reductions, expressions of them, and what every machine has.
 #include "solver/machine/reduction.hpp"
 #include "solver/machine/run.hpp"
+#include "solver/scenes/kit/sentence.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,6 +22,16 @@ std::string Run::with_names(std::string fault) const {
         fault.replace(begin, (end == std::string::npos ? fault.size() : end) - begin,
                       "'" + spec_.walls[number].name + "'");
     return fault;
+}
+
+std::string Run::remark() const {
+    constexpr double many = 0.1;  // of the particles: a vessel that does not hold its filling
+    const auto filled = static_cast<double>(species_.size());
+    if (spec_.phases.size() < 2 || static_cast<double>(lost_first_) <= many * filled) return {};
+    return kit::sentence(
+        "%.0f of %.0f particles left the domain during the first phase: look with draw whether the "
+        "vessel holds its filling",
+        static_cast<double>(lost_first_), filled);
 }
 
 void Run::observe(const Measure& measure, const Record& record, Observations& into) const {

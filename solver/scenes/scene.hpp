@@ -62,6 +62,9 @@ public:
     /// Share of the work done, 0 to 1.
     [[nodiscard]] virtual double progress() const = 0;
     [[nodiscard]] virtual Health health() const { return {}; }
+    /// What a reader of a sound answer must know beside it, in one sentence; follows from inputs and seed. Mostly
+    /// empty.
+    [[nodiscard]] virtual std::string remark() const { return {}; }
     /// Work done so far: mobile particles times steps.
     [[nodiscard]] virtual double particle_steps() const { return 0; }
     /// Seconds by phase, where the scene measures them.
@@ -89,7 +92,7 @@ struct SceneInfo {
     std::string name;
     std::string summary;
     std::string label = {};  ///< shown instead of the name, where that is a hash; empty: the name
-    int revision = 1;  ///< part of every case id; grows whenever results or defaults change on purpose
+    int revision = 1;        ///< part of every case id; grows whenever results or defaults change on purpose
     std::vector<ParameterSpec> parameters;
     std::vector<ObservableSpec> observables;
     /// Named sets of numerical inputs: "fast", "balanced", "reference". Empty: the scene offers none.

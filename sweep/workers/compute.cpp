@@ -247,6 +247,7 @@ std::optional<campaign::CaseResult> compute(const campaign::Case& question, std:
             return close(campaign::Outcome::unstable, health.reason);
         }
         scene->observe(result.observations);
+        if (std::string own = scene->remark(); !own.empty()) remark += (remark.empty() ? "" : "; ") + std::move(own);
     } catch (const std::invalid_argument& error) {
         return close(campaign::Outcome::rejected, error.what());
     }

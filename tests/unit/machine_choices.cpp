@@ -160,4 +160,21 @@ TEST(MachineChoices, TheLastProfileIsThatOfTheLastFrame) {
     EXPECT_GE(filled_bins("all"), 2);
 }
 
+// Half of the spheres start beside the floor and fall out before the second phase.
+TEST(MachineChoices, AVesselThatDoesNotHoldItsFillingIsNamed) {
+    json document = box();
+    document["walls"]["floor"] =
+        json::parse(R"({"rectangle": {"corner": [0, 0, 0], "along": [0.02, 0, 0], "across": [0, 0.04, 0]}})");
+    document["domain"] = json::parse(R"({"low": [0, 0, -0.01], "high": [0.04, 0.04, 0.09]})");
+    document["phases"] = json::parse(R"([{"name": "settle", "for": 0.2}, {"name": "rest", "for": 0.01}])");
+    machine::Run run(spec_of(document), 3);
+    run.advance(1e9);
+    EXPECT_NE(run.remark().find(" of 60 particles left the domain during the first phase"), std::string::npos);
+    document["walls"] = box()["walls"];
+    document["domain"] = json::parse(R"({"low": [0, 0, -0.01], "high": [0.04, 0.04, 0.09], "periodic": [1, 1, 0]})");
+    machine::Run sound(spec_of(document), 3);
+    sound.advance(1e9);
+    EXPECT_EQ(sound.remark(), "");
+}
+
 }  // namespace grainsweep::tests::machine_choices_test
