@@ -1,4 +1,4 @@
-// What is said of a machine before it runs: warnings, each by a machine that deserves it, and its cost.
+// Warnings and cost of a machine before it runs: each warning comes from a machine that deserves it.
 #include "solver/machine/plan.hpp"
 #include "tests/support/machines.hpp"
 
