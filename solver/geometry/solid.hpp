@@ -15,9 +15,8 @@ struct Solid {
     Vec3 inertia{};  ///< about them, divided by the density, m5
 };
 
-/// Sums tetrahedra between the triangles and one point (Tonon 2004, J. Math. Stat. 1, 8-11). Whichever way round the
-/// triangles are, all must be the same way. nullopt: an edge belongs to other than two triangles, or they run the same
-/// way along it, or there is no volume.
+/// Sums tetrahedra between the triangles and one point (Tonon 2004, J. Math. Stat. 1, 8-11), whichever way round the
+/// triangles are. nullopt: an edge belongs to other than two triangles, the surface has one side only, or no volume.
 [[nodiscard]] std::optional<Solid> solid_of(const TriangleSurface& surface);
 
 }  // namespace grainsweep::geometry

@@ -1,7 +1,7 @@
 // "motion" of a wall.
 #include "sweep/campaign/machine_reading.hpp"
 
-#include "solver/geometry/solid.hpp"
+#include "solver/machine/shapes.hpp"
 
 #include <fmt/format.h>
 
@@ -32,10 +32,9 @@ geometry::Flight read_flight(const Cursor& place, const MachineReading& reading,
     const Section of(place, machine_keys::free());
     geometry::Flight flight{.mass = scope.number(of.at("mass"), "kg", positive_number), .number = number};
     const auto centre = of.find("centre"), inertia = of.find("inertia");
-    const auto* mesh = std::get_if<geometry::Mesh>(&shape);
-    const auto solid = mesh != nullptr ? geometry::solid_of(mesh->surface()) : std::nullopt;
+    const auto solid = machine::solid_of(shape);
     if (!solid && !(centre && inertia))
-        place.refuse(mesh == nullptr ? "of this shape it needs \"centre\" and \"inertia\""
+        place.refuse(!std::holds_alternative<geometry::Mesh>(shape) ? "of this shape it needs \"centre\" and \"inertia\""
                                      : "the mesh is not closed: it needs \"centre\" and \"inertia\"");
     if (solid) {
         flight.centre = solid->centre;
