@@ -88,10 +88,10 @@ TEST(MachineFreeWalls, ADrivenWheelTurns) {
     EXPECT_NEAR(seen.at("angle"), 0.5 * 0.5 * 0.01 * 180 / 3.14159265, 1e-3);
 }
 
-// A box of 6 x 6 x 6 mm and 0.6 g falls into the powder, which carries it; held until its phase.
+// A plate of 9.5 x 10 x 4 mm and 0.6 g falls into the powder, which carries it; held until its phase.
 TEST(MachineFreeWalls, AFreeBodyFallsOntoPowder) {
     json document = press_machine();
-    document["walls"]["lid"] = json::parse(R"({"box": {"low": [0.002, 0.003, 0.032], "high": [0.008, 0.009, 0.038]},
+    document["walls"]["lid"] = json::parse(R"({"box": {"low": [0.001, 0.001, 0.032], "high": [0.0105, 0.011, 0.036]},
         "motion": [{"free": {"mass": "0.6 g", "speed_at_most": 2}, "during": ["press", "rest"]}]})");
     document["domain"]["periodic"] = {0, 0, 0};
     for (const char* side : {"left", "right", "front", "back"}) {
@@ -102,7 +102,7 @@ TEST(MachineFreeWalls, AFreeBodyFallsOntoPowder) {
         wall["plane"]["normal"] = {x ? (high ? -1 : 1) : 0, x ? 0 : (high ? -1 : 1), 0};
     }
     document["measure"].erase("carried");
-    document["measure"]["way"]["wall_position"]["of"] = {0.005, 0.006, 0.035};
+    document["measure"]["way"]["wall_position"]["of"] = {0.00575, 0.006, 0.034};
     document["measure"]["turned"] = json::parse(R"({"wall_angle": {"wall": "lid", "axis": [1, 0, 0]},
                                                     "during": "hold", "as": "max"})");
     const auto seen = answer_of(spec_of(document)).scalars;
