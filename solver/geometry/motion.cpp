@@ -209,7 +209,7 @@ void kick(std::span<Motion> motions, const Vec3& force, const Vec3& moment, cons
             m->velocity = m->angular_momentum = {};
             continue;
         }
-        m->velocity += span / m->mass * (m->force + force);
+        for (std::size_t k = 0; k < 3; ++k) m->velocity[k] += m->freedom[k] * span / m->mass * (m->force[k] + force[k]);
         m->angular_momentum += span * (m->moment + moment_about(m->centre));
         if (const double speed = norm(m->velocity); speed > m->fastest) m->velocity = m->fastest / speed * m->velocity;
         if (const double spin = norm(spin_of(*m)); spin > m->fastest_turn)

@@ -88,12 +88,14 @@ struct Drive {
     }
 };
 
-/// A rigid body with six degrees of freedom, between `start` and `end`; held outside of them.
+/// A rigid body that turns about its centre of mass and shifts along the axes that are free, between `start` and `end`;
+/// held outside of them.
 struct Flight {
     Vec3 centre{};                                                    ///< of mass, where the body is given, m
     double mass = 1;                                                  ///< kg
     std::array<Vec3, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};      ///< of inertia, as the body is given; unit
     Vec3 inertia{1, 1, 1};                                            ///< about them, kg m2
+    Vec3 freedom{1, 1, 1};                                            ///< 0: its centre is held along this axis
     Vec3 force{}, moment{};                                           ///< N, with the weight; N m
     double fastest = 0;                                               ///< m/s, of the centre
     double fastest_turn = 0;                                          ///< rad/s
@@ -106,7 +108,8 @@ struct Flight {
     static void fields(auto& m, auto&& visit) {
         visit(m.centre), visit(m.mass);
         for (auto& axis : m.axes) visit(axis);
-        visit(m.inertia), visit(m.force), visit(m.moment), visit(m.fastest), visit(m.fastest_turn), visit(m.start);
+        visit(m.inertia), visit(m.freedom), visit(m.force), visit(m.moment), visit(m.fastest), visit(m.fastest_turn),
+            visit(m.start);
         visit(m.end), visit(m.number), visit(m.way), visit(m.velocity), visit(m.turned), visit(m.angular_momentum);
     }
 };

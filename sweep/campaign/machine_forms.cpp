@@ -142,6 +142,7 @@ constexpr auto free_keys = std::to_array<Key>({
     {"centre", FormKey::array, "of mass, m; default: of an evenly filled mesh"},
     {"inertia", FormKey::array,
      "moments of inertia about the centre, along x, y and z, kg m2; default: of an evenly filled mesh"},
+    {"held", FormKey::array, "along x, y and z a value: not 0 holds its centre along this axis", "[0, 0, 0]"},
     {"force", FormKey::array, "that acts on the centre besides the weight, N", "[0, 0, 0]"},
     {"torque", FormKey::array, "that acts on the wall, N m", "[0, 0, 0]"},
     needed({"speed_at_most", FormKey::value,

@@ -34,8 +34,9 @@ geometry::Flight read_flight(const Cursor& place, const MachineReading& reading,
     const auto centre = of.find("centre"), inertia = of.find("inertia");
     const auto solid = machine::solid_of(shape);
     if (!solid && !(centre && inertia))
-        place.refuse(!std::holds_alternative<geometry::Mesh>(shape) ? "of this shape it needs \"centre\" and \"inertia\""
-                                     : "the mesh is not closed: it needs \"centre\" and \"inertia\"");
+        place.refuse(!std::holds_alternative<geometry::Mesh>(shape)
+                         ? "of this shape it needs \"centre\" and \"inertia\""
+                         : "the mesh is not closed: it needs \"centre\" and \"inertia\"");
     if (solid) {
         flight.centre = solid->centre;
         flight.axes = solid->axes;
@@ -50,6 +51,8 @@ geometry::Flight read_flight(const Cursor& place, const MachineReading& reading,
             if (!(i[k] > 0 && i[k] <= i[(k + 1) % 3] + i[(k + 2) % 3] + 1e-9 * i[k]))
                 inertia->refuse("moments of inertia are above 0, and none is more than the sum of the others");
     }
+    const Vec3 held = scope.vector(of, "held", "1");
+    for (std::size_t k = 0; k < 3; ++k) flight.freedom[k] = held[k] != 0 ? 0 : 1;
     flight.force = scope.vector(of, "force", "N") + flight.mass * reading.spec.gravity;
     flight.moment = scope.vector(of, "torque", "N m");
     flight.fastest = scope.number(of.at("speed_at_most"), "m/s", positive_number);

@@ -92,7 +92,7 @@ TEST(MachineFreeWalls, ADrivenWheelTurns) {
 TEST(MachineFreeWalls, AFreeBodyFallsOntoPowder) {
     json document = press_machine();
     document["walls"]["lid"] = json::parse(R"({"box": {"low": [0.001, 0.001, 0.032], "high": [0.0105, 0.011, 0.036]},
-        "motion": [{"free": {"mass": "0.6 g", "speed_at_most": 2}, "during": ["press", "rest"]}]})");
+        "motion": [{"free": {"mass": "0.6 g", "speed_at_most": 2, "held": [1, 1, 0]}, "during": ["press", "rest"]}]})");
     document["domain"]["periodic"] = {0, 0, 0};
     for (const char* side : {"left", "right", "front", "back"}) {
         const std::string name = side;

@@ -46,7 +46,7 @@ public:
                 angle += drive->way * dot(drive->axis, axis_);
             if (const auto* flight = std::get_if<geometry::Flight>(&motion)) {
                 const auto& [w, x, y, z] = flight->turned;
-                angle += 2 * std::atan2(dot(Vec3{x, y, z}, axis_), w);
+                angle += 2 * std::atan2((w < 0 ? -1 : 1) * dot(Vec3{x, y, z}, axis_), std::abs(w));
             }
             if (const auto* turn = std::get_if<geometry::Rotation>(&motion))
                 angle += turn->speed * std::max(0.0, std::min(time, turn->end) - turn->start) * dot(turn->axis, axis_);
