@@ -62,6 +62,26 @@ std::size_t material_of_walls(const Cursor& wall, const MachineReading& reading)
     throw wrong_question(wall.path(), "", "key 'material' is missing: several materials could be meant");
 }
 
+/// Calls `read` with the number of a copy and the number of copies, for every copy that "repeat" makes of a wall or
+/// of a motion. Within it the counter "as" is known.
+template <class Read>
+void for_every_one(const Section& section, MachineReading& reading, Read read) {
+    const auto repeat = section.find("repeat"), as = section.find("as");
+    if (as && !repeat) as->refuse("without \"repeat\" it has no effect");
+    const std::int64_t count = repeat ? reading.scope.whole(*repeat, {0, most_repeats}) : 1;
+    MachineScope outer = reading.scope;
+    for (std::int64_t k = 0; k < count; ++k) {
+        if (as) {
+            const std::string counter = as->text();
+            require_name(*as, counter);
+            if (counter == "pi" || outer.knows(counter)) as->refuse("a parameter or \"let\" has this name");
+            reading.scope.set(counter, static_cast<double>(k));
+        }
+        read(k, count);
+        reading.scope = outer;
+    }
+}
+
 }  // namespace
 
 void read_materials(const Section& top, MachineReading& reading) {
@@ -134,17 +154,7 @@ void read_walls(const Section& top, MachineReading& reading) {
         const Section section(place, machine_keys::wall());
         reading.walls.push_back(name);
         auto& numbers = reading.repeats.emplace_back();
-        const auto repeat = section.find("repeat"), as = section.find("as");
-        if (as && !repeat) as->refuse("without \"repeat\" it has no effect");
-        const std::int64_t count = repeat ? reading.scope.whole(*repeat, {0, most_repeats}) : 1;
-        MachineScope outer = reading.scope;
-        for (std::int64_t k = 0; k < count; ++k) {
-            if (as) {
-                const std::string counter = as->text();
-                require_name(*as, counter);
-                if (counter == "pi" || outer.knows(counter)) as->refuse("a parameter or \"let\" has this name");
-                reading.scope.set(counter, static_cast<double>(k));
-            }
+        for_every_one(section, reading, [&](std::int64_t k, std::int64_t count) {
             if (reading.scope.present(section)) {
                 machine::MachineWall wall{count > 1 ? fmt::format("{}_{}", name, k + 1) : name,
                                           read_shape(section, reading),
@@ -152,11 +162,12 @@ void read_walls(const Section& top, MachineReading& reading) {
                                           {},
                                           read_during(section, reading)};
                 if (const auto motions = section.find("motion"))
-                    for (const auto& one : motions->elements()) {
-                        bool acts = true;
-                        auto motion = read_motion(one, reading, wall, acts);
-                        if (acts && !geometry::is_still(motion.motion)) wall.motions.push_back(std::move(motion));
-                    }
+                    for (const auto& one : motions->elements())
+                        for_every_one(Section(one, machine_keys::motion()), reading, [&](std::int64_t, std::int64_t) {
+                            bool acts = true;
+                            auto motion = read_motion(one, reading, wall, acts);
+                            if (acts && !geometry::is_still(motion.motion)) wall.motions.push_back(std::move(motion));
+                        });
                 const auto material = section.find("material");
                 const std::size_t of = material ? reading.scope.place_in(*material, reading.materials, "material")
                                                 : material_of_walls(place, reading);
@@ -165,8 +176,7 @@ void read_walls(const Section& top, MachineReading& reading) {
                 numbers.push_back(reading.spec.walls.size());
                 reading.spec.walls.push_back(std::move(wall));
             }
-            reading.scope = outer;
-        }
+        });
     }
 }
 

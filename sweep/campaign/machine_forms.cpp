@@ -109,6 +109,8 @@ constexpr auto motion_keys = std::to_array<Key>({
     {"from", FormKey::value, "a phase, at whose beginning it starts, or a time, s; default: at the start"},
     {"to", FormKey::value, "a phase, at whose end it ends, or a time, s; default: never"},
     {"during", FormKey::words, "phases in which it acts, one after the other"},
+    {"repeat", FormKey::value, "so many of it: a motion that comes again", "1"},
+    {"as", FormKey::text, "name that counts the repeated ones in expressions, from 0"},
     {"when", FormKey::value, "0: it does not act at all", "1"},
 });
 

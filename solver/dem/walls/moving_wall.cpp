@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -261,6 +262,15 @@ void MovingWall::surface_velocities(double time, double step, Vec3& low, Vec3& h
 }
 
 double MovingWall::bound_of_speed(std::span<const Motion> motions) const {
+    // The set of motions that act together is largest, if anywhere, where one of them starts.
+    std::set<double> starts;
+    for (const Motion& motion : motions) starts.insert(std::visit([](const auto& m) { return m.start; }, motion));
+    double most = 0;
+    for (const double time : starts) most = std::max(most, bound_of_speed_at(motions, time));
+    return most;
+}
+
+double MovingWall::bound_of_speed_at(std::span<const Motion> motions, double time) const {
     Vec3 shifts{};
     double turns = 0;
     const auto farthest = [&](auto&& arm_of) {
@@ -269,6 +279,7 @@ double MovingWall::bound_of_speed(std::span<const Motion> motions) const {
         return arm;
     };
     for (const Motion& motion : motions) {
+        if (std::visit([time](const auto& m) { return time < m.start || time >= m.end; }, motion)) continue;
         const auto* r = std::get_if<Rotation>(&motion);
         const auto* t = std::get_if<Translation>(&motion);
         const auto* v = std::get_if<Vibration>(&motion);
