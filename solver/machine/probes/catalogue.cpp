@@ -48,6 +48,7 @@ std::span<const ProbeInfo> probe_catalogue() {
             probes::rms_speed,
             probes::rolling_torque,
             probes::solid_fraction,
+            probes::spin,
             probes::velocity,
             probes::wall_angle,
             probes::wall_force,

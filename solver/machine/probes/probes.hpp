@@ -24,7 +24,7 @@ extern const ProbeInfo profile;
 extern const ProbeInfo radius;
 extern const ProbeInfo rms_speed;
 extern const ProbeInfo solid_fraction;
-extern const ProbeInfo velocity, momentum;
+extern const ProbeInfo velocity, momentum, spin;
 extern const ProbeInfo wall_angle, wall_position;
 extern const ProbeInfo wall_layer_speed;
 extern const ProbeInfo rolling_torque;
