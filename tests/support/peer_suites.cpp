@@ -96,10 +96,22 @@ PeerFigure outside_of_band(const std::vector<Sample>& series, const json& check)
     return {fmt::format("{:.2g}", worst), worst / within};
 }
 
+/// Where a profile falls below a value and stays there, between the centres of two bins.
+double reach_of(const std::vector<Sample>& profile, double value) {
+    for (std::size_t k = profile.size(); k-- > 1;) {
+        const auto &inner = profile[k - 1], &outer = profile[k];
+        const double beyond = std::isfinite(outer.value) ? outer.value : 0;
+        if (inner.value > value)
+            return inner.bin + (inner.value - value) / (inner.value - beyond) * (outer.bin - inner.bin);
+    }
+    return machine::undefined;
+}
+
 PeerFigure looked_up(const Observations& answer, const json& check) {
     const std::string observable = check["observable"];
     if (check.contains("band")) return outside_of_band(answer.series.at(observable), check);
-    const double value = answer.scalars.at(observable);
+    const double value = check.contains("reaches") ? reach_of(answer.series.at(observable), check["reaches"])
+                                                   : answer.scalars.at(observable);
     const std::string shown = fmt::format("{:.3g}", value);
     if (check.contains("between")) {
         const double low = check["between"][0], high = check["between"][1];
