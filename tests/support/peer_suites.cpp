@@ -63,6 +63,7 @@ void remember(const PeerFigures& fresh) {
         out << fmt::format("{},{},{},{},{:.2g}\n", of[0], of[1], of[2], figure.shown, figure.used);
 }
 
+/// Scalars are means over the seeds, series those of the last.
 Observations peer_answer(const json& given, const json& suite) {
     json document = peers_json(given.value("machine", suite.value("machine", std::string())) + ".json");
     if (given.contains("change")) document.merge_patch(given["change"]);
@@ -74,12 +75,18 @@ Observations peer_answer(const json& given, const json& suite) {
                 chosen.insert_or_assign(name, value.get<std::string>());
             else
                 chosen.insert_or_assign(name, value.get<double>());
-    machine::Run run(campaign::machine_spec(*machine, inputs_of(*machine, chosen)), given.value("seed", 1U));
-    while (!run.finished() && run.health().stable()) run.advance(run.time() + 0.5);
-    EXPECT_TRUE(run.health().stable()) << run.health().reason;
-    Observations observations;
-    run.observe(observations);
-    return observations;
+    const auto seeds = given.value("seeds", 1U);
+    Observations means;
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+        machine::Run run(campaign::machine_spec(*machine, inputs_of(*machine, chosen)), seed);
+        while (!run.finished() && run.health().stable()) run.advance(run.time() + 0.5);
+        EXPECT_TRUE(run.health().stable()) << run.health().reason;
+        Observations one;
+        run.observe(one);
+        means.series = one.series;
+        for (const auto& [name, value] : one.scalars) means.scalars[name] += value / seeds;
+    }
+    return means;
 }
 
 /// The worst sample of a series outside of a band of two columns, relative to what is allowed outside of it.
