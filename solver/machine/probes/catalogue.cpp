@@ -58,6 +58,7 @@ std::span<const ProbeInfo> probe_catalogue() {
             probes::rms_speed,
             probes::rolling_torque,
             probes::solid_fraction,
+            probes::spin,
             probes::stress,
             probes::stress_profile,
             probes::velocity,

@@ -28,7 +28,7 @@ extern const ProbeInfo residence_time, residence_time_density, residence_time_sd
 extern const ProbeInfo rms_speed;
 extern const ProbeInfo solid_fraction;
 extern const ProbeInfo stress, stress_profile;
-extern const ProbeInfo velocity, momentum;
+extern const ProbeInfo velocity, momentum, spin;
 extern const ProbeInfo wall_angle, wall_position;
 extern const ProbeInfo wall_layer_speed;
 extern const ProbeInfo wall_wear, wall_wear_profile;
