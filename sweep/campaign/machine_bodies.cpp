@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace grainsweep::campaign {
 namespace {
@@ -40,6 +41,11 @@ void read_values(const Section& section, const MachineScope& scope, dem::Materia
         scope.number(section, "tangential_ratio", "1", contact.tangential_ratio, {0, 1, true, false});
     contact.cohesion = scope.number(section, "cohesion", "J/m3", contact.cohesion, {0, 1e9});
     contact.surface_energy = scope.number(section, "surface_energy", "J/m2", contact.surface_energy, {0, 100});
+    contact.surface_tension = scope.number(section, "surface_tension", "N/m", contact.surface_tension, {0, 10});
+    contact.contact_angle =
+        scope.number(section, "contact_angle", "rad", contact.contact_angle, {0, std::numbers::pi / 2, false, true});
+    contact.bridge_volume =
+        scope.number(section, "bridge_volume", "1", contact.bridge_volume, {0, dem::largest_bridge, true, false});
 }
 
 template <class Enum>
@@ -132,6 +138,9 @@ void read_contacts(const Section& top, MachineReading& reading) {
                                      fmt::format("between {} and {}: {}", reading.materials[a], reading.materials[b],
                                                  linear ? "key 'stiffness' is missing: the linear law needs it"
                                                         : "'stiffness' belongs to \"normal_law\": \"linear\""));
+            if (contact.surface_tension > 0 && contact.cohesion_law != dem::CohesionLaw::capillary)
+                throw wrong_question(top.find("contacts")->path(), "",
+                                     "'surface_tension' belongs to \"cohesion_law\": \"capillary\"");
             contact.youngs_modulus = reading.elasticities[a].youngs_modulus;
             contact.poisson_ratio = reading.elasticities[a].poisson_ratio;
             if (reading.elasticities[a] != reading.elasticities[b]) contact.partner = reading.elasticities[b];

@@ -271,4 +271,38 @@ TEST(MachineFlowEnergy, IsTheWorkOfTheBlade) {
     EXPECT_NEAR(-20 * answer.scalars.at("torque") / answer.scalars.at("flow_energy"), 1, 0.03);
 }
 
+// A wet sphere of 1 mm thrown against a ceiling hangs from it: the force at touch is 35 times its weight. Dry, or where
+// the pair has no tension, it falls back. The bridge keeps what its work is: (m v^2/2 - m g h) is dissipated.
+TEST(MachineCapillary, AWetSphereHangsFromACeiling) {
+    json document = json::parse(R"({
+      "name": "ceiling",
+      "domain": {"low": [-0.01, -0.01, -1], "high": [0.01, 0.01, 0.02]},
+      "materials": {"glass": {"density": 2500, "youngs_modulus": "5 MPa"}, "steel": {"youngs_modulus": "5 MPa"}},
+      "contacts": {"restitution": 0.2, "cohesion_law": "capillary", "surface_tension": "72 mN/m", "contact_angle": "20 deg",
+                   "bridge_volume": 0.002},
+      "species": {"a": {"diameter": "1 mm"}},
+      "walls": {"ceiling": {"plane": {"point": [0, 0, 0.01], "normal": [0, 0, -1]}, "material": "steel"}},
+      "fill": [{"species": "a", "spheres": [{"at": [0, 0, 0.008], "velocity": [0, 0, 0.3]}]}],
+      "phases": [{"name": "throw", "for": 0.1}],
+      "measure": {"height": {"centre": {"along": [0, 0, 1]}, "as": "last"},
+                  "lost": {"impact_energy": {}, "as": "last"}}
+    })");
+    for (const std::string precision : {"mixed", "double"}) {
+        const auto height = [&](const json& machine) {
+            return answer_of(spec_of(machine, {{"precision", precision}})).scalars.at("height");
+        };
+        EXPECT_NEAR(height(document), 0.0095, 2e-5) << "it hangs";
+        json dry = document;
+        dry["contacts"]["surface_tension"] = 0;
+        EXPECT_LT(height(dry), 0);
+        json no_bridge = document;
+        no_bridge["contacts"]["pairs"] = {{"glass steel", {{"surface_tension", 0}}}};
+        EXPECT_LT(height(no_bridge), 0);
+    }
+    const auto answer = answer_of(spec_of(document));
+    const double mass = 2500 * volume(0.001);
+    // At rest the contact holds the energy of its bridge, which is negative: more than the motion is taken out of it.
+    EXPECT_NEAR(answer.scalars.at("lost"), mass * (0.3 * 0.3 / 2 - 9.81 * 0.0015), 2e-3 * mass * 0.045);
+}
+
 }  // namespace grainsweep::tests::machine_contact_probes_test

@@ -36,6 +36,7 @@ struct Touch {
     double rolling_inertia = 0;   ///< 1/(1/I_i + 1/I_j), I = 7/5 m R^2 about the contact, kg m2; likewise
     double time_step = 0;         ///< s, by which memories advance
     bool touching = true;         ///< false: near, and no law makes it a contact
+    bool apart = false;           ///< the bodies do not touch, and a law acts at a distance
     double cut_before = 0;        ///< share of a limit: springs this near to it were cut by the step, and yield
 
     /// Of a spring, where its size exceeds it.
@@ -71,11 +72,15 @@ struct Touch {
         root = contact_radius;
         damping_root = std::sqrt(root * reduced_mass);
     }
-    /// x where the contact is one: always, when laws are applied.
+    /// For laws that act at a distance: bodies with a gap between them have no springs.
+    void part(double gap) { apart = gap > 0; }
+    /// x where the bodies touch, or stick together; else 0.
     template <class X>
-    [[nodiscard]] const X& kept(const X& x) const {
-        return x;
+    [[nodiscard]] X kept(const X& x) const {
+        return apart ? X{} : x;
     }
+    /// x where the contact is one: always, when laws are applied.
+    [[nodiscard]] static double lasting(double x) { return x; }
 };
 
 /// Sum of the laws applied so far, in their order.
@@ -129,6 +134,8 @@ struct LawTraits {
     /// says whether a near pair is a contact and what its radius is, before laws are applied. Only for combinations
     /// that are compiled for any spheres.
     static constexpr bool reaches = false;
+    /// Beyond touch bodies are apart, and nothing but this law acts.
+    static constexpr bool acts_apart = false;
     static double beyond(const Material&, double) { return 0; }
     template <class T>
     void begin(T&, const void*) const {}
