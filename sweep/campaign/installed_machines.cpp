@@ -33,6 +33,11 @@ std::vector<std::string> installed_machines() {
     return names;
 }
 
+std::string_view kind_of_installed(std::string_view name) {
+    const auto* file = find_installed(std::string(name) + std::string(machine_ending));
+    return file == nullptr ? std::string_view() : file->kind;
+}
+
 std::shared_ptr<const Machine> installed_machine(std::string_view name) {
     const auto* file = find_installed(std::string(name) + std::string(machine_ending));
     if (file == nullptr) return nullptr;

@@ -16,12 +16,16 @@ namespace grainsweep::campaign {
 struct Machine;
 
 struct InstalledFile {
-    std::string_view name, contents;
+    std::string_view name;
+    std::string_view kind;  ///< its folder in configs/machines: "laboratory", or empty
+    std::string_view contents;
 };
 [[nodiscard]] std::span<const InstalledFile> installed_files();
 
-/// Names of the machines, sorted.
+/// Names of the machines, sorted, those of a kind behind the others.
 [[nodiscard]] std::vector<std::string> installed_machines();
+/// "laboratory" or another kind of an installed machine; empty where it has none.
+[[nodiscard]] std::string_view kind_of_installed(std::string_view name);
 /// One of them; nullptr where there is none of that name.
 [[nodiscard]] std::shared_ptr<const Machine> installed_machine(std::string_view name);
 /// The scene of this name, or of the installed machine of this name; nullptr where there is none.

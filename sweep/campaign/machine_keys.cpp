@@ -343,6 +343,7 @@ std::span<const Table> all() {
         Table{"vibrate", vibrate()},
         Table{"press", press()},
         Table{"drive", drive()},
+        Table{"free", free()},
         Table{"A filling", fill_keys},
         Table{"A sphere of a filling", sphere_keys},
         Table{"A feed", feed_keys},

@@ -262,10 +262,11 @@ int list_machines(const std::string& name, Format format) {
         show_scene(campaign::enter_machine(campaign::machine_named("NAME", name)), format);
         return 0;
     }
-    store::Table table{{"machine", "parameters", "observables", "summary"}, {}};
+    store::Table table{{"machine", "kind", "parameters", "observables", "summary"}, {}};
     for (const auto& installed : campaign::installed_machines()) {
         const auto machine = campaign::installed_machine(installed);
-        table.rows.push_back({installed, static_cast<std::int64_t>(machine->parameters.size()),
+        table.rows.push_back({installed, std::string(campaign::kind_of_installed(installed)),
+                              static_cast<std::int64_t>(machine->parameters.size()),
                               static_cast<std::int64_t>(machine->observables.size()), machine->summary});
     }
     report::write(std::cout, table, format);

@@ -221,6 +221,17 @@ TEST(TimeStep, LimitsAreThoseOfThePapers) {
     EXPECT_NEAR(shortest_time(linear, 0.001, 0.1), pi * std::sqrt(sphere_mass(0.001, 7980) / 2 / 1e4), 1e-15);
 }
 
+TEST(MovingWall, MotionsThatFollowOneAnotherDoNotAddUpToAFasterWall) {
+    const geometry::Domain domain{{-1, -1, -1}, {1, 1, 1}, {}};
+    const auto fastest = [&](std::vector<geometry::Motion> motions) {
+        return MovingWall(Wall(geometry::Plane{{0, 0, 0}, {0, 0, 1}}, std::move(motions)), domain, 1e-3).fastest();
+    };
+    const geometry::Translation up{{0, 0, 0.3}, 0, 1}, later{{0, 0, -0.4}, 1, 2}, always{{0, 0, 0.2}};
+    EXPECT_NEAR(fastest({up, later}), 0.4, 1e-12);
+    EXPECT_NEAR(fastest({later, up, always}), 0.6, 1e-12);
+    EXPECT_NEAR(fastest({up, always}), 0.5, 1e-12);
+}
+
 TEST(MovingWall, ABladeFollowsItsLaw) {
     const Wall blade = Blade{0.015, 0.005, 0.002, 0.15, 1.4, 1e-4, 50, 0};
     MovingWall moving(blade, {{-1, -1, -1}, {1, 1, 1}, {}}, 1e-3);

@@ -115,6 +115,7 @@ constexpr WrongMachine wrong[] = {
      "$.walls.paddle.motion: ", "must be a list."},
     {"/walls/paddle/motion/0/from", R"("trun")",
      "$.walls.paddle.motion[0].from: ", "must be a time or a phase: 'fall', 'turn' or 'stop'. Did you mean 'turn'?"},
+    {"/walls/paddle/motion/0/as", R"("n")", "$.walls.paddle.motion[0].as: ", R"(without "repeat" it has no effect.)"},
     {"/walls/paddle/motion/0/from", "-1", "$.walls.paddle.motion[0].from: ", "must be a number from 0, s."},
     {"/walls/paddle/motion/0/to", R"("fall")",
      "$.walls.paddle.motion[0]: ", R"(the phase of "to" comes before that of "from".)"},

@@ -235,6 +235,17 @@ TEST(MachineRun, MotionsFollowPhases) {
     EXPECT_NEAR(height(of(document)), 0.002 + 0.002, 2e-5) << "by the clock";
 }
 
+// Three steps of 1 mm, 10 ms each, one every 20 ms.
+TEST(MachineRun, AMotionMayRepeat) {
+    json document = falling_sphere();
+    document["phases"] = json::parse(R"([{"name": "one", "for": 0.3}])");
+    document["walls"]["floor"]["motion"] = json::parse(R"([{"repeat": 3, "as": "n",
+        "shift": {"velocity": [0, 0, 0.1]}, "from": "0.2 + 0.02*n", "to": "0.21 + 0.02*n"}])");
+    EXPECT_NEAR(of(document).series.at("height").back().value, 0.002 + 0.003, 2e-5);
+    document["walls"]["floor"]["motion"][0]["repeat"] = 0;
+    EXPECT_NEAR(of(document).series.at("height").back().value, 0.002, 2e-5);
+}
+
 // The frame at the end of a phase is the one at the beginning of the next: counted once.
 TEST(MachineRun, AMomentIsMeasuredOnce) {
     json document = falling_sphere();

@@ -91,6 +91,7 @@ struct Meeting {
         if constexpr (lens) return disc;
         return fma(f.linear, effective_radius * overlap, fma(f.square, overlap * overlap, disc));
     }
+    GRAINSWEEP_LANES static F limit(F l) { return l; }
     template <class X>
     GRAINSWEEP_LANES X kept(X x) const {
         return keep(touching, x);

@@ -36,6 +36,10 @@ struct Touch {
     double rolling_inertia = 0;   ///< 1/(1/I_i + 1/I_j), I = 7/5 m R^2 about the contact, kg m2; likewise
     double time_step = 0;         ///< s, by which memories advance
     bool touching = true;         ///< false: near, and no law makes it a contact
+    double cut_before = 0;        ///< share of a limit: springs this near to it were cut by the step, and yield
+
+    /// Of a spring, where its size exceeds it.
+    [[nodiscard]] double limit(double l) const { return l - cut_before * l; }
 
     /// The damper of a coefficient, N s/m.
     [[nodiscard]] double damped(const Arithmetic::Damping& d) const { return d.coefficient * damping_root; }
@@ -83,7 +87,8 @@ struct Response {
     Real elastic{};       ///< the part of it that the overlap alone makes, without damping and attraction, N
     Real damping{};       ///< the normal damper, N s/m
     Vector resistance{};  ///< minus the tangential force, N
-    Vector rolling{};     ///< minus the moment on i besides that of the forces; on j the same with the other sign, N m
+    typename Arithmetic<Real>::Mask slides{};  ///< friction is at its limit
+    Vector rolling{};  ///< minus the moment on i besides that of the forces; on j the same with the other sign, N m
 };
 
 /// 7/5 m R^2: moment of inertia of a sphere about a point of its surface, over m R^2.

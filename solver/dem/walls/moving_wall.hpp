@@ -99,7 +99,9 @@ private:
     void require_possible(const geometry::Domain& domain) const;
     [[nodiscard]] Shape with_images(const geometry::Domain& domain) const;
     [[nodiscard]] std::array<Vec3, 8> corners(const geometry::Pose& pose) const;
+    /// At any time, and at one time.
     [[nodiscard]] double bound_of_speed(std::span<const geometry::Motion> motions) const;
+    [[nodiscard]] double bound_of_speed_at(std::span<const geometry::Motion> motions, double time) const;
 
     Wall wall_;
     Shape found_;
