@@ -122,7 +122,7 @@ PeerFigure looked_up(const Observations& answer, const json& check) {
     const std::string shown = fmt::format("{:.3g}", value);
     if (check.contains("between")) {
         const double low = check["between"][0], high = check["between"][1];
-        return {shown, std::abs(value - (low + high) / 2) / ((high - low) / 2)};
+        return {shown, value >= low && value <= high ? 0.0 : 2.0};
     }
     const json& reference = check["reference"];
     const double expected =
