@@ -51,6 +51,23 @@ TEST(HeapShape, OfAnEvenConeIsItsAngle) {
     }
 }
 
+// Two grains opposite each other: each ring is their heights over its columns, counted one by one.
+TEST(HeapShape, RingsHaveTheirColumns) {
+    for (int ring = 0; ring < 60; ++ring) {
+        double columns = 0;
+        for (int i = -ring - 1; i <= ring; ++i)
+            for (int j = -ring - 1; j <= ring; ++j)
+                columns += static_cast<int>(std::hypot(i + 0.5, j + 0.5)) == ring ? 1 : 0;
+        dem::State state;
+        add(state, {ring + 0.6, 0.2, 0}, 0.5), add(state, {-ring - 0.6, -0.2, 0}, 0.5);
+        const auto outline = heap_shape(state, 1, 61).outline;
+        EXPECT_EQ(outline[static_cast<std::size_t>(ring)], 1 / columns) << ring;
+    }
+    dem::State wide;  // of 30,000 rings, in no time
+    add(wide, {3e4 - 0.5, 0.2, 0}, 0.5), add(wide, {0.5 - 3e4, -0.2, 0}, 0.5);
+    EXPECT_NEAR(heap_shape(wide, 1, 3e4).outline.back(), 1 / (std::numbers::pi * (6e4 - 1)), 1e-3 / (6e4 * 3));
+}
+
 TEST(HeapShape, CountsOnlyWhatCanMove) {
     auto state = cone(10, 30, 0.5);
     const auto before = heap_shape(state, 1, 20);
