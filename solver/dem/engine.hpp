@@ -113,6 +113,10 @@ struct ContactForce {
     double normal_force = 0;  ///< N, with damping and cohesion; positive repels
     Vec3 tangential_force{};  ///< N
     Vec3 rolling_moment{};    ///< N m on `first` besides that of the forces, minus that on `second`
+    Vec3 slip{};              ///< tangential velocity of `first` over `second`, m/s
+    bool slides = false;      ///< friction is at its limit, or there is none
+    /// What the normal force, and all the rest, take out of the motion of both bodies, W.
+    double normal_power = 0, tangential_power = 0;
 };
 
 /// What the particles do to a wall, as of the last step of a run (after a fault: of walls that move): the reaction to
@@ -174,6 +178,11 @@ public:
     virtual void forget_peak_overlap() = 0;
     /// Every touching pair with a mobile partner, and every wall touched; the order depends on the state only.
     virtual void contacts(std::vector<ContactForce>& into) const = 0;
+    /// The same with the forces of the last step, which the laws computed at the velocities of the half step before.
+    /// Times the time step, the powers are what the step took out of the motion: kinetic energy at half steps changes
+    /// by them, the work of the walls and that of body forces: to rounding in double precision, to 1e-3 in mixed
+    /// precision, where it is judged anew whether springs yield. After a step only.
+    virtual void step_contacts(std::vector<ContactForce>& into) const = 0;
     /// The wall with this number as it is, with way and speed of its free motions.
     [[nodiscard]] virtual const Wall& wall(std::size_t wall) const = 0;
     /// Of the wall with this number, about a point.

@@ -25,8 +25,8 @@ enum class NormalLaw { hertz, linear };
 
 /// How touching bodies attract each other. By cohesion energy density times a contact area, overlap d, first order in
 /// d for equal spheres: sjkr pi R d (LIGGGHTS 3.8 `sjkr`), sjkr2 2 pi R d, paper pi R d/4 (Gupta, eq. 15 as printed).
-/// By surface energy: jkr (laws/jkr.hpp), dmt (laws/dmt.hpp).
-enum class CohesionLaw { sjkr, sjkr2, paper, jkr, dmt };
+/// By surface energy: jkr (laws/jkr.hpp), dmt (laws/dmt.hpp). By liquid bridges: capillary (laws/capillary.hpp).
+enum class CohesionLaw { sjkr, sjkr2, paper, jkr, dmt, capillary };
 
 /// The force in Coulomb's limit: the contact force without the cohesive part, or the net normal force.
 enum class FrictionLimit { contact, net };
@@ -39,6 +39,13 @@ enum class RollingLaw { epsd, epsd_liggghts, cdt };
 [[nodiscard]] constexpr bool acts_by_surface_energy(CohesionLaw law) {
     return law == CohesionLaw::jkr || law == CohesionLaw::dmt;
 }
+
+[[nodiscard]] constexpr bool acts_over_area(CohesionLaw law) {
+    return !acts_by_surface_energy(law) && law != CohesionLaw::capillary;
+}
+
+/// Of a liquid bridge over that of a sphere: larger ones meet one another.
+inline constexpr double largest_bridge = 0.03;
 
 /// Elastic constants of a body.
 struct Elasticity {
@@ -67,8 +74,11 @@ struct Material {
     /// eta_r, damping of the rolling spring over the critical one, [0, 1]; not of cdt, and only while the spring holds:
     /// what stopped rolling rocks on its spring, and 0.3 ends that within about one period
     double rolling_damping = 0.3;
-    double cohesion = 0;        ///< cohesion energy density of sjkr, sjkr2, paper, J/m3; 0: none of them at all
-    double surface_energy = 0;  ///< w of jkr, dmt: work of adhesion per contact area, J/m2; 0: none of them at all
+    double cohesion = 0;          ///< cohesion energy density of sjkr, sjkr2, paper, J/m3; 0: none of them at all
+    double surface_energy = 0;    ///< w of jkr, dmt: work of adhesion per contact area, J/m2; 0: none of them at all
+    double surface_tension = 0;   ///< of capillary, N/m; 0: no bridges at all
+    double contact_angle = 0;     ///< likewise, rad, [0, pi/2)
+    double bridge_volume = 0.01;  ///< likewise, of a bridge over that of a sphere of its bodies' harmonic mean radius
     CohesionLaw cohesion_law = CohesionLaw::sjkr;
     FrictionLimit friction_limit = FrictionLimit::contact;
 

@@ -1,10 +1,12 @@
 #include "solver/dem/kinds.hpp"
+#include "solver/dem/laws/capillary.hpp"
 #include "solver/dem/shaking.hpp"
 #include "solver/geometry/vector.hpp"
 #include "solver/particles/neighbour_list.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
@@ -32,6 +34,10 @@ void check(const Material& m) {
     require(not_negative(m.friction), "the friction must not be negative");
     require(not_negative(m.cohesion), "the cohesion energy density must not be negative");
     require(not_negative(m.surface_energy), "the surface energy must not be negative");
+    require(not_negative(m.surface_tension), "the surface tension must not be negative");
+    require(m.contact_angle >= 0 && m.contact_angle < std::numbers::pi / 2, "the contact angle must lie in [0, pi/2)");
+    require(m.bridge_volume > 0 && m.bridge_volume <= largest_bridge,
+            "the volume of a bridge over that of a sphere must lie in (0, 0.03]");
     // Beyond 1 the rolling spring would be stiffer than those the time step is judged by.
     if (m.partner) {
         require(positive(m.partner->youngs_modulus), "Young's modulus must be positive");
@@ -87,6 +93,17 @@ void check_spheres(const Setup& setup) {
     }
 }
 
+/// A particle must reach a partner across a bridge through one image only.
+void check_bridges(const Setup& setup, const std::vector<Material>& materials) {
+    const double largest = radii_of(setup).largest;
+    double longest = 0;
+    for (const Material& m : materials) longest = std::max(longest, Capillary<double>::beyond(m, largest / 2));
+    for (std::size_t k = 0; k < 3; ++k)
+        require(!(longest > 0) || !setup.domain.periodic[k] ||
+                    setup.domain.high[k] - setup.domain.low[k] > 2.02 * (2 * largest + longest),
+                "a period must be longer than two of the largest diameters and of the longest bridges");
+}
+
 }  // namespace
 
 void require_possible(const Setup& setup) {
@@ -100,9 +117,14 @@ void require_possible(const Setup& setup) {
         require(m.normal_law == all.front().normal_law, "all contacts of a case must have the same normal law");
         require(m.normal_law == NormalLaw::hertz || !(m.surface_energy > 0 && acts_by_surface_energy(m.cohesion_law)),
                 "jkr and dmt deform elastic spheres: with the linear law take sjkr, sjkr2 or paper");
+        require(m.normal_law == NormalLaw::hertz || m.cohesion_law != CohesionLaw::capillary,
+                "liquid bridges need the normal law hertz");
+        require((m.cohesion_law == CohesionLaw::capillary) == (all.front().cohesion_law == CohesionLaw::capillary),
+                "all contacts of a case have the law capillary or none: without surface tension where no bridges are");
         require(m.cohesion_law != CohesionLaw::jkr || (m.surface_energy > 0) == (all.front().surface_energy > 0),
                 "jkr needs surface energy in all contacts or in none: a small one, or dmt, where there is none");
     }
+    check_bridges(setup, all);
     require(positive(setup.time_step), "the time step must be positive");
     require(geometry::finite(setup.gravity), "gravity must be finite");
     require(geometry::finite(setup.shaking.amplitude) && not_negative(setup.shaking.frequency),

@@ -35,6 +35,9 @@ Vec3 displacement(const Press& m, double) {
 Vec3 displacement(const Drive&, double) {
     return {};
 }
+Vec3 displacement(const Flight& m, double) {
+    return m.way;
+}
 
 Vec3 velocity(const Translation& m, double) {
     return m.velocity;
@@ -52,27 +55,75 @@ Vec3 velocity(const Press& m, double) {
 Vec3 velocity(const Drive&, double) {
     return {};
 }
+Vec3 velocity(const Flight& m, double) {
+    return m.velocity;
+}
 
-/// A turn about an axis, prescribed or free, as it is at a time.
-struct Turn {
-    Vec3 point{}, axis{};
-    double angle = 0, speed = 0;
-};
-std::optional<Turn> turn_of(const Motion& motion, double t) {
-    if (const auto* m = std::get_if<Rotation>(&motion))
-        return Turn{m->point, m->axis, m->speed * elapsed(*m, t), runs(*m, t) ? m->speed : 0};
-    if (const auto* m = std::get_if<Drive>(&motion)) return Turn{m->point, m->axis, m->way, m->speed};
-    return std::nullopt;
+Vec3 displacement_of(std::span<const Motion> motions, double t) {
+    Vec3 total{};
+    for (const Motion& motion : motions) total += std::visit([t](const auto& m) { return displacement(m, t); }, motion);
+    return total;
 }
 
 /// Rodrigues: R a = cos a + sin (k x a) + (1 - cos) (k . a) k, column by column.
-std::array<Vec3, 3> rotation_rows(const Turn& turn) {
-    const double c = std::cos(turn.angle), s = std::sin(turn.angle);
-    const Vec3& k = turn.axis;
+std::array<Vec3, 3> rotation_rows(const Vec3& k, double angle) {
+    const double c = std::cos(angle), s = std::sin(angle);
     const double u = 1 - c;
     return {{{c + u * k[0] * k[0], u * k[0] * k[1] - s * k[2], u * k[0] * k[2] + s * k[1]},
              {u * k[1] * k[0] + s * k[2], c + u * k[1] * k[1], u * k[1] * k[2] - s * k[0]},
              {u * k[2] * k[0] - s * k[1], u * k[2] * k[1] + s * k[0], c + u * k[2] * k[2]}}};
+}
+
+using Quaternion = std::array<double, 4>;
+
+std::array<Vec3, 3> rows_of(const Quaternion& q) {
+    const auto [w, x, y, z] = q;
+    return {{{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
+             {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
+             {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}}};
+}
+
+Quaternion product(const Quaternion& a, const Quaternion& b) {
+    return {
+        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3], a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1], a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
+}
+
+/// Angular momentum along an axis of inertia, which the body has turned.
+double momentum_along(const Flight& m, std::size_t axis) {
+    const Pose pose{.turned = true, .rows = rows_of(m.turned), .shift = {}};
+    return dot(pose.turn(m.axes[axis]), m.angular_momentum);
+}
+
+/// Turns a body without moments for `span`: free turns about one axis of inertia after the other, which keep the
+/// angular momentum; of second order and reversible (Dullweber, Leimkuhler & McLachlan 1997, doi 10.1063/1.474310).
+void turn_freely(Flight& m, double span) {
+    constexpr std::array<std::size_t, 5> order = {0, 1, 2, 1, 0};
+    constexpr std::array<double, 5> shares = {0.5, 0.5, 1, 0.5, 0.5};
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        const std::size_t axis = order[k];
+        const double half = shares[k] * span * momentum_along(m, axis) / m.inertia[axis] / 2;
+        const double s = std::sin(half);
+        m.turned = product(m.turned, {std::cos(half), s * m.axes[axis][0], s * m.axes[axis][1], s * m.axes[axis][2]});
+    }
+    double square = 0;
+    for (const double part : m.turned) square += part * part;
+    for (double& part : m.turned) part /= std::sqrt(square);
+}
+
+/// A turn about a point, prescribed or free, as it is at a time.
+struct Turn {
+    Vec3 point{}, spin{};
+    std::array<Vec3, 3> rows{};
+};
+std::optional<Turn> turn_of(const Motion& motion, double t) {
+    if (const auto* m = std::get_if<Rotation>(&motion))
+        return Turn{m->point, (runs(*m, t) ? m->speed : 0) * m->axis,
+                    rotation_rows(m->axis, m->speed * elapsed(*m, t))};
+    if (const auto* m = std::get_if<Drive>(&motion))
+        return Turn{m->point, m->speed * m->axis, rotation_rows(m->axis, m->way)};
+    if (const auto* m = std::get_if<Flight>(&motion)) return Turn{m->centre, spin_of(*m), rows_of(m->turned)};
+    return std::nullopt;
 }
 
 /// The pose after turning what stands in `pose` about a point.
@@ -91,65 +142,104 @@ Pose rotated(const Pose& pose, const std::array<Vec3, 3>& rows, const Vec3& poin
 
 Pose pose_at(std::span<const Motion> motions, double time) {
     Pose pose;
-    Vec3 total{};
-    for (const Motion& motion : motions) {
-        total += std::visit([time](const auto& m) { return displacement(m, time); }, motion);
-        if (const auto m = turn_of(motion, time)) pose = rotated(pose, rotation_rows(*m), m->point);
-    }
-    pose.shift += total;
+    for (const Motion& motion : motions)
+        if (const auto turn = turn_of(motion, time)) pose = rotated(pose, turn->rows, turn->point);
+    pose.shift += displacement_of(motions, time);
     return pose;
 }
 
 Twist twist_at(std::span<const Motion> motions, double time) {
     Twist twist;
-    Vec3 total{}, rate{};
+    Vec3 rate{};
     for (const Motion& motion : motions) {
-        total += std::visit([time](const auto& m) { return displacement(m, time); }, motion);
         if (std::visit([time](const auto& m) { return runs(m, time); }, motion))
             rate += std::visit([time](const auto& m) { return velocity(m, time); }, motion);
-        const auto m = turn_of(motion, time);
-        if (!m) continue;
+        const auto turn = turn_of(motion, time);
+        if (!turn) continue;
         if (twist.turns) {  // carried along, then seen from the new point
-            const Pose carry{.turned = true, .rows = rotation_rows(*m), .shift = {}};
+            const Pose carry{.turned = true, .rows = turn->rows, .shift = {}};
             twist.spin = carry.turn(twist.spin);
-            const Vec3 pivot = m->point + carry.turn(twist.pivot - m->point);
-            twist.velocity = carry.turn(twist.velocity) + cross(twist.spin, m->point - pivot);
+            const Vec3 pivot = turn->point + carry.turn(twist.pivot - turn->point);
+            twist.velocity = carry.turn(twist.velocity) + cross(twist.spin, turn->point - pivot);
         }
-        if (m->speed != 0) twist.spin += m->speed * m->axis;
-        twist.pivot = m->point;
+        if (turn->spin != Vec3{}) twist.spin += turn->spin;
+        twist.pivot = turn->point;
         twist.turns = true;
     }
     twist.velocity += rate;
-    twist.pivot += total;
+    twist.pivot += displacement_of(motions, time);
     return twist;
 }
 
 bool is_free(const Motion& motion) {
-    return std::holds_alternative<Press>(motion) || std::holds_alternative<Drive>(motion);
+    return std::visit(
+        [](const auto& m) {
+            return requires {
+                m.way;
+            };
+        },
+        motion);
 }
 
-void kick(Motion& motion, const Vec3& force, const Vec3& moment, const Vec3& about, double time, double span) {
+bool turns(const Motion& motion) {
+    return std::holds_alternative<Rotation>(motion) || std::holds_alternative<Drive>(motion) ||
+           std::holds_alternative<Flight>(motion);
+}
+
+Vec3 spin_of(const Flight& m) {
+    Vec3 spin{};
+    for (std::size_t k = 0; k < 3; ++k) spin += momentum_along(m, k) / m.inertia[k] * m.axes[k];
+    return Pose{.turned = true, .rows = rows_of(m.turned), .shift = {}}.turn(spin);
+}
+
+void kick(std::span<Motion> motions, const Vec3& force, const Vec3& moment, const Vec3& about, double time,
+          double span) {
+    const Vec3 shift = displacement_of(motions, time);
+    const auto moment_about = [&](const Vec3& point) { return moment + cross(about - shift - point, force); };
     const auto set = [&](auto& m, double acceleration) {
         m.speed = runs(m, time) ? std::clamp(m.speed + span * acceleration, -m.fastest, m.fastest) : 0;
     };
-    if (auto* m = std::get_if<Press>(&motion)) set(*m, (m->force + dot(force, m->along)) / m->mass);
-    if (auto* m = std::get_if<Drive>(&motion))
-        set(*m, (m->moment + dot(moment + cross(about - m->point, force), m->axis)) / m->inertia);
+    for (Motion& motion : motions) {
+        if (auto* m = std::get_if<Press>(&motion)) set(*m, (m->force + dot(force, m->along)) / m->mass);
+        if (auto* m = std::get_if<Drive>(&motion))
+            set(*m, (m->moment + dot(moment_about(m->point), m->axis)) / m->inertia);
+        auto* m = std::get_if<Flight>(&motion);
+        if (m == nullptr) continue;
+        if (!runs(*m, time)) {
+            m->velocity = m->angular_momentum = {};
+            continue;
+        }
+        for (std::size_t k = 0; k < 3; ++k) m->velocity[k] += m->freedom[k] * span / m->mass * (m->force[k] + force[k]);
+        m->angular_momentum += span * (m->moment + moment_about(m->centre));
+        if (const double speed = norm(m->velocity); speed > m->fastest) m->velocity = m->fastest / speed * m->velocity;
+        if (const double spin = norm(spin_of(*m)); spin > m->fastest_turn)
+            m->angular_momentum = m->fastest_turn / spin * m->angular_momentum;
+    }
 }
 
 void drift(Motion& motion, double span) {
     if (auto* m = std::get_if<Press>(&motion)) m->way += span * m->speed;
     if (auto* m = std::get_if<Drive>(&motion)) m->way += span * m->speed;
+    if (auto* m = std::get_if<Flight>(&motion)) {
+        m->way += span * m->velocity;
+        if (m->angular_momentum != Vec3{}) turn_freely(*m, span);
+    }
 }
 
 void take_state(Motion& motion, std::span<const Motion> from) {
+    const auto take = [](auto& m, const auto& other) {
+        m.way = other.way;
+        if constexpr (requires { m.speed; })
+            m.speed = other.speed;
+        else
+            m.velocity = other.velocity, m.turned = other.turned, m.angular_momentum = other.angular_momentum;
+    };
     for (const Motion& before : from)
         if (before.index() == motion.index())
             std::visit(
                 [&]<class M>(M& m) {
                     if constexpr (requires { m.way; })
-                        if (const M& other = std::get<M>(before); other.number == m.number)
-                            m.way = other.way, m.speed = other.speed;
+                        if (const M& other = std::get<M>(before); other.number == m.number) take(m, other);
                 },
                 motion);
 }
@@ -161,33 +251,66 @@ bool is_still(const Motion& motion) {
     return std::get<Rotation>(motion).speed == 0;
 }
 
+namespace {
+
+bool is_positive(double x) {
+    return x > 0 && std::isfinite(x);
+}
+
+std::string flaw_of(const Translation& m) {
+    return finite(m.velocity) ? "" : "a motion must be finite";
+}
+std::string flaw_of(const Vibration& m) {
+    return finite(m.amplitude) && std::isfinite(m.frequency) && std::isfinite(m.phase) ? "" : "a motion must be finite";
+}
+std::string flaw_of(const Rotation& m) {
+    if (!(finite(m.point) && finite(m.axis) && std::isfinite(m.speed))) return "a motion must be finite";
+    return is_unit(m.axis) ? "" : "the axis of a rotation must have unit length";
+}
+std::string flaw_of(const Press& m) {
+    if (!(finite(m.along) && std::isfinite(m.force) && std::isfinite(m.way) && std::isfinite(m.speed)))
+        return "a motion must be finite";
+    if (!is_unit(m.along)) return "the direction of a press must have unit length";
+    if (!is_positive(m.mass)) return "the mass of a pressed wall must be above 0";
+    return is_positive(m.fastest) ? "" : "the speed of a pressed wall must have a bound above 0";
+}
+std::string flaw_of(const Drive& m) {
+    if (!(finite(m.point) && finite(m.axis) && std::isfinite(m.moment) && std::isfinite(m.way) &&
+          std::isfinite(m.speed)))
+        return "a motion must be finite";
+    if (!is_unit(m.axis)) return "the axis of a drive must have unit length";
+    if (!is_positive(m.inertia)) return "the inertia of a driven wall must be above 0";
+    return is_positive(m.fastest) ? "" : "the speed of a driven wall must have a bound above 0";
+}
+std::string flaw_of(const Flight& m) {
+    double square = 0;
+    for (const double part : m.turned) square += part * part;
+    if (!(finite(m.centre) && finite(m.force) && finite(m.moment) && finite(m.way) && finite(m.velocity) &&
+          finite(m.angular_momentum)))
+        return "a motion must be finite";
+    if (!(std::abs(square - 1) < 1e-9 && std::ranges::all_of(m.axes, is_unit)))
+        return "the axes of a free body must have unit length";
+    if (!(is_positive(m.mass) && std::ranges::all_of(m.inertia, is_positive)))
+        return "mass and moments of inertia of a free body must be above 0";
+    return is_positive(m.fastest) && is_positive(m.fastest_turn) ? ""
+                                                                 : "the speed of a free body must have a bound above 0";
+}
+
+}  // namespace
+
 std::string flaw(const Motion& motion) {
     const bool ordered = std::visit([](const auto& m) { return std::isfinite(m.start) && m.end >= m.start; }, motion);
     if (!ordered) return "a motion must start at a finite time and not end before it";
-    bool sound = true;
-    if (const auto* m = std::get_if<Translation>(&motion)) sound = finite(m->velocity);
-    if (const auto* m = std::get_if<Vibration>(&motion))
-        sound = finite(m->amplitude) && std::isfinite(m->frequency) && std::isfinite(m->phase);
-    if (const auto* m = std::get_if<Rotation>(&motion)) {
-        sound = finite(m->point) && finite(m->axis) && std::isfinite(m->speed);
-        if (sound && !is_unit(m->axis)) return "the axis of a rotation must have unit length";
+    return std::visit([](const auto& m) { return flaw_of(m); }, motion);
+}
+
+std::string flaw(std::span<const Motion> motions) {
+    bool free_turn = false;
+    for (const Motion& motion : motions) {
+        if (free_turn && turns(motion)) return "nothing may turn a wall after a drive, or after it moves freely";
+        free_turn = free_turn || (turns(motion) && is_free(motion));
     }
-    if (const auto* m = std::get_if<Press>(&motion)) {
-        sound = finite(m->along) && std::isfinite(m->force) && std::isfinite(m->way) && std::isfinite(m->speed);
-        if (sound && !is_unit(m->along)) return "the direction of a press must have unit length";
-        if (!(m->mass > 0 && std::isfinite(m->mass))) return "the mass of a pressed wall must be above 0";
-        if (!(m->fastest > 0 && std::isfinite(m->fastest)))
-            return "the speed of a pressed wall must have a bound above 0";
-    }
-    if (const auto* m = std::get_if<Drive>(&motion)) {
-        sound = finite(m->point) && finite(m->axis) && std::isfinite(m->moment) && std::isfinite(m->way) &&
-                std::isfinite(m->speed);
-        if (sound && !is_unit(m->axis)) return "the axis of a drive must have unit length";
-        if (!(m->inertia > 0 && std::isfinite(m->inertia))) return "the inertia of a driven wall must be above 0";
-        if (!(m->fastest > 0 && std::isfinite(m->fastest)))
-            return "the speed of a driven wall must have a bound above 0";
-    }
-    return sound ? "" : "a motion must be finite";
+    return {};
 }
 
 }  // namespace grainsweep::geometry

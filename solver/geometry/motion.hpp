@@ -6,6 +6,7 @@
 //     rotation      by the angle w s, right hand, about an axis through a point
 //     press         d = way k              m dv/dt = F + load . k, |v| at most `fastest`
 //     drive         by `way` about an axis I dw/dt = M + moment of the load about the axis, |w| at most `fastest`
+//     flight        d = way, turned by q   m dv/dt = F + load, dL/dt = M + moment of the load about the centre of mass
 //
 // A list is added up: displacements to D, rotations one after the other, and all points of rotations travel with D:
 //
@@ -13,6 +14,7 @@
 //
 // so that a later rotation carries the axes of those before it (a stirrer on its own shaft, then around the vessel).
 // Velocity of the material: v(x) = dD/dt + sum_k w_k x (x - o_k), with axes and points where they are by then.
+// Nothing turns a body after a drive or a flight, so that their axes and centres are where the load acts.
 #pragma once
 
 #include "solver/geometry/vector.hpp"
@@ -86,10 +88,40 @@ struct Drive {
     }
 };
 
-using Motion = std::variant<Translation, Vibration, Rotation, Press, Drive>;
+/// A rigid body that turns about its centre of mass and shifts along the axes that are free, between `start` and `end`;
+/// held outside of them.
+struct Flight {
+    Vec3 centre{};                                                    ///< of mass, where the body is given, m
+    double mass = 1;                                                  ///< kg
+    std::array<Vec3, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};      ///< of inertia, as the body is given; unit
+    Vec3 inertia{1, 1, 1};                                            ///< about them, kg m2
+    Vec3 freedom{1, 1, 1};                                            ///< 0: its centre is held along this axis
+    Vec3 force{}, moment{};                                           ///< N, with the weight; N m
+    double fastest = 0;                                               ///< m/s, of the centre
+    double fastest_turn = 0;                                          ///< rad/s
+    double start = 0, end = std::numeric_limits<double>::infinity();  ///< s
+    double number = 0;                                                ///< that tells it from others of the body
+    Vec3 way{}, velocity{};                                           ///< of the centre, m, m/s
+    std::array<double, 4> turned{1, 0, 0, 0};                         ///< unit quaternion
+    Vec3 angular_momentum{};                                          ///< about the centre, kg m2/s
 
-/// What an engine advances: Press and Drive.
+    static void fields(auto& m, auto&& visit) {
+        visit(m.centre), visit(m.mass);
+        for (auto& axis : m.axes) visit(axis);
+        visit(m.inertia), visit(m.freedom), visit(m.force), visit(m.moment), visit(m.fastest), visit(m.fastest_turn),
+            visit(m.start);
+        visit(m.end), visit(m.number), visit(m.way), visit(m.velocity), visit(m.turned), visit(m.angular_momentum);
+    }
+};
+
+using Motion = std::variant<Translation, Vibration, Rotation, Press, Drive, Flight>;
+
+/// What an engine advances: Press, Drive and Flight.
 [[nodiscard]] bool is_free(const Motion& motion);
+/// Whether it turns the body: Rotation, Drive and Flight.
+[[nodiscard]] bool turns(const Motion& motion);
+/// Angular velocity of a flight, rad/s.
+[[nodiscard]] Vec3 spin_of(const Flight& flight);
 
 /// Where a body stands: x = R X + shift.
 struct Pose {
@@ -116,9 +148,10 @@ struct Twist {
 [[nodiscard]] Pose pose_at(std::span<const Motion> motions, double time);
 /// A motion counts from its start on, up to its end.
 [[nodiscard]] Twist twist_at(std::span<const Motion> motions, double time);
-/// The speed of a free motion after `span` under a load: force on the body, and its moment about a point, at `time`.
+/// The speeds of free motions after `span` under a load: force on the body, and its moment about a point, at `time`.
 /// Others stay as they are. A motion that is held at that time has no speed.
-void kick(Motion& motion, const Vec3& force, const Vec3& moment, const Vec3& about, double time, double span);
+void kick(std::span<Motion> motions, const Vec3& force, const Vec3& moment, const Vec3& about, double time,
+          double span);
 /// The way of a free motion after `span`.
 void drift(Motion& motion, double span);
 /// Takes way and speed of the free motion of the same kind and number.
@@ -127,5 +160,7 @@ void take_state(Motion& motion, std::span<const Motion> from);
 [[nodiscard]] bool is_still(const Motion& motion);
 /// What is wrong with it, in one sentence; empty: nothing.
 [[nodiscard]] std::string flaw(const Motion& motion);
+/// What is wrong with them together.
+[[nodiscard]] std::string flaw(std::span<const Motion> motions);
 
 }  // namespace grainsweep::geometry

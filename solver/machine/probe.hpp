@@ -37,6 +37,7 @@ struct Sight {
     double time = 0;                      ///< s since the start
     double peak_overlap = 0;              ///< the deepest at any step since the phase began
     std::span<const double> radius = {};  ///< by id, of all there ever were, m
+    double time_step = 0;                 ///< s
 
     [[nodiscard]] std::size_t size() const { return state.id.size(); }
     [[nodiscard]] std::size_t id(std::size_t i) const { return static_cast<std::size_t>(state.id[i]); }
@@ -102,6 +103,9 @@ public:
     /// Returns the value at this moment; undefined where there is none. Of a profile: one number that sums it up, or
     /// undefined.
     [[nodiscard]] virtual double look(const Sight& sight) = 0;
+    /// Sees every step of the phases that count, where its row says so; the contacts are those of the step itself
+    /// (dem::Engine::step_contacts).
+    virtual void step(const Sight&) {}
     /// Appends bins and values at this moment; a scalar has none.
     virtual void profile(const Sight&, std::vector<Sample>&) {}
     /// What it remembers from look to look.
@@ -117,6 +121,7 @@ struct ProbeInfo {
     std::string_view over = {};  ///< of a profile: what it runs along, with its unit
     /// What is wrong with the options together, in one sentence; empty: nothing. May be absent.
     std::string (*flaw)(const Options&) = nullptr;
+    bool steps = false;  ///< sees every step, which costs several times as much as the step
 };
 
 /// All probes, sorted by name.

@@ -51,10 +51,17 @@ Run::Run(Spec spec, std::uint64_t seed) : spec_(std::move(spec)), records_(spec_
     }
     for (const Phase& phase : spec_.phases) {
         auto& watching = watching_.emplace_back();
+        auto& at_steps = at_steps_.emplace_back();
+        const auto attend = [&](const Measure& measure, Probe& probe) {
+            if (find_probe(measure.probe)->steps) at_steps.push_back(&probe);
+        };
+        for (std::size_t m = 0; m < probes_.size(); ++m)
+            if (holds(spec_.measures[m].during, at_steps_.size() - 1)) attend(spec_.measures[m], *probes_[m]);
         for (const Until& until : phase.until) {
             const auto* passes = std::get_if<Passes>(&until);
             const Measure* measure = passes != nullptr ? &spec_.measures[passes->measure] : nullptr;
             watching.push_back(measure != nullptr ? find_probe(measure->probe)->make(measure->options) : nullptr);
+            if (measure != nullptr) attend(*measure, *watching.back());
         }
     }
     glued_ = std::ranges::count(start.spheres, false, &dem::Sphere::mobile);
@@ -82,6 +89,7 @@ static std::int64_t check_steps(const Spec& spec, const Phase& phase) {
 }
 
 std::int64_t Run::next_stop() const {
+    if (!at_steps_[phase_].empty()) return step_ + 1;
     std::int64_t stop = phase_begin_ + phase_steps();
     if (frame_ <= phase().frames) stop = std::min(stop, step_of_frame(frame_));
     if (!phase().until.empty() && !phase().ends_at_frames)
@@ -129,6 +137,10 @@ void Run::end_phase(std::uint8_t condition) {
 }
 
 void Run::stop_here() {
+    if (!at_steps_[phase_].empty()) {
+        const Sight sight = look(Contacts::of_step);
+        for (Probe* probe : at_steps_[phase_]) probe->step(sight);
+    }
     if (step_ > phase_begin_) feed();
     const bool framed = frame_ <= phase().frames && step_ == step_of_frame(frame_);
     if (framed) take_frame();
@@ -182,17 +194,19 @@ void Run::enlist(const Filled& filled) {
     for (const auto& sphere : filled.spheres) radius_.push_back(sphere.radius);
 }
 
-Sight Run::look(bool contacts) {
+Sight Run::look(Contacts contacts) {
     engine_->state(state_);
     contacts_.clear();
-    if (contacts) engine_->contacts(contacts_);
-    return {
-        *engine_, state_, contacts_, species_, density_, spec_.domain, spec_.gravity, time(), engine_->peak_overlap(),
-        radius_};
+    if (contacts == Contacts::present) engine_->contacts(contacts_);
+    if (contacts == Contacts::of_step) engine_->step_contacts(contacts_);
+    return {*engine_,      state_,         contacts_,
+            species_,      density_,       spec_.domain,
+            spec_.gravity, time(),         engine_->peak_overlap(),
+            radius_,       spec_.time_step};
 }
 
 void Run::take_frame() {
-    const Sight sight = look(needs_contacts_);
+    const Sight sight = look(needs_contacts_ ? Contacts::present : Contacts::none);
     for (std::size_t m = 0; m < probes_.size(); ++m) {
         const Measure& measure = spec_.measures[m];
         if (!holds(measure.during, phase_)) continue;
@@ -222,7 +236,7 @@ void Run::take_frame() {
 }
 
 double Run::mass_in(const Region& region) {
-    const Sight sight = look(false);
+    const Sight sight = look(Contacts::none);
     double mass = 0;
     for (std::size_t i = 0; i < sight.size(); ++i)
         if (state_.mobile[i] != 0 && region.contains(state_.position[i])) mass += sight.mass(i);
@@ -241,7 +255,7 @@ bool Run::holds_now(std::size_t condition) {
     const Until& until = phase().until[condition];
     double& calm_since = calm_since_[condition];
     if (std::holds_alternative<AtRest>(until)) {
-        const Sight sight = look(false);
+        const Sight sight = look(Contacts::none);
         double energy = 0, scale = 0;
         for (std::size_t i = 0; i < sight.size(); ++i) {
             if (state_.mobile[i] == 0) continue;
@@ -259,8 +273,8 @@ bool Run::holds_now(std::size_t condition) {
         return time() - calm_since >= flow->quiet;
     }
     const auto& passes = std::get<Passes>(until);
-    const double value =
-        watching_[phase_][condition]->look(look(find_probe(spec_.measures[passes.measure].probe)->contacts));
+    const double value = watching_[phase_][condition]->look(
+        look(find_probe(spec_.measures[passes.measure].probe)->contacts ? Contacts::present : Contacts::none));
     return passes.above ? value > passes.value : value < passes.value;
 }
 

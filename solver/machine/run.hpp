@@ -62,7 +62,8 @@ private:
     /// Whether its conditions are looked at in this step.
     [[nodiscard]] bool checks_here(bool framed);
     [[nodiscard]] bool holds_now(std::size_t condition);
-    [[nodiscard]] Sight look(bool contacts);
+    enum class Contacts { none, present, of_step };
+    [[nodiscard]] Sight look(Contacts contacts);
     [[nodiscard]] double mass_in(const Region& region);
     void add(const Filled& filled);
     /// As they are, with ways and speeds of those that the powder moves.
@@ -80,6 +81,7 @@ private:
     std::unique_ptr<dem::Engine> engine_;
     std::vector<std::unique_ptr<Probe>> probes_;                 // of measures
     std::vector<std::vector<std::unique_ptr<Probe>>> watching_;  // those that end a phase, by its conditions
+    std::vector<std::vector<Probe*>> at_steps_;                  // of both, those that see every step of a phase
     std::vector<Feeder> feeders_;
     bool needs_contacts_ = false;
 

@@ -62,8 +62,7 @@ void widen_by(Bounds& all, const MachineWall& wall, const std::vector<Phase>& ph
         const auto extent = std::visit([&](const auto& shape) { return shape.extent(k); }, wall.shape);
         body.low[k] = extent.low, body.high[k] = extent.high;
     }
-    const bool turns =
-        std::ranges::any_of(motions, [](const Motion& m) { return std::holds_alternative<geometry::Rotation>(m); });
+    const bool turns = std::ranges::any_of(motions, geometry::turns);
     for (int n = 0; n <= (motions.empty() ? 0 : poses); ++n) {
         const auto pose = geometry::pose_at(motions, end * n / poses);
         for (unsigned corner = 0; corner < 8; ++corner) {

@@ -99,4 +99,9 @@ geometry::Mesh stl_mesh(std::string_view contents, double scale, double facet_an
     return geometry::Mesh(std::move(surface), facet_angle);
 }
 
+std::optional<geometry::Solid> solid_of(const geometry::Shape& shape) {
+    const auto* mesh = std::get_if<geometry::Mesh>(&shape);
+    return mesh != nullptr ? geometry::solid_of(mesh->surface()) : std::nullopt;
+}
+
 }  // namespace grainsweep::machine

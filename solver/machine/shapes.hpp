@@ -1,9 +1,11 @@
 // Shapes of a machine that are made of triangles: discs, rectangles, boxes and STL files, where they are placed.
 #pragma once
 
-#include "solver/geometry/mesh.hpp"
+#include "solver/geometry/shapes.hpp"
+#include "solver/geometry/solid.hpp"
 
 #include <array>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -30,5 +32,8 @@ struct Placement {
 /// The same of the contents of an STL file, with the length of its unit, m.
 [[nodiscard]] geometry::Mesh stl_mesh(std::string_view contents, double scale, double facet_angle,
                                       const Placement& placement);
+
+/// The body that a closed mesh bounds; nullopt: it is open, or another shape.
+[[nodiscard]] std::optional<geometry::Solid> solid_of(const geometry::Shape& shape);
 
 }  // namespace grainsweep::machine

@@ -38,6 +38,18 @@ std::vector<Grain> about_their_centre(const dem::State& state) {
     return grains;
 }
 
+/// Columns of the width 1 with their middles nearer than `radius` to the axis. No middle is at a whole distance:
+/// (2 i + 1)^2 + (2 j + 1)^2 is no multiple of 4.
+double columns_within(std::int64_t radius) {
+    const std::int64_t square = 4 * radius * radius;
+    std::int64_t quarter = 0, j = radius;
+    for (std::int64_t i = 0; i < radius; ++i) {
+        while (j > 0 && (2 * i + 1) * (2 * i + 1) + (2 * j - 1) * (2 * j - 1) > square) --j;
+        quarter += j;
+    }
+    return static_cast<double>(4 * quarter);
+}
+
 std::vector<double> outline_of(const std::vector<Grain>& grains, double d, std::int64_t rings) {
     std::map<std::pair<std::int64_t, std::int64_t>, double> top;
     for (const Grain& g : grains) {
@@ -45,22 +57,16 @@ std::vector<double> outline_of(const std::vector<Grain>& grains, double d, std::
             top[{static_cast<std::int64_t>(std::floor(g.x / d)), static_cast<std::int64_t>(std::floor(g.y / d))}];
         height = std::max(height, g.top);
     }
-    std::vector<double> sum(static_cast<std::size_t>(rings), 0), columns(sum.size(), 0);
-    const auto ring = [](std::int64_t i, std::int64_t j) {
-        return static_cast<std::size_t>(std::hypot(static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5));
-    };
-    std::int64_t seen = 0;  // rings with a grain: beyond, the sum is 0 over however many columns
+    std::vector<double> outline(static_cast<std::size_t>(rings), 0);
     for (const auto& [at, height] : top) {
-        const std::size_t k = ring(at.first, at.second);
-        if (k >= sum.size()) continue;
-        sum[k] += height;
-        seen = std::max(seen, static_cast<std::int64_t>(k) + 1);
+        const auto ring = static_cast<std::size_t>(
+            std::hypot(static_cast<double>(at.first) + 0.5, static_cast<double>(at.second) + 0.5));
+        if (ring < outline.size()) outline[ring] += height;
     }
-    for (std::int64_t i = -seen; i < seen; ++i)
-        for (std::int64_t j = -seen; j < seen; ++j)
-            if (ring(i, j) < sum.size()) columns[ring(i, j)] += 1;
-    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] /= std::max(columns[k], 1.0);
-    return sum;
+    for (std::int64_t k = 0; k < rings; ++k)
+        if (double& height = outline[static_cast<std::size_t>(k)]; height != 0)
+            height /= columns_within(k + 1) - columns_within(k);
+    return outline;
 }
 
 double angle_by_moments(const std::vector<Grain>& grains, double within) {

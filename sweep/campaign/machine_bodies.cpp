@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace grainsweep::campaign {
 namespace {
@@ -40,6 +41,11 @@ void read_values(const Section& section, const MachineScope& scope, dem::Materia
         scope.number(section, "tangential_ratio", "1", contact.tangential_ratio, {0, 1, true, false});
     contact.cohesion = scope.number(section, "cohesion", "J/m3", contact.cohesion, {0, 1e9});
     contact.surface_energy = scope.number(section, "surface_energy", "J/m2", contact.surface_energy, {0, 100});
+    contact.surface_tension = scope.number(section, "surface_tension", "N/m", contact.surface_tension, {0, 10});
+    contact.contact_angle =
+        scope.number(section, "contact_angle", "rad", contact.contact_angle, {0, std::numbers::pi / 2, false, true});
+    contact.bridge_volume =
+        scope.number(section, "bridge_volume", "1", contact.bridge_volume, {0, dem::largest_bridge, true, false});
 }
 
 template <class Enum>
@@ -80,93 +86,6 @@ void for_every_one(const Section& section, MachineReading& reading, Read read) {
         read(k, count);
         reading.scope = outer;
     }
-}
-
-/// `number`: of the motion in its wall.
-machine::WallMotion read_motion(const Cursor& place, const MachineReading& reading, double number, bool& present) {
-    const auto& scope = reading.scope;
-    const Section section(place, machine_keys::motion());
-    present = scope.present(section);
-    machine::WallMotion motion;
-    int kinds = 0;
-    if (const auto rotate = section.find("rotate")) {
-        const Section of(*rotate, machine_keys::rotate());
-        motion.motion = geometry::Rotation{.point = scope.vector(of, "through", "m"),
-                                           .axis = scope.direction(of.at("axis")),
-                                           .speed = scope.number(of.at("speed"), "rad/s")};
-        ++kinds;
-    }
-    if (const auto shift = section.find("shift")) {
-        const Section of(*shift, machine_keys::shift());
-        motion.motion = geometry::Translation{.velocity = scope.vector(of.at("velocity"), "m/s")};
-        ++kinds;
-    }
-    if (const auto vibrate = section.find("vibrate")) {
-        const Section of(*vibrate, machine_keys::vibrate());
-        motion.motion = geometry::Vibration{.amplitude = scope.vector(of.at("amplitude"), "m"),
-                                            .frequency = scope.number(of.at("frequency"), "Hz", no_negative_number),
-                                            .phase = scope.number(of, "phase", "rad", 0)};
-        ++kinds;
-    }
-    if (const auto press = section.find("press")) {
-        const Section of(*press, machine_keys::press());
-        motion.motion = geometry::Press{.along = scope.direction(of.at("along")),
-                                        .force = scope.number(of.at("force"), "N"),
-                                        .mass = scope.number(of.at("mass"), "kg", positive_number),
-                                        .fastest = scope.number(of.at("speed_at_most"), "m/s", positive_number),
-                                        .number = number};
-        ++kinds;
-    }
-    if (const auto drive = section.find("drive")) {
-        const Section of(*drive, machine_keys::drive());
-        motion.motion = geometry::Drive{.point = scope.vector(of, "through", "m"),
-                                        .axis = scope.direction(of.at("axis")),
-                                        .moment = scope.number(of.at("torque"), "N m"),
-                                        .inertia = scope.number(of.at("inertia"), "kg m2", positive_number),
-                                        .fastest = scope.number(of.at("speed_at_most"), "rad/s", positive_number),
-                                        .number = number};
-        ++kinds;
-    }
-    if (kinds != 1) place.refuse("a motion is one of \"rotate\", \"shift\", \"vibrate\", \"press\" and \"drive\"");
-
-    const auto during = read_during(section, reading);
-    const auto from = section.find("from"), to = section.find("to");
-    if (!during.empty() && (from || to)) section.at("during").refuse("beside \"from\" or \"to\" it says too much");
-    const auto phase_in = [&](const Cursor& end) -> std::optional<std::size_t> {
-        if (!end.json().is_string()) return std::nullopt;
-        const auto word = end.json().get<std::string>();
-        const auto found = std::ranges::find(reading.phases, word);
-        if (found != reading.phases.end()) return static_cast<std::size_t>(found - reading.phases.begin());
-        const auto of_name = [](char c) {
-            return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-        };
-        if (!is_quantity(word) && std::ranges::all_of(word, of_name) && !scope.knows(word)) {
-            const WordList phases(reading.phases);
-            end.refuse(fmt::format("must be a time or a phase: {}", in_words(phases)), nearest_word(word, phases));
-        }
-        return std::nullopt;
-    };
-    const auto first = from ? phase_in(*from) : std::nullopt, last = to ? phase_in(*to) : std::nullopt;
-    if (!during.empty()) {
-        motion.phases = {*std::ranges::min_element(during), *std::ranges::max_element(during)};
-        if (motion.phases->last - motion.phases->first + 1 != during.size())
-            section.at("during").refuse("phases of a motion follow one another; give it twice");
-    } else if (first || last) {
-        if ((from && !first) || (to && !last))
-            place.refuse("\"from\" and \"to\" of a motion are both phases or both times");
-        motion.phases = {first.value_or(0), last.value_or(reading.phases.size())};
-        if (motion.phases->last < motion.phases->first)
-            place.refuse("the phase of \"to\" comes before that of \"from\"");
-    } else {
-        std::visit(
-            [&](auto& m) {
-                if (from) m.start = scope.number(*from, "s", no_negative_number);
-                if (to) m.end = scope.number(*to, "s", no_negative_number);
-            },
-            motion.motion);
-    }
-    if (const auto flaw = geometry::flaw(motion.motion); !flaw.empty()) place.refuse(flaw);
-    return motion;
 }
 
 }  // namespace
@@ -219,6 +138,9 @@ void read_contacts(const Section& top, MachineReading& reading) {
                                      fmt::format("between {} and {}: {}", reading.materials[a], reading.materials[b],
                                                  linear ? "key 'stiffness' is missing: the linear law needs it"
                                                         : "'stiffness' belongs to \"normal_law\": \"linear\""));
+            if (contact.surface_tension > 0 && contact.cohesion_law != dem::CohesionLaw::capillary)
+                throw wrong_question(top.find("contacts")->path(), "",
+                                     "'surface_tension' belongs to \"cohesion_law\": \"capillary\"");
             contact.youngs_modulus = reading.elasticities[a].youngs_modulus;
             contact.poisson_ratio = reading.elasticities[a].poisson_ratio;
             if (reading.elasticities[a] != reading.elasticities[b]) contact.partner = reading.elasticities[b];
@@ -252,7 +174,7 @@ void read_walls(const Section& top, MachineReading& reading) {
                     for (const auto& one : motions->elements())
                         for_every_one(Section(one, machine_keys::motion()), reading, [&](std::int64_t, std::int64_t) {
                             bool acts = true;
-                            auto motion = read_motion(one, reading, static_cast<double>(wall.motions.size()), acts);
+                            auto motion = read_motion(one, reading, wall, acts);
                             if (acts && !geometry::is_still(motion.motion)) wall.motions.push_back(std::move(motion));
                         });
                 const auto material = section.find("material");

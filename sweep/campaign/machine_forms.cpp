@@ -105,6 +105,7 @@ constexpr auto motion_keys = std::to_array<Key>({
     {"vibrate", FormKey::object, "to and fro"},
     {"press", FormKey::object, "a force acts, and the powder resists"},
     {"drive", FormKey::object, "a torque acts, and the powder resists"},
+    {"free", FormKey::object, "its weight acts, and the powder resists: it falls, floats and turns as it must"},
     {"from", FormKey::value, "a phase, at whose beginning it starts, or a time, s; default: at the start"},
     {"to", FormKey::value, "a phase, at whose end it ends, or a time, s; default: never"},
     {"during", FormKey::words, "phases in which it acts, one after the other"},
@@ -138,6 +139,18 @@ constexpr auto drive_keys = std::to_array<Key>({
     needed({"speed_at_most", FormKey::value, "it never turns faster, rad/s; the time step follows from it"}),
 });
 
+constexpr auto free_keys = std::to_array<Key>({
+    needed({"mass", FormKey::value, "of the wall, kg; its weight acts on it"}),
+    {"centre", FormKey::array, "of mass, m; default: of an evenly filled mesh"},
+    {"inertia", FormKey::array,
+     "moments of inertia about the centre, along x, y and z, kg m2; default: of an evenly filled mesh"},
+    {"held", FormKey::array, "along x, y and z a value: not 0 holds its centre along this axis", "[0, 0, 0]"},
+    {"force", FormKey::array, "that acts on the centre besides the weight, N", "[0, 0, 0]"},
+    {"torque", FormKey::array, "that acts on the wall, N m", "[0, 0, 0]"},
+    needed({"speed_at_most", FormKey::value,
+            "its centre never moves faster, nor its farthest corner by turning, m/s; the time step follows from it"}),
+});
+
 constexpr auto vibrate_keys = std::to_array<Key>({
     needed({"amplitude", FormKey::array, "m"}),
     needed({"frequency", FormKey::value, "Hz"}),
@@ -160,6 +173,9 @@ std::span<const Key> press() {
 }
 std::span<const Key> drive() {
     return drive_keys;
+}
+std::span<const Key> free() {
+    return free_keys;
 }
 std::span<const Key> vibrate() {
     return vibrate_keys;

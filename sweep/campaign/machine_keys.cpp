@@ -13,7 +13,7 @@ constexpr std::array<std::string_view, 2> file_words = {"sizes", "stl"};
 constexpr std::array<std::string_view, 3> by_words = {"count", "mass", "volume"};
 constexpr std::array<std::string_view, 4> as_words = {"lattice", "random", "rain", "packed"};
 constexpr std::array<std::string_view, 3> rolling_words = {"epsd", "epsd_liggghts", "cdt"};
-constexpr std::array<std::string_view, 5> cohesion_words = {"sjkr", "sjkr2", "paper", "jkr", "dmt"};
+constexpr std::array<std::string_view, 6> cohesion_words = {"sjkr", "sjkr2", "paper", "jkr", "dmt", "capillary"};
 constexpr std::array<std::string_view, 2> normal_words = {"hertz", "linear"};
 constexpr std::array<std::string_view, 2> limit_words = {"contact", "net"};
 
@@ -92,6 +92,12 @@ constexpr auto contact_keys = std::to_array<Key>({
      "2/7"},
     {"cohesion", MachineKey::value, "cohesion energy density of sjkr, sjkr2, paper, J/m3", "0"},
     {"surface_energy", MachineKey::value, "work of adhesion of jkr and dmt, J/m2", "0"},
+    {"surface_tension", MachineKey::value, "of the liquid of capillary, N/m", "0"},
+    {"contact_angle", MachineKey::value, "of the liquid of capillary, rad", "0"},
+    {"bridge_volume", MachineKey::value,
+     "of capillary: volume of a liquid bridge divided by that of a sphere of the mean radius 2 R1 R2/(R1 + R2), at a "
+     "wall of the sphere",
+     "0.01"},
     {"rolling_law", MachineKey::word, "how rolling is resisted", "\"epsd\"", {}, rolling_words},
     {"cohesion_law", MachineKey::word, "how bodies attract each other", "\"sjkr\"", {}, cohesion_words},
     {"friction_limit",
@@ -280,7 +286,7 @@ std::span<const Key> contacts() {
 }
 /// Contacts without the laws, which are one for all pairs.
 std::span<const Key> pair() {
-    return std::span(contact_keys).first<8>();
+    return std::span(contact_keys).first<11>();
 }
 std::span<const Key> species() {
     return species_keys;
@@ -343,6 +349,7 @@ std::span<const Table> all() {
         Table{"vibrate", vibrate()},
         Table{"press", press()},
         Table{"drive", drive()},
+        Table{"free", free()},
         Table{"A filling", fill_keys},
         Table{"A sphere of a filling", sphere_keys},
         Table{"A feed", feed_keys},

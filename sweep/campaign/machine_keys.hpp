@@ -32,6 +32,7 @@ struct Table {
 [[nodiscard]] std::span<const Key> vibrate();
 [[nodiscard]] std::span<const Key> press();
 [[nodiscard]] std::span<const Key> drive();
+[[nodiscard]] std::span<const Key> free();
 [[nodiscard]] std::span<const Key> fill();
 [[nodiscard]] std::span<const Key> sphere();
 [[nodiscard]] std::span<const Key> feed();

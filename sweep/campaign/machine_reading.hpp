@@ -53,6 +53,9 @@ void read_surroundings(const Section& top, MachineReading& reading);
 void read_checks(const Section& top, MachineReading& reading);
 
 [[nodiscard]] geometry::Shape read_shape(const Section& wall, const MachineReading& reading);
+/// The next motion of a wall, which has its shape and the motions before it. `present`: whether it acts in this case.
+[[nodiscard]] machine::WallMotion read_motion(const Cursor& place, const MachineReading& reading,
+                                              const machine::MachineWall& wall, bool& present);
 /// Phases of "during"; empty: all.
 [[nodiscard]] machine::Phases read_during(const Section& section, const MachineReading& reading);
 /// A measurement of one value, by its name.

@@ -105,6 +105,17 @@ const std::vector<Quantity> of_screw = {same("rate_kg_s", "rate"), same("mass_pe
                                         same("fill_tube", "fill_tube")};
 const std::vector<Quantity> of_silo = {same("rate_kg_s", "rate")};
 
+const std::vector<Quantity> of_compaction = {same("strain_at_20kPa", "strain_half"),
+                                             same("strain_at_peak", "strain"),
+                                             same("unloading_modulus_Pa", "unloading_modulus"),
+                                             same("side_over_mean_axial_at_peak", "side_ratio"),
+                                             same("bottom_over_top_at_peak", "bottom_ratio"),
+                                             same("strain_left_at_10pc", "strain_left"),
+                                             same("H0_m", "height")};
+const std::vector<Quantity> of_rheometer = {
+    same("energy_rotation_J", "rotation_energy"), same("energy_axial_J", "axial_energy"),
+    same("flow_energy_J", "flow_energy"), same("torque_z20", "torque"), same("force_z20", "force")};
+
 class MachinesAgainstLiggghts : public testing::TestWithParam<Case> {};
 
 TEST_P(MachinesAgainstLiggghts, AgreeWithinThreeStandardErrors) {
@@ -139,7 +150,16 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"silo_insert15", "silo_insert", {}, of_silo},
                     Case{"silo_no_insert", "silo_insert", {{"insert", std::string("no")}}, of_silo},
                     Case{"chute_24", "chute", {{"angle", 24.0}}, of_chute()},
-                    Case{"chute_28", "chute", {{"angle", 28.0}}, of_chute()}),
-    [](const auto& one) { return one.param.reference; });
+                    Case{"chute_28", "chute", {{"angle", 28.0}}, of_chute()},
+                    Case{"rheometer_mu0.2", "rheometer", {{"friction", 0.2}}, of_rheometer},
+                    Case{"rheometer_mu0.6", "rheometer", {{"friction", 0.6}}, of_rheometer},
+                    Case{"compaction_hard0", "compaction", {{"hard", 0.0}}, of_compaction},
+                    Case{"compaction_hard0.5", "compaction", {{"hard", 0.5}}, of_compaction},
+                    Case{"compaction_hard1", "compaction", {{"hard", 1.0}}, of_compaction}),
+    [](const auto& one) {
+        std::string name = one.param.reference;
+        std::ranges::replace(name, '.', '_');
+        return name;
+    });
 
 }  // namespace

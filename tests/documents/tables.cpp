@@ -6,6 +6,7 @@
 #include "tests/documents/page.hpp"
 #include "tests/documents/table_rows.hpp"
 #include "tests/support/archive.hpp"
+#include "tests/support/peer_suites.hpp"
 #include "tests/support/process.hpp"
 
 #include <fmt/format.h>
@@ -146,6 +147,14 @@ std::string accuracy_table(const ordered_json& scene) {
     return table;
 }
 
+/// Figures that PeerSuites and slow_peers_suites measured, as they wrote them down.
+std::string peers_table() {
+    std::string table =
+        head({"suite", "one of its figures", "figures", "largest difference divided by its tolerance", "how"});
+    for (const auto& cells : peer_rows()) table += row(cells);
+    return table;
+}
+
 std::string designs_table() {
     std::string table = head({"design", "extends", "what it is good for"});
     for (const auto& design : catalogue({"designs"}))
@@ -242,6 +251,7 @@ std::string generated(const std::string& what) {
         const auto machine = own_part_of_machine(name, part);
         return part == "parameters" ? parameters_table(machine) : observables_table(machine);
     }
+    if (kind == "peers") return peers_table();
     if (kind == "designs") return designs_table();
     if (kind == "design") return options_table(name);
     if (kind == "keys") return keys_table(name);

@@ -1,9 +1,9 @@
-// The eight benchmark impacts of Chung & Ooi (2011), Granular Matter 13, 643, against closed forms, in both engines.
+// Of the eight benchmark impacts of Chung & Ooi (2011), Granular Matter 13, 643, those whose force is compared, against
+// closed forms, in both engines. The others are machine files: PeerSuites.
 //
 // Materials and speeds are like theirs. The contact of a step is resolved into 2000; what the formulas of a hard sphere
 // leave out is of the order of d/R (up to 8e-3 here): the arm R - d/2 of the law and the turn of the normal; a duration
-// is known to a step. Mixed precision adds up to 6e-4 where a spin is large: it is a single-precision number, and what
-// a step adds to it is rounded alike thousands of times.
+// is known to a step.
 // Each test prints its worst error beside its tolerance: the table of solver/dem/README.md.
 #include "solver/dem/engine.hpp"
 #include "solver/dem/material.hpp"
@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <string>
 
 namespace grainsweep::tests::dem_chung_ooi_test {
@@ -34,7 +33,6 @@ struct Impact {
     double second_radius = 0;  ///< 0: the plane z = 0 with normal z
     double approach = 0;       ///< relative normal speed
     Vec3 velocity{};           ///< of the first besides the approach, along x
-    Vec3 spin{}, second_spin{};
 
     [[nodiscard]] double mass() const { return dem::sphere_mass(radius, material.density); }
     [[nodiscard]] double second_mass() const { return dem::sphere_mass(second_radius, material.density); }
@@ -79,21 +77,18 @@ Outcome collide(const Impact& impact, Precision precision) {
         const double share = impact.second_mass() / (impact.mass() + impact.second_mass());
         s.spheres = {{{0, 0, impact.radius + gap / 2},
                       impact.velocity + Vec3{0, 0, -impact.approach * share},
-                      impact.spin,
+                      {},
                       impact.radius,
                       true},
                      {{0, 0, -impact.second_radius - gap / 2},
                       {0, 0, impact.approach * (1 - share)},
-                      impact.second_spin,
+                      {},
                       impact.second_radius,
                       true}};
     } else {
         s.walls = {dem::Plane{}};
-        s.spheres = {{{0, 0, impact.radius + gap},
-                      impact.velocity + Vec3{0, 0, -impact.approach},
-                      impact.spin,
-                      impact.radius,
-                      true}};
+        s.spheres = {
+            {{0, 0, impact.radius + gap}, impact.velocity + Vec3{0, 0, -impact.approach}, {}, impact.radius, true}};
     }
     Method method;
     method.precision = precision;
@@ -148,26 +143,12 @@ private:
     int compared_ = 0;
 };
 
-const auto alumina = [](double restitution, double friction) {
-    return material(3.8e11, 0.23, 4000, restitution, friction);
-};
-const auto steel = [](double friction) { return material(2.08e11, 0.3, 7850, 1, friction); };
-
-/// Gross sliding of the first sphere: slip v_t + R w along x at its lowest point, from v_t and R w.
-struct Sliding {
-    double velocity, turn;
-};
-/// Signs: R w counts positive where it adds to the slip, which at the lowest point is w_y = -w.
-Sliding after_sliding(double velocity, double turn, double change) {
-    return {velocity - change, turn - 2.5 * change};
-}
-
 class DemChungOoi : public testing::TestWithParam<Precision> {};
 
 TEST_P(DemChungOoi, ElasticNormalImpactOfTwoSpheres) {
     Score time("1 two spheres, elastic", "duration, peak force", GetParam(), 6e-4);
     for (const double v : {2.0, 20.0}) {
-        const Impact impact{material(4.8e10, 0.2, 2800, 1, 0.35), 0.01, 0.01, v, {}, {}, {}};
+        const Impact impact{material(4.8e10, 0.2, 2800, 1, 0.35), 0.01, 0.01, v, {}};
         const auto out = collide(impact, GetParam());
         time.add(out.duration, impact.duration());
         time.add(out.peak_force, impact.peak_force());
@@ -178,38 +159,11 @@ TEST_P(DemChungOoi, ElasticNormalImpactOfTwoSpheres) {
 TEST_P(DemChungOoi, ElasticNormalImpactOnAPlane) {
     Score score("2 sphere on plane, elastic", "duration, peak force, rebound", GetParam(), 6e-4);
     for (const double v : {0.2, 2.0}) {
-        const Impact impact{material(7e10, 0.3, 2699, 1, 0), 0.1, 0, v, {}, {}, {}};
+        const Impact impact{material(7e10, 0.3, 2699, 1, 0), 0.1, 0, v, {}};
         const auto out = collide(impact, GetParam());
         score.add(out.duration, impact.duration());
         score.add(out.peak_force, impact.peak_force());
         score.add(out.state.velocity[0][2], v);
-    }
-}
-
-// The dashpot pulls when the contact nearly ended; the contact ends by its overlap, where the law's restitution holds.
-TEST_P(DemChungOoi, RestitutionFromDeadToElastic) {
-    Score score("3 restitution 0.1 to 1", "rebound speed", GetParam(), 5e-4);
-    for (const double e : {0.1, 0.3, 0.5, 0.7, 0.9, 1.0}) {
-        const Impact impact{alumina(e, 0), 2.5e-3, 0, 3.9, {}, {}, {}};
-        score.add(collide(impact, GetParam()).state.velocity[0][2], e * impact.approach, impact.approach);
-    }
-}
-
-// Sliding throughout at flat angles; never more tangential impulse than mu (1 + e) v_n; and whatever happens at the
-// contact, the angular momentum about it stays: R dw = 5/2 dv.
-TEST_P(DemChungOoi, ObliqueImpactsAtOneSpeedAndManyAngles) {
-    constexpr double mu = 0.092, e = 0.98, speed = 3.9;
-    Score score("4 oblique, one speed", "v_t' where it slides; spin by its momentum", GetParam(), 4e-3);
-    for (const double degrees : {5.0, 20.0, 35.0, 45.0, 60.0, 80.0}) {
-        const double angle = degrees * std::numbers::pi / 180, vn = speed * std::cos(angle),
-                     vt = speed * std::sin(angle);
-        const Impact impact{alumina(e, mu), 2.5e-3, 0, vn, {vt, 0, 0}, {}, {}};
-        const auto s = collide(impact, GetParam()).state;
-        const double change = vt - s.velocity[0][0], most = mu * (1 + e) * vn;
-        EXPECT_LT(change, most * (1 + 4e-3)) << degrees;
-        score.add(s.angular_velocity[0][1] * impact.radius, 2.5 * change, 2.5 * most);
-        // Maw, Barber & Fairfield (1976): sliding throughout from tan(angle) = mu (7 - (2 - nu)/(2 - 2 nu)) on.
-        if (std::tan(angle) > 7 * mu) score.add(change, most);
     }
 }
 
@@ -218,7 +172,7 @@ TEST_P(DemChungOoi, ObliqueImpactsAtOneSpeedAndManyAngles) {
 TEST_P(DemChungOoi, StickingImpactsReboundByTheTangentialSpring) {
     Score score("4 oblique, sticking", "v_t', spin by the spring's oscillation", GetParam(), 4e-3);
     for (const double vt : {0.2, 1.0}) {
-        const Impact impact{alumina(1, 50), 2.5e-3, 0, 3.9, {vt, 0, 0}, {}, {}};
+        const Impact impact{material(3.8e11, 0.23, 4000, 1, 50), 2.5e-3, 0, 3.9, {vt, 0, 0}};
         const auto state = collide(impact, GetParam()).state;
         const double normal =
             4.0 / 3 * dem::effective_modulus(impact.material) * std::sqrt(impact.radius) / impact.mass();
@@ -239,58 +193,6 @@ TEST_P(DemChungOoi, StickingImpactsReboundByTheTangentialSpring) {
         score.add(vt - state.velocity[0][0], change, vt);
         score.add(state.angular_velocity[0][1] * impact.radius, 2.5 * change, vt);
     }
-}
-
-TEST_P(DemChungOoi, ObliqueImpactsAtOneNormalSpeed) {
-    constexpr double mu = 0.3, vn = 5;
-    Score score("5 oblique, one normal speed", "v_t', R w' in gross sliding", GetParam(), 6e-3);
-    for (const double vt : {12.0, 20.0, 40.0}) {
-        const Impact impact{steel(mu), 1e-5, 0, vn, {vt, 0, 0}, {}, {}};
-        const auto s = collide(impact, GetParam()).state;
-        const double change = 2 * mu * vn;
-        const auto expected = after_sliding(vt, 0, change);
-        score.add(s.velocity[0][0], expected.velocity, change);
-        score.add(-s.angular_velocity[0][1] * impact.radius, expected.turn, 2.5 * change);
-    }
-}
-
-TEST_P(DemChungOoi, NormalImpactsOfASpinningSphere) {
-    constexpr double mu = 0.3, vn = 5;
-    Score score("6 spinning sphere on plane", "v_t', R w' in gross sliding", GetParam(), 6e-3);
-    for (const double turn : {12.0, 25.0, 50.0}) {
-        const Impact impact{steel(mu), 1e-5, 0, vn, {}, {0, -turn / 1e-5, 0}, {}};
-        const auto s = collide(impact, GetParam()).state;
-        const double change = 2 * mu * vn;
-        const auto expected = after_sliding(0, turn, change);
-        score.add(s.velocity[0][0], expected.velocity, change);
-        score.add(-s.angular_velocity[0][1] * impact.radius, expected.turn, 2.5 * change);
-    }
-}
-
-/// Spinning spheres that meet head-on and slide throughout: both feel J = mu (1 + e) m* v.
-void spinning_pair(Score& score, double second_radius, Precision precision) {
-    constexpr double mu = 0.3, approach = 0.4;
-    for (const double turn : {1.0, 2.0}) {
-        const Impact impact{
-            steel(mu), 1e-5, second_radius, approach, {}, {0, -turn / 1e-5, 0}, {0, -turn / second_radius, 0}};
-        const auto s = collide(impact, precision).state;
-        const double impulse = 2 * mu * impact.reduced_mass() * approach;
-        const double first = impulse / impact.mass(), second = impulse / impact.second_mass();
-        score.add(s.velocity[0][0], -first, first);
-        score.add(s.velocity[1][0], second, second);
-        score.add(-s.angular_velocity[0][1] * impact.radius, turn - 2.5 * first, 2.5 * first);
-        score.add(-s.angular_velocity[1][1] * second_radius, turn - 2.5 * second, 2.5 * second);
-    }
-}
-
-TEST_P(DemChungOoi, SpinningEqualSpheres) {
-    Score score("7 spinning equal spheres", "v_t', R w' of both", GetParam(), 2e-3);
-    spinning_pair(score, 1e-5, GetParam());
-}
-
-TEST_P(DemChungOoi, SpinningUnequalSpheres) {
-    Score score("8 spinning unequal spheres", "v_t', R w' of both", GetParam(), 2e-3);
-    spinning_pair(score, 4e-5, GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(Engines, DemChungOoi, testing::Values(Precision::double_precision, Precision::mixed),

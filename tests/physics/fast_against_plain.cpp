@@ -133,6 +133,23 @@ TEST(FastAgainstPlain, SurfaceEnergy) {
                 }
 }
 
+// Liquid bridges form, act over gaps, break and form anew.
+TEST(FastAgainstPlain, LiquidBridges) {
+    for (const auto rolling : {dem::RollingLaw::epsd, dem::RollingLaw::cdt})
+        for (const auto limit : {dem::FrictionLimit::contact, dem::FrictionLimit::net})
+            for (const double spread : {0.0, 0.25}) {
+                dem::Setup s = tests::boxed_lattice(4, 1, spread, 14);
+                s.material.cohesion_law = dem::CohesionLaw::capillary;
+                s.material.surface_tension = 2;
+                s.material.contact_angle = 0.2;
+                s.material.bridge_volume = 0.01;
+                s.material.rolling_law = rolling;
+                s.material.rolling_friction = spread > 0 ? 0.1 : 0;
+                s.material.friction_limit = limit;
+                tests::compare_with_plain({"capillary", s, 400});
+            }
+}
+
 TEST(FastAgainstPlain, NewWallsAndRemovedParticles) {
     dem::Setup s = tests::boxed_lattice(5, 0.5, 0, 10);
     tests::PlainDem plain(s);

@@ -241,4 +241,25 @@ TEST(FastWalls, CrowdsAmongTrianglesEqualTheDoubleEngine) {
     }
 }
 
+// A rectangle from one periodic face to the other: at the seam a sphere leaves one triangle for the other. It slides
+// over many seams on the floor, without friction, as on a floor without end.
+TEST(FastWalls, ARectangleOfOnePeriodHasNoSeam) {
+    const double length = 20 * radius, width = 16 * radius;
+    const Vec3 a{0, 0, 0}, b{width, 0, 0}, c{width, length, 0}, d{0, length, 0};
+    const tests::Soup floor = {{{a, b, c}}, {{a, c, d}}};
+    auto setup = one_sphere({0.3 * width, 0.9 * length, 0.999 * radius}, {0, 0.4, 0}, {});
+    setup.domain = {{0, 0, -5e-3}, {width, length, 2e-2}, {true, true, false}};
+    setup.gravity = {0, 0, -9.81};
+    setup.material.friction = 0;
+    setup.walls = {dem::Wall{dem::Mesh(tests::surface_of(floor))}};
+    for (const auto path : tests::paths()) {
+        const auto engine = dem::fast::make_mixed_engine(setup, path);
+        for (int part = 0; part < 60; ++part) {  // 12 mm
+            engine->run(500);
+            EXPECT_EQ(engine->fault(), "");
+            EXPECT_NEAR(tests::state_of(*engine).position[0][2], radius, 2e-3 * radius) << part;
+        }
+    }
+}
+
 }  // namespace grainsweep::tests::fast_walls_test

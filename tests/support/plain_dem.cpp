@@ -41,6 +41,7 @@ struct PlainDem::Contact {
     double forgiven;         // what Coulomb's limit has beyond the net force
     Vec3 turning;            // w_i - w_j
     double inverse_inertia;  // sum of 1/(7/5 m R^2)
+    bool at_wall = false;
     dem::Material material;  // of both, or of the wall's surface
 };
 
@@ -153,11 +154,24 @@ void PlainDem::attract(Contact& c, double area) {
         c.neck = 2.0 / 3 * std::sqrt(2 * pi * w * young * low * low * low);
         c.forgiven = 3 * pi * w * c.radius;
     }
+    if (m.cohesion_law == dem::CohesionLaw::capillary) {
+        const double x = std::max(-c.overlap, 0.0) * std::sqrt(2 * c.radius / bridge_volume(m, c.radius, c.at_wall));
+        c.neck = c.forgiven =
+            4 * pi * c.radius * m.surface_tension * std::cos(m.contact_angle) / (1 + 1.05 * x + 2.5 * x * x);
+    }
     if (m.friction_limit == dem::FrictionLimit::net) c.forgiven = 0;
 }
 
-/// The overlap at which a contact ends, which lasts beyond touch if it is old and its law is JKR's.
-double PlainDem::end_of_contact(const dem::Material& m, double radius, bool lasts) {
+/// Of a liquid bridge between bodies with this R*.
+double PlainDem::bridge_volume(const dem::Material& m, double radius, bool at_wall) {
+    const double of_sphere = at_wall ? radius : 2 * radius;
+    return m.bridge_volume * 4.0 / 3 * pi * of_sphere * of_sphere * of_sphere;
+}
+
+/// The overlap at which a contact ends, which lasts beyond touch if it is old and its law is JKR's or has bridges.
+double PlainDem::end_of_contact(const dem::Material& m, double radius, bool lasts, bool at_wall) {
+    if (lasts && m.cohesion_law == dem::CohesionLaw::capillary)
+        return -(1 + m.contact_angle / 2) * std::cbrt(bridge_volume(m, radius, at_wall));
     if (!lasts || m.cohesion_law != dem::CohesionLaw::jkr) return 0;
     const double ratio = 2 * pi * m.surface_energy * (1 - m.poisson_ratio * m.poisson_ratio) / m.youngs_modulus;
     return -0.75 * std::cbrt(ratio * ratio * radius);
@@ -171,11 +185,11 @@ void PlainDem::pair(std::size_t i, std::size_t j, bool update) {
             d[a] -= period * std::nearbyint(d[a] / period);
         }
     const double ri = setup_.spheres[i].radius, rj = setup_.spheres[j].radius;
-    if (dot(d, d) > 1.1 * (ri + rj) * (ri + rj)) return;  // far: it left contact, and was forgotten, on its way
+    if (dot(d, d) > 1.8 * (ri + rj) * (ri + rj)) return;  // far: it left contact, and was forgotten, on its way
     const bool of_powder = setup_.spheres[i].mobile && setup_.spheres[j].mobile;
     const dem::Material m = of_powder ? setup_.material : dem::at_surface(setup_.material, setup_.frozen);
     const double r = norm(d), overlap = ri + rj - r;
-    if (overlap <= end_of_contact(m, ri * rj / (ri + rj), pairs_that_last_.contains({i, j}))) {
+    if (overlap <= end_of_contact(m, ri * rj / (ri + rj), pairs_that_last_.contains({i, j}), false)) {
         pair_history_.erase({i, j});
         pair_rolling_.erase({i, j});
         pairs_that_last_.erase({i, j});
@@ -199,6 +213,13 @@ void PlainDem::pair(std::size_t i, std::size_t j, bool update) {
     else
         area = pi * (2 * c.radius * overlap - overlap * overlap) / 4;
     attract(c, area);
+    if (m.cohesion_law == dem::CohesionLaw::capillary && overlap <= 0) {
+        f_[i] = f_[i] - c.neck * c.n;
+        f_[j] = f_[j] + c.neck * c.n;
+        pair_history_.erase({i, j});
+        pair_rolling_.erase({i, j});
+        return;
+    }
     Vec3 force{}, turn{};
     respond(c, update, pair_history_[{i, j}], force, turn);
     f_[i] = f_[i] + force;
@@ -242,7 +263,7 @@ void PlainDem::wall(std::size_t i, std::size_t w, bool update) {
     c.n = pose.turn(c.n);
     c.velocity = v_[i] - geometry::twist_at(wall.motions, t).at(x_[i] - distance * c.n);
     c.overlap = ri - distance;
-    if (c.overlap <= end_of_contact(m, ri, at_walls_that_last_.contains({i, w}))) {
+    if (c.overlap <= end_of_contact(m, ri, at_walls_that_last_.contains({i, w}), true)) {
         wall_history_.erase({i, w});
         wall_rolling_.erase({i, w});
         at_walls_that_last_.erase({i, w});
@@ -251,12 +272,19 @@ void PlainDem::wall(std::size_t i, std::size_t w, bool update) {
     if (update) at_walls_that_last_.insert({i, w});
     c.surface = (ri - c.overlap / 2) * w_[i];
     c.radius = ri;
+    c.at_wall = true;
     c.mass = mass(i);
     const double area = m.cohesion_law == dem::CohesionLaw::sjkr ? pi * (2 * ri * c.overlap - c.overlap * c.overlap)
                         : m.cohesion_law == dem::CohesionLaw::sjkr2
                             ? 2 * pi * ri * c.overlap
                             : pi * (2 * ri * c.overlap - c.overlap * c.overlap) / 4;
     attract(c, area);
+    if (m.cohesion_law == dem::CohesionLaw::capillary && c.overlap <= 0) {
+        f_[i] = f_[i] - c.neck * c.n;
+        wall_history_.erase({i, w});
+        wall_rolling_.erase({i, w});
+        return;
+    }
     Vec3 force{}, turn{};
     respond(c, update, wall_history_[{i, w}], force, turn);
     f_[i] = f_[i] + force;

@@ -39,7 +39,8 @@ private:
     void pair(std::size_t i, std::size_t j, bool update);
     void wall(std::size_t i, std::size_t w, bool update);
     static void attract(Contact& c, double area);
-    [[nodiscard]] static double end_of_contact(const dem::Material& m, double radius, bool lasts);
+    [[nodiscard]] static double bridge_volume(const dem::Material& m, double radius, bool at_wall);
+    [[nodiscard]] static double end_of_contact(const dem::Material& m, double radius, bool lasts, bool at_wall);
     /// Force on i and n x F_t of one contact.
     void respond(const Contact& c, bool update, dem::Vec3& history, dem::Vec3& force, dem::Vec3& turn) const;
     /// Moment on i of the rolling resistance.

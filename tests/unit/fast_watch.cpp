@@ -19,7 +19,7 @@ struct Two {
     Record records[2]{};
     Field field{};
     std::int32_t id[2] = {0, 1};
-    std::vector<fast::Motion> motions{2};
+    std::vector<Velocities> motions{2};
 
     explicit Two(bool periodic) : space{} {
         setup.domain = {{-0.01, -0.01, -0.01}, {0.01, 0.01, 0.01}, {false, false, periodic}};

@@ -88,6 +88,32 @@ TEST(MachineFreeWalls, ADrivenWheelTurns) {
     EXPECT_NEAR(seen.at("angle"), 0.5 * 0.5 * 0.01 * 180 / 3.14159265, 1e-3);
 }
 
+// A plate of 9.5 x 10 x 4 mm and 0.6 g falls into the powder, which carries it; held until its phase.
+TEST(MachineFreeWalls, AFreeBodyFallsOntoPowder) {
+    json document = press_machine();
+    document["walls"]["lid"] = json::parse(R"({"box": {"low": [0.001, 0.001, 0.032], "high": [0.0105, 0.011, 0.036]},
+        "motion": [{"free": {"mass": "0.6 g", "speed_at_most": 2, "held": [1, 1, 0]}, "during": ["press", "rest"]}]})");
+    document["domain"]["periodic"] = {0, 0, 0};
+    for (const char* side : {"left", "right", "front", "back"}) {
+        const std::string name = side;
+        const bool x = name == "left" || name == "right", high = name == "right" || name == "back";
+        json& wall = document["walls"][name];
+        wall["plane"]["point"] = {x && high ? 0.012 : 0, !x && high ? 0.012 : 0, 0};
+        wall["plane"]["normal"] = {x ? (high ? -1 : 1) : 0, x ? 0 : (high ? -1 : 1), 0};
+    }
+    document["measure"].erase("carried");
+    document["measure"]["way"]["wall_position"]["of"] = {0.00575, 0.006, 0.034};
+    document["measure"]["turned"] = json::parse(R"({"wall_angle": {"wall": "lid", "axis": [1, 0, 0]},
+                                                    "during": "hold", "as": "max"})");
+    const auto seen = answer_of(spec_of(document)).scalars;
+    EXPECT_EQ(seen.at("before"), 0);
+    EXPECT_GT(seen.at("way"), 0.008);
+    EXPECT_EQ(seen.at("held"), 0);
+    EXPECT_NEAR(seen.at("load"), 0.0006 * 9.81, 0.02 * 0.0006 * 9.81);
+    EXPECT_GT(std::abs(seen.at("turned")), 0.01);
+    EXPECT_LT(std::abs(seen.at("turned")), 90);
+}
+
 TEST(MachineFreeWalls, HaveOneSentenceWhereTheyAreWrong) {
     const auto refusal = [](const char* path, const char* value) {
         json document = press_machine();
@@ -113,7 +139,19 @@ TEST(MachineFreeWalls, HaveOneSentenceWhereTheyAreWrong) {
               std::string::npos);
     EXPECT_NE(refusal("/walls/lid/motion/0/drive", R"({"axis": [0, 0, 1], "torque": 1, "inertia": 1,
                                                        "speed_at_most": 1})")
-                  .find(R"(a motion is one of "rotate", "shift", "vibrate", "press" and "drive")"),
+                  .find(R"(a motion is one of "rotate", "shift", "vibrate", "press", "drive" and "free")"),
+              std::string::npos);
+    const auto refusal_of_free = [&](const char* value) {
+        return refusal("/walls/lid/motion/0", (std::string(R"({"free": )") + value + "}").c_str());
+    };
+    EXPECT_NE(
+        refusal_of_free(R"({"mass": 1, "speed_at_most": 1})").find(R"(of this shape it needs "centre" and "inertia")"),
+        std::string::npos);
+    EXPECT_NE(refusal_of_free(R"({"mass": 1, "speed_at_most": 1, "centre": [0, 0, 0], "inertia": [1, 1, 3]})")
+                  .find("none is more than the sum of the others"),
+              std::string::npos);
+    EXPECT_NE(refusal_of_free(R"({"mass": 1, "speed_at_most": 1, "centre": [0, 0, 0], "inertia": [1, 1, 1]})")
+                  .find("a wall without end cannot move freely"),
               std::string::npos);
 }
 

@@ -57,6 +57,16 @@ TEST(MachineProbes, VelocitiesAreWeightedByMass) {
     EXPECT_TRUE(std::isnan(bed.look("granular_temperature", with("in", box({1, 1, 1}, {2, 2, 2})))));
 }
 
+TEST(MachineProbes, SpinIsTheMeanAngularVelocity) {
+    Bed bed;
+    bed.add({0, 0, 0}, 0), bed.add({0.01, 0, 0}, 1);
+    (void)bed.sight();
+    bed.state.angular_velocity = {{0, 5, 0}, {0, -2, 7}};
+    const double a = 1000 * volume(0.002), b = 3000 * volume(0.004);
+    EXPECT_DOUBLE_EQ(bed.look("spin", with("along", ey)), (5 * a - 2 * b) / (a + b));
+    EXPECT_DOUBLE_EQ(bed.look("spin", with("along", ez, "of", of({1}))), 7);
+}
+
 TEST(MachineProbes, AStreamThatMovesAsOneIsCold) {
     Bed bed;
     for (int k = 0; k < 20; ++k) bed.add({0.01 * k, 0, 0}, static_cast<std::uint8_t>(k % 2), {1e3, 0.1, -7});

@@ -12,7 +12,7 @@
 #include "solver/bytes.hpp"
 #include "solver/dem/energy_balance.hpp"
 #include "solver/dem/kinds.hpp"
-#include "solver/dem/laws/any_contact.hpp"
+#include "solver/dem/reading.hpp"
 #include "solver/dem/walls/moving_wall.hpp"
 #include "solver/geometry/domain.hpp"
 #include "solver/particles/neighbour_list.hpp"
@@ -53,7 +53,8 @@ public:
     [[nodiscard]] double largest_overlap() const override { return largest_overlap_; }
     [[nodiscard]] double peak_overlap() const override { return peak_overlap_; }
     void forget_peak_overlap() override { peak_overlap_ = 0; }
-    void contacts(std::vector<ContactForce>& into) const override;
+    void contacts(std::vector<ContactForce>& into) const override { read_contacts(false, into); }
+    void step_contacts(std::vector<ContactForce>& into) const override { read_contacts(true, into); }
     [[nodiscard]] const Wall& wall(std::size_t wall) const override { return walls_.at(wall).wall.wall(); }
     [[nodiscard]] WallLoad wall_load(std::size_t wall, const Vec3& about) const override;
     [[nodiscard]] const std::string& fault() const override { return fault_; }
@@ -105,6 +106,8 @@ private:
     void for_each_touching_pair(Visit&& visit) const;
     template <class Visit>
     void for_each_touched_wall(Visit&& visit) const;
+    [[nodiscard]] Velocities half_a_step_before(std::size_t i) const;
+    void read_contacts(bool of_step, std::vector<ContactForce>& into) const;
     [[nodiscard]] double mechanical_energy(double& active) const;
 
     // stepping.cpp

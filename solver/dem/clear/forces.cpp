@@ -236,7 +236,7 @@ void ClearEngine::for_each_touching_pair(Visit&& visit) const {
         }
 }
 
-/// Calls visit(i, w, touch, memory) for the walls that are touched.
+/// Calls visit(i, w, touch, memory, velocity of the wall) for the walls that are touched.
 template <class Visit>
 void ClearEngine::for_each_touched_wall(Visit&& visit) const {
     for (std::size_t w = 0; w < walls_.size(); ++w) {
@@ -246,24 +246,40 @@ void ClearEngine::for_each_touched_wall(Visit&& visit) const {
             const std::size_t i = contacts.near[entry];
             const double* const memory = contacts.memory.data() + k * memories();
             const Vec3 x = contacts.wall.image().of(p_.position[i]);
-            auto t = touch(i, place, contacts.wall.twist().at(x - place.distance * place.normal));
-            if (!reaches_ || contacts.laws[p_.kind[i]]->begin(t, memory)) visit(i, w, t, memory);
+            const Vec3 velocity = contacts.wall.twist().at(x - place.distance * place.normal);
+            auto t = touch(i, place, velocity);
+            if (!reaches_ || contacts.laws[p_.kind[i]]->begin(t, memory)) visit(i, w, t, memory, velocity);
         }
     }
 }
 
-void ClearEngine::contacts(std::vector<ContactForce>& into) const {
+/// Velocities that the laws saw in the last step.
+Velocities ClearEngine::half_a_step_before(std::size_t i) const {
+    if (!mobile(i)) return {};
+    const double half = time_step_ / 2, inverse = inverse_mass(i);
+    return {p_.velocity[i] - half * (inverse * p_.force[i] + body_),
+            p_.angular_velocity[i] - (half * inverse / (0.4 * radius(i) * radius(i))) * p_.torque[i]};
+}
+
+void ClearEngine::read_contacts(bool of_step, std::vector<ContactForce>& into) const {
+    constexpr double rounding = 1e-12;
     into.clear();
     const auto add = [&](const AnyContact& laws, std::size_t i, std::int32_t second, const auto& t,
-                         const double* memory) {
-        const auto r = laws.respond(t, memory);
-        into.push_back({p_.id[i], second, t.overlap, t.normal, r.normal, -r.resistance, -r.rolling});
+                         const double* memory, auto&& relative_motion) {
+        const auto now = of_step ? moving(t, relative_motion([this](std::size_t k) {
+                                              return Velocities{p_.velocity[k], p_.angular_velocity[k]};
+                                          }))
+                                 : t;
+        const auto before = [this](std::size_t k) { return half_a_step_before(k); };
+        into.push_back(read_contact(laws, of_step ? as_in_step(t, relative_motion(before), rounding) : t, now, memory,
+                                    p_.id[i], second));
     };
     for_each_touching_pair([&](std::size_t i, std::size_t j, const auto& t, const double* memory) {
-        add(laws_of(i, j), i, p_.id[j], t, memory);
+        add(laws_of(i, j), i, p_.id[j], t, memory, [&](auto&& of) { return relative(t, of(i), of(j)); });
     });
-    for_each_touched_wall([&](std::size_t i, std::size_t w, const auto& t, const double* memory) {
-        add(*walls_[w].laws[p_.kind[i]], i, -1 - static_cast<std::int32_t>(w), t, memory);
+    for_each_touched_wall([&](std::size_t i, std::size_t w, const auto& t, const double* memory, const Vec3& velocity) {
+        add(*walls_[w].laws[p_.kind[i]], i, -1 - static_cast<std::int32_t>(w), t, memory,
+            [&](auto&& of) { return relative(t, of(i), velocity); });
     });
 }
 
@@ -280,7 +296,7 @@ double ClearEngine::mechanical_energy(double& active) const {
     for_each_touching_pair([&](std::size_t i, std::size_t j, const auto& t, const double* memory) {
         add(laws_of(i, j).energy(t, memory));
     });
-    for_each_touched_wall([&](std::size_t i, std::size_t w, const auto& t, const double* memory) {
+    for_each_touched_wall([&](std::size_t i, std::size_t w, const auto& t, const double* memory, const Vec3&) {
         add(walls_[w].laws[p_.kind[i]]->energy(t, memory));
     });
     for (std::size_t i = 0; i < p_.size(); ++i) {

@@ -22,6 +22,7 @@ struct Kernel {
     static constexpr bool rolls = Laws::rolls;
     static constexpr int histories = Laws::memories;
     static constexpr bool reaches = Laws::reaches;
+    static constexpr bool acts_apart = Laws::acts_apart;
 };
 
 /// Lanes that may be contacts, before laws that reach beyond touch decide.
@@ -64,6 +65,7 @@ struct Meeting {
         if constexpr (Kernel::spin) slip = add_cross(fnma(normal_velocity, normal, velocity), normal, surface);
     }
     GRAINSWEEP_LANES void hold(M holds) { touching = touching & holds; }
+    GRAINSWEEP_LANES void part(F) {}
     GRAINSWEEP_LANES void touch_over(F contact_radius) {
         root = contact_radius;
         root_of_root = root * inverse_root(root);
@@ -91,10 +93,13 @@ struct Meeting {
         if constexpr (lens) return disc;
         return fma(f.linear, effective_radius * overlap, fma(f.square, overlap * overlap, disc));
     }
+    GRAINSWEEP_LANES static F limit(F l) { return l; }
     template <class X>
     GRAINSWEEP_LANES X kept(X x) const {
+        if constexpr (Kernel::acts_apart) return keep(touching & (broadcast(0.0f) < overlap), x);
         return keep(touching, x);
     }
+    GRAINSWEEP_LANES F lasting(F x) const { return keep(touching, x); }
 };
 
 template <class Kernel>

@@ -11,9 +11,15 @@ namespace grainsweep::dem::fast {
 
 using namespace geometry;
 
+namespace {
+
+constexpr double rounding = 1e-5;  // of forces in single precision
+
+}  // namespace
+
 ContactReader::ContactReader(const PairContacts& laws, const ListSpace& space, const Field& field,
-                             const std::int32_t* id, std::span<const Motion> motions, std::int32_t width,
-                             std::span<const ParkedContact> parked)
+                             const std::int32_t* id, std::span<const Velocities> motions, std::int32_t width,
+                             std::span<const ParkedContact> parked, std::span<const Velocities> before)
     : laws_(laws),
       space_(space),
       field_(field),
@@ -21,6 +27,7 @@ ContactReader::ContactReader(const PairContacts& laws, const ListSpace& space, c
       motions_(motions),
       width_(width),
       parked_(parked),
+      before_(before),
       beyond_pair_(space.scale.length * static_cast<double>(field.constants.beyond)),
       beyond_wall_(space.scale.length * static_cast<double>(field.constants.beyond_wall)) {
     std::ranges::transform(laws.front()->traits().memory, memory_unit_.begin(),
@@ -47,17 +54,14 @@ ContactReader::Memory ContactReader::memory(const float* const* column, std::int
     return m;
 }
 
-/// Completes a touch whose geometry is known and appends the response of the laws.
-template <Partner partner>
-void ContactReader::add(const AnyContact& laws, Touch<partner> t, std::int32_t i, std::int32_t second,
-                        const Vec3& velocity, const Vec3& turn, const Vec3& turning, Memory memory,
-                        std::vector<ContactForce>& into) const {
+/// Completes a touch whose geometry is known and asks the laws; motion_in(motions) is its relative motion.
+template <Partner partner, class MotionIn>
+ContactForce ContactReader::read(const AnyContact& laws, Touch<partner> t, std::int32_t i, std::int32_t second,
+                                 const Memory& memory, MotionIn&& motion_in) const {
     t.damping_root = std::sqrt(t.root * t.reduced_mass);
-    t.normal_velocity = dot(velocity, t.normal);
-    t.slip = velocity - t.normal_velocity * t.normal - cross(turn, t.normal);
-    t.turning = turning;
-    const auto r = laws.respond(t, memory.data());
-    into.push_back({id_[i], second, t.overlap, t.normal, r.normal, -r.resistance, -r.rolling});
+    const Touch<partner> now = moving(t, motion_in(motions_));
+    return read_contact(laws, before_.empty() ? now : as_in_step(t, motion_in(before_), rounding), now, memory.data(),
+                        id_[i], second);
 }
 
 bool ContactReader::touches(std::int32_t i, std::int32_t j, const Memory& memory, Touch<Partner::particle>& t) const {
@@ -69,7 +73,10 @@ bool ContactReader::touches(std::int32_t i, std::int32_t j, const Memory& memory
                        space_.scale.unit[axis];
     t.radius_i = radius(i);
     t.radius_j = radius(j);
-    const double sum = t.radius_i + t.radius_j, reach = sum + beyond_pair_;
+    // A step adds radii in single precision.
+    const double sum =
+        before_.empty() ? t.radius_i + t.radius_j : static_cast<double>(a.radius + b.radius) * space_.scale.length;
+    const double reach = sum + beyond_pair_;
     const double square = dot(branch, branch);
     if (!(square < reach * reach)) return false;
     t.distance = std::sqrt(square);
@@ -122,9 +129,8 @@ void ContactReader::stand_still(ParkedContact& contact) const {
     const Memory of_pair = memory(contact);
     if (!touches(contact.first, contact.second, of_pair, t)) return;
     complete(contact.first, contact.second, t);
-    std::vector<ContactForce> one;
-    add(laws_of(contact.first, contact.second), t, contact.first, contact.second, {}, {}, {}, of_pair, one);
-    const ContactForce& c = one.front();
+    const ContactForce c = read(laws_of(contact.first, contact.second), t, contact.first, contact.second, of_pair,
+                                [](std::span<const Velocities>) { return RelativeMotion{}; });
     const Scale& s = space_.scale;
     const double unit = s.mass * s.length / (s.time * s.time);
     const Vec3 force = c.normal_force * c.normal + c.tangential_force;
@@ -142,9 +148,9 @@ void ContactReader::stand_still(ParkedContact& contact) const {
 void ContactReader::pairs(std::vector<ContactForce>& into) const {
     for_each_pair([&](std::int32_t i, std::int32_t j, Touch<Partner::particle>& t, const Memory& memory) {
         complete(i, j, t);
-        const Motion &of_i = motions_[static_cast<std::size_t>(i)], &of_j = motions_[static_cast<std::size_t>(j)];
-        const Vec3 turn = (t.radius_i - t.overlap / 2) * of_i.spin + (t.radius_j - t.overlap / 2) * of_j.spin;
-        add(laws_of(i, j), t, i, id_[j], of_i.velocity - of_j.velocity, turn, of_i.spin - of_j.spin, memory, into);
+        into.push_back(read(laws_of(i, j), t, i, id_[j], memory, [&](std::span<const Velocities> motions) {
+            return relative(t, motions[static_cast<std::size_t>(i)], motions[static_cast<std::size_t>(j)]);
+        }));
     });
 }
 
@@ -181,15 +187,16 @@ ContactReader::Memory ContactReader::memory_at_wall(const Walls& walls, std::siz
 }
 
 void ContactReader::wall(const Walls& walls, std::size_t w, std::vector<ContactForce>& into) const {
-    for_each_at_wall(walls, w,
-                     [&](std::int32_t i, const Vec3& velocity, Touch<Partner::wall>& t, const Memory& memory) {
-                         t.reduced_mass = mass(i);
-                         t.rolling_inertia = inertia_about_contact * t.reduced_mass * t.radius_i * t.radius_i;
-                         const Motion& motion = motions_[static_cast<std::size_t>(i)];
-                         const Vec3 turn = (t.radius_i - t.overlap / 2) * motion.spin;
-                         add(walls.laws(w, field_.kind[i]), t, i, -1 - static_cast<std::int32_t>(w),
-                             motion.velocity - velocity, turn, motion.spin, memory, into);
-                     });
+    for_each_at_wall(
+        walls, w, [&](std::int32_t i, const Vec3& velocity, Touch<Partner::wall>& t, const Memory& memory) {
+            t.reduced_mass = mass(i);
+            t.rolling_inertia = inertia_about_contact * t.reduced_mass * t.radius_i * t.radius_i;
+            const auto second = -1 - static_cast<std::int32_t>(w);
+            into.push_back(
+                read(walls.laws(w, field_.kind[i]), t, i, second, memory, [&](std::span<const Velocities> motions) {
+                    return relative(t, motions[static_cast<std::size_t>(i)], velocity);
+                }));
+        });
 }
 
 StoredEnergy ContactReader::stored(const Walls& walls) const {

@@ -15,14 +15,9 @@
 #include "solver/dem/fast/walls.hpp"
 #include "solver/dem/laws/any_contact.hpp"
 #include "solver/dem/laws/compiled.hpp"
+#include "solver/dem/reading.hpp"
 
 namespace grainsweep::dem::fast {
-
-/// Of one particle, at the full step.
-struct Motion {
-    Vec3 velocity{};  ///< m/s
-    Vec3 spin{};      ///< rad/s
-};
 
 /// Energy in contacts, J: the sum, and the sum of absolute values (cohesion stores less than nothing).
 struct StoredEnergy {
@@ -35,9 +30,11 @@ using PairContacts = std::vector<std::unique_ptr<const AnyContact>>;
 
 class ContactReader {
 public:
-    /// All views must outlive the reader; `motions` in the order of the records, empty where only energy is wanted.
+    /// All views must outlive the reader; `motions` at the full step in the order of the records, empty where only
+    /// energy is wanted; `before` likewise at the half step before: the forces are those of the last step.
     ContactReader(const PairContacts& laws, const ListSpace& space, const Field& field, const std::int32_t* id,
-                  std::span<const Motion> motions, std::int32_t width, std::span<const ParkedContact> parked = {});
+                  std::span<const Velocities> motions, std::int32_t width, std::span<const ParkedContact> parked = {},
+                  std::span<const Velocities> before = {});
 
     /// Gives a contact of two particles at rest its overlap, force and torques.
     void stand_still(ParkedContact& contact) const;
@@ -65,17 +62,18 @@ private:
     [[nodiscard]] Memory memory_at_wall(const Walls& walls, std::size_t w, std::int32_t i, std::int32_t slot) const;
     void complete(std::int32_t i, std::int32_t j, Touch<Partner::particle>& t) const;
     [[nodiscard]] Memory memory(const ParkedContact& contact) const;
-    template <Partner partner>
-    void add(const AnyContact& laws, Touch<partner> t, std::int32_t i, std::int32_t second, const Vec3& velocity,
-             const Vec3& turn, const Vec3& turning, Memory memory, std::vector<ContactForce>& into) const;
+    template <Partner partner, class MotionIn>
+    [[nodiscard]] ContactForce read(const AnyContact& laws, Touch<partner> t, std::int32_t i, std::int32_t second,
+                                    const Memory& memory, MotionIn&& motion_in) const;
 
     const PairContacts& laws_;
     const ListSpace& space_;
     const Field& field_;
     const std::int32_t* id_;
-    std::span<const Motion> motions_;
+    std::span<const Velocities> motions_;
     std::int32_t width_;
     std::span<const ParkedContact> parked_;
+    std::span<const Velocities> before_;
     double beyond_pair_ = 0, beyond_wall_ = 0;  // m
     Memory memory_unit_{};
 };

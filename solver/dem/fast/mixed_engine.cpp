@@ -43,15 +43,17 @@ MixedEngine::MixedEngine(const Setup& setup, Method::Path path, double skin, dou
       adapts_skin_(!(skin > 0)),
       spheres_at_start_(static_cast<std::int32_t>(setup.spheres.size())) {
     if (densities_.empty()) densities_ = {setup.material.density};
-    for (std::size_t a = 0; a < 3; ++a)  // a pair must not meet across both ends of a period
+    field_.constants = make_constants(setup, space_.scale, needs_);
+    for (const Material& m : table_.pairs()) laws_.push_back(make_contact(needs_.combination, m));
+    // A pair must not meet across both ends of a period. What adhesion reaches is within the shortest period allowed.
+    const double apart = laws_.front()->traits().acts_apart ? static_cast<double>(field_.constants.beyond) : 0;
+    for (std::size_t a = 0; a < 3; ++a)
         if (setup.domain.periodic[a]) {
             const double period = (setup.domain.high[a] - setup.domain.low[a]) / space_.scale.length;
-            largest_skin_ = std::min(largest_skin_, static_cast<float>(0.5 * period - 1));
+            largest_skin_ = std::min(largest_skin_, static_cast<float>(0.5 * period - 1 - apart));
         }
     if (skin > 0) space_.skin = static_cast<float>(skin / space_.scale.length);
     space_.skin = std::min(space_.skin, largest_skin_);
-    field_.constants = make_constants(setup, space_.scale, needs_);
-    for (const Material& m : table_.pairs()) laws_.push_back(make_contact(needs_.combination, m));
     write_pair_laws();
     columns_.histories = static_cast<std::int32_t>(laws_.front()->traits().memory.size());
     std::ranges::transform(laws_.front()->traits().memory, columns_.exchanged,

@@ -53,28 +53,29 @@ void MixedEngine::state(State& into) const {
     }
 }
 
-/// Velocities of the full step, in the order of the records.
-std::vector<Motion> MixedEngine::motions() const {
-    std::vector<Motion> all(size());
+/// Velocities in the order of the records: of the half step before, and a share of the half step to the full one.
+std::vector<Velocities> MixedEngine::motions(double share) const {
+    std::vector<Velocities> all(size());
     for (std::int32_t i = 0; i < field_.count; ++i) {
         const Record& r = field_.records[i];
         const Residual residual = left_over(field_, i);
-        Motion& m = all[static_cast<std::size_t>(i)];
+        Velocities& m = all[static_cast<std::size_t>(i)];
         for (int a = 0; a < 3; ++a) {
             const auto axis = static_cast<std::size_t>(a);
-            m.velocity[axis] =
-                (static_cast<double>(r.velocity[a]) + static_cast<double>(residual.velocity[a]) + half_change(i, a)) *
-                space_.scale.speed();
-            m.spin[axis] = (static_cast<double>(r.spin[a]) + half_spin_change(i, a)) / space_.scale.time;
+            m.velocity[axis] = (static_cast<double>(r.velocity[a]) + static_cast<double>(residual.velocity[a]) +
+                                share * half_change(i, a)) *
+                               space_.scale.speed();
+            m.spin[axis] = (static_cast<double>(r.spin[a]) + share * half_spin_change(i, a)) / space_.scale.time;
         }
     }
     return all;
 }
 
-void MixedEngine::contacts(std::vector<ContactForce>& into) const {
+void MixedEngine::read_contacts(std::span<const Velocities> before, std::vector<ContactForce>& into) const {
     join_lists();
-    const std::vector<Motion> now = motions();
-    const ContactReader reader(laws_, space_, field_, columns_.id.data(), now, kernels_->width, resting_.parked());
+    const std::vector<Velocities> now = motions();
+    const ContactReader reader(laws_, space_, field_, columns_.id.data(), now, kernels_->width, resting_.parked(),
+                               before);
     into.clear();
     reader.pairs(into);
     for (std::size_t w = 0; w < walls_.count(); ++w) reader.wall(walls_, w, into);
@@ -84,21 +85,21 @@ WallLoad MixedEngine::wall_load(std::size_t wall, const Vec3& about) const {
     return walls_.load(wall, about);
 }
 
-Moment MixedEngine::moment(std::span<const Motion> motions) const {
+Moment MixedEngine::moment(std::span<const Velocities> motions) const {
     join_lists();
     const ContactReader reader(laws_, space_, field_, columns_.id.data(), {}, kernels_->width, resting_.parked());
     return {field_, space_, columns_.id.data(), motions, reader.stored(walls_), work_.steps};
 }
 
 void MixedEngine::set_limits() {
-    const std::vector<Motion> now = motions();
+    const std::vector<Velocities> now = motions();
     watch_.set_limit(moment(now), walls_.all());
     if (fault_.empty() && field_.count > 0)
         fault_ = walls_.too_fast(0.5 * static_cast<double>(smallest_diameter_) * space_.scale.length, work_.steps);
 }
 
 void MixedEngine::check_energy() {
-    const std::vector<Motion> now = motions();
+    const std::vector<Velocities> now = motions();
     std::int32_t particle = 0;
     const std::string what = watch_.check(moment(now), particle);
     if (!what.empty()) fault_ = describe(view(), what, particle);

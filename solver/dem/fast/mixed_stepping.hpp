@@ -59,7 +59,8 @@ public:
     [[nodiscard]] double largest_overlap() const override { return static_cast<double>(overlap()); }
     [[nodiscard]] double peak_overlap() const override { return static_cast<double>(peak_overlap_); }
     void forget_peak_overlap() override { peak_overlap_ = 0; }
-    void contacts(std::vector<ContactForce>& into) const override;
+    void contacts(std::vector<ContactForce>& into) const override { read_contacts({}, into); }
+    void step_contacts(std::vector<ContactForce>& into) const override { read_contacts(motions(0), into); }
     [[nodiscard]] const Wall& wall(std::size_t wall) const override { return walls_[wall].wall(); }
     [[nodiscard]] WallLoad wall_load(std::size_t wall, const Vec3& about) const override;
     [[nodiscard]] const std::string& fault() const override { return fault_; }
@@ -77,8 +78,9 @@ private:
     void stand_walls();
     void begin_tally();
     void press_walls(bool moves);
-    [[nodiscard]] std::vector<Motion> motions() const;
-    [[nodiscard]] Moment moment(std::span<const Motion> motions) const;
+    [[nodiscard]] std::vector<Velocities> motions(double share = 1) const;
+    void read_contacts(std::span<const Velocities> before, std::vector<ContactForce>& into) const;
+    [[nodiscard]] Moment moment(std::span<const Velocities> motions) const;
     void set_limits();
     void check_energy();
     void account_travel();

@@ -1,6 +1,7 @@
 // What listing particles near walls made of pieces and finding their contacts share.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <variant>
 
@@ -17,6 +18,30 @@ inline std::size_t record_index(Place place) {
 /// A particle's centre in the frame of the wall's body, m.
 inline Vec3 in_body(const MovingWall& wall, const Record& record, const Scale& scale) {
     return wall.pose().to_body(wall.image().of(position_of(record, scale)));
+}
+
+/// Calls visit(centre, as in_body) for the nearest image of the wall, and for those that are nearest after less than
+/// `way`, m: across the seam halfway between two images other pieces count.
+template <class Visit>
+void each_image(const MovingWall& wall, const Record& record, const Scale& scale, double way, Visit&& visit) {
+    const NearestImage& image = wall.image();
+    const Vec3 nearest = image.of(position_of(record, scale));
+    Vec3 next{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double off = nearest[k] - image.middle[k];
+        if (image.period[k] > 0 && std::abs(off) + way > image.period[k] / 2)
+            next[k] = off > 0 ? -image.period[k] : image.period[k];
+    }
+    for (unsigned chosen = 0; chosen < 8; ++chosen) {
+        Vec3 x = nearest;
+        bool there = true;
+        for (std::size_t k = 0; k < 3; ++k)
+            if ((chosen >> k & 1U) != 0) {
+                there = there && next[k] != 0;
+                x[k] += next[k];
+            }
+        if (there) visit(wall.pose().to_body(x));
+    }
 }
 
 inline double radius_of(const Record& record, const Scale& scale) {

@@ -55,12 +55,13 @@ void WallTouches::list(const Field& f, const Walls& walls, const Scale& scale, d
     struct Found {
         std::vector<Place> particle;
         std::vector<std::int32_t> first;
-        std::vector<std::uint32_t> candidate, of_one;
+        std::vector<std::uint32_t> candidate, of_one, of_image;
     };
     std::vector<Found> found(pieced_.empty() ? 0 : static_cast<std::size_t>(parts.count()));
     for (PieceWall& p : pieced_) {
         const MovingWall& wall = walls[p.wall];
         const double far = (reach + double{f.constants.beyond_wall}) * (1 + 1e-5) * scale.length;
+        p.seam = far;
         parts.run([&](int part) {
             Found& mine = found[static_cast<std::size_t>(part)];
             mine.particle.clear(), mine.first.clear(), mine.candidate.clear();
@@ -70,7 +71,14 @@ void WallTouches::list(const Field& f, const Walls& walls, const Scale& scale, d
                 for (std::int32_t i = range.begin; i < range.end; ++i) {
                     const Record& r = f.records[i];
                     if (!(r.inverse_mass > 0)) continue;
-                    shape.near(in_body(wall, r, scale), radius_of(r, scale) + far, mine.of_one);
+                    mine.of_one.clear();
+                    each_image(wall, r, scale, far, [&](const Vec3& x) {
+                        shape.near(x, radius_of(r, scale) + far, mine.of_image);
+                        if (mine.of_one.empty()) return mine.of_one.swap(mine.of_image);
+                        for (const std::uint32_t piece : mine.of_image)
+                            if (std::ranges::find(mine.of_one, piece) == mine.of_one.end())
+                                mine.of_one.push_back(piece);
+                    });
                     if (mine.of_one.empty()) continue;
                     mine.particle.push_back(static_cast<Place>(i * places_per_index));
                     mine.first.push_back(static_cast<std::int32_t>(mine.candidate.size()));
@@ -94,20 +102,25 @@ void WallTouches::list(const Field& f, const Walls& walls, const Scale& scale, d
 /// Chooses the candidates that count of those particles that may have come near others.
 void WallTouches::refresh(PieceWall& p, Range entries, const Field& f, const MovingWall& wall, const Scale& scale,
                           double drift) {
+    std::vector<Vec3> images;
     if_pieced(wall, [&]<class S>(const S&) {
         for (auto n = static_cast<std::size_t>(entries.begin); n < static_cast<std::size_t>(entries.end); ++n) {
             if (!(p.wake[n] <= drift)) continue;
             const Record& r = f.records[record_index(p.particle[n])];
-            const Vec3 x = (1 / scale.length) * in_body(wall, r, scale);
+            images.clear();
+            each_image(wall, r, scale, p.seam, [&](const Vec3& x) { images.push_back((1 / scale.length) * x); });
             double rest = std::numeric_limits<double>::infinity();
             std::int32_t chosen = p.first[n];
             for (std::int32_t k = p.first[n]; k < p.first[n + 1]; ++k) {
                 std::uint32_t& candidate = p.candidate[static_cast<std::size_t>(k)];
                 const double* numbers = p.numbers.data() + std::size_t{candidate} * static_cast<std::size_t>(p.stride);
-                const NearPiece<double> near = S::near_piece(numbers, x[0], x[1], x[2]);
-                const double beyond = std::min(near.inside, 0.0);
-                const double gap = std::sqrt(near.height * near.height + beyond * beyond) - double{r.radius} -
-                                   double{f.constants.beyond_wall};
+                double gap = std::numeric_limits<double>::infinity();
+                for (const Vec3& x : images) {
+                    const NearPiece<double> near = S::near_piece(numbers, x[0], x[1], x[2]);
+                    const double beyond = std::min(near.inside, 0.0);
+                    gap = std::min(gap, std::sqrt(near.height * near.height + beyond * beyond) - double{r.radius} -
+                                            double{f.constants.beyond_wall});
+                }
                 if (gap >= piece_skin)
                     rest = std::min(rest, gap);
                 else

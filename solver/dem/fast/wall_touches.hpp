@@ -59,6 +59,7 @@ private:
         std::size_t wall = 0;
         std::int32_t stride = 0;
         double margin = 0;
+        double seam = 0;              // way of a particle until the next list, m
         std::vector<double> numbers;  // in the engine's units, in the frame of the body
         std::vector<Place> particle;  // ascending
         std::vector<std::int32_t> first, active;

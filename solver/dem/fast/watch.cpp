@@ -31,7 +31,7 @@ double Watch::kinetic(const Moment& now) const {
     for (std::int32_t i = 0; i < now.field.count; ++i) {
         const Record& r = now.field.records[i];
         if (!(r.inverse_mass > 0)) continue;
-        const Motion& m = now.motions[static_cast<std::size_t>(i)];
+        const Velocities& m = now.motions[static_cast<std::size_t>(i)];
         const double mass = s.mass / static_cast<double>(r.inverse_mass);
         const double radius = static_cast<double>(r.radius) * s.length;
         energy += mass * (0.5 * dot(m.velocity, m.velocity) + 0.2 * radius * radius * dot(m.spin, m.spin));
@@ -65,7 +65,7 @@ void Watch::set_limit(const Moment& now, std::span<const MovingWall> walls) {
     for (std::int32_t i = 0; i < now.field.count; ++i) {
         const Record& r = now.field.records[i];
         if (!(r.inverse_mass > 0)) continue;
-        const Motion& m = now.motions[static_cast<std::size_t>(i)];
+        const Velocities& m = now.motions[static_cast<std::size_t>(i)];
         const double radius = static_cast<double>(r.radius) * now.space.scale.length;
         start = std::max({start, norm(m.velocity), radius * norm(m.spin)});
         lightest = std::min(lightest, now.space.scale.mass / static_cast<double>(r.inverse_mass));

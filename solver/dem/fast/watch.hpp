@@ -32,7 +32,7 @@ struct Moment {
     const Field& field;
     const ListSpace& space;
     const std::int32_t* id;
-    std::span<const Motion> motions;  ///< in the order of the records
+    std::span<const Velocities> motions;  ///< in the order of the records
     StoredEnergy stored;
     std::int64_t steps = 0;  ///< so far
 };

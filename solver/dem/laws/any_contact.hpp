@@ -11,7 +11,7 @@ namespace grainsweep::dem {
 class AnyContact {
 public:
     struct Traits {
-        bool spin, rolls, reaches, remembers_separation;
+        bool spin, rolls, reaches, acts_apart, remembers_separation;
         std::vector<MemoryKind> memory;  ///< of every component
     };
 
@@ -49,7 +49,7 @@ template <class C>
 class ContactOf final : public AnyContact {
 public:
     explicit ContactOf(const Material& m)
-        : AnyContact({C::spin, C::rolls, C::reaches, C::remembers_separation, C::memory_kinds()}),
+        : AnyContact({C::spin, C::rolls, C::reaches, C::acts_apart, C::remembers_separation, C::memory_kinds()}),
           material_(m),
           laws_(C::of(m)) {}
     bool covers(const Material& m) const override { return C::covers(m); }

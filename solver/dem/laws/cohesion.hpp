@@ -34,9 +34,10 @@ struct CohesionOver : LawTraits {
     static constexpr Aspect aspect = Aspect::cohesion;
     static constexpr int constants = 7;
 
-    static bool wanted(const Material& m) { return m.cohesion > 0 && !acts_by_surface_energy(m.cohesion_law); }
+    static bool wanted(const Material& m) { return m.cohesion > 0 && acts_over_area(m.cohesion_law); }
     static bool suits(const Material& m) {
         if (acts_by_surface_energy(m.cohesion_law)) return !(m.surface_energy > 0);
+        if (m.cohesion_law == CohesionLaw::capillary) return !(m.surface_tension > 0);
         return !lens || (m.cohesion_law == CohesionLaw::sjkr && m.friction_limit == FrictionLimit::contact);
     }
     static std::array<Quantity, constants> constants_of(const Material& m) {

@@ -2,6 +2,7 @@
 // from this list. A case takes the first combination that fits its material.
 #pragma once
 
+#include "solver/dem/laws/capillary.hpp"
 #include "solver/dem/laws/cohesion.hpp"
 #include "solver/dem/laws/constant_torque.hpp"
 #include "solver/dem/laws/contact.hpp"
@@ -53,6 +54,8 @@ using Compiled = CombinationList<Combination<Columns::equal, Hertz>,            
                                  Combination<Columns::any, Hertz, Jkr, Mindlin, ConstantTorque>,              //
                                  Combination<Columns::any, Hertz, Dmt, Mindlin, RollingResistance>,           //
                                  Combination<Columns::any, Hertz, Dmt, Mindlin, ConstantTorque>,              //
+                                 Combination<Columns::any, Hertz, Capillary, Mindlin, RollingResistance>,     //
+                                 Combination<Columns::any, Hertz, Capillary, Mindlin, ConstantTorque>,        //
                                  Combination<Columns::sizes, Linear, LinearSliding>,                          //
                                  Combination<Columns::any, Linear, Cohesion, LinearSliding, ConstantTorque>,  //
                                  Combination<Columns::any, Linear, Cohesion, LinearSliding, LinearRolling>,   //

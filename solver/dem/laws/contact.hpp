@@ -18,6 +18,7 @@ struct Contact : Laws<Real>... {
     static constexpr bool spin = (Laws<Real>::spin || ...);
     static constexpr bool rolls = (Laws<Real>::rolls || ...);
     static constexpr bool reaches = (Laws<Real>::reaches || ...);
+    static constexpr bool acts_apart = (Laws<Real>::acts_apart || ...);
     static constexpr bool remembers_separation = (Laws<Real>::remembers_separation || ...);
     /// Components of its memory.
     static constexpr int memories = (0 + ... + Laws<Real>::memory_kind.components);

@@ -80,7 +80,8 @@ struct LinearSliding : LawTraits {
     [[gnu::always_inline]] void add(const T& t, Response<Real>& r, Real* displacement) const {
         auto s = A::vector(displacement);
         if constexpr (advance) s = A::across(A::add(s, t.time_step, t.slip), t.normal);
-        const auto [slides, scale] = A::cut(stiffness, s, friction * A::abs(r.seen));
+        const auto [slides, scale] = A::cut(stiffness, s, t.limit(friction * A::abs(r.seen)));
+        r.slides = slides;
         r.resistance = A::spring(stiffness, scale, s, A::drop(slides, over_normal * r.damping), t.slip);
         if constexpr (advance) A::remember(displacement, t.kept(A::scaled(s, scale)));
     }

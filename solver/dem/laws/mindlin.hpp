@@ -44,7 +44,8 @@ struct Mindlin : LawTraits {
         auto s = A::vector(displacement);
         if constexpr (advance) s = A::across(A::add(s, t.time_step, t.slip), t.normal);
         const Real k = stiffness * t.root;
-        const auto [slides, scale] = A::cut(k, s, friction * A::abs(r.seen));
+        const auto [slides, scale] = A::cut(k, s, t.limit(friction * A::abs(r.seen)));
+        r.slides = slides;
         r.resistance = A::spring(k, scale, s, A::drop(slides, t.damped_beside(damping, r.damping)), t.slip);
         if constexpr (advance) A::remember(displacement, t.kept(A::scaled(s, scale)));
     }

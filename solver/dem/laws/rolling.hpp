@@ -70,7 +70,7 @@ struct RollingSpring : LawTraits {
             m = A::add(m, t.time_step * k, turning);
         else
             m = A::add(m, (lever + lever) * t.time_step * k, turning);
-        const auto [yields, scale] = A::cut(m, A::product(friction, t.effective_radius, A::abs(r.seen)));
+        const auto [yields, scale] = A::cut(m, t.limit(A::product(friction, t.effective_radius, A::abs(r.seen))));
         m = A::scaled(m, scale);
         r.rolling = A::add(m, A::drop(yields, dashpot * A::sqrt(t.rolling_inertia * k)), turning);
         if constexpr (advance) A::remember(moment_of_spring, t.kept(m));

@@ -36,6 +36,11 @@ struct Touch {
     double rolling_inertia = 0;   ///< 1/(1/I_i + 1/I_j), I = 7/5 m R^2 about the contact, kg m2; likewise
     double time_step = 0;         ///< s, by which memories advance
     bool touching = true;         ///< false: near, and no law makes it a contact
+    bool apart = false;           ///< the bodies do not touch, and a law acts at a distance
+    double cut_before = 0;        ///< share of a limit: springs this near to it were cut by the step, and yield
+
+    /// Of a spring, where its size exceeds it.
+    [[nodiscard]] double limit(double l) const { return l - cut_before * l; }
 
     /// The damper of a coefficient, N s/m.
     [[nodiscard]] double damped(const Arithmetic::Damping& d) const { return d.coefficient * damping_root; }
@@ -67,11 +72,15 @@ struct Touch {
         root = contact_radius;
         damping_root = std::sqrt(root * reduced_mass);
     }
-    /// x where the contact is one: always, when laws are applied.
+    /// For laws that act at a distance: bodies with a gap between them have no springs.
+    void part(double gap) { apart = gap > 0; }
+    /// x where the bodies touch, or stick together; else 0.
     template <class X>
-    [[nodiscard]] const X& kept(const X& x) const {
-        return x;
+    [[nodiscard]] X kept(const X& x) const {
+        return apart ? X{} : x;
     }
+    /// x where the contact is one: always, when laws are applied.
+    [[nodiscard]] static double lasting(double x) { return x; }
 };
 
 /// Sum of the laws applied so far, in their order.
@@ -83,7 +92,8 @@ struct Response {
     Real elastic{};       ///< the part of it that the overlap alone makes, without damping and attraction, N
     Real damping{};       ///< the normal damper, N s/m
     Vector resistance{};  ///< minus the tangential force, N
-    Vector rolling{};     ///< minus the moment on i besides that of the forces; on j the same with the other sign, N m
+    typename Arithmetic<Real>::Mask slides{};  ///< friction is at its limit
+    Vector rolling{};  ///< minus the moment on i besides that of the forces; on j the same with the other sign, N m
 };
 
 /// 7/5 m R^2: moment of inertia of a sphere about a point of its surface, over m R^2.
@@ -124,6 +134,8 @@ struct LawTraits {
     /// says whether a near pair is a contact and what its radius is, before laws are applied. Only for combinations
     /// that are compiled for any spheres.
     static constexpr bool reaches = false;
+    /// Beyond touch bodies are apart, and nothing but this law acts.
+    static constexpr bool acts_apart = false;
     static double beyond(const Material&, double) { return 0; }
     template <class T>
     void begin(T&, const void*) const {}

@@ -29,6 +29,7 @@ std::vector<Motion> displacing(const Shape& shape, std::span<const Motion> motio
     for (std::size_t k = 0; k < motions.size(); ++k) {
         if (const auto* r = std::get_if<Rotation>(&motions[k])) turned(k, r->point, r->axis);
         if (const auto* d = std::get_if<Drive>(&motions[k])) turned(k, d->point, d->axis);
+        turns = turns || std::holds_alternative<Flight>(motions[k]);
     }
     const auto stays = [&](const Vec3& direction) {
         return !turns && std::visit([&](const auto& s) { return s.unchanged_by_shift(direction); }, shape);
@@ -134,6 +135,7 @@ MovingWall MovingWall::moving_as(const Wall& other, const geometry::Domain& doma
 
 void MovingWall::take_motions(std::vector<Motion> motions) {
     for (const Motion& m : motions) refuse_flaw(flaw(m));
+    refuse_flaw(flaw(motions));
     std::erase_if(motions, geometry::is_still);
     displacing_ = displacing(wall_.shape, motions);
     switches_ = std::ranges::any_of(displacing_, switches);
@@ -143,7 +145,7 @@ void MovingWall::take_motions(std::vector<Motion> motions) {
 
 void MovingWall::kick(const Vec3& force, const Vec3& torque, const Vec3& about, double time, double span) {
     if (!free_) return;
-    for (Motion& motion : wall_.motions) geometry::kick(motion, force, torque, about, time, span);
+    geometry::kick(wall_.motions, force, torque, about, time, span);
     displacing_ = displacing(wall_.shape, wall_.motions);
 }
 
@@ -165,9 +167,10 @@ void MovingWall::require_possible(const geometry::Domain& domain) const {
         for (const Motion& m : displacing_) {
             const auto* r = std::get_if<Rotation>(&m);
             const auto* d = std::get_if<Drive>(&m);
-            if (r == nullptr && d == nullptr) continue;
-            if (!parallel(r != nullptr ? r->axis : d->axis, unit_vectors[k]))
-                throw std::invalid_argument("a wall that turns about an axis across a periodic one has no image");
+            if (!turns(m) || (r != nullptr && parallel(r->axis, unit_vectors[k])) ||
+                (d != nullptr && parallel(d->axis, unit_vectors[k])))
+                continue;
+            throw std::invalid_argument("a wall that turns about an axis across a periodic one has no image");
         }
         if (body_image_.period[k] == 0) continue;
         if (!std::isfinite(body_image_.middle[k]))
@@ -270,6 +273,11 @@ double MovingWall::bound_of_speed(std::span<const Motion> motions) const {
 double MovingWall::bound_of_speed_at(std::span<const Motion> motions, double time) const {
     Vec3 shifts{};
     double turns = 0;
+    const auto farthest = [&](auto&& arm_of) {
+        double arm = 0;
+        for (const Vec3& x : corners(Pose{})) arm = std::max(arm, arm_of(x));
+        return arm;
+    };
     for (const Motion& motion : motions) {
         if (std::visit([time](const auto& m) { return time < m.start || time >= m.end; }, motion)) continue;
         const auto* r = std::get_if<Rotation>(&motion);
@@ -277,19 +285,18 @@ double MovingWall::bound_of_speed_at(std::span<const Motion> motions, double tim
         const auto* v = std::get_if<Vibration>(&motion);
         const auto* p = std::get_if<Press>(&motion);
         const auto* d = std::get_if<Drive>(&motion);
+        const auto* f = std::get_if<Flight>(&motion);
         for (std::size_t k = 0; k < 3; ++k) {
             if (p != nullptr) shifts[k] += p->fastest * std::abs(p->along[k]);
             if (t != nullptr) shifts[k] += std::abs(t->velocity[k]);
             if (v != nullptr) shifts[k] += std::abs(2 * std::numbers::pi * v->frequency * v->amplitude[k]);
         }
-        double arm = 0;
         if (r != nullptr)
-            for (const Vec3& x : corners(Pose{})) arm = std::max(arm, norm(cross(r->axis, x - r->point)));
-        if (r != nullptr) turns += std::abs(r->speed) * arm;
-        if (d != nullptr) {
-            for (const Vec3& x : corners(Pose{})) arm = std::max(arm, norm(cross(d->axis, x - d->point)));
-            turns += d->fastest * arm;
-        }
+            turns += std::abs(r->speed) * farthest([r](const Vec3& x) { return norm(cross(r->axis, x - r->point)); });
+        if (d != nullptr)
+            turns += d->fastest * farthest([d](const Vec3& x) { return norm(cross(d->axis, x - d->point)); });
+        if (f != nullptr)
+            turns += f->fastest + f->fastest_turn * farthest([f](const Vec3& x) { return norm(x - f->centre); });
     }
     return norm(shifts) + turns;
 }

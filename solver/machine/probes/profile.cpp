@@ -1,9 +1,8 @@
 // Profiles along a direction: in equal bins of a coordinate the mean of a quantity over the particles in them, weighted
 // by volume, or the sum of volumes.
+#include "solver/machine/binning.hpp"
 #include "solver/machine/probes/probes.hpp"
 #include "solver/machine/selection.hpp"
-
-#include <cmath>
 
 namespace grainsweep::machine::probes {
 namespace {
@@ -19,53 +18,40 @@ public:
         : in_(options.region("in")),
           of_species_(options.numbers("of")),
           along_(options.vector("along")),
-          low_(options.number("from")),
-          high_(options.number("to")),
-          bins_(static_cast<std::size_t>(options.number("bins", 20))),
+          bins_(bins_along(options)),
           velocity_along_(options.vector("velocity_along", {1, 0, 0})) {
         const auto word = options.word("quantity", "solid_volume");
         of_ = word == "velocity" ? ProfileOf::velocity : word == "share" ? ProfileOf::share : ProfileOf::solid_volume;
     }
     double look(const Sight&) override { return undefined; }
     void profile(const Sight& sight, std::vector<Sample>& into) override {
-        std::vector<double> sum(bins_, 0), weight(bins_, 0);
+        std::vector<double> sum(bins_.count, 0), weight(bins_.count, 0);
         for (std::size_t i = 0; i < sight.size(); ++i) {
             if (in_ && !in_->contains(sight.state.position[i])) continue;
             const bool counts =
                 of_species_.empty() || std::ranges::find(of_species_, sight.species_of(i)) != of_species_.end();
             if (of_ != ProfileOf::share && !counts) continue;
-            const double place = std::floor((dot(sight.state.position[i], along_) - low_) / width());
-            if (!(place >= 0 && place < static_cast<double>(bins_))) continue;
-            const auto bin = static_cast<std::size_t>(place);
+            const std::size_t bin = bins_.at(dot(sight.state.position[i], along_));
+            if (bin == bins_.count) continue;
             const double volume = sight.volume(i);
             weight[bin] += volume;
             if (of_ == ProfileOf::velocity) sum[bin] += volume * dot(sight.state.velocity[i], velocity_along_);
             if (of_ == ProfileOf::share && counts) sum[bin] += volume;
         }
-        for (std::size_t bin = 0; bin < bins_; ++bin) {
-            const double centre = low_ + (static_cast<double>(bin) + 0.5) * width();
+        for (std::size_t bin = 0; bin < bins_.count; ++bin) {
             const double mean = weight[bin] > 0 ? sum[bin] / weight[bin] : undefined;
-            into.push_back({.bin = centre, .value = of_ == ProfileOf::solid_volume ? weight[bin] : mean});
+            into.push_back({.bin = bins_.centre(bin), .value = of_ == ProfileOf::solid_volume ? weight[bin] : mean});
         }
     }
 
 private:
-    [[nodiscard]] double width() const { return (high_ - low_) / static_cast<double>(bins_); }
-
     std::optional<Region> in_;
     std::vector<std::size_t> of_species_;
     Vec3 along_;
-    double low_, high_;
-    std::size_t bins_;
+    Bins bins_;
     Vec3 velocity_along_;
     ProfileOf of_ = ProfileOf::solid_volume;
 };
-
-std::string flaw_of_profile(const Options& given) {
-    if (!(given.number("from") < given.number("to"))) return "\"from\" of a profile must lie below \"to\"";
-    const double bins = given.number("bins", 20);
-    return bins == std::floor(bins) ? "" : "\"bins\" must be a whole number";
-}
 
 constexpr std::array<std::string_view, 3> quantities = {"solid_volume", "velocity", "share"};
 constexpr std::array profile_options = {
@@ -74,7 +60,7 @@ constexpr std::array profile_options = {
     OptionSpec{"along", OptionSpec::Kind::direction, "", "the direction of the coordinate", true},
     OptionSpec{"from", OptionSpec::Kind::number, "m", "where the first bin begins", true},
     OptionSpec{"to", OptionSpec::Kind::number, "m", "where the last bin ends", true},
-    OptionSpec{"bins", OptionSpec::Kind::number, "1", "number of bins; default: 20", false, {1, 1e5}},
+    bins_option,
     OptionSpec{"quantity",
                OptionSpec::Kind::word,
                "",
@@ -94,6 +80,6 @@ const ProbeInfo profile{
     [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<Profile>(given); },
     false,
     "centre of the bin, m",
-    flaw_of_profile};
+    flaw_of_bins_along};
 
 }  // namespace grainsweep::machine::probes

@@ -1,23 +1,26 @@
-// Mean velocity along a direction, weighted by mass, and its sum, the momentum.
+// Mean velocity along a direction, weighted by mass, and its sum, the momentum; mean spin about a direction.
 //
-//     velocity = sum m v . e / sum m          momentum = sum m v . e
+//     velocity = sum m v . e / sum m          momentum = sum m v . e          spin = sum m w . e / sum m
 #include "solver/machine/probes/probes.hpp"
 #include "solver/machine/selection.hpp"
 
 namespace grainsweep::machine::probes {
 namespace {
 
-template <bool mean>
+enum class VelocityOf { mean, sum, spin };
+
+template <VelocityOf what>
 class VelocityProbe final : public machine::Probe {
 public:
     explicit VelocityProbe(const Options& options) : selection_(options), along_(options.vector("along")) {}
     double look(const Sight& sight) override {
         double momentum = 0, mass = 0;
         selection_.each(sight, [&](std::size_t i) {
-            momentum += sight.mass(i) * geometry::dot(sight.state.velocity[i], along_);
+            const auto& of = what == VelocityOf::spin ? sight.state.angular_velocity : sight.state.velocity;
+            momentum += sight.mass(i) * geometry::dot(of[i], along_);
             mass += sight.mass(i);
         });
-        if (!mean) return momentum;
+        if (what == VelocityOf::sum) return momentum;
         return mass > 0 ? momentum / mass : undefined;
     }
 
@@ -29,16 +32,18 @@ private:
 constexpr std::array velocity_options = {
     of_option, in_option, OptionSpec{"along", OptionSpec::Kind::direction, "", "the direction of the component", true}};
 
-template <bool mean>
+template <VelocityOf what>
 std::unique_ptr<machine::Probe> make_velocity(const Options& given) {
-    return std::make_unique<VelocityProbe<mean>>(given);
+    return std::make_unique<VelocityProbe<what>>(given);
 }
 
 }  // namespace
 
 const ProbeInfo velocity{"velocity", "m/s", "mean velocity along a direction, weighted by mass", velocity_options,
-                         make_velocity<true>};
+                         make_velocity<VelocityOf::mean>};
 const ProbeInfo momentum{"momentum", "kg m/s", "sum of mass times velocity along a direction", velocity_options,
-                         make_velocity<false>};
+                         make_velocity<VelocityOf::sum>};
+const ProbeInfo spin{"spin", "rad/s", "mean angular velocity about a direction, right hand, weighted by mass",
+                     velocity_options, make_velocity<VelocityOf::spin>};
 
 }  // namespace grainsweep::machine::probes

@@ -44,6 +44,10 @@ public:
         for (const geometry::Motion& motion : wall->motions) {
             if (const auto* drive = std::get_if<geometry::Drive>(&motion))
                 angle += drive->way * dot(drive->axis, axis_);
+            if (const auto* flight = std::get_if<geometry::Flight>(&motion)) {
+                const auto& [w, x, y, z] = flight->turned;
+                angle += 2 * std::atan2((w < 0 ? -1 : 1) * dot(Vec3{x, y, z}, axis_), std::abs(w));
+            }
             if (const auto* turn = std::get_if<geometry::Rotation>(&motion))
                 angle += turn->speed * std::max(0.0, std::min(time, turn->end) - turn->start) * dot(turn->axis, axis_);
         }
@@ -66,7 +70,8 @@ constexpr std::array angle_of_wall_options = {
 }  // namespace
 
 const ProbeInfo wall_angle{
-    "wall_angle", "deg", "angle by which a wall has turned since the start", angle_of_wall_options,
+    "wall_angle", "deg", "angle by which a wall has turned since the start; of a free body within half a turn",
+    angle_of_wall_options,
     [](const Options& given) -> std::unique_ptr<machine::Probe> { return std::make_unique<AngleOfWall>(given); }};
 const ProbeInfo wall_position{
     "wall_position", "m", "way of a point of a wall since the start, along a direction", position_of_wall_options,

@@ -28,7 +28,7 @@ double share_of_largest(const particles::SizeDistribution& sizes) {
 
 void warn_of_rare_sizes(std::vector<Warning>& warnings, const particles::SizeDistribution& sizes, double diameter,
                         double count) {
-    if (sizes.equal()) return;
+    if (sizes.equal() || count <= 0) return;
     const double share = share_of_largest(sizes);
     if (share * count >= fewest) return;
     warnings.push_back({"sizes too rare for the number of particles",

@@ -1,0 +1,71 @@
+// How a contact of the present state is read: its touch, at the velocities that the laws see and at those of the full
+// step, and the response of the laws.
+#pragma once
+
+#include "solver/dem/engine.hpp"
+#include "solver/dem/laws/any_contact.hpp"
+
+namespace grainsweep::dem {
+
+/// Velocities of one particle.
+struct Velocities {
+    Vec3 velocity{};  ///< m/s
+    Vec3 spin{};      ///< rad/s
+};
+
+/// Velocities of i against its partner.
+struct RelativeMotion {
+    Vec3 velocity{};  ///< v_i - v_j, m/s
+    Vec3 surface{};   ///< (R_i - d/2) w_i + (R_j - d/2) w_j, m/s
+    Vec3 turning{};   ///< w_i - w_j, rad/s
+};
+
+[[nodiscard]] inline RelativeMotion relative(const Touch<Partner::particle>& t, const Velocities& i,
+                                             const Velocities& j) {
+    using namespace geometry;
+    return {i.velocity - j.velocity, (t.radius_i - t.overlap / 2) * i.spin + (t.radius_j - t.overlap / 2) * j.spin,
+            i.spin - j.spin};
+}
+[[nodiscard]] inline RelativeMotion relative(const Touch<Partner::wall>& t, const Velocities& i, const Vec3& wall) {
+    using namespace geometry;
+    return {i.velocity - wall, (t.radius_i - t.overlap / 2) * i.spin, i.spin};
+}
+
+/// The touch at these velocities.
+template <Partner partner>
+[[nodiscard]] Touch<partner> moving(Touch<partner> t, const RelativeMotion& m) {
+    using namespace geometry;
+    t.normal_velocity = dot(m.velocity, t.normal);
+    t.slip = m.velocity - t.normal_velocity * t.normal - cross(m.surface, t.normal);
+    t.turning = m.turning;
+    return t;
+}
+/// The same as the last step saw it, which has cut the memories since; `rounding`: relative, of its forces.
+template <Partner partner>
+[[nodiscard]] Touch<partner> as_in_step(const Touch<partner>& t, const RelativeMotion& before, double rounding) {
+    Touch<partner> seen = moving(t, before);
+    seen.cut_before = rounding;
+    seen.time_step = 0;
+    return seen;
+}
+
+/// The contact by its laws: its force at `seen`, the rest at `now`.
+template <Partner partner>
+[[nodiscard]] ContactForce read_contact(const AnyContact& laws, const Touch<partner>& seen, const Touch<partner>& now,
+                                        const double* memory, std::int32_t first, std::int32_t second) {
+    using namespace geometry;
+    const auto r = laws.respond(seen, memory);
+    return {.first = first,
+            .second = second,
+            .overlap = now.overlap,
+            .normal = now.normal,
+            .normal_force = r.normal,
+            .tangential_force = -r.resistance,
+            .rolling_moment = -r.rolling,
+            .slip = now.slip,
+            .slides = r.slides || r.resistance == Vec3{},
+            .normal_power = -r.normal * now.normal_velocity,
+            .tangential_power = dot(r.resistance, now.slip) + dot(r.rolling, now.turning)};
+}
+
+}  // namespace grainsweep::dem

@@ -1,0 +1,22 @@
+// The body that a closed surface bounds.
+#pragma once
+
+#include "solver/geometry/triangle_surface.hpp"
+
+#include <optional>
+
+namespace grainsweep::geometry {
+
+/// Volume, centre of mass and principal axes of inertia of a body of even density.
+struct Solid {
+    double volume = 0;  ///< m3
+    Vec3 centre{};      ///< m
+    std::array<Vec3, 3> axes{};
+    Vec3 inertia{};  ///< about them, divided by the density, m5
+};
+
+/// Sums tetrahedra between the triangles and one point (Tonon 2004, J. Math. Stat. 1, 8-11), whichever way round the
+/// triangles are. nullopt: an edge belongs to other than two triangles, the surface has one side only, or no volume.
+[[nodiscard]] std::optional<Solid> solid_of(const TriangleSurface& surface);
+
+}  // namespace grainsweep::geometry

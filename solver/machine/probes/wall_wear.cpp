@@ -1,0 +1,109 @@
+// Wear of walls by particles that slide on them.
+//
+//     W = sum over steps and contacts of |F_n| |v_t| dt  while friction slides         worn volume = (k/H) W
+//
+// Archard (1953), J. Appl. Phys. 24, 981; k: wear coefficient, 1; H: hardness of the wall, Pa. v_t is the velocity of
+// the particle's surface over that of the wall. Steps in which the contact sticks or attracts count for nothing: what
+// its spring gives way is no sliding. The profile has W by the place of the contact, in space: a place that is at rest
+// while a wall turns under it.
+#include "solver/machine/binning.hpp"
+#include "solver/machine/contact_place.hpp"
+#include "solver/machine/probes/probes.hpp"
+#include "solver/machine/selection.hpp"
+
+namespace grainsweep::machine::probes {
+namespace {
+
+class WallWear final : public machine::Probe {
+public:
+    explicit WallWear(const Options& options)
+        : walls_(options.numbers("wall")),
+          of_species_(options.numbers("of")),
+          in_(options.region("in")),
+          along_(options.vector("along", {})),
+          bins_(bins_along(options)),
+          in_bins_(bins_.count, 0.0) {}
+
+    void step(const Sight& sight) override {
+        for (const auto& contact : sight.contacts) {
+            if (!contact.slides || !(contact.normal_force > 0) || !counts(sight, contact)) continue;
+            const double wear = contact.normal_force * geometry::norm(contact.slip) * sight.time_step;
+            if (!in_ && bins_.count == 0) {
+                wear_ += wear;
+                continue;
+            }
+            const Vec3 x = contact_point(sight, contact);
+            if (in_ && !in_->contains(x)) continue;
+            wear_ += wear;
+            if (bins_.count == 0) continue;
+            if (const std::size_t bin = bins_.at(geometry::dot(x, along_)); bin < bins_.count) in_bins_[bin] += wear;
+        }
+    }
+    double look(const Sight&) override { return walls_.empty() ? undefined : wear_; }
+    void profile(const Sight&, std::vector<Sample>& into) override {
+        for (std::size_t b = 0; b < bins_.count; ++b) into.push_back({.bin = bins_.centre(b), .value = in_bins_[b]});
+    }
+    void save(ByteWriter& out) const override { out.put(wear_), out.put(in_bins_); }
+    void restore(ByteReader& in) override {
+        in.get(wear_), in.get(in_bins_);
+        in.require(in_bins_.size() == bins_.count);
+    }
+
+private:
+    [[nodiscard]] bool counts(const Sight& sight, const dem::ContactForce& contact) const {
+        if (contact.second >= 0) return false;
+        const auto wall = static_cast<std::size_t>(-1 - contact.second);
+        const auto species = sight.species[static_cast<std::size_t>(contact.first)];
+        return std::ranges::find(walls_, wall) != walls_.end() &&
+               (of_species_.empty() || std::ranges::find(of_species_, species) != of_species_.end());
+    }
+
+    std::vector<std::size_t> walls_, of_species_;
+    std::optional<Region> in_;
+    Vec3 along_;
+    Bins bins_;
+    double wear_ = 0;  // J
+    std::vector<double> in_bins_;
+};
+
+constexpr OptionSpec worn_wall{"wall", OptionSpec::Kind::walls, "", "the wall, or a list of walls", true};
+constexpr OptionSpec worn_in{"in", OptionSpec::Kind::region, "",
+                             "the region in which contacts count; default: everywhere"};
+constexpr std::array wear_options = {worn_wall, of_option, worn_in};
+constexpr std::array wear_profile_options = {
+    worn_wall,
+    of_option,
+    worn_in,
+    OptionSpec{"along", OptionSpec::Kind::direction, "", "the direction of the coordinate", true},
+    OptionSpec{"from", OptionSpec::Kind::number, "m", "where the first bin begins", true},
+    OptionSpec{"to", OptionSpec::Kind::number, "m", "where the last bin ends", true},
+    bins_option};
+
+std::unique_ptr<machine::Probe> make_wear(const Options& given) {
+    return std::make_unique<WallWear>(given);
+}
+
+}  // namespace
+
+const ProbeInfo wall_wear{
+    "wall_wear",
+    "J",
+    "normal force times sliding distance on walls; times Archard's coefficient and divided by the "
+    "hardness: the volume worn off",
+    wear_options,
+    make_wear,
+    false,
+    {},
+    nullptr,
+    true};
+const ProbeInfo wall_wear_profile{"wall_wear_profile",
+                                  "J",
+                                  "the same in bins along a direction",
+                                  wear_profile_options,
+                                  make_wear,
+                                  false,
+                                  "centre of the bin, m",
+                                  flaw_of_bins_along,
+                                  true};
+
+}  // namespace grainsweep::machine::probes
