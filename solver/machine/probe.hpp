@@ -121,7 +121,7 @@ struct ProbeInfo {
     std::string_view over = {};  ///< of a profile: what it runs along, with its unit
     /// What is wrong with the options together, in one sentence; empty: nothing. May be absent.
     std::string (*flaw)(const Options&) = nullptr;
-    bool steps = false;  ///< sees every step, which costs several times as much as the step
+    bool steps = false;  ///< sees every step, which costs about twenty steps
 };
 
 /// All probes, sorted by name.
