@@ -69,7 +69,13 @@ std::shared_ptr<const Machine> machine_of(const Section& top, const fs::path& fo
 }
 
 const SceneInfo& read_scene(const Section& top, const fs::path& folder) {
-    const auto word = top.at("scene").word(scene_words());
+    const Cursor place = top.at("scene");
+    const auto known = scene_words();
+    const auto& json = place.json();
+    if (!json.is_string() || std::ranges::find(known, json.get_ref<const std::string&>()) == known.end())
+        place.refuse("must be a scene or a machine that 'grainsweep scenes' lists",
+                     json.is_string() ? nearest_word(json.get_ref<const std::string&>(), known) : std::string());
+    const auto word = json.get<std::string>();
     if (word == program_word) return enter_program(read_program(top, folder));
     if (word == machine_word) return enter_machine(machine_of(top, folder));
     if (const auto machine = top.find("machine"))

@@ -70,7 +70,7 @@ TEST_F(Shells, BashCompletesCommandsOptionsAndWords) {
     EXPECT_THAT(offered({"query", "a.db", "--format", ""}), ElementsAre("csv", "json", "text"));
     EXPECT_THAT(offered({"run", "c.json", "--again", "c"}), ElementsAre("completed", "crashed"));
     EXPECT_THAT(offered({"solve", "c.json", "--set", "frict"}),
-                ElementsAre("friction=", "friction_a=", "friction_b=", "friction_limit="));
+                ElementsAre("friction=", "friction_a=", "friction_b=", "friction_hard=", "friction_limit="));
     EXPECT_THAT(offered({"completion", ""}), ElementsAre("bash", "zsh"));
 }
 
@@ -180,7 +180,7 @@ TEST_F(Shells, ZshReadsItsCompletion) {
     // zpty types into a shell of its own; the menu it shows holds the words.
     folder.write("ask.zsh", R"(zmodload zsh/zpty
 zpty asked zsh -f -i
-zpty -w asked 'PS1=; PS2=; fpath=('$PWD' $fpath); autoload -U compinit; compinit -u -D; LISTMAX=0; bindkey "^I" list-choices; print ready-$((40+2))'
+zpty -w asked 'PS1=; PS2=; fpath=('$PWD' $fpath); autoload -U compinit; compinit -u -D; LISTMAX=0; setopt list_rows_first; bindkey "^I" list-choices; print ready-$((40+2))'
 zpty -r asked answer '*ready-42*'
 zpty -w -n asked $'grainsweep scenes \t'
 zpty -r asked answer '*)" + listed("scenes", "scene").back() +
