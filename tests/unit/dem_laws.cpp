@@ -195,13 +195,21 @@ TEST(Compiled, TheFirstCombinationThatFitsIsTaken) {
     EXPECT_EQ(adhesive(CohesionLaw::dmt, RollingLaw::epsd), 7);
     EXPECT_EQ(adhesive(CohesionLaw::dmt, RollingLaw::cdt), 8);
     EXPECT_EQ(chosen([](Material& m) { m.cohesion_law = CohesionLaw::jkr; }), 1) << "without surface energy";
+    const auto wet = [&](RollingLaw of_rolling) {
+        return chosen([&](Material& m) {
+            rolling(of_rolling)(m), m.cohesion_law = CohesionLaw::capillary, m.surface_tension = 0.07,
+                                    m.bridge_volume = 0.01;
+        });
+    };
+    EXPECT_EQ(wet(RollingLaw::epsd), 9);
+    EXPECT_EQ(wet(RollingLaw::cdt), 10);
     const auto linear = [&](auto&& change) {
         return chosen([&](Material& m) { m.normal_law = NormalLaw::linear, m.stiffness = 1, change(m); });
     };
-    EXPECT_EQ(linear([](Material&) {}), 9);
-    EXPECT_EQ(linear([](Material& m) { m.cohesion = 1; }), 10);
-    EXPECT_EQ(linear(rolling(RollingLaw::cdt)), 10);
-    EXPECT_EQ(linear(rolling(RollingLaw::epsd)), 11);
+    EXPECT_EQ(linear([](Material&) {}), 11);
+    EXPECT_EQ(linear([](Material& m) { m.cohesion = 1; }), 12);
+    EXPECT_EQ(linear(rolling(RollingLaw::cdt)), 12);
+    EXPECT_EQ(linear(rolling(RollingLaw::epsd)), 13);
     Material plain;  // of many sizes only some are compiled
     plain.friction = 0;
     EXPECT_EQ(

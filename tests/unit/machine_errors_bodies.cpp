@@ -135,7 +135,7 @@ constexpr WrongMachine wrong[] = {
     {"/walls/paddle/motion/0/rotate/speed", "REMOVE",
      "$.walls.paddle.motion[0].rotate: ", "key 'speed' is missing: right hand, rad/s."},
     {"/walls/paddle/motion/0/shift", R"({"velocity": [1, 0, 0]})",
-     "$.walls.paddle.motion[0]: ", R"(a motion is one of "rotate", "shift", "vibrate", "press" and "drive".)"},
+     "$.walls.paddle.motion[0]: ", R"(a motion is one of "rotate", "shift", "vibrate", "press", "drive" and "free".)"},
     {"/walls/paddle/motion/0", R"({"spin": 3})", "$.walls.paddle.motion[0].spin: unknown key", "unknown key"},
     {"/walls/paddle/motion/0", R"({"vibrate": {"amplitude": [0, 0, 0.001], "frequency": -1}})",
      "$.walls.paddle.motion[0].vibrate.frequency: ", "must be a number from 0, Hz."},
