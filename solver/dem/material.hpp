@@ -78,7 +78,7 @@ struct Material {
     double surface_energy = 0;    ///< w of jkr, dmt: work of adhesion per contact area, J/m2; 0: none of them at all
     double surface_tension = 0;   ///< of capillary, N/m; 0: no bridges at all
     double contact_angle = 0;     ///< likewise, rad, [0, pi/2)
-    double bridge_volume = 0.01;  ///< likewise, of a bridge over that of a sphere of its bodies' harmonic mean radius
+    double bridge_volume = 2e-4;  ///< likewise, of a bridge over that of a sphere of its bodies' harmonic mean radius
     CohesionLaw cohesion_law = CohesionLaw::sjkr;
     FrictionLimit friction_limit = FrictionLimit::contact;
 

@@ -97,7 +97,7 @@ constexpr auto contact_keys = std::to_array<Key>({
     {"bridge_volume", MachineKey::value,
      "of capillary: volume of a liquid bridge divided by that of a sphere of the mean radius 2 R1 R2/(R1 + R2), at a "
      "wall of the sphere",
-     "0.01"},
+     "0.0002"},
     {"rolling_law", MachineKey::word, "how rolling is resisted", "\"epsd\"", {}, rolling_words},
     {"cohesion_law", MachineKey::word, "how bodies attract each other", "\"sjkr\"", {}, cohesion_words},
     {"friction_limit",
