@@ -80,7 +80,7 @@ TEST(LaboratoryBulk, TheShearBoxMeasuresFriction) {
     };
     const double smooth = with(0, 5).at("friction_angle");
     const auto rough = with(0.5, 5), heavier = with(0.5, 15);
-    EXPECT_GT(smooth, 4);  // Peyneau and Roux 2008: 5.76 degrees in simple shear, here with walls
+    EXPECT_GT(smooth, 4);
     EXPECT_LT(smooth, 11);
     EXPECT_GT(rough.at("friction_angle"), smooth + 10);
     EXPECT_LT(rough.at("friction_angle"), 31);

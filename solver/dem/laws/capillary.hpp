@@ -5,8 +5,8 @@
 //     R_D = 2 R_i R_j/(R_i + R_j) = 2 R*, a wall 2 R;   V = c 4/3 pi R_V^3, R_V = R_D of a pair, R at a wall
 //
 // g: surface tension, N/m; theta: contact angle, rad; c: bridge volume as a share of a sphere's. Willett, Adams,
-// Johnson & Seville (2000), Langmuir 16, 9396, their closed form for small bridges in Derjaguin's approximation, for
-// V up to about 0.001 R_D^3; Lian, Thornton & Adams (1993), J. Colloid Interface Sci. 161, 138.
+// Johnson & Seville (2000), Langmuir 16, 9396, their closed form for small bridges in Derjaguin's approximation, least
+// accurate near touch and near rupture; Lian, Thornton & Adams (1993), J. Colloid Interface Sci. 161, 138.
 // The volume of a bridge is given: liquid neither moves nor runs out, and bridges of one particle do not meet. The
 // viscous force of the liquid and its weight are left out.
 //
