@@ -203,22 +203,8 @@ TEST(FreeBodies, AnImpactKeepsMomentumAndAngularMomentum) {
 
 /// A box that falls onto a bed of spheres.
 dem::Setup box_on_bed() {
-    dem::Setup setup;
+    dem::Setup setup = tests::bed_on_floor(5);
     setup.domain = {{0, 0, -0.01}, {0.02, 0.02, 0.08}, {}};
-    setup.material.density = 2500;
-    setup.material.youngs_modulus = 5e6;
-    setup.material.friction = 0.4;
-    setup.material.restitution = 0.2;
-    setup.time_step = 1e-5;
-    for (int z = 0; z < 5; ++z)
-        for (int y = 0; y < 6; ++y)
-            for (int x = 0; x < 6; ++x) {
-                dem::Sphere sphere;
-                sphere.radius = 0.0014 + 0.0001 * ((x + 2 * y + 3 * z) % 3);
-                sphere.position = {0.0017 + x * 0.0033 + 1e-4 * (z % 2), 0.0017 + y * 0.0033, 0.0017 + z * 0.0033};
-                setup.spheres.push_back(sphere);
-            }
-    setup.walls.emplace_back(dem::Plane{{0, 0, 0}, {0, 0, 1}});
     for (std::size_t k = 0; k < 2; ++k) {
         Vec3 low{}, high{}, inwards{};
         high[k] = 0.02, inwards[k] = 1;

@@ -46,6 +46,25 @@ dem::Setup boxed_gas(std::size_t n, double speed, double largest_ratio, std::uin
     return setup;
 }
 
+dem::Setup bed_on_floor(int layers) {
+    dem::Setup setup;
+    setup.material.density = 2500;
+    setup.material.youngs_modulus = 5e6;
+    setup.material.friction = 0.4;
+    setup.material.restitution = 0.2;
+    setup.time_step = 1e-5;
+    for (int z = 0; z < layers; ++z)
+        for (int y = 0; y < 6; ++y)
+            for (int x = 0; x < 6; ++x) {
+                dem::Sphere sphere;
+                sphere.radius = 0.0014 + 0.0001 * ((x + 2 * y + 3 * z) % 3);
+                sphere.position = {0.0017 + x * 0.0033 + 1e-4 * (z % 2), 0.0017 + y * 0.0033, 0.0017 + z * 0.0033};
+                setup.spheres.push_back(sphere);
+            }
+    setup.walls.emplace_back(dem::Plane{{0, 0, 0}, {0, 0, 1}});
+    return setup;
+}
+
 double mass(const dem::Setup& setup, double radius) {
     return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius * setup.material.density;
 }

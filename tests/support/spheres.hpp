@@ -15,6 +15,9 @@ namespace grainsweep::tests {
 /// logarithm.
 [[nodiscard]] dem::Setup boxed_gas(std::size_t n, double speed, double largest_ratio, std::uint64_t seed);
 
+/// Layers of 6 x 6 spheres of 2.8 to 3.2 mm over 20 x 20 mm above the floor z = 0, about to fall. No domain yet.
+[[nodiscard]] dem::Setup bed_on_floor(int layers);
+
 [[nodiscard]] double mass(const dem::Setup& setup, double radius);
 [[nodiscard]] double kinetic_energy(const dem::Setup& setup, const dem::State& state);  ///< with rotation, J
 [[nodiscard]] bool finite(const dem::State& state);
