@@ -52,6 +52,9 @@ designs::DesignRequest request_of(const Identity& identity) {
             range.value_at = [factor = Factor{stated.name, *stated.between}](double u) {
                 return std::get<double>(value_at(factor, u));
             };
+        if (stated.distribution)
+            range.value_at = [distribution = *stated.distribution](double u) { return distribution.quantile(u); };
+        range.endless = stated.distribution && !stated.distribution->has_ends();
     }
     const auto stated = options_in(identity);
     for (const auto& option : design.options) {

@@ -274,8 +274,8 @@ std::vector<Judgement> next_of(const Question& question, const WindowRequest& re
 void say_what_failed(Window& window, const ModelCases& cases) {
     if (cases.failed.empty()) return;
     window.notes.push_back(
-        fmt::format("{}; the nearest cases failed in {:.1f} % of the box, where no setting is counted or recommended",
-                    failed_text(cases), 100 * window.share_failed));
+        fmt::format("{}; the nearest cases failed in {:.1f} % of {}, where no setting is counted or recommended",
+                    failed_text(cases), 100 * window.share_failed, share_of(cases.factors)));
     if (const auto& chosen = window.best ? window.best : window.surest)
         window.notes.push_back(fmt::format("near {} {}",
                                            window.best ? "the best setting" : "where the condition is likeliest",
