@@ -74,6 +74,10 @@ std::span<const Key> campaign_keys() {
          "in place of a design: measurements, and waves of points towards the settings that reproduce them"},
         {"replicates", Kind::whole, "repeats of each point with other seeds", "1", counts},
         {"seed", Kind::whole, "seed of the design's scrambling and of every case", "1", {0, largest_seed}},
+        {"common_random_numbers", Kind::words,
+         "parameters that change no seed: cases that differ in these alone draw the same random numbers, so that their "
+         "difference is that of the parameter",
+         "[]"},
         {"convergence", Kind::object, "when the statistics are good enough"},
         {"accuracy", Kind::word, "a named set of numerical inputs of the scene", {}, {}, accuracy_words},
         {"model", Kind::object, "how responses are learned from the cases; changes no result"},

@@ -14,6 +14,7 @@ std::vector<Command> all_commands() {
              study_commands(),
              serve_commands(),
              decide_commands(),
+             accuracy_commands(),
              solve_commands(),
              draw_commands(),
              catalogue_commands(),
