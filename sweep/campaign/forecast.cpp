@@ -2,7 +2,7 @@
 
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/wrong_question.hpp"
-#include "sweep/designs/calibration.hpp"
+#include "sweep/designs/calibration_layout.hpp"
 #include "sweep/files/whole_file.hpp"
 
 #include <fmt/format.h>
@@ -124,6 +124,16 @@ Forecast forecast(const SceneInfo& scene, const Cases& cases, double room) {
     return total;
 }
 
+std::optional<LongestCourse> longest_course(const Campaign& campaign, const Forecast& forecast) {
+    const auto* design = designs::find_design(campaign.design);
+    if (design == nullptr || !design->calibrates) return std::nullopt;
+    const auto& request = campaign.request;
+    const auto waves = request.count("waves"), points = request.count("points_per_wave");
+    const auto checks = request.count("checks") * (request.shared.empty() ? 1 : waves);
+    const double first_waves = static_cast<double>(waves) + static_cast<double>(checks) / static_cast<double>(points);
+    return LongestCourse{waves, points, checks, first_waves * forecast.total_seconds};
+}
+
 namespace {
 
 std::vector<std::string> calibration_warnings(const Campaign& campaign) {
@@ -131,7 +141,7 @@ std::vector<std::string> calibration_warnings(const Campaign& campaign) {
     const auto* design = designs::find_design(campaign.design);
     if (design == nullptr || !design->calibrates) return warnings;
     for (const auto& target : designs::targets_in(campaign.request.word("targets")))
-        if (target.discrepancy == 0)
+        if (target.discrepancy == 0 && target.experiment == designs::experiment_of(campaign.request))
             warnings.push_back(fmt::format(
                 "the discrepancy of {0} is 0: where the simulation is not exactly the experiment, the posterior "
                 "will be too narrow, about a wrong setting",

@@ -136,6 +136,33 @@ std::string with_other_numerics(std::string_view campaign_file, const OtherNumer
     return text.dump(2) + '\n';
 }
 
+std::string text_of_experiment(std::string_view campaign_file, const Identity& campaign) {
+    const auto options = options_in(campaign);
+    Json document = document_in(campaign_file);
+    const auto place = Json::json_pointer("/calibration/experiments");
+    if (!options.contains("experiment") || !document.is_object() || !document.contains(place))
+        return std::string(campaign_file);
+    const auto& name = options.find("experiment")->second;
+    const Json own = document[place].value(name, Json::object());
+    for (const char* key : {"scene", "machine", "program"})
+        if (own.contains(key)) document[key] = own[key];
+    if (!own.contains("scene")) document["scene"] = own.contains("machine") ? "machine" : "program";
+    const auto known = factor_names(campaign);
+    Json factors = Json::array(), fixed = own.value("fixed", Json::object()), targets = Json::array();
+    for (const auto& factor : document["factors"])
+        if (std::ranges::find(known, factor["name"].get<std::string>()) != known.end()) factors.push_back(factor);
+    const Json shared = document.value("fixed", Json::object());
+    for (const auto& [parameter, value] : shared.items())
+        if (!fixed.contains(parameter) && ("\n" + campaign.fixed).find("\n" + parameter + " = ") != std::string::npos)
+            fixed[parameter] = value;
+    for (const auto& target : document["calibration"]["targets"])
+        if (target.value("of", "") == name) targets.push_back(target);
+    document["factors"] = factors;
+    document["fixed"] = fixed;
+    document["calibration"] = {{"targets", targets}};
+    return document.dump();
+}
+
 std::optional<std::string> phases_text(const PhaseSeconds& phases) {
     if (phases.empty()) return std::nullopt;
     std::string text;

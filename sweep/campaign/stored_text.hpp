@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sweep/campaign/case.hpp"
+#include "sweep/campaign/identity.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -39,6 +40,9 @@ struct OtherNumerics {
 /// and one replicate. Throws std::invalid_argument for a text that is no campaign file.
 [[nodiscard]] std::string with_other_numerics(std::string_view campaign_file, const OtherNumerics& numerics,
                                               std::span<const std::vector<Value>> rows);
+
+/// The campaign file of a calibration's experiment as one of that experiment alone; any other text as it is.
+[[nodiscard]] std::string text_of_experiment(std::string_view campaign_file, const Identity& campaign);
 
 using PhaseSeconds = decltype(Cost::phases);
 /// As a JSON object; phases whose time is no number are left out. None where there are no phases.
