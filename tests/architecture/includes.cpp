@@ -112,8 +112,9 @@ const std::vector<Rule>& rules() {
          {"sweep/study/", "sweep/store/", "sweep/campaign/", "sweep/files/", "sweep/schedule/",
           "sweep/designs/design.hpp", "sweep/designs/refine.hpp", "sweep/designs/calibration", "stats/",
           "solver/plain_text.hpp", "solver/scenes/values.hpp", "solver/scenes/scene.hpp"}},
+        {"sweep/plot/", {"sweep/plot/", "sweep/files/"}},
         {"sweep/report/",
-         {"sweep/report/", "sweep/study/", "sweep/store/", "sweep/campaign/", "sweep/files/", "stats/",
+         {"sweep/report/", "sweep/plot/", "sweep/study/", "sweep/store/", "sweep/campaign/", "sweep/files/", "stats/",
           "solver/plain_text.hpp", "solver/scenes/values.hpp", "solver/scenes/scene.hpp"}},
         {"sweep/cli/run_campaign",  // a run computes and shows nothing
          {"sweep/cli/", "sweep/campaign/", "sweep/files/", "sweep/schedule/", "sweep/store/", "sweep/study/",
@@ -142,6 +143,8 @@ const std::vector<Library>& libraries() {
         {"Eigen/", {"solver/", "stats/"}},
         {"muParser.h", {"sweep/campaign/formula.cpp"}},
         {"udunits2.h", {"sweep/campaign/quantity.cpp"}},
+        {"xlsxwriter.h", {"sweep/report/workbook.cpp"}},
+        {"cairo", {"sweep/plot/"}},
         {"nlopt", {"stats/response/fit.cpp"}},
         {"hwy/", {"solver/dem/fast/lanes.hpp"}},
         {"immintrin.h", {}},  // vector instructions by Highway and by vector types of the compiler
