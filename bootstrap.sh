@@ -25,6 +25,7 @@ program_packages=(
     libmuparser-dev=/usr/include/muParser.h libudunits2-dev=/usr/include/udunits2.h:libudunits2.so
     libcairo2-dev=/usr/include/cairo/cairo.h:libcairo.so libxlsxwriter-dev=/usr/include/xlsxwriter.h:libxlsxwriter.so
     fonts-liberation=/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf
+    libmicrohttpd-dev=/usr/include/microhttpd.h:libmicrohttpd.so
     libjs-chart.js=/usr/share/javascript/chart.js/chart.min.js
 )
 test_packages=(

@@ -13,6 +13,7 @@ std::vector<Command> all_commands() {
              verify_commands(),
              study_commands(),
              figure_commands(),
+             serve_commands(),
              decide_commands(),
              solve_commands(),
              draw_commands(),

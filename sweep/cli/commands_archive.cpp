@@ -53,15 +53,19 @@ int status(const Arguments& asked, Format format) {
     const Store archive(asked.database, Store::Mode::read);
     Table table = archive.status();
     const auto records = archive.campaigns();  // one row each, in the same order
+    const auto now = live::read_now(asked.database);
     std::vector<Convergence> standings;
     for (const auto& record : records) standings.push_back(convergence_of(archive, record));
     if (format == Format::json) {
         Json rows = Json::array();
         for (std::size_t k = 0; k < standings.size(); ++k) {
             const auto& [converged, verdict] = standings[k];
-            rows.push_back(report::to_json(table, k)
-                               .add("converged", converged)
-                               .add("verdict", converged ? Json(verdict) : Json()));
+            Json row = report::to_json(table, k);
+            row.add("converged", converged).add("verdict", converged ? Json(verdict) : Json());
+            if (now && now->campaign == records[k].name)
+                row.add("running", report::to_json(running_cases(archive, *now, now->running.size())))
+                    .add("expected_seconds", now->seconds_left);
+            rows.push_back(row);
         }
         report::write(std::cout, rows);
         return 0;
@@ -83,6 +87,7 @@ int status(const Arguments& asked, Format format) {
     }
     if (text) {
         write_status(std::cout, table);
+        if (now) write_now(std::cout, archive, *now);
     } else {
         report::write(std::cout, table, format);
     }

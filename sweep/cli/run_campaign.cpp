@@ -6,6 +6,7 @@
 #include "sweep/cli/collect_spool.hpp"
 #include "sweep/cli/crew_options.hpp"
 #include "sweep/cli/folder_beside.hpp"
+#include "sweep/cli/now_writer.hpp"
 #include "sweep/cli/program_campaign.hpp"
 #include "sweep/cli/progress.hpp"
 #include "sweep/cli/walltime.hpp"
@@ -364,7 +365,11 @@ private:
         sweep(folder, *store_);
         workers::stage_machine(campaign_.scene().name, folder);
         schedule::Watchers watchers;
-        watchers.progress = [&](const schedule::Progress& progress) { line_->update(progress); };
+        NowWriter now(database_, campaign_.name, workers_ * threads_of_a_case(campaign_));
+        watchers.progress = [&](const schedule::Progress& progress) {
+            line_->update(progress);
+            now.update(progress);
+        };
         watchers.note = [&](const std::string& text) { line_->note(text); };
         watchers.forget_checkpoint = [&](const campaign::CaseId& id) {
             folder.remove(workers::checkpoint_key(id, this_computer()));

@@ -364,9 +364,16 @@ std::string film_elements(std::span<const PageFilm> films, std::string_view play
 void write_page(std::ostream& out, std::span<const PageSource> sources, std::span<const PageFilm> films,
                 const PageModels& models) {
     const auto data = safe_in_script(page_data(sources, models));
-    if (films.empty()) return write_figures(out, page_files().report, data);
+    if (films.empty()) {
+        write_figures(out, page_files().report, data);
+        return;
+    }
     const auto player = enclosed(page_files().films);
     write_figures(out, page_files().report, data, film_elements(films, player), player);
+}
+
+std::string write_live_page(std::ostream& out, std::string_view data) {
+    return write_figures(out, page_files().live, data, "", "", "'self'");
 }
 
 }  // namespace grainsweep::report

@@ -116,6 +116,9 @@ const std::vector<Rule>& rules() {
         {"sweep/report/",
          {"sweep/report/", "sweep/plot/", "sweep/study/", "sweep/store/", "sweep/campaign/", "sweep/files/", "stats/",
           "solver/plain_text.hpp", "solver/scenes/values.hpp", "solver/scenes/scene.hpp"}},
+        {"sweep/live/",
+         {"sweep/live/", "sweep/report/", "sweep/store/", "sweep/campaign/", "sweep/files/",
+          "sweep/workers/process_start.hpp", "solver/plain_text.hpp"}},
         {"sweep/cli/run_campaign",  // a run computes and shows nothing
          {"sweep/cli/", "sweep/campaign/", "sweep/files/", "sweep/schedule/", "sweep/store/", "sweep/study/",
           "sweep/workers/"}},
@@ -148,6 +151,7 @@ const std::vector<Library>& libraries() {
         {"nlopt", {"stats/response/fit.cpp"}},
         {"hwy/", {"solver/dem/fast/lanes.hpp"}},
         {"immintrin.h", {}},  // vector instructions by Highway and by vector types of the compiler
+        {"microhttpd.h", {"sweep/live/http_server.cpp"}},
         {"boost/crc.hpp", {"sweep/workers/host_frame.cpp"}},
         {"boost/",
          {"sweep/workers/child.cpp", "sweep/workers/process_start.cpp", "sweep/workers/host_frame.cpp",
