@@ -12,6 +12,7 @@ std::vector<Command> all_commands() {
              archive_commands(),
              verify_commands(),
              study_commands(),
+             figure_commands(),
              serve_commands(),
              decide_commands(),
              accuracy_commands(),
