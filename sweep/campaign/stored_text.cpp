@@ -41,6 +41,16 @@ std::vector<std::string> features_in(const Json& document) {
     return features;
 }
 
+std::vector<std::string> noise_in(const Json& document) {
+    std::vector<std::string> names;
+    const auto factors = document.find("factors");
+    if (factors == document.end() || !factors->is_array()) return names;
+    for (const auto& factor : *factors)
+        if (factor.is_object() && factor.value("role", Json()) == "noise" && factor.value("name", Json()).is_string())
+            names.push_back(factor["name"].get<std::string>());
+    return names;
+}
+
 /// A calibration's conditions as factors with levels, in the order in which its reader meets them.
 void append_conditions(Json& factors, const Json& calibration) {
     const auto targets = calibration.find("targets");
@@ -65,7 +75,7 @@ void append_conditions(Json& factors, const Json& calibration) {
 Remarks remarks_in(std::string_view campaign_file) {
     const Json document = document_in(campaign_file);
     if (!document.is_object()) return {};
-    Remarks remarks{notes_in(document), std::nullopt, features_in(document)};
+    Remarks remarks{notes_in(document), std::nullopt, features_in(document), noise_in(document)};
     const auto limits = document.find("limits");
     if (limits == document.end() || !limits->is_object()) return remarks;
     const auto attempts = limits->find("attempts");

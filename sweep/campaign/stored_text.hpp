@@ -18,6 +18,7 @@ struct Remarks {
     std::string notes;                     ///< at its top level, one line for each text of a list
     std::optional<std::int64_t> attempts;  ///< limits.attempts, where it says so
     std::vector<std::string> features;     ///< model.features; empty: it says nothing of them
+    std::vector<std::string> noise;        ///< factors with "role": "noise"
 };
 /// Of a campaign file that was read and stored by this program or an older one; empty where it is none.
 [[nodiscard]] Remarks remarks_in(std::string_view campaign_file);

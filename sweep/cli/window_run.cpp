@@ -55,7 +55,7 @@ Standing standing_of(const WindowRun& run, study::WindowRequest request, std::in
             "is a factor, whose value is chosen, not measured: --width needs an observable as objective");
     Standing standing;
     standing.campaign = cases.campaign.name;
-    standing.cases = window.models.front().model.quality().cases;
+    standing.cases = window.models.front().cases();
     if (window.best) {
         standing.half_width = window.best->predictions.front().mean_half_width();
         standing.mean = window.best->predictions.front().mean;
