@@ -107,6 +107,7 @@ std::vector<Factor> read_factors(const Cursor& place, const SceneInfo& scene, co
         if (std::ranges::find(factors, parameter.name, &Factor::name) != factors.end()) {
             section.at("name").refuse("this factor is there twice");
         }
+        (void)section.word("role", "control");  // read again from the stored file: remarks_in
         const auto key = range_key(section);
         check_key(section, key, parameter);
         Factor factor{parameter.name, {}};

@@ -19,7 +19,7 @@ namespace grainsweep::campaign {
 
 namespace {
 
-constexpr std::string_view level_separator = " | ";
+constexpr std::string_view level_separator = " | ", factor_separator = "; ";
 
 std::string joined(const std::vector<Value>& values) {
     std::string text;
@@ -199,6 +199,8 @@ Identity identity_of(const Campaign& campaign) {
         const bool extent = option != nullptr && option->extent;
         (extent ? identity.extent : identity.options) += fmt::format("{} = {}\n", name, text_of(value));
     }
+    if (const auto& names = campaign.common_random_numbers; !names.empty())
+        identity.options += fmt::format("common_random_numbers = {}\n", fmt::join(names, " "));
     return identity;
 }
 
@@ -207,6 +209,20 @@ std::vector<StatedFactor> factors_of(const Identity& identity) {
     const auto lines = lines_of(identity.factors);
     for (const auto& line : lines) factors.push_back(factor_in(line));
     add_distributions(factors, lines);
+    return factors;
+}
+
+std::string factors_line(const std::vector<Factor>& factors) {
+    std::string line;
+    for (const auto& factor : factors) line.append(line.empty() ? "" : factor_separator).append(line_of(factor));
+    return line;
+}
+
+std::vector<StatedFactor> factors_in(std::string_view line) {
+    std::vector<StatedFactor> factors;
+    const auto parts = split(line, factor_separator);
+    for (const auto& part : parts) factors.push_back(factor_in(part));
+    add_distributions(factors, parts);
     return factors;
 }
 

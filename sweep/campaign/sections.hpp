@@ -45,6 +45,15 @@ void read_samples(std::span<const NamedColumn> columns, std::vector<Factor>& fac
 /// Values, quantities and expressions over the numbers of other parameters.
 void read_fixed(const Cursor& place, ParameterSpace& space, const std::filesystem::path& folder);
 
+/// The scene that a campaign file or one of its experiments names: with a program or a machine, made from its section.
+[[nodiscard]] const SceneInfo& read_scene(const Section& top, const std::filesystem::path& folder);
+/// A campaign file of one experiment, without its text.
+[[nodiscard]] Campaign campaign_in(const Json& document, const std::filesystem::path& folder);
+/// The experiments of "calibration"; empty: the campaign file is of one.
+[[nodiscard]] std::vector<std::string> experiment_names(const Json& document);
+/// The campaign of each experiment, in the order of experiment_names.
+[[nodiscard]] std::vector<Campaign> read_experiments(const Json& document, const std::filesystem::path& folder);
+
 /// The campaign's design: checks options against the design's OptionSpecs and fills in defaults.
 void read_design(const Cursor& place, Campaign& campaign, const std::filesystem::path& folder);
 /// "calibration" in the place of a design: adds the conditions of its targets to the factors, as levels.

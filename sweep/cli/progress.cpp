@@ -60,6 +60,16 @@ std::string duration(double seconds) {
     return fmt::format("{} d {} h", s / 86400, s % 86400 / 3600);
 }
 
+double seconds_left(const schedule::Progress& progress, double elapsed, std::size_t cores) {
+    const auto& tally = progress.tally;
+    const auto open = static_cast<double>(tally.questions - tally.decided);
+    if (open <= 0) return 0;
+    const double to_go = std::max(0.0, tally.predicted_left) * static_cast<double>(progress.to_go) / open;
+    const double done = tally.predicted_done;
+    const bool telling = done > 0.02 * (done + to_go);
+    return to_go * (telling ? elapsed / done : 1 / static_cast<double>(std::max<std::size_t>(cores, 1)));
+}
+
 ProgressLine::ProgressLine(bool quiet, std::size_t cores)
     : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), cores_(std::max<std::size_t>(cores, 1)) {}
 
@@ -109,13 +119,7 @@ std::string ProgressLine::describe(const schedule::Progress& progress, Clock::ti
     const double share =
         tally.questions == 0 ? 1 : static_cast<double>(tally.decided) / static_cast<double>(tally.questions);
     const double rate = elapsed > 0 ? static_cast<double>(progress.durable) / elapsed : 0;
-
-    // Time left by predicted cost, corrected by how the prediction fared so far; before enough is done to tell, the
-    // prediction as it is.
-    const double done = tally.predicted_done;
-    const bool telling = done > 0.02 * (done + tally.predicted_left);
-    const double pace = telling ? elapsed / done : 1 / static_cast<double>(cores_);
-    const double left = std::max(0.0, tally.predicted_left) * pace;
+    const double left = seconds_left(progress, elapsed, cores_);
 
     const auto full = static_cast<std::size_t>(share * bar_width);
     std::string text;

@@ -34,6 +34,10 @@ private:
     std::string last_;
 };
 
+/// Seconds until the run ends: predicted cost of the cases that it will still settle (Progress::to_go), at the pace of
+/// what it has done in `elapsed` seconds; until that is 2 % of the whole, as predicted on so many cores.
+[[nodiscard]] double seconds_left(const schedule::Progress& progress, double elapsed, std::size_t cores);
+
 /// 75 -> "1 min 15 s".
 [[nodiscard]] std::string duration(double seconds);
 

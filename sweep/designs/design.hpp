@@ -52,6 +52,14 @@ struct FactorRange {
     std::function<double(double u)> value_at;
     /// It follows a distribution without ends: no point may have the coordinate 0 or 1.
     bool endless = false;
+
+    /// What figures of the factor go over: all of it, or the central 99.8 % of what has no ends; logarithmically where
+    /// its middle is the geometric mean of the ends.
+    struct Shown {
+        double low = 0, high = 0;
+        bool log = false;
+    };
+    [[nodiscard]] Shown shown() const;
 };
 
 struct PointSet;
@@ -61,6 +69,8 @@ struct DesignRequest {
     std::map<std::string, OptionValue, std::less<>> options;  ///< complete: defaults filled in
     std::uint64_t seed = 1;                                   ///< the campaign's
     std::vector<FactorRange> factors = {};                    ///< names, and values for designs that grow
+    /// Factors that several experiments calibrate together; empty: those that vary between two values.
+    std::vector<FactorRange> shared = {};
     /// What is known of the points asked so far, by observable and number: none where a point is not settled, NaN where
     /// it is without an answer. Looked at by designs that grow only.
     std::map<std::string, std::vector<std::optional<double>>, std::less<>> answers = {};

@@ -129,9 +129,8 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{R"([{"op": "replace", "path": "/factors/1", "value": {"name": "behave_attempts", "levels": [1, 1.5]}}])",
               "$.factors[1].levels[1]: got 1.5; 'behave_attempts' must be a whole number from 0 to 1000."},
         Wrong{R"([{"op": "add", "path": "/factors/0/level", "value": [1]}])",
-              "$.factors[0].level: unknown key; $.factors[0] has 'name', 'between', 'levels', 'scale', 'uniform', 'normal', "
-              "'lognormal', 'triangular', 'beta', 'sample' or 'notes'. Did "
-              "you mean 'levels'?"}));
+              "$.factors[0].level: unknown key; $.factors[0] has 'name', 'between', 'levels', 'scale', 'uniform', "
+              "'normal', 'lognormal', 'triangular', 'beta', 'sample', 'role' or 'notes'. Did you mean 'levels'?"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Fixed, WrongCampaign,

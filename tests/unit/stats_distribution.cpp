@@ -17,16 +17,17 @@ using namespace stats;
 
 std::vector<Distribution> all_forms() {
     const std::vector<double> values = {0.2, 0.5, 0.5, 0.9, 0.1};
-    return {Distribution(Normal{34e-6, 3e-6}, 0),
-            Distribution(Normal{0.5, 0.3}, 0, 1),
-            Distribution(Lognormal{2, 0.7}),
-            Distribution(Lognormal{0.3, 0.5}, 0, 1),
-            Distribution(Triangular{1, 2, 5}),
-            Distribution(Triangular{1, 1, 5}),
-            Distribution(Triangular{1, 5, 5}),
-            Distribution(Beta{-1, 3, 2, 5}),
-            Distribution(Beta{0, 1, 0.5, 0.5}),
-            Distribution(SampleColumn{std::make_shared<const JointSample>(std::vector<std::vector<double>>{values}), 0})};
+    return {
+        Distribution(Normal{34e-6, 3e-6}, 0),
+        Distribution(Normal{0.5, 0.3}, 0, 1),
+        Distribution(Lognormal{2, 0.7}),
+        Distribution(Lognormal{0.3, 0.5}, 0, 1),
+        Distribution(Triangular{1, 2, 5}),
+        Distribution(Triangular{1, 1, 5}),
+        Distribution(Triangular{1, 5, 5}),
+        Distribution(Beta{-1, 3, 2, 5}),
+        Distribution(Beta{0, 1, 0.5, 0.5}),
+        Distribution(SampleColumn{std::make_shared<const JointSample>(std::vector<std::vector<double>>{values}), 0})};
 }
 
 TEST(Distribution, QuantilesAreFiniteRiseAndStayWithinTheBounds) {
