@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -78,6 +79,16 @@ Prediction predict(const SceneInfo& scene, const Inputs& inputs, const Files& fi
 Prediction predict(const SceneInfo& scene, const Inputs& inputs) {
     NamedFiles named;
     return predict(scene, inputs, named.of(inputs));
+}
+
+std::function<bool(const Inputs&)> acceptance(const SceneInfo& scene) {
+    return [&scene, named = std::make_shared<NamedFiles>()](const Inputs& inputs) {
+        try {
+            return predict(scene, inputs, named->of(inputs)).impossible.empty();
+        } catch (const std::invalid_argument&) {
+            return false;
+        }
+    };
 }
 
 void require_memory(const std::string& which, double bytes, double room) {

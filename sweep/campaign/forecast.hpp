@@ -4,6 +4,7 @@
 #include "sweep/campaign/campaign.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -46,6 +47,10 @@ struct Prediction {
 };
 /// Throws std::invalid_argument where a file that the inputs name cannot be read.
 [[nodiscard]] Prediction predict(const SceneInfo& scene, const Inputs& inputs);
+
+/// Whether a scene accepts inputs, which is known without running them: where not, their case is rejected. Files that
+/// they name are read once.
+[[nodiscard]] std::function<bool(const Inputs&)> acceptance(const SceneInfo& scene);
 
 /// Throws WrongQuestion where "the case of point 3" (`which`) needs more memory than `room`, bytes.
 void require_memory(const std::string& which, double bytes, double room);

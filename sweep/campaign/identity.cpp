@@ -169,6 +169,8 @@ Identity identity_of(const Campaign& campaign) {
         const bool extent = option != nullptr && option->extent;
         (extent ? identity.extent : identity.options) += fmt::format("{} = {}\n", name, text_of(value));
     }
+    if (const auto& names = campaign.common_random_numbers; !names.empty())
+        identity.options += fmt::format("common_random_numbers = {}\n", fmt::join(names, " "));
     return identity;
 }
 

@@ -19,6 +19,7 @@ constexpr Interval measurable{-1e100, 1e100};  // squares of it, and sums of the
 
 constexpr std::array<std::string_view, 4> accuracy_words = {"survey", "fast", "balanced", "reference"};
 constexpr std::array<std::string_view, 2> scale_words = {"linear", "log"};
+constexpr std::array<std::string_view, 2> role_words = {"control", "noise"};
 constexpr std::array<std::string_view, 5> gate_words = {"mean", "sd", "skewness", "g1", "kurtosis"};
 constexpr std::array<std::string_view, 1> thread_words = {"auto"};
 constexpr auto rule_words = [] {
@@ -74,6 +75,10 @@ std::span<const Key> campaign_keys() {
          "in place of a design: measurements, and waves of points towards the settings that reproduce them"},
         {"replicates", Kind::whole, "repeats of each point with other seeds", "1", counts},
         {"seed", Kind::whole, "seed of the design's scrambling and of every case", "1", {0, largest_seed}},
+        {"common_random_numbers", Kind::words,
+         "parameters that change no seed: cases that differ in these alone draw the same random numbers, so that their "
+         "difference is that of the parameter",
+         "[]"},
         {"convergence", Kind::object, "when the statistics are good enough"},
         {"accuracy", Kind::word, "a named set of numerical inputs of the scene", {}, {}, accuracy_words},
         {"model", Kind::object, "how responses are learned from the cases; changes no result"},
@@ -91,6 +96,12 @@ std::span<const Key> factor_keys() {
         {"between", Kind::array, "[low, high] of a real parameter, numbers or texts with a unit"},
         {"levels", Kind::array, "the values it takes, numbers, texts with a unit, or words"},
         {"scale", Kind::word, "linear: low + u (high - low); log: low (high/low)^u", "\"linear\"", {}, scale_words},
+        {"role",
+         Kind::word,
+         "control: it can be set; noise: it varies and nobody can set it, window averages over it; changes no result",
+         "\"control\"",
+         {},
+         role_words},
     });
     return keys;
 }

@@ -75,6 +75,17 @@ std::string read_accuracy(const Cursor& place, const SceneInfo& scene) {
     return place.word(offered);
 }
 
+std::vector<std::string> read_common(const Section& top, const SceneInfo& scene) {
+    auto names = top.words("common_random_numbers", {});
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        const auto place = top.at("common_random_numbers")[k];
+        (void)read_parameter(place, scene);
+        if (std::ranges::count(names, names[k]) > 1) place.refuse("this parameter is there twice");
+    }
+    std::ranges::sort(names);
+    return names;
+}
+
 /// A parameter that is given but can matter to no case is a misunderstanding.
 void check_relevance(const Section& top, const ParameterSpace& space, std::size_t declared, const Inputs& given) {
     for (std::size_t j = 0; j < space.factors.size(); ++j) {
@@ -141,6 +152,7 @@ Campaign campaign_in(const Json& document, const fs::path& folder) {
     campaign.replicates = top.whole("replicates", 1);
     if (const auto where = top.find("where")) campaign.where = where->text();
 
+    campaign.common_random_numbers = read_common(top, campaign.scene());
     auto& space = campaign.space;
     space.factors = read_factors(top.at("factors"), *space.scene, folder);
     if (const auto fixed = top.find("fixed")) read_fixed(*fixed, space, folder);
