@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace grainsweep::tests::calibration_experiments_test {
+namespace grainsweep::tests::designs_calibration_experiments_test {
 
 using designs::MeasuredTarget;
 using Point = std::span<const double>;
@@ -137,4 +137,4 @@ TEST(CalibrationExperiments, TheJointRegionHoldsTheTruth) {
     EXPECT_GE(held, 10);
 }
 
-}  // namespace grainsweep::tests::calibration_experiments_test
+}  // namespace grainsweep::tests::designs_calibration_experiments_test
