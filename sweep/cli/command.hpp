@@ -61,6 +61,7 @@ Command command(std::string name, std::string summary, auto arguments, auto act)
 [[nodiscard]] std::vector<Command> figure_commands();     // figure
 [[nodiscard]] std::vector<Command> serve_commands();      // serve
 [[nodiscard]] std::vector<Command> decide_commands();     // predict, window
+[[nodiscard]] std::vector<Command> accuracy_commands();   // accuracy
 [[nodiscard]] std::vector<Command> solve_commands();      // solve
 [[nodiscard]] std::vector<Command> catalogue_commands();  // scenes, machines, designs, schema
 [[nodiscard]] std::vector<Command> draw_commands();       // draw

@@ -15,6 +15,7 @@ std::vector<Command> all_commands() {
              figure_commands(),
              serve_commands(),
              decide_commands(),
+             accuracy_commands(),
              solve_commands(),
              draw_commands(),
              catalogue_commands(),

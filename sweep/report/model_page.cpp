@@ -1,8 +1,8 @@
 #include "sweep/report/model_page.hpp"
 
 #include "sweep/report/model_tables.hpp"
+#include "sweep/study/answers.hpp"
 #include "sweep/study/box_search.hpp"
-#include "sweep/study/cases_near.hpp"
 #include "sweep/study/factor_axis.hpp"
 
 #include <algorithm>
@@ -25,12 +25,12 @@ struct Pictured {
     const ModelCases& cases;
     const ObservableModel& model;
     const Admits& admits;
-    CasesNear near{cases};
+    Answers answers{cases};
     std::vector<BoxPoint> others = spread_points(cases.factors, {}, points_averaged);
     Setting middle = exact_setting(cases.factors, std::vector<double>(cases.factors.size(), 0.5));
 
     [[nodiscard]] bool has(const Setting& setting) const {
-        return (!admits || admits(setting)) && near.at(setting).answers;
+        return (!admits || admits(setting)) && answers.expected(std::span(&setting, 1)).front();
     }
 
     /// Mean over the other factors where those of `held` are as given; nothing where hardly any setting is admitted.
@@ -47,7 +47,7 @@ struct Pictured {
             }
             counts.push_back(settings.size() - before);
         }
-        const auto means = model.model.means({model.rows(settings), model.features.names.size()});
+        const auto means = model.means(model.rows(settings));
         std::vector<double> averages;
         auto next = means.begin();
         for (const auto count : counts) {
@@ -86,7 +86,7 @@ ModelMap map_over(const Pictured& pictured, std::size_t a, std::size_t b) {
     std::vector<Setting> held;
     for (const auto& setting : slice) held.push_back({setting[a], setting[b]});
     ModelMap map{a, b, cells_of_map, pictured.averaged(std::array{a, b}, held), {}};
-    map.slice = pictured.model.model.means({pictured.model.rows(slice), pictured.model.features.names.size()});
+    map.slice = pictured.model.means(pictured.model.rows(slice));
     for (std::size_t i = 0; i < slice.size(); ++i)
         if (!pictured.has(slice[i])) map.slice[i] = std::numeric_limits<double>::quiet_NaN();
     return map;

@@ -2,8 +2,8 @@
 // most, the other factors averaged over their ranges or at the middle.
 //
 //   averaged   mean over 128 Sobol points of the other factors of the mean response; points that the campaign's `where`
-//              leaves out and points whose nearest cases failed (cases_near.hpp) do not count, where less than four
-//              are left there is nothing
+//              leaves out and points where an answer is less likely than none (answers.hpp) do not count, where less
+//              than four are left there is nothing
 //   slice      the other factors at the middle of their ranges (levels: the middle one), with the 95 % bands of the
 //   mean and of a
 //              single run about it
