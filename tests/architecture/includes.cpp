@@ -142,7 +142,7 @@ const std::vector<Library>& libraries() {
         {"Eigen/", {"solver/", "stats/"}},
         {"muParser.h", {"sweep/campaign/formula.cpp"}},
         {"udunits2.h", {"sweep/campaign/quantity.cpp"}},
-        {"nlopt", {"stats/response/fit.cpp"}},
+        {"nlopt", {"stats/response/climb.cpp"}},
         {"hwy/", {"solver/dem/fast/lanes.hpp"}},
         {"immintrin.h", {}},  // vector instructions by Highway and by vector types of the compiler
         {"boost/crc.hpp", {"sweep/workers/host_frame.cpp"}},
