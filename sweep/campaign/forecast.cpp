@@ -181,7 +181,7 @@ std::vector<std::string> warnings_of(const Campaign& campaign, const Forecast& f
     }
     if (auto repeated = repeated_cases(campaign, forecast); !repeated.empty()) warnings.push_back(std::move(repeated));
     for (auto& sentence : calibration_warnings(campaign)) warnings.push_back(std::move(sentence));
-    if (campaign.execution.threads > 0 && is_program(campaign.scene().name))
+    if (campaign.execution.threads && is_program(campaign.scene().name))
         warnings.emplace_back(
             "execution.threads has no effect on a program: program.cores says how many cores a case of it takes");
     warn_of_counts(campaign, warnings);

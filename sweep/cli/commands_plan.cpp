@@ -159,8 +159,8 @@ Json plan_json(const Campaign& campaign, const Outlook& outlook) {
             {"longest_seconds", cost.longest_seconds},
             {"largest_bytes", cost.largest_bytes},
             {"threads", campaign::is_program(campaign.scene().name) ? Json()
-                        : threads == 0                              ? Json("auto")
-                                                                    : threads},
+                        : threads                                   ? Json(*threads)
+                                                                    : Json("auto")},
             {"factors", report::to_json(factors_of(campaign))},
             {"fixed", report::to_json(campaign::fixed_as_stated(campaign.space))}};
 }
@@ -188,8 +188,8 @@ void write_csv(const Campaign& campaign, const Outlook& outlook) {
 /// Of a case; empty for a program, which has cores.
 std::string threads_text(const Campaign& campaign) {
     if (campaign::is_program(campaign.scene().name)) return {};
-    if (campaign.execution.threads == 0) return "one per case; more when fewer cases are left than cores";
-    return fmt::format("{} per case", campaign.execution.threads);
+    if (!campaign.execution.threads) return "one per case; more when fewer cases are left than cores";
+    return fmt::format("{} per case", *campaign.execution.threads);
 }
 
 std::string seconds_text(double seconds) {

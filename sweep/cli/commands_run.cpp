@@ -85,6 +85,8 @@ int run(RunArguments& request, Format format) {
     std::signal(SIGHUP, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
     if (!request.outcome.empty()) request.again = outcome_asked_again(request.outcome);
+    for (auto* limit : {&request.stop_after_failures, &request.max_cases})
+        if (*limit == 0) limit->reset();
     const RunReport report = run_campaign(request);
     if (!request.quiet || format != Format::text) show_run(report, format);
     forgive_a_reader_that_is_gone();
@@ -130,9 +132,9 @@ int host(const WorkerArguments& arguments, Format) {
                     fmt::format("{}", options.lease_seconds)};
     if (!options.artefacts.empty())
         host.command.insert(host.command.end(), {"--artefacts", options.artefacts.string()});
-    if (!options.cases.empty())
-        host.command.insert(host.command.end(), {"--cases", options.cases.string(), "--limit-seconds",
-                                                 fmt::format("{}", options.limit_seconds)});
+    if (!options.cases.empty()) host.command.insert(host.command.end(), {"--cases", options.cases.string()});
+    if (options.limit_seconds)
+        host.command.insert(host.command.end(), {"--limit-seconds", fmt::format("{}", *options.limit_seconds)});
     if (!arguments.path.empty()) host.command.insert(host.command.end(), {"--path", arguments.path});
     return workers::host(host);
 }

@@ -12,12 +12,12 @@ namespace grainsweep::cli {
 
 struct RunRequest {
     std::filesystem::path config;
-    std::filesystem::path database;          ///< empty: NAME.db in the current folder
-    std::filesystem::path artefacts;         ///< folder of checkpoints and starting states; empty: beside the database
-    std::optional<std::int64_t> workers;     ///< overrides the file's; 0: all cores
-    std::int64_t stop_after_failures = 0;    ///< 0: never
-    std::optional<campaign::Outcome> again;  ///< ask again what ended like this
-    std::int64_t max_cases = 0;              ///< 0: all
+    std::filesystem::path database;       ///< empty: NAME.db in the current folder
+    std::filesystem::path artefacts;      ///< folder of checkpoints and starting states; empty: beside the database
+    std::optional<std::int64_t> workers;  ///< overrides the file's
+    std::optional<std::int64_t> stop_after_failures;  ///< start nothing more after so many
+    std::optional<campaign::Outcome> again;           ///< ask again what ended like this
+    std::optional<std::int64_t> max_cases;            ///< settle at most so many
     /// Not empty: nothing is computed; the folder that tasks of `work` share says what is asked, and their answers are
     /// put into the database.
     std::filesystem::path spool;
