@@ -23,6 +23,7 @@ struct Command {
     std::function<Action(Parser& parser, const report::Format& format)> declare;
     bool hidden = false;
     bool verbatim = false;  ///< its text is for programs too: never broken to fit a terminal
+    std::string example = {};  ///< a line of shell that --help ends with
 };
 
 /// A command that reads a Request: `arguments(parser, request)` declares what is read, `act(request, format)` returns

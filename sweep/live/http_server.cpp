@@ -186,6 +186,7 @@ void HttpServer::run(std::chrono::milliseconds at_most) {
 }
 
 void HttpServer::publish(std::string_view events) {
+    if (events.empty()) return;  // waking a connection for nothing would turn the loop without rest
     for (auto& reader : impl_->readers) {
         if (reader.closed) continue;
         if (reader.waiting.size() + events.size() > most_waiting) {
