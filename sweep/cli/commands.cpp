@@ -11,7 +11,7 @@ namespace grainsweep::cli {
 namespace {
 
 /// A line of shell for each command that --help lists.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 25> command_examples{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 27> command_examples{{
     {"plan", "plan configs/quickstart.json"},
     {"run", "run configs/quickstart.json --db quick.db"},
     {"calibrate", "calibrate configs/calibrate_drum.json"},
@@ -26,10 +26,12 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 25> command_
     {"converge", "converge quick.db --check"},
     {"sensitivity", "sensitivity quick.db"},
     {"report", "report quick.db -o quick.html"},
+    {"figure", "figure quick.db effects -o effects.pdf"},
     {"serve", "serve quick.db --open"},
     {"predict", R"(predict quick.db --at "gap=0.004")"},
     {"window", R"(window quick.db --where "mfr > 0.3")"},
     {"solve", "solve configs/quickstart.json --watch case.html"},
+    {"accuracy", "accuracy configs/quickstart.json"},
     {"draw", "draw v_blender -o v_blender.html"},
     {"scenes", "scenes powder_spreading"},
     {"machines", "machines v_blender"},
@@ -50,8 +52,10 @@ std::vector<Command> all_commands() {
              archive_commands(),
              verify_commands(),
              study_commands(),
+             figure_commands(),
              serve_commands(),
              decide_commands(),
+             accuracy_commands(),
              solve_commands(),
              draw_commands(),
              catalogue_commands(),
