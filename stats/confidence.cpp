@@ -39,6 +39,10 @@ double normal_quantile(double probability) {
     return -std::numbers::sqrt2 * boost::math::erfc_inv(2 * probability);
 }
 
+double normal_cdf(double quantile) {
+    return 0.5 * std::erfc(-quantile / std::numbers::sqrt2);
+}
+
 double student_half_width(std::span<const double> values) {
     if (values.size() < 2) return std::numeric_limits<double>::quiet_NaN();
     const auto n = static_cast<double>(values.size());

@@ -15,6 +15,8 @@ namespace grainsweep::stats {
 [[nodiscard]] double student_probability(double freedom, double quantile);
 /// Quantile of the normal distribution of mean 0 and standard deviation 1; probability in (0, 1).
 [[nodiscard]] double normal_quantile(double probability);
+/// Its distribution function.
+[[nodiscard]] double normal_cdf(double quantile);
 
 /// Student-t 95 % half-width of the mean of independent, equally distributed values:
 /// t_{R-1, 0.975} s / sqrt(R), s with divisor R - 1. NaN for fewer than two values or any NaN.

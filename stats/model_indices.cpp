@@ -10,7 +10,9 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <initializer_list>
 #include <stdexcept>
+#include <utility>
 
 namespace grainsweep::stats {
 namespace {
@@ -31,11 +33,15 @@ struct Base {
     std::vector<double> a, b;
     std::size_t dimensions;
 
-    /// One half with the columns j (and k) of the other.
+    /// One half with some columns of the other.
     [[nodiscard]] std::vector<double> exchanged(std::vector<double> points, const std::vector<double>& from,
-                                                std::size_t j, std::size_t k) const {
+                                                std::initializer_list<std::size_t> columns) const {
+        return exchanged(std::move(points), from, std::span(columns.begin(), columns.size()));
+    }
+    [[nodiscard]] std::vector<double> exchanged(std::vector<double> points, const std::vector<double>& from,
+                                                std::span<const std::size_t> columns) const {
         for (std::size_t i = 0; i < base_points; ++i)
-            for (const std::size_t column : {j, k}) points[i * dimensions + column] = from[i * dimensions + column];
+            for (const std::size_t column : columns) points[i * dimensions + column] = from[i * dimensions + column];
         return points;
     }
 };
@@ -138,10 +144,48 @@ double unseen_share(const ResponseModel& model) {
     return std::max(0.0, std::pow(quality.leave_one_out_error, 2) - (scatters ? quality.noise_share : 0));
 }
 
+/// Means over the rows whose column lies in [low, high).
+Part means_within(const Eigen::ArrayXXd& each, const Base& base, std::size_t column, double low, double high) {
+    Part sums = Part::Zero(scramblings, each.cols());
+    Eigen::ArrayXd counts = Eigen::ArrayXd::Zero(scramblings);
+    for (std::size_t i = 0; i < base_points; ++i) {
+        const double u = base.a[i * base.dimensions + column];
+        if (u < low || u >= high) continue;
+        const auto s = static_cast<Eigen::Index>(i / points_each);
+        sums.row(s) += each.row(static_cast<Eigen::Index>(i));
+        counts(s) += 1;
+    }
+    return sums.colwise() / counts.max(1);
+}
+
+std::optional<ModelIndices::Noise> noise_of(const Versions& versions, const Base& base, const Whole& whole,
+                                            const Eigen::MatrixXd& a, const FactorRoles& roles) {
+    std::vector<std::size_t> noise, controls;
+    for (std::size_t j = 0; j < roles.noise.size(); ++j) (roles.noise[j] ? noise : controls).push_back(j);
+    if (noise.empty() || controls.empty()) return std::nullopt;
+    const Eigen::MatrixXd moved = versions.at(base.exchanged(base.a, base.b, noise), base.dimensions);
+    const Eigen::ArrayXXd each = (moved - a).array().square() / 2;
+    ModelIndices::Noise found{whole.index_of(means_of(each)), {}};
+    constexpr std::size_t eighths = 8;
+    for (const auto j : controls) {
+        const auto levels = j < roles.levels.size() ? roles.levels[j] : 0;
+        const auto parts = static_cast<double>(levels > 0 ? levels : eighths);
+        ModelIndices::Calmest least{j, 0, 1, found.total};
+        for (double part = 0; part < parts; ++part) {
+            const double from = part / parts, to = (part + 1) / parts;
+            const auto left = whole.index_of(means_within(each, base, j, from, to));
+            if (left.value < least.left.value) least = {j, from, to, left};
+        }
+        found.controls.push_back(least);
+    }
+    std::ranges::stable_sort(found.controls, {}, [](const auto& one) { return one.left.value; });
+    return found;
+}
+
 }  // namespace
 
 ModelIndices model_indices(const ResponseModel& model, std::size_t factors, std::span<const std::size_t> groups,
-                           const FeatureMap& features) {
+                           const FeatureMap& features, const FactorRoles& roles) {
     if (factors == 0 || (!features && factors != model.dimensions()))
         throw std::invalid_argument("indices of a model: factors and features are of different numbers");
     const Versions versions(model, groups, features);
@@ -153,18 +197,19 @@ ModelIndices model_indices(const ResponseModel& model, std::size_t factors, std:
     ModelIndices result;
     std::vector<Eigen::MatrixXd> forth, back;  // f(A_j) - f(A), f(B_j) - f(B)
     for (std::size_t j = 0; j < factors; ++j) {
-        forth.emplace_back(versions.at(base.exchanged(base.a, base.b, j, j), factors) - a);
-        back.emplace_back(versions.at(base.exchanged(base.b, base.a, j, j), factors) - b);
+        forth.emplace_back(versions.at(base.exchanged(base.a, base.b, {j}), factors) - a);
+        back.emplace_back(versions.at(base.exchanged(base.b, base.a, {j}), factors) - b);
         const Part first = means_of(-forth[j].array() * back[j].array() / 2);
         const Part interactions = means_of((forth[j] + back[j]).array().square() / 4);
         result.first.push_back(whole.index_of(first));
         result.total.push_back(whole.index_of(first + interactions));
         result.interactions.push_back(whole.index_of(interactions));
     }
+    result.noise = noise_of(versions, base, whole, a, roles);
     const auto second_difference = [&](const std::vector<double>& points, const std::vector<double>& from,
                                        const Eigen::MatrixXd& at, const std::vector<Eigen::MatrixXd>& moved,
                                        std::size_t j, std::size_t k) {
-        return Eigen::ArrayXXd(versions.at(base.exchanged(points, from, j, k), factors) - at - moved[j] - moved[k]);
+        return Eigen::ArrayXXd(versions.at(base.exchanged(points, from, {j, k}), factors) - at - moved[j] - moved[k]);
     };
     for (std::size_t j = 0; j < factors; ++j)
         for (std::size_t k = j + 1; k < factors; ++k)

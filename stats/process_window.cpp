@@ -16,16 +16,15 @@ namespace {
 
 constexpr std::size_t integration_points = 1024;
 
-double normal_cdf(double u) {
-    return 0.5 * std::erfc(-u / std::numbers::sqrt2);
-}
-
 double normal_density(double u) {
     return std::exp(-0.5 * u * u) / std::sqrt(2 * std::numbers::pi);
 }
 
-double spread(const Prediction& p, Judged judged) {
-    return judged == Judged::mean ? p.mean_error : p.run_error();
+/// The response whose error is `t` standard errors; of a probability see the header.
+double response_at(const Prediction& p, Judged judged, double t) {
+    if (!p.latent) return p.mean + (judged == Judged::mean ? p.mean_error : p.run_error()) * t;
+    if (judged == Judged::mean) return normal_cdf(p.latent->mean + p.latent->error * t);
+    return normal_cdf(t) > 1 - p.mean ? 1 : 0;
 }
 
 /// m* of the header; none where the condition is nowhere more likely than not.
@@ -71,8 +70,7 @@ std::vector<double> probability_of(std::span<const std::vector<Prediction>> pred
         std::size_t held = 0;
         for (std::size_t q = 0; q < errors.points(); ++q) {
             const auto error = errors.at(q);
-            for (std::size_t k = 0; k < d; ++k)
-                responses[k] = predictions[k][i].mean + spread(predictions[k][i], judged) * error[k];
+            for (std::size_t k = 0; k < d; ++k) responses[k] = response_at(predictions[k][i], judged, error[k]);
             held += condition(responses) ? 1U : 0U;
         }
         probability[i] = static_cast<double>(held) / static_cast<double>(errors.points());

@@ -6,6 +6,8 @@
 //       e_k = standard error of the mean (is the mean response inside?), or of a single run with its scatter; degrees
 //       of freedom as Prediction says (all of one model alike)
 //
+// A response that is a probability (stats/probability_model.hpp) is Phi(f), f normal; each single run of it is 1 or 0.
+//
 // It is integrated over 1,024 Sobol points, the same for all x, so that contours are smooth (error about 0.002).
 //
 // Next cases: augmented expected improvement of Huang, Allen, Notz & Zeng (2006), J. Global Optim. 34, 441, eq. 12

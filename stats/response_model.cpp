@@ -184,6 +184,14 @@ double Prediction::run_half_width() const {
     return half_width_factor(freedom) * run_error();
 }
 
+double Prediction::mean_low() const {
+    return latent ? normal_cdf(latent->mean - half_width_factor(freedom) * latent->error) : mean - mean_half_width();
+}
+
+double Prediction::mean_high() const {
+    return latent ? normal_cdf(latent->mean + half_width_factor(freedom) * latent->error) : mean + mean_half_width();
+}
+
 Eigen::MatrixXd ResponseModel::State::in_box(Rows points) const {
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     if (points.dimensions != static_cast<std::size_t>(low.size()) || points.values.size() % points.dimensions != 0)

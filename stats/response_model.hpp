@@ -23,6 +23,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -105,7 +106,15 @@ struct Prediction {
     bool inside = true;                                            ///< false: outside the box, an extrapolation
     /// Of the two errors, which rest on few cases nearby: intervals are Student's, not normal.
     double freedom = std::numeric_limits<double>::infinity();
+    /// Of a probability, which is Phi of a normal number of this mean and standard deviation.
+    struct Latent {
+        double mean = 0, error = 0;
+    };
+    std::optional<Latent> latent = {};
 
+    /// Ends of the 95 % interval of the mean: symmetric, but for a probability, whose interval lies within 0 to 1.
+    [[nodiscard]] double mean_low() const;
+    [[nodiscard]] double mean_high() const;
     /// Standard deviation of a single run about the predicted mean: sqrt(mean_error^2 + scatter^2).
     [[nodiscard]] double run_error() const;
     /// 95 % half-widths, of the mean and of a single run about its predicted mean.

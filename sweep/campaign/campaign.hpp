@@ -109,6 +109,9 @@ struct Campaign {
     designs::DesignRequest request;
     std::int64_t replicates = 1;
     std::uint64_t seed = 1;
+    /// Inputs that change no seed: cases that differ in these alone draw the same random numbers (common random
+    /// numbers).
+    std::vector<std::string> common_random_numbers;
     std::optional<Convergence> convergence;
     std::string accuracy;  ///< empty: none asked
     /// Of response models: expressions over the factors; empty: the factors, or their logarithms. No part of what the

@@ -90,6 +90,7 @@ std::vector<Factor> read_factors(const Cursor& place, const SceneInfo& scene, co
         if (std::ranges::find(factors, parameter.name, &Factor::name) != factors.end()) {
             section.at("name").refuse("this factor is there twice");
         }
+        (void)section.word("role", "control");  // read again from the stored file: remarks_in
         const bool between = section.find("between").has_value();
         if (between == section.find("levels").has_value()) {
             throw wrong_question(element.path(), between ? "both" : "neither",

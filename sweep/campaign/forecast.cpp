@@ -2,7 +2,7 @@
 
 #include "sweep/campaign/program.hpp"
 #include "sweep/campaign/wrong_question.hpp"
-#include "sweep/designs/calibration.hpp"
+#include "sweep/designs/calibration_layout.hpp"
 #include "sweep/files/whole_file.hpp"
 
 #include <fmt/format.h>
@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -80,6 +81,16 @@ Prediction predict(const SceneInfo& scene, const Inputs& inputs) {
     return predict(scene, inputs, named.of(inputs));
 }
 
+std::function<bool(const Inputs&)> acceptance(const SceneInfo& scene) {
+    return [&scene, named = std::make_shared<NamedFiles>()](const Inputs& inputs) {
+        try {
+            return predict(scene, inputs, named->of(inputs)).impossible.empty();
+        } catch (const std::invalid_argument&) {
+            return false;
+        }
+    };
+}
+
 void require_memory(const std::string& which, double bytes, double room) {
     if (!(bytes > room)) return;
     throw wrong_question("$", "",
@@ -124,6 +135,16 @@ Forecast forecast(const SceneInfo& scene, const Cases& cases, double room) {
     return total;
 }
 
+std::optional<LongestCourse> longest_course(const Campaign& campaign, const Forecast& forecast) {
+    const auto* design = designs::find_design(campaign.design);
+    if (design == nullptr || !design->calibrates) return std::nullopt;
+    const auto& request = campaign.request;
+    const auto waves = request.count("waves"), points = request.count("points_per_wave");
+    const auto checks = request.count("checks") * (request.shared.empty() ? 1 : waves);
+    const double first_waves = static_cast<double>(waves) + static_cast<double>(checks) / static_cast<double>(points);
+    return LongestCourse{waves, points, checks, first_waves * forecast.total_seconds};
+}
+
 namespace {
 
 std::vector<std::string> calibration_warnings(const Campaign& campaign) {
@@ -131,7 +152,7 @@ std::vector<std::string> calibration_warnings(const Campaign& campaign) {
     const auto* design = designs::find_design(campaign.design);
     if (design == nullptr || !design->calibrates) return warnings;
     for (const auto& target : designs::targets_in(campaign.request.word("targets")))
-        if (target.discrepancy == 0)
+        if (target.discrepancy == 0 && target.experiment == designs::experiment_of(campaign.request))
             warnings.push_back(fmt::format(
                 "the discrepancy of {0} is 0: where the simulation is not exactly the experiment, the posterior "
                 "will be too narrow, about a wrong setting",

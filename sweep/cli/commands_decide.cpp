@@ -92,12 +92,13 @@ void declare_predict(Parser& parser, PredictRequest& request) {
     parser.add_option("--points FILE.csv", request.points,
                       "CSV file of settings: a header with every factor, one setting per line");
     parser.add_flag("--extrapolate", request.extrapolate,
-                    "predict also outside the ranges of the factors and where no near case has a result");
+                    "predict also outside the ranges of the factors and where a case is likelier to fail than not");
 }
 
 struct WindowArguments {
     std::string database, campaign, maximise, minimise;
     std::string next_file, output;
+    std::vector<std::string> hold;
     std::int64_t next = 0;
     bool single = false, run = false;
     double width = 0;
@@ -160,6 +161,10 @@ int window(const WindowArguments& arguments, Format format) {
     request.maximise = arguments.minimise.empty();
     request.judged = arguments.single ? stats::Judged::single_run : stats::Judged::mean;
     check_run(arguments, request);
+    if (!arguments.hold.empty()) {
+        const Store store(arguments.database, Store::Mode::read);
+        request.held = read_held(study::read_model_cases(store, arguments.campaign).factors, arguments.hold);
+    }
     const auto end = run_first(arguments, request);
     request.next = arguments.run ? 0 : static_cast<std::size_t>(arguments.next);
     const Store store(arguments.database, Store::Mode::read);
@@ -190,13 +195,18 @@ int window(const WindowArguments& arguments, Format format) {
 void declare_window(Parser& parser, WindowArguments& arguments) {
     declare_subject(parser, arguments.database, arguments.campaign);
     parser.add_option("--where CONDITION", arguments.request.where,
-                      "condition over observables and factors: \"mfr >= 0.35 and empty_share <= 0.1\"");
+                      "condition over observables and factors: \"mfr >= 0.35 and empty_share <= 0.1\"; \"... for all "
+                      "powder\": at every level of that factor");
     parser.add_option("--maximize NAME", arguments.maximise, "observable or factor to maximise");
     parser.add_option("--minimize NAME", arguments.minimise, "observable or factor to minimise");
     parser
         .add_option("--risk", arguments.request.risk,
                     "largest probability that a setting in the window violates the condition")
         ->capture_default_str();
+    parser
+        .add_option("--hold NAME=VALUE", arguments.hold,
+                    "one value of a factor, which is then neither searched nor averaged over; may be repeated")
+        ->allow_extra_args(false);
     parser.add_flag("--single", arguments.single,
                     "apply the condition to every single run; default: to the mean over seeds");
     parser.add_option("--next N", arguments.next, "number of cases to propose")->check(whole_number(0, 1000));

@@ -3,7 +3,7 @@
 #include "sweep/cli/build_facts.hpp"
 #include "sweep/cli/command.hpp"
 #include "sweep/cli/path_option.hpp"
-#include "sweep/cli/run_campaign.hpp"
+#include "sweep/cli/run_experiments.hpp"
 #include "sweep/cli/run_summary.hpp"
 #include "sweep/workers/host.hpp"
 #include "sweep/workers/worker.hpp"
@@ -87,10 +87,16 @@ int run(RunArguments& request, Format format) {
     if (!request.outcome.empty()) request.again = outcome_asked_again(request.outcome);
     for (auto* limit : {&request.stop_after_failures, &request.max_cases})
         if (*limit == 0) limit->reset();
-    const RunReport report = run_campaign(request);
+    const RunReport report = run_file(request);
     if (!request.quiet || format != Format::text) show_run(report, format);
     forgive_a_reader_that_is_gone();
     return report.exit_code;
+}
+
+void declare_calibrate(Parser& parser, RunArguments& request) {
+    declare_run(parser, request);
+    parser.add_flag("--powder", request.powder,
+                    "write NAME_powder.json beside the database: the powder at the best setting");
 }
 
 /// `run` that requires something to calibrate.
@@ -146,7 +152,7 @@ std::vector<Command> run_commands() {
         command<RunArguments>("run", "runs the cases of a campaign; run it again to resume", declare_run, run),
         command<RunArguments>("calibrate",
                               "runs waves of cases to find the inputs that reproduce measurements; resumes",
-                              declare_run, calibrate),
+                              declare_calibrate, calibrate),
         hidden(command<WorkerArguments>("worker", "computes cases for a run, which starts it", declare_worker, work)),
         hidden(command<WorkerArguments>("host",
                                         "runs the workers of one node for a run, which starts it "

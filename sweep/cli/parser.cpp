@@ -57,10 +57,12 @@ void declare(CLI::App& app, const std::vector<Command>& commands, std::deque<Par
         subcommand
             ->add_option_function<std::string>(
                 "--format", [format](const std::string& word) { *format = *report::format_named(word); },
-                "text, csv or json")
-            ->check([](const std::string& word) {
-                return report::format_named(word) ? std::string()
-                                                  : "must be 'text', 'csv' or 'json', not '" + word + "'";
+                command.workbook ? "text, csv, json or xlsx" : "text, csv or json")
+            ->check([workbook = command.workbook](const std::string& word) {
+                const auto named = report::format_named(word);
+                if (named && (workbook || *named != report::Format::xlsx)) return std::string();
+                return fmt::format("must be {}, not '{}'",
+                                   workbook ? "'text', 'csv', 'json' or 'xlsx'" : "'text', 'csv' or 'json'", word);
             })
             ->type_name("FORMAT");
         const auto wide = std::make_shared<bool>(false);

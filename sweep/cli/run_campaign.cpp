@@ -9,6 +9,7 @@
 #include "sweep/cli/now_writer.hpp"
 #include "sweep/cli/program_campaign.hpp"
 #include "sweep/cli/progress.hpp"
+#include "sweep/cli/run_ending.hpp"
 #include "sweep/cli/walltime.hpp"
 #include "sweep/files/artefacts.hpp"
 #include "sweep/schedule/growth.hpp"
@@ -167,49 +168,6 @@ std::unique_ptr<schedule::Judge> make_judge(const campaign::Campaign& campaign, 
                                              std::move(known), placement.candidates, std::move(view));
 }
 
-/// What the last line says of convergence; empty where the campaign gives no rule.
-std::string standing(const schedule::Judge* judge) {
-    if (judge == nullptr) return {};
-    if (const auto points = judge->converged_at()) return fmt::format("; converged at {} points", *points);
-    return "; not converged: " + judge->verdict();
-}
-
-std::string summary_of(Ending ending, const schedule::Plan::Tally& tally, const schedule::Judge* judge) {
-    const auto left = [&](std::string_view how, std::string_view then = "; run again to resume") {
-        return fmt::format("{} with {} cases left{}{}", how, tally.questions - tally.decided, then, standing(judge));
-    };
-    switch (ending) {
-        case Ending::finished:
-            return (tally.failed == 0 ? "all cases are settled"
-                                      : fmt::format("all cases are finished, {} of them failed", tally.failed)) +
-                   standing(judge);
-        case Ending::converged:
-            return fmt::format("converged after {} points: {}", *judge->converged_at(), judge->verdict());
-        case Ending::limited:
-            return left("stopped");
-        case Ending::too_many_failures:
-            return fmt::format("stopped after {} failed cases{}", tally.failed_now, standing(judge));
-        case Ending::out_of_time:
-            return left("out of time");
-        case Ending::asked_to_end:
-            return left("ended by a signal");
-        case Ending::too_long:
-            return left("stopped",
-                        ", each predicted to exceed the time limit; extend it (execution.walltime, or the job's time "
-                        "limit)");
-        case Ending::interrupted:
-            return left("interrupted");
-    }
-    return {};
-}
-
-int exit_code(Ending ending, const schedule::Plan::Tally& tally) {
-    if (ending == Ending::interrupted) return 130;
-    if (ending == Ending::out_of_time || ending == Ending::asked_to_end) return 75;
-    if (ending == Ending::converged) return 0;
-    return tally.failed == 0 && tally.decided == tally.questions ? 0 : 1;
-}
-
 schedule::Rules rules_of(const campaign::Campaign& campaign, const RunRequest& request, std::size_t workers) {
     return {.attempts = campaign.limits.attempts,
             .stop_after_failures = request.stop_after_failures,
@@ -255,7 +213,7 @@ class Run {
 public:
     explicit Run(const RunRequest& request)
         : request_(request),
-          campaign_(request.spool.empty() ? read_with_program(request.config)
+          campaign_(request.spool.empty() ? read_with_program(request.config, request.experiment)
                                           : with_program(campaign_of_spool(request.spool), request.spool / "campaign")),
           workers_(worker_count(campaign_, request.workers)) {
         unfold();
@@ -286,11 +244,16 @@ public:
             unfold();
         } while (true);
         store_->remember_file();
-        const auto grown = campaign_.request.grown;
-        const auto in_vain = ending_ == Ending::finished && grown ? grown->without_result : std::string();
-        return {in_vain.empty() ? exit_code(ending_, tally_) : 1, campaign_.name, database_,
+        const auto& grown = campaign_.request.grown;
+        const auto in_vain = ending_ == Ending::finished && grown ? grown->without_result : "";
+        return {in_vain.empty() ? exit_code(ending_, tally_) : 1,
+                campaign_.name,
+                database_,
                 summary_of(ending_, tally_, judge_.get()) + (in_vain.empty() ? "" : "; " + in_vain),
-                judge_ ? std::optional(judge_->converged_at().has_value()) : std::nullopt};
+                judge_ ? std::optional(judge_->converged_at().has_value()) : std::nullopt,
+                ending_ == Ending::finished,
+                static_cast<std::int64_t>(tally_.settled_now + tally_.failed_now),
+                campaign::candidates_of(campaign_)};
     }
 
 private:
@@ -322,7 +285,7 @@ private:
                 });
         const auto record = store_->stored(campaign_).value();
         stopped_before_ = record.stopped_at;
-        if (first) say_first(*line_, campaign_, forecast_, record);
+        if (first && !request_.goes_on) say_first(*line_, campaign_, forecast_, record);
         const auto placement = placement_of(*store_, record, placed_, std::move(states_), std::move(forecast_.seconds));
         judge_ = campaign::asked_in(request_.config, [&] { return make_judge(campaign_, *store_, placement); });
         questions_ = questions_of(campaign_, placement);

@@ -79,20 +79,46 @@ std::string text_of(const std::filesystem::path& file) {
 
 }  // namespace
 
-Setting read_setting(std::span<const ModelFactor> factors, std::span<const std::string> assignments) {
+namespace {
+
+/// The values of NAME=VALUE after an option, by factor.
+std::vector<std::optional<double>> assigned(std::span<const ModelFactor> factors,
+                                            std::span<const std::string> assignments, const std::string& option) {
     std::vector<std::optional<double>> values(factors.size());
     for (const auto& assignment : assignments) {
         const auto equals = assignment.find('=');
-        if (equals == std::string::npos) throw campaign::wrong_question("--at", assignment, "must be NAME=VALUE");
-        const std::string name = assignment.substr(0, equals), where = "--at " + name;
-        const auto j = factor_named(name, factors, "--at");
+        if (equals == std::string::npos) throw campaign::wrong_question(option, assignment, "must be NAME=VALUE");
+        const std::string name = assignment.substr(0, equals), where = option + " " + name;
+        const auto j = factor_named(name, factors, option);
         if (values[j]) throw campaign::wrong_question(where, "", "this factor is given twice");
         values[j] = value_of(factors[j], assignment.substr(equals + 1), where);
     }
+    return values;
+}
+
+}  // namespace
+
+Setting read_setting(std::span<const ModelFactor> factors, std::span<const std::string> assignments) {
+    const auto values = assigned(factors, assignments, "--at");
     require_all(factors, values, "--at");
     Setting setting;
     for (const auto& value : values) setting.push_back(*value);
     return setting;
+}
+
+study::Held read_held(std::span<const ModelFactor> factors, std::span<const std::string> assignments) {
+    const auto values = assigned(factors, assignments, "--hold");
+    study::Held held;
+    for (std::size_t j = 0; j < factors.size(); ++j) {
+        if (!values[j]) continue;
+        const auto& factor = factors[j];
+        if (!factor.is_word() && !(*values[j] >= factor.low && *values[j] <= factor.high))
+            throw campaign::wrong_question(
+                "--hold " + factor.name, factor.text(*values[j]),
+                fmt::format("is outside of {} to {}, where the campaign has cases", factor.low, factor.high));
+        held.emplace_back(j, *values[j]);
+    }
+    return held;
 }
 
 std::vector<Setting> read_settings_file(const std::filesystem::path& file, std::span<const ModelFactor> factors) {

@@ -1,3 +1,4 @@
+#include "sweep/campaign/wrong_question.hpp"
 #include "sweep/report/influence_tables.hpp"
 
 #include "sweep/report/model_tables.hpp"
@@ -193,6 +194,30 @@ store::Table model_influence_table(const ModelInfluence& influence) {
     return table;
 }
 
+namespace {
+
+/// What noise makes of the variance, and the control that reduces it most.
+std::string noise_line(const ModelInfluence& influence) {
+    const auto& noise = *influence.indices->noise;
+    const auto& best = noise.controls.front();
+    return fmt::format("noise ({}) makes {} of the variance of the mean response; {} reduces it most: to {} {}",
+                       campaign::listed(influence.noise), index_text(noise.total), influence.factors[best.factor],
+                       index_text(best.left), influence.calmest.front());
+}
+
+Json noise_json(const ModelInfluence& influence) {
+    if (influence.noise.empty()) return {};
+    const auto& noise = *influence.indices->noise;
+    Json controls = Json::array();
+    for (std::size_t k = 0; k < noise.controls.size(); ++k)
+        controls.push_back(
+            Json{{"name", influence.factors[noise.controls[k].factor]}, {"where", influence.calmest[k]}}.add(
+                index_json(noise.controls[k].left)));
+    return Json{{"factors", influence.noise}, {"controls", controls}}.add(index_json(noise.total));
+}
+
+}  // namespace
+
 std::vector<std::string> model_influence_lines(const ModelInfluence& influence) {
     if (!influence.indices) return {fmt::format("no indices from a response model: {}", influence.refused)};
     std::vector<std::pair<double, std::string>> pairs;
@@ -206,7 +231,8 @@ std::vector<std::string> model_influence_lines(const ModelInfluence& influence) 
     std::string text;
     for (const auto& [size, pair] : pairs) text += (text.empty() ? "interactions of pairs: " : ", ") + pair;
     if (!text.empty()) lines.push_back(text);
-    const auto& quality = influence.model->model.quality();
+    if (!influence.noise.empty()) lines.push_back(noise_line(influence));
+    const auto& quality = std::get<stats::ResponseModel>(influence.model->model).quality();
     lines.push_back(fmt::format(
         "shares of the variance of the mean response, by a model of {} cases with a leave-one-out error of {:.3f} "
         "standard deviations; {:.1f} % of the variance of single runs is scatter",
@@ -233,14 +259,18 @@ Json model_influence_json(const ModelInfluence& influence) {
             pairs.push_back(
                 Json{{"factors", std::array{influence.factors[j], influence.factors[k]}}}.add(index_json(index)));
         });
-        const auto& quality = influence.model->model.quality();
+        const auto& quality = std::get<stats::ResponseModel>(influence.model->model).quality();
         scatter = quality.noise_share;
         unexplained = std::pow(quality.leave_one_out_error, 2);
         model = model_json(*influence.model);
     }
-    return {{"factors", factors},       {"pairs", pairs},
-            {"scatter_share", scatter}, {"unexplained_share", unexplained},
-            {"response_model", model},  {"refused", influence.indices ? Json() : Json(influence.refused)}};
+    return {{"factors", factors},
+            {"pairs", pairs},
+            {"scatter_share", scatter},
+            {"unexplained_share", unexplained},
+            {"response_model", model},
+            {"noise", noise_json(influence)},
+            {"refused", influence.indices ? Json() : Json(influence.refused)}};
 }
 
 Document influence_document(const Responses& responses, const ResponseColumn& response, Format format) {

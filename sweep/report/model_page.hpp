@@ -2,8 +2,8 @@
 // most, the other factors averaged over their ranges or at the middle.
 //
 //   averaged   mean over 128 Sobol points of the other factors of the mean response; points that the campaign's `where`
-//              leaves out and points whose nearest cases failed (cases_near.hpp) do not count, where less than four
-//              are left there is nothing
+//              leaves out and points where an answer is less likely than none (answers.hpp) do not count, where less
+//              than four are left there is nothing
 //   slice      the other factors at the middle of their ranges (levels: the middle one), with the 95 % bands of the
 //   mean and of a
 //              single run about it
@@ -15,7 +15,35 @@
 #include "sweep/report/table.hpp"
 #include "sweep/study/response_models.hpp"
 
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <vector>
+
 namespace grainsweep::report {
+
+/// Against one factor; NaN where nothing is drawn.
+struct ModelCurve {
+    std::vector<double> at, averaged, mean, mean_half_width, run_half_width;
+
+    /// Of `averaged`: largest less smallest.
+    [[nodiscard]] double range() const;
+};
+/// Over two factors, row by row along `up`.
+struct ModelMap {
+    std::size_t across = 0, up = 0;
+    std::size_t count = 0;  ///< cells along a range
+    std::vector<double> averaged, slice;
+};
+struct ModelPictures {
+    study::Setting middle;
+    std::vector<ModelCurve> curves;  ///< one per factor
+    std::vector<std::size_t> order;  ///< factors by how much they matter
+    std::optional<ModelMap> map;     ///< of the first two; none: there is one factor
+};
+/// `admits`: settings that are left out are empty.
+[[nodiscard]] ModelPictures model_pictures(const study::ModelCases& cases, const study::ObservableModel& model,
+                                           const std::function<bool(const study::Setting&)>& admits);
 
 /// {"observable", "unit", "says": lines, "factors", "order": factors by how much they matter, "middle": {"setting",
 /// "texts"}, "failed": settings and outcomes of failed cases, "curves": one per factor {"at", "averaged", "mean",

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace grainsweep::report {
@@ -16,44 +17,74 @@ using namespace study;
 
 constexpr std::size_t most_drawn = 2000;
 
-std::string model_lines(const ObservableModel& model) {
-    const auto& quality = model.model.quality();
-    std::string text = fmt::format(
+namespace {
+
+std::string lines_of(const ObservableModel& named, const stats::ResponseModel& model) {
+    const auto& quality = model.quality();
+    return fmt::format(
         "model of {}: {} cases, leave-one-out error {:.3f} of the standard deviation; {:.0f} % of the cases lie in "
         "their 50 % interval, {:.0f} % in their 95 % interval; {:.1f} % of the variance is scatter of single runs\n"
         "features: {}{}\n",
-        model.observable, quality.rests_on, quality.leave_one_out_error, 100 * quality.coverage_50,
-        100 * quality.coverage_95, 100 * quality.noise_share, campaign::listed(model.features.names),
+        named.observable, quality.rests_on, quality.leave_one_out_error, 100 * quality.coverage_50,
+        100 * quality.coverage_95, 100 * quality.noise_share, campaign::listed(named.features.names),
         quality.learned_map ? ", and a linear map of them that is learned" : "");
+}
+
+std::string lines_of(const ObservableModel& named, const stats::ProbabilityModel& model) {
+    const auto& quality = model.quality();
+    return fmt::format(
+        "model of {}: the probability of a 1, from {} cases, {} of them 1; the mean square of left-out cases less "
+        "their "
+        "probability is {:.3f}, and {:.3f} with the share of ones alone\nfeatures: {}\n",
+        named.observable, quality.rests_on, quality.ones, quality.brier, quality.brier_of_share,
+        campaign::listed(named.features.names));
+}
+
+Json quality_json(const stats::ResponseModel& model) {
+    const auto& quality = model.quality();
+    return {{"leave_one_out_error", quality.leave_one_out_error},
+            {"coverage_50", quality.coverage_50},
+            {"coverage_95", quality.coverage_95},
+            {"noise_share", quality.noise_share},
+            {"learned_map", quality.learned_map}};
+}
+
+Json quality_json(const stats::ProbabilityModel& model) {
+    const auto& quality = model.quality();
+    return {{"ones", quality.ones}, {"brier", quality.brier}, {"brier_of_share", quality.brier_of_share}};
+}
+
+}  // namespace
+
+std::string model_lines(const ObservableModel& model) {
+    std::string text = std::visit([&](const auto& one) { return lines_of(model, one); }, model.model);
     for (const auto& note : model.notes) text += fmt::format("note: {}\n", note);
     return text;
 }
 
 Json model_json(const ObservableModel& model) {
-    const auto& quality = model.model.quality();
-    return {{"observable", model.observable},
-            {"cases", quality.cases},
-            {"rests_on", quality.rests_on},
-            {"undefined", model.undefined},
-            {"leave_one_out_error", quality.leave_one_out_error},
-            {"coverage_50", quality.coverage_50},
-            {"coverage_95", quality.coverage_95},
-            {"noise_share", quality.noise_share},
-            {"features", model.features.names},
-            {"learned_map", quality.learned_map},
-            {"notes", model.notes}};
+    const auto rests_on = std::visit([](const auto& one) { return one.quality().rests_on; }, model.model);
+    Json object = {{"observable", model.observable},
+                   {"kind", model.is_probability() ? "probability" : "response"},
+                   {"cases", model.cases()},
+                   {"rests_on", rests_on},
+                   {"undefined", model.undefined},
+                   {"features", model.features.names},
+                   {"notes", model.notes}};
+    return object.add(std::visit([](const auto& one) { return quality_json(one); }, model.model));
 }
 
 std::vector<store::Table::Cell> input_cells(std::span<const ModelFactor> factors, const Setting& setting) {
     std::vector<store::Table::Cell> cells;
-    for (std::size_t j = 0; j < factors.size(); ++j) cells.push_back(to_cell(factors[j].value(setting[j])));
+    for (std::size_t j = 0; j < factors.size(); ++j)
+        cells.push_back(std::isnan(setting[j]) ? store::Table::Cell{} : to_cell(factors[j].value(setting[j])));
     return cells;
 }
 
 Json inputs_json(std::span<const ModelFactor> factors, const Setting& setting) {
     Json inputs = Json::object();
-    for (std::size_t j = 0; j < factors.size(); ++j)
-        inputs.add(factors[j].name, to_json(to_cell(factors[j].value(setting[j]))));
+    const auto cells = input_cells(factors, setting);
+    for (std::size_t j = 0; j < factors.size(); ++j) inputs.add(factors[j].name, to_json(cells[j]));
     return inputs;
 }
 
@@ -61,18 +92,20 @@ store::Table predictions_table(const ModelCases& cases, const ObservableModel& m
     store::Table table;
     table.columns = cases.factor_names();
     for (const char* name : {"mean", "mean_error", "scatter", "inside"}) table.columns.emplace_back(name);
+    if (model.is_probability()) table.columns.insert(table.columns.end(), {"mean_low", "mean_high"});
     if (model.undefined > 0) table.columns.emplace_back("defined");
-    if (!cases.failed.empty()) table.columns.insert(table.columns.end(), {"answers_near", "near_cases", "near_failed"});
+    if (!cases.failed.empty()) table.columns.insert(table.columns.end(), {"answers", "near_cases", "near_failed"});
     for (std::size_t i = 0; i < predicted.settings.size(); ++i) {
         auto row = input_cells(cases.factors, predicted.settings[i]);
         const auto& p = predicted.predictions[i];
         for (const double x : {p.mean, p.mean_error, p.scatter}) row.push_back(to_cell(x));
         row.emplace_back(std::int64_t{outside_text(cases.factors, predicted.settings[i]).empty()});
+        if (model.is_probability()) row.insert(row.end(), {to_cell(p.mean_low()), to_cell(p.mean_high())});
         if (model.undefined > 0) row.push_back(to_cell(predicted.defined[i]));
         const auto& near = predicted.near[i];
         if (!cases.failed.empty())
             row.insert(row.end(),
-                       {std::int64_t{near.answers}, static_cast<std::int64_t>(near.cases), std::ssize(near.failed)});
+                       {to_cell(predicted.answers[i]), static_cast<std::int64_t>(near.cases), std::ssize(near.failed)});
         table.rows.push_back(std::move(row));
     }
     return table;
@@ -85,10 +118,12 @@ Json predictions_json(const ModelCases& cases, const ObservableModel& model, con
         points.push_back({{"inputs", inputs_json(cases.factors, predicted.settings[i])},
                           {"mean", p.mean},
                           {"mean_error", p.mean_error},
+                          {"mean_low", p.mean_low()},
+                          {"mean_high", p.mean_high()},
                           {"scatter", p.scatter},
                           {"inside", outside_text(cases.factors, predicted.settings[i]).empty()},
                           {"defined", predicted.defined[i]},
-                          {"answers_near", predicted.near[i].answers},
+                          {"answers", predicted.answers[i]},
                           {"near_cases", predicted.near[i].cases},
                           {"near_failed", predicted.near[i].failed.size()}});
     }

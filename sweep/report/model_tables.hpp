@@ -13,17 +13,19 @@ namespace grainsweep::report {
 
 /// What a model rests on and how far its errors can be believed, in a few lines; then its notes, "note: " each.
 [[nodiscard]] std::string model_lines(const study::ObservableModel& model);
-/// {"observable", "cases", "rests_on", "undefined", "leave_one_out_error", "coverage_50", "coverage_95", "noise_share",
-/// "features", "learned_map", "notes"}
+/// {"observable", "kind": "response" or "probability", "cases", "rests_on", "undefined", "features", "notes"}; of a
+/// response "leave_one_out_error", "coverage_50", "coverage_95", "noise_share", "learned_map", of a probability "ones",
+/// "brier", "brier_of_share".
 [[nodiscard]] Json model_json(const study::ObservableModel& model);
 
-/// {"gap": 0.003, "cohesion_law": "sjkr"}
+/// {"gap": 0.003, "cohesion_law": "sjkr"}; null: averaged over.
 [[nodiscard]] Json inputs_json(std::span<const study::ModelFactor> factors, const study::Setting& setting);
 [[nodiscard]] std::vector<store::Table::Cell> input_cells(std::span<const study::ModelFactor> factors,
                                                           const study::Setting& setting);
 
-/// One row per setting: factors, mean, mean_error, scatter, inside (1 or 0), where the observable can be undefined the
-/// probability that it is not, and where cases failed answers_near (1 or 0), near_cases and near_failed.
+/// One row per setting: factors, mean, mean_error, scatter, inside (1 or 0), of a probability mean_low and mean_high,
+/// where the observable can be undefined the probability that it is not, and where cases failed answers (the
+/// probability of an answer), near_cases and near_failed.
 [[nodiscard]] store::Table predictions_table(const study::ModelCases& cases, const study::ObservableModel& model,
                                              const study::Predicted& predicted);
 /// What `predict` shows.

@@ -25,11 +25,11 @@ struct FactorCurve {
 };
 
 FactorCurve curve_through(const ModelCases& cases, const WindowRequest& request, const Window& window,
-                          const Setting& centre, std::size_t factor) {
+                          const Admits& admits, const Setting& centre, std::size_t factor) {
     FactorCurve curve{points_along(cases.factors[factor], points_of_curve), {}};
     std::vector<Setting> settings(curve.at.size(), centre);
     for (std::size_t i = 0; i < settings.size(); ++i) settings[i][factor] = curve.at[i];
-    curve.judged = judge_settings(cases, request, window, settings);
+    curve.judged = judge_settings(cases, request, window, admits, settings);
     return curve;
 }
 
@@ -97,7 +97,7 @@ Json window_page_json(const Window& window, const FactorCurve& curve) {
 Json map_of(const ModelCases& cases, const WindowRequest& request, const Window& window, const Admits& admits,
             const Setting& centre, std::size_t a, std::size_t b) {
     const auto settings = settings_of_map(cases.factors, centre, a, b, points_of_curve);
-    const auto judged = judge_settings(cases, request, window, settings);
+    const auto judged = judge_settings(cases, request, window, admits, settings);
     const bool modelled = modelled_objective(request, window);
     Json probability = Json::array(), objective = modelled ? Json::array() : Json();
     for (std::size_t i = 0; i < settings.size(); ++i) {
@@ -116,12 +116,12 @@ Json window_page_data(const ModelCases& cases, const WindowRequest& request, con
     const auto& centre = window.best ? *window.best : window.surest.value();
     std::vector<FactorCurve> curves;
     for (std::size_t j = 0; j < cases.factors.size(); ++j)
-        curves.push_back(curve_through(cases, request, window, centre.setting, j));
+        curves.push_back(curve_through(cases, request, window, admits, centre.setting, j));
     const bool objective = !request.objective.empty(), modelled = modelled_objective(request, window);
     double whole_range = 0;
     if (modelled) {
         const auto& model = window.models.front();
-        const auto means = model.model.means({model.case_features, model.features.names.size()});
+        const auto means = model.means(model.case_features);
         const auto [low, high] = std::ranges::minmax(means);
         whole_range = high - low;
     }
@@ -147,7 +147,7 @@ Json window_page_data(const ModelCases& cases, const WindowRequest& request, con
             {"meets", window.best.has_value()},
             {"best", window_page_json(cases, window, centre)},
             {"failed", failed_json(cases)},
-            {"failed_near", cases.failed.empty() ? "" : near_text(cases, centre.near)},
+            {"failed_near", cases.failed.empty() ? "" : near_text(cases, window.answers->near(centre.setting))},
             {"order", order},
             {"responses", responses},
             {"models", Json::list(window.models, model_lines)},

@@ -14,13 +14,15 @@ using namespace study;
 
 namespace {
 
-void add_row(store::Table& table, const ModelCases& cases, std::string_view part, const Judgement& one) {
+void add_row(store::Table& table, const ModelCases& cases, const Window& window, std::string_view part,
+             const Judgement& one) {
     std::vector<store::Table::Cell> row;
     if (!part.empty()) row.emplace_back(std::string(part));
     for (auto& cell : input_cells(cases.factors, one.setting)) row.push_back(std::move(cell));
     row.push_back(to_cell(one.probability));
+    const auto near = window.answers->near(one.setting);
     if (!cases.failed.empty())
-        row.insert(row.end(), {static_cast<std::int64_t>(one.near.cases), std::ssize(one.near.failed)});
+        row.insert(row.end(), {to_cell(one.answers), static_cast<std::int64_t>(near.cases), std::ssize(near.failed)});
     for (const auto& p : one.predictions)
         for (const double x : {p.mean, p.mean_error, p.scatter}) row.push_back(to_cell(x));
     table.rows.push_back(std::move(row));
@@ -31,7 +33,7 @@ store::Table empty_table(const ModelCases& cases, const Window& window, bool wit
     if (with_part) table.columns.emplace_back("part");
     for (auto& name : cases.factor_names()) table.columns.push_back(std::move(name));
     table.columns.emplace_back("probability");
-    if (!cases.failed.empty()) table.columns.insert(table.columns.end(), {"near_cases", "near_failed"});
+    if (!cases.failed.empty()) table.columns.insert(table.columns.end(), {"answers", "near_cases", "near_failed"});
     for (const auto& model : window.models)
         for (const char* suffix : {"", "_error", "_scatter"}) table.columns.push_back(model.observable + suffix);
     return table;
@@ -39,7 +41,7 @@ store::Table empty_table(const ModelCases& cases, const Window& window, bool wit
 
 store::Table settings_table(const ModelCases& cases, const Window& window, std::span<const Judgement> settings) {
     auto table = empty_table(cases, window, false);
-    for (const auto& one : settings) add_row(table, cases, {}, one);
+    for (const auto& one : settings) add_row(table, cases, window, {}, one);
     return table;
 }
 
@@ -53,9 +55,11 @@ Json window_table_json(const ModelCases& cases, const WindowRequest& request, co
         observables.add(window.models[k].observable, estimate(one.predictions[k]));
     Json object = {{"inputs", inputs_json(cases.factors, one.setting)}};
     if (!request.objective.empty()) object.add(estimate(one.objective));
+    const auto near = window.answers->near(one.setting);
     return object.add({{"probability", one.probability},
-                       {"near_cases", one.near.cases},
-                       {"near_failed", one.near.failed.size()},
+                       {"answers", one.answers},
+                       {"near_cases", near.cases},
+                       {"near_failed", near.failed.size()},
                        {"observables", observables}});
 }
 
@@ -65,10 +69,10 @@ std::string_view judged_text(stats::Judged judged) {
 
 store::Table window_rows(const ModelCases& cases, const Window& window) {
     auto table = empty_table(cases, window, true);
-    if (window.best) add_row(table, cases, "best", *window.best);
-    if (window.surest) add_row(table, cases, "surest", *window.surest);
-    for (const auto& one : window.front) add_row(table, cases, "front", one);
-    for (const auto& one : window.next) add_row(table, cases, "next", one);
+    if (window.best) add_row(table, cases, window, "best", *window.best);
+    if (window.surest) add_row(table, cases, window, "surest", *window.surest);
+    for (const auto& one : window.front) add_row(table, cases, window, "front", one);
+    for (const auto& one : window.next) add_row(table, cases, window, "next", one);
     return table;
 }
 

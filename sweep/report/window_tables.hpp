@@ -7,13 +7,13 @@
 namespace grainsweep::report {
 
 /// Text: share of the box, best setting, front, next cases, models and notes. Rows: one per setting: part ("best",
-/// "surest", "front", "next"), factors, probability, where cases failed near_cases and near_failed, and for each model
-/// NAME, NAME_error, NAME_scatter.
+/// "surest", "front", "next"), factors, probability, where cases failed answers, near_cases and near_failed, and for
+/// each model NAME, NAME_error, NAME_scatter.
 [[nodiscard]] Document window_document(const study::ModelCases& cases, const study::WindowRequest& request,
                                        const study::Window& window);
 /// {"campaign", "where", "objective", "risk", "judged", "share_of_box", "share_error", "share_failed", "best":
-/// {"inputs", "mean", "mean_error", "scatter", "probability", "near_cases", "near_failed", "observables"}, "surest",
-/// "front", "next", "models", "notes"}
+/// {"inputs", "mean", "mean_error", "scatter", "probability", "answers", "near_cases", "near_failed", "observables"},
+/// "surest", "front", "next", "models", "notes"}
 [[nodiscard]] Json window_json(const study::ModelCases& cases, const study::WindowRequest& request,
                                const study::Window& window);
 

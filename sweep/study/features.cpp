@@ -1,6 +1,7 @@
 #include "sweep/study/features.hpp"
 
 #include "solver/plain_text.hpp"
+#include "sweep/campaign/stored_text.hpp"
 #include "sweep/store/expression.hpp"
 
 #include <fmt/format.h>
@@ -43,17 +44,20 @@ Value ModelFactor::value(double number) const {
 }
 
 std::string ModelFactor::text(double number) const {
+    if (std::isnan(number)) return "varies";
     return is_word() ? words.at(static_cast<std::size_t>(number)) : fmt::format("{}", number);
 }
 
 std::vector<ModelFactor> model_factors(const Responses& responses) {
     const auto stated = campaign::factors_of(responses.campaign);
+    const auto noise = campaign::remarks_in(responses.campaign.text).noise;
     std::vector<ModelFactor> factors;
     for (std::size_t j = 0; j < responses.factors.size(); ++j) {
         const auto& column = responses.factors[j];
         ModelFactor factor;
         factor.name = column.name;
         factor.unit = column.unit;
+        factor.noise = std::ranges::find(noise, column.name) != noise.end();
         if (column.continuous()) {
             factor.low = column.low;
             factor.high = column.high;

@@ -23,6 +23,7 @@ struct ModelFactor {
     std::string name, unit;
     double low = 0, high = 0;        ///< of numbers: the range, or the smallest and largest level
     bool log = false;                ///< the range is divided logarithmically
+    bool noise = false;              ///< it varies, and nobody can set it: "role" of the campaign file
     std::vector<double> numbers;     ///< levels that are numbers, growing; empty: a range, or words
     std::vector<std::string> words;  ///< levels that are words; empty: numbers
 
@@ -30,7 +31,7 @@ struct ModelFactor {
     [[nodiscard]] bool varies() const { return is_word() ? words.size() > 1 : high > low; }
     /// The value as the campaign file has it.
     [[nodiscard]] Value value(double number) const;
-    /// The same as text, to be read again: the shortest that is the same number.
+    /// The same as text, to be read again: the shortest that is the same number; of NaN, averaged over, "varies".
     [[nodiscard]] std::string text(double number) const;
 };
 

@@ -3,6 +3,8 @@
 #include "sweep/study/box_search.hpp"
 #include "sweep/study/sample_parts.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
 #include <utility>
@@ -33,6 +35,34 @@ stats::FeatureMap model_map(const ObservableModel& model, const std::vector<Mode
     };
 }
 
+stats::FactorRoles roles_of(const std::vector<ModelFactor>& factors, const std::vector<std::size_t>& varied) {
+    stats::FactorRoles roles;
+    for (const auto j : varied) {
+        roles.noise.push_back(factors[j].noise);
+        roles.levels.push_back(factors[j].is_word() ? factors[j].words.size() : factors[j].numbers.size());
+    }
+    return roles;
+}
+
+/// "between 0.005 and 0.006", "at fine".
+std::string part_of_range(const ModelFactor& factor, double from, double to) {
+    const auto at = [&](double u) {
+        return fmt::format("{:.4g}", exact_setting(std::span(&factor, 1), {&u, 1}).front());
+    };
+    const double middle = (from + to) / 2;
+    if (factor.is_word()) return "at " + factor.text(exact_setting(std::span(&factor, 1), {&middle, 1}).front());
+    if (!factor.numbers.empty()) return "at " + at(middle);
+    return fmt::format("between {} and {}", at(from), at(to));
+}
+
+void describe_noise(ModelInfluence& found, const std::vector<ModelFactor>& factors,
+                    const std::vector<std::size_t>& varied) {
+    for (const auto j : varied)
+        if (factors[j].noise) found.noise.push_back(factors[j].name);
+    for (const auto& one : found.indices->noise->controls)
+        found.calmest.push_back(part_of_range(factors[varied[one.factor]], one.from, one.to));
+}
+
 }  // namespace
 
 ModelInfluence model_influence_of(const Responses& responses, const ResponseColumn& response) {
@@ -53,9 +83,17 @@ ModelInfluence model_influence_of(const Responses& responses, const ResponseColu
         return found;
     }
     found.model = std::get<ObservableModel>(std::move(learned));
+    const auto* response_model = std::get_if<stats::ResponseModel>(&found.model->model);
+    if (response_model == nullptr) {
+        found.model.reset();
+        found.refused = "the values are 0 and 1 alone: the model of their probability has no indices";
+        return found;
+    }
     found.without_value = responses.without_value(response);
-    found.indices = stats::model_indices(found.model->model, varied.size(), groups_of(responses, rows),
-                                         model_map(*found.model, cases.factors, varied));
+    found.indices =
+        stats::model_indices(*response_model, varied.size(), groups_of(responses, rows),
+                             model_map(*found.model, cases.factors, varied), roles_of(cases.factors, varied));
+    if (found.indices->noise) describe_noise(found, cases.factors, varied);
     return found;
 }
 

@@ -21,8 +21,10 @@ struct ModelInfluence {
     std::vector<std::string> factors;            ///< that vary, in the campaign's order
     std::optional<stats::ModelIndices> indices;  ///< none: refused
     std::optional<ObservableModel> model;
-    std::size_t without_value = 0;  ///< settled cases
-    std::string refused;            ///< why: one sentence without a full stop
+    std::size_t without_value = 0;     ///< settled cases
+    std::vector<std::string> noise;    ///< names of the noise factors that vary; empty: no share is made of them
+    std::vector<std::string> calmest;  ///< parts of the ranges of indices->noise->controls: "between 0.005 and 0.006"
+    std::string refused;               ///< why: one sentence without a full stop
 };
 
 /// Throws WrongQuestion where a feature of the campaign file cannot be evaluated.

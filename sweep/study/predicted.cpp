@@ -30,27 +30,31 @@ void refuse_undefined(const ModelCases& cases, const ObservableModel& model, std
 Predicted predict(const ModelCases& cases, const ObservableModel& model, std::vector<Setting> settings,
                   bool extrapolate) {
     refuse_undefined(cases, model, settings);
-    Predicted predicted{std::move(settings), {}, {}, {}};
+    Predicted predicted{std::move(settings), {}, {}, {}, {}};
     predicted.predictions = model.predict(predicted.settings);
     predicted.defined = model.defined(predicted.settings);
-    const CasesNear near(cases);
+    const Answers answers(cases);
+    predicted.answers = answers.probability(predicted.settings);
     for (std::size_t i = 0; i < predicted.settings.size(); ++i) {
-        predicted.near.push_back(near.at(predicted.settings[i]));
+        predicted.near.push_back(answers.near(predicted.settings[i]));
         constexpr double none = std::numeric_limits<double>::quiet_NaN();
-        if (!predicted.near[i].answers && !extrapolate)
+        if (predicted.answers[i] < 0.5 && !extrapolate)
             predicted.predictions[i] = {.mean = none, .mean_error = none, .scatter = none};
     }
     return predicted;
 }
 
 std::string failures_near(const ModelCases& cases, const Predicted& predicted) {
-    const auto without = std::ranges::find_if_not(predicted.near, &Near::answers);
-    if (without == predicted.near.end()) return {};
-    const auto place = static_cast<std::size_t>(without - predicted.near.begin());
-    const auto n = std::ranges::count_if(predicted.near, [](const Near& near) { return !near.answers; });
-    std::string text = fmt::format("no case near {} has an answer: {}\n",
-                                   setting_text(cases.factors, predicted.settings[place]), near_text(cases, *without));
-    if (n > 1) text += fmt::format("{} of {} settings have no answered case near\n", n, predicted.near.size());
+    const auto unlikely = [](double answers) { return answers < 0.5; };
+    const auto first = std::ranges::find_if(predicted.answers, unlikely);
+    if (first == predicted.answers.end()) return {};
+    const auto place = static_cast<std::size_t>(first - predicted.answers.begin());
+    const auto n = std::ranges::count_if(predicted.answers, unlikely);
+    std::string text = fmt::format("no case near {} has an answer, with probability {:.3f}: {}\n",
+                                   setting_text(cases.factors, predicted.settings[place]), 1 - *first,
+                                   near_text(cases, predicted.near[place]));
+    if (n > 1)
+        text += fmt::format("at {} of {} settings a case is likelier to fail than not\n", n, predicted.answers.size());
     return text;
 }
 

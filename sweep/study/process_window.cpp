@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <set>
 
 namespace grainsweep::study {
 namespace {
@@ -17,151 +16,8 @@ constexpr std::size_t candidates_of_next = 192, points_of_front = 12;
 constexpr std::size_t points_about_best = 64, rounds_about_best = 8;
 constexpr double first_reach = 0.15;
 
-/// Condition, objective and models of one question; names are observables, then factors.
-class Question {
-public:
-    /// `learned`: models that are there already.
-    Question(const ModelCases& cases, const WindowRequest& request, std::span<const ObservableModel> learned = {})
-        : cases_(&cases), request_(&request), learned_(learned), near_(cases) {
-        names_ = cases.observable_names();
-        for (const auto& name : cases.factor_names()) names_.push_back(name);
-        if (!request.where.empty()) condition_ = Condition::read(request.where, names_);
-        if (!request.objective.empty()) find_objective();
-        if (condition_)
-            for (const auto name : condition_->compared())
-                if (name < cases.observables.size()) add_model(name);
-        if (models_.empty()) return;
-        std::vector<double> freedom;
-        for (const auto& model : models_) freedom.push_back(model.model.freedom());
-        errors_.emplace(freedom);
-    }
-
-    [[nodiscard]] std::vector<Judgement> judge(std::span<const Setting> settings) const {
-        return judge_by(models_, settings);
-    }
-
-    /// What the models in `by`, in the order of models(), say of settings.
-    [[nodiscard]] std::vector<Judgement> judge_by(std::span<const ObservableModel> by,
-                                                  std::span<const Setting> settings) const {
-        std::vector<Judgement> judged(settings.size());
-        for (std::size_t i = 0; i < settings.size(); ++i) judged[i].setting = settings[i];
-        for (const auto& model : by) {
-            const auto predictions = model.predict(settings);
-            const auto defined = model.defined(settings);
-            for (std::size_t i = 0; i < settings.size(); ++i) {
-                judged[i].predictions.push_back(predictions[i]);
-                judged[i].defined.push_back(defined[i]);
-            }
-        }
-        for (auto& one : judged) {
-            one.near = near_.at(one.setting);
-            one.believed = one.near.answers && std::ranges::all_of(one.predictions, [](const auto& p) {
-                               return std::isfinite(p.mean) && std::isfinite(p.mean_error);
-                           });
-            one.probability = one.believed ? probability(one) : 0;
-            if (factor_)
-                one.objective = {.mean = one.setting[*factor_], .mean_error = 0, .scatter = 0};
-            else if (modelled_objective())
-                one.objective = one.predictions.front();
-        }
-        return judged;
-    }
-
-    /// Whether `a` is the better answer: the objective where the condition is met surely enough, else the probability.
-    /// A setting beside the border to failed cases (stats/nearest_cases.hpp) comes after all others.
-    [[nodiscard]] bool better(const Judgement& a, const Judgement& b) const {
-        const bool a_meets = meets(a), b_meets = meets(b);
-        if (a_meets != b_meets) return a_meets;
-        if (a.believed != b.believed) return a.believed;
-        if (a.near.beside != b.near.beside) return b.near.beside;
-        if (!a_meets || request_->objective.empty()) return a.probability > b.probability;
-        return cautious(a) > cautious(b);
-    }
-    /// The objective less one standard error: the largest mean alone is as often an error as a peak.
-    [[nodiscard]] double cautious(const Judgement& one) const {
-        return (request_->maximise ? 1 : -1) * one.objective.mean - one.objective.mean_error;
-    }
-    [[nodiscard]] bool meets(const Judgement& one) const { return one.probability >= 1 - request_->risk; }
-
-    [[nodiscard]] const std::optional<Condition>& condition() const { return condition_; }
-    [[nodiscard]] const std::vector<ObservableModel>& models() const { return models_; }
-    [[nodiscard]] std::size_t name_of_model(std::size_t model) const { return name_of_model_[model]; }
-    [[nodiscard]] bool objective_is_factor() const { return factor_.has_value(); }
-    /// The objective is an observable: that of the first model.
-    [[nodiscard]] bool modelled_objective() const { return !request_->objective.empty() && !factor_; }
-
-private:
-    /// An observable goes before a factor of the same name, as in the condition.
-    void find_objective() {
-        const auto& name = request_->objective;
-        const auto place = static_cast<std::size_t>(std::ranges::find(names_, name) - names_.begin());
-        const auto observables = cases_->observables.size();
-        if (place < observables) return add_model(place);
-        const auto* const option = request_->maximise ? "--maximize" : "--minimize";
-        if (place == names_.size())
-            throw campaign::wrong_question(option, name, "is neither observable nor factor of the campaign",
-                                           campaign::nearest_word(name, names_));
-        if (cases_->factors[place - observables].is_word())
-            throw campaign::wrong_question(option, name, "is a factor whose levels are words: none is the largest");
-        if (!condition_)
-            throw campaign::wrong_question(option, name, "is a factor: it needs a condition by --where that limits it");
-        factor_ = place - observables;
-    }
-
-    void add_model(std::size_t name) {
-        if (std::ranges::find(name_of_model_, name) != name_of_model_.end()) return;
-        const auto& column = cases_->observables[name];
-        const auto known = std::ranges::find(learned_, column.name, &ObservableModel::observable);
-        models_.push_back(known != learned_.end() ? *known : learn_or_refuse(*cases_, column));
-        name_of_model_.push_back(name);
-    }
-
-    /// P(condition and objective defined | those of the mask undefined).
-    [[nodiscard]] double probability_given(const Judgement& one, std::size_t undefined) const {
-        const bool objective_lost = modelled_objective() && (undefined & 1U) != 0;
-        if (objective_lost) return 0;
-        if (!condition_) return 1;
-        std::vector<double> values(names_.size(), std::numeric_limits<double>::quiet_NaN());
-        for (std::size_t j = 0; j < one.setting.size(); ++j) values[cases_->observables.size() + j] = one.setting[j];
-        const auto holds = [&](std::span<const double> responses) {
-            for (std::size_t k = 0; k < responses.size(); ++k)
-                values[name_of_model_[k]] =
-                    (undefined >> k & 1U) != 0 ? std::numeric_limits<double>::quiet_NaN() : responses[k];
-            return condition_->holds(values);
-        };
-        if (models_.empty()) return holds({}) ? 1 : 0;  // over factors alone
-        std::vector<std::vector<stats::Prediction>> here;
-        for (const auto& prediction : one.predictions) here.push_back({prediction});
-        return stats::probability_of(here, holds, request_->judged, *errors_).front();
-    }
-
-    [[nodiscard]] double probability(const Judgement& one) const {
-        const auto& defined = one.defined;
-        double sum = 0;
-        for (std::size_t undefined = 0; undefined < std::size_t{1} << models_.size(); ++undefined) {
-            double weight = 1;
-            for (std::size_t k = 0; k < defined.size(); ++k)
-                weight *= (undefined >> k & 1U) != 0 ? 1 - defined[k] : defined[k];
-            if (weight > 0) sum += weight * probability_given(one, undefined);
-        }
-        return sum;
-    }
-
-    const ModelCases* cases_;
-    const WindowRequest* request_;
-    std::span<const ObservableModel> learned_;
-    CasesNear near_;
-    std::vector<std::string> names_;
-    std::optional<Condition> condition_;
-    std::optional<std::size_t> factor_;  ///< the objective, where it is one
-    std::vector<ObservableModel> models_;
-    std::vector<std::size_t> name_of_model_;
-    std::optional<stats::SampledErrors> errors_;  ///< none: there is no model
-};
-
 /// The best of the judged points, improved by points about it.
-std::pair<Judgement, std::vector<Judgement>> improved(const Question& question, const ModelCases& cases,
-                                                      const Admits& admits, std::span<const BoxPoint> points,
+std::pair<Judgement, std::vector<Judgement>> improved(const WindowQuestion& question, std::span<const BoxPoint> points,
                                                       std::span<const Judgement> judged) {
     std::size_t start = 0;
     for (std::size_t i = 1; i < judged.size(); ++i)
@@ -171,7 +27,7 @@ std::pair<Judgement, std::vector<Judgement>> improved(const Question& question, 
     std::vector<Judgement> seen;
     double reach = first_reach;
     for (std::size_t round = 0; round < rounds_about_best; ++round, reach /= 2) {
-        const auto near = points_about(centre, reach, cases.factors, admits, points_about_best);
+        const auto near = question.space().about(centre, reach, points_about_best);
         std::vector<Setting> settings;
         for (const auto& point : near) settings.push_back(point.setting);
         auto judgements = question.judge(settings);
@@ -186,7 +42,7 @@ std::pair<Judgement, std::vector<Judgement>> improved(const Question& question, 
 }
 
 /// Trade-off of the objective and the first other observable that the condition bounds from one side.
-void find_front(Window& window, const Question& question, const WindowRequest& request,
+void find_front(Window& window, const WindowQuestion& question, const WindowRequest& request,
                 std::span<const Judgement> judged) {
     if (request.objective.empty() || !question.condition()) return;
     int direction = 0;
@@ -201,7 +57,8 @@ void find_front(Window& window, const Question& question, const WindowRequest& r
     std::vector<std::size_t> usable;
     for (std::size_t i = 0; i < judged.size(); ++i) {
         const auto& defined = judged[i].defined;
-        if (!judged[i].believed || std::min(defined.front(), defined[*window.against]) < 1 - request.risk) continue;
+        const double least = std::min({judged[i].answers, defined.front(), defined[*window.against]});
+        if (!judged[i].believed || least < 1 - request.risk) continue;
         usable.push_back(i);
         first.push_back(judged[i].objective.mean);
         second.push_back(judged[i].predictions[*window.against].mean);
@@ -215,7 +72,7 @@ void find_front(Window& window, const Question& question, const WindowRequest& r
 }
 
 /// P (x_j - x_j*) of the header; where nothing is in the window yet, P.
-std::vector<double> gains_of_factor(const Question& question, std::span<const Judgement> judged, double sign) {
+std::vector<double> gains_of_factor(const WindowQuestion& question, std::span<const Judgement> judged, double sign) {
     std::optional<double> best;
     for (const auto& one : judged)
         if (question.meets(one)) best = std::max(best.value_or(sign * one.objective.mean), sign * one.objective.mean);
@@ -225,7 +82,8 @@ std::vector<double> gains_of_factor(const Question& question, std::span<const Ju
     return gain;
 }
 
-std::vector<double> gains(const Question& question, std::span<const Judgement> judged, const WindowRequest& request) {
+std::vector<double> gains(const WindowQuestion& question, std::span<const Judgement> judged,
+                          const WindowRequest& request) {
     if (question.objective_is_factor()) return gains_of_factor(question, judged, request.maximise ? 1 : -1);
     std::vector<stats::Prediction> objective;
     std::vector<double> probability;
@@ -238,8 +96,14 @@ std::vector<double> gains(const Question& question, std::span<const Judgement> j
     return probability;
 }
 
+/// NaN, averaged over, is the same as NaN.
+bool same_setting(const Setting& a, const Setting& b) {
+    return std::ranges::equal(a, b, [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
+}
+
 /// Cases to run next: the largest gain, added to the models with its predicted responses, then the next.
-std::vector<Judgement> next_of(const Question& question, const WindowRequest& request, std::vector<Judgement> judged) {
+std::vector<Judgement> next_of(const WindowQuestion& question, const WindowRequest& request,
+                               std::vector<Judgement> judged) {
     std::erase_if(judged, [](const auto& one) { return !one.believed; });
     auto gain = gains(question, judged, request);
     std::vector<std::size_t> order(judged.size());
@@ -251,21 +115,21 @@ std::vector<Judgement> next_of(const Question& question, const WindowRequest& re
 
     auto models = question.models();
     std::vector<Judgement> chosen;
-    std::set<Setting> taken;
+    std::vector<bool> taken(settings.size(), false);
     while (chosen.size() < request.next) {
         const auto now = question.judge_by(models, settings);
         gain = gains(question, now, request);
         for (std::size_t i = 0; i < now.size(); ++i)
-            if (taken.contains(settings[i])) gain[i] = 0;
+            if (taken[i]) gain[i] = 0;
         const auto best = static_cast<std::size_t>(std::ranges::max_element(gain) - gain.begin());
         if (gain.empty() || !(gain[best] > 0)) break;
-        taken.insert(settings[best]);
-        for (std::size_t k = 0; k < models.size(); ++k) {
-            const auto row = models[k].rows(std::span(&settings[best], 1));
-            models[k].model =
-                models[k].model.with_cases({row, row.size()}, std::span(&now[best].predictions[k].mean, 1));
-        }
-        chosen.push_back(question.judge(std::span(&settings[best], 1)).front());
+        for (std::size_t i = 0; i < settings.size(); ++i)
+            if (same_setting(settings[i], settings[best])) taken[i] = true;
+        const auto asked = question.least_known(models, settings[best]);
+        const auto there = question.judge_by(models, std::span(&asked, 1)).front();
+        for (std::size_t k = 0; k < models.size(); ++k)
+            models[k] = models[k].with_case(asked, there.predictions[k].mean);
+        chosen.push_back(question.judge(std::span(&asked, 1)).front());
     }
     return chosen;
 }
@@ -273,13 +137,14 @@ std::vector<Judgement> next_of(const Question& question, const WindowRequest& re
 /// What the failed cases mean for the window and the chosen setting.
 void say_what_failed(Window& window, const ModelCases& cases) {
     if (cases.failed.empty()) return;
-    window.notes.push_back(
-        fmt::format("{}; the nearest cases failed in {:.1f} % of the box, where no setting is counted or recommended",
-                    failed_text(cases), 100 * window.share_failed));
+    window.notes.push_back(fmt::format(
+        "{}; in {:.1f} % of the box a case has an answer with a probability below {:.6g}, where no setting is "
+        "counted or recommended",
+        failed_text(cases), 100 * window.share_failed, 1 - window.risk));
     if (const auto& chosen = window.best ? window.best : window.surest)
-        window.notes.push_back(fmt::format("near {} {}",
-                                           window.best ? "the best setting" : "where the condition is likeliest",
-                                           near_text(cases, chosen->near)));
+        window.notes.push_back(fmt::format("{} a case has an answer with probability {:.3f}; {}",
+                                           window.best ? "at the best setting" : "where the condition is likeliest",
+                                           chosen->answers, near_text(cases, window.answers->near(chosen->setting))));
 }
 
 void say_what_was_found(Window& window, const WindowRequest& request) {
@@ -308,29 +173,32 @@ Window window_of(const store::Store& store, const ModelCases& cases, const Windo
         throw campaign::wrong_question("window", "", "give a condition by --where, or --maximize or --minimize NAME");
     if (!(request.risk > 0 && request.risk < 1))
         throw campaign::wrong_question("--risk", fmt::format("{}", request.risk), "must lie between 0 and 1");
-    const Question question(cases, request);
-    const auto admits = admission(store, cases);
-    const auto points = spread_points(cases.factors, admits, request.candidates);
+    const WindowQuestion question(cases, request, admission(store, cases));
+    const auto points =
+        question.space().spread(question.space().averages() ? request.candidates / 4 : request.candidates);
     if (points.empty())
         throw campaign::wrong_question("window", "", "the campaign's `where` leaves no setting of the box");
     Window window;
+    window.risk = request.risk;
     window.models = question.models();
+    window.answers = question.answers();
     window.objective_is_factor = question.objective_is_factor();
     for (const auto& point : points) window.searched.push_back(point.setting);
     auto judged = question.judge(window.searched);
 
-    if (std::ranges::none_of(judged, [](const auto& one) { return one.near.answers; }))
+    if (std::ranges::none_of(judged, [](const auto& one) { return one.answers >= 0.5; }))
         throw campaign::wrong_question("window", "",
-                                       fmt::format("{}, and the nearest cases failed at every setting of the box: none "
-                                                   "can be recommended",
+                                       fmt::format("{}, and at every setting of the box a case is likelier to fail "
+                                                   "than not: none can be recommended",
                                                    failed_text(cases)));
-    const auto n = static_cast<double>(judged.size());
-    window.share_failed =
-        static_cast<double>(std::ranges::count_if(judged, [](const auto& one) { return !one.near.answers; })) / n;
-    window.share_of_box =
-        static_cast<double>(std::ranges::count_if(judged, [&](const auto& one) { return question.meets(one); })) / n;
-    window.share_error = std::sqrt(window.share_of_box * (1 - window.share_of_box) / n);
-    auto [best, seen] = improved(question, cases, admits, points, judged);
+    const auto share = [&](const auto& is) {
+        return static_cast<double>(std::ranges::count_if(judged, is)) / static_cast<double>(judged.size());
+    };
+    window.share_failed = share([&](const Judgement& one) { return one.answers < 1 - request.risk; });
+    window.share_of_box = share([&](const Judgement& one) { return question.meets(one); });
+    window.share_error =
+        std::sqrt(window.share_of_box * (1 - window.share_of_box) / static_cast<double>(judged.size()));
+    auto [best, seen] = improved(question, points, judged);
     (question.meets(best) ? window.best : window.surest) = best;
     find_front(window, question, request, judged);
     if (request.next > 0) {
@@ -338,13 +206,16 @@ Window window_of(const store::Store& store, const ModelCases& cases, const Windo
         window.next = next_of(question, request, std::move(judged));
     }
     say_what_failed(window, cases);
+    if (const auto noise = question.space().noise_names(); !noise.empty())
+        window.notes.push_back(fmt::format("{} cannot be set: probabilities and responses are averages over {}",
+                                           campaign::listed(noise), noise.size() == 1 ? "it" : "them"));
     say_what_was_found(window, request);
     return window;
 }
 
 std::vector<Judgement> judge_settings(const ModelCases& cases, const WindowRequest& request, const Window& window,
-                                      std::span<const Setting> settings) {
-    return Question(cases, request, window.models).judge(settings);
+                                      const Admits& admits, std::span<const Setting> settings) {
+    return WindowQuestion(cases, request, admits, window.models, window.answers).judge(settings);
 }
 
 std::string next_campaign(const ModelCases& cases, const Window& window, std::string_view name, std::uint64_t number) {
@@ -354,7 +225,7 @@ std::string next_campaign(const ModelCases& cases, const Window& window, std::st
         for (std::size_t j = 0; j < cases.factors.size(); ++j) row.push_back(cases.factors[j].value(one.setting[j]));
     }
     return campaign::further_points(
-        cases.campaign.text, name,
+        campaign::text_of_experiment(cases.campaign.text, cases.campaign), name,
         fmt::format("The cases that the response models of {} promise most of, by grainsweep window --next {}.",
                     cases.campaign.name, rows.size()),
         rows, number);

@@ -257,7 +257,7 @@ TEST_F(Learned, LeavesOutWhatIsUndefinedAndKnowsWhere) {
     const auto model = learn_or_refuse(cases, cases.observable(""));
     EXPECT_GT(cases.failed.size(), 0U);
     EXPECT_GT(model.undefined, 25U);
-    EXPECT_EQ(model.undefined + model.model.quality().cases, cases.settings.size());
+    EXPECT_EQ(model.undefined + model.cases(), cases.settings.size());
     const std::vector<Setting> asked = {{0.6, 0.5}, {0.05, 0.5}};
     EXPECT_NEAR(model.predict(asked)[0].mean, 1.1, 0.03);
     EXPECT_GT(model.defined(asked)[0], 0.99);

@@ -107,7 +107,14 @@ function explorer(model, other) {
   return { node: self.node, redraw() { self.redraw(); tell(); } };
 }
 
-// The response against one factor: cases and binned mean.
+const failures = ["unstable", "rejected", "crashed", "timed_out"];
+
+// Some of the cases that failed, for crosses.
+function failedRows(model) {
+  return randomRows(Array.from({ length: model.rows }, (_, row) => row).filter((row) => failures.includes(model.outcome(row))), 500);
+}
+
+// The response against one factor: cases and binned mean, crosses where cases failed.
 function scatter(model, factor, bins, response) {
   const across = quantity(factor), values = named(model, response.name), up = quantity(values);
   return figure(`${response.name} against ${factor.name}`, "", () => {
@@ -115,6 +122,7 @@ function scatter(model, factor, bins, response) {
     const points = rows.map((row) => ({ x: across.of(factor.values[row]) + spread(factor, row), y: up.of(values.values[row]), row }));
     return {
       type: "scatter",
+      plugins: [crossesAt(failedRows(model).map((row) => ({ x: across.of(factor.values[row]) + spread(factor, row) })))],
       data: { datasets: [
         { data: bins.map(([x, y]) => ({ x: across.of(x), y: y === null ? null : up.of(y) })), type: "line", showLine: factor.levels.length === 0, borderColor: colour("two"),
           backgroundColor: colour("two"), borderWidth: 2, pointRadius: factor.levels.length > 0 ? 5 : 0, pointStyle: "rectRot" },
@@ -197,12 +205,14 @@ function factorMap(model, observable) {
       .concat(cell.error === null ? [] : [`standard error ${value.says(cell.error)}`], cell.pure === null ? [] : [`by the pure error ${value.says(cell.pure)}`]);
     const ends = (factor, shown, edges) => (factor.levels.length > 0 ? {} : { min: shown.of(edges[0]), max: shown.of(edges[edges.length - 1]) });
     const tones = colouring(title, cells.map((cell) => cell.value).filter((x) => x !== null));
-    return cellChart({ x: Object.assign(variableAxis(a), ends(a, across, map.across)), y: Object.assign(variableAxis(b), ends(b, up, map.up)), cells, tones, gap: 1, over, label });
+    const chart = cellChart({ x: Object.assign(variableAxis(a), ends(a, across, map.across)), y: Object.assign(variableAxis(b), ends(b, up, map.up)), cells, tones, gap: 1, over, label });
+    chart.plugins.push(crossesAt(failedRows(model).map((row) => ({ x: across.of(a.values[row]), y: up.of(b.values[row]) }))));
+    return chart;
   };
   const change = (key) => (value) => { view[key] = value; self.redraw(); };
   const factors = model.factors.map((factor) => [factor.name, titled(factor)]);
   const controls = el("div", { class: "controls" }, choice("across", factors, view.a, change("a")), choice("up", factors, view.b, change("b")), choice("shown", offered, view.shows, change("shows")));
-  const says = `Cells show mean ± standard error and the number of cases. The error follows from ${observable.pure_error === null ? "the values in the cell" : "the scatter of single runs (pure error)"}.`;
+  const says = `Cells show mean ± standard error and the number of cases. The error follows from ${observable.pure_error === null ? "the values in the cell" : "the scatter of single runs (pure error)"}.` + (failedRows(model).length > 0 ? " Crosses: failed cases." : "");
   const self = figure(`Map of ${response.name}`, says, build, { height: 420, controls });
   return self;
 }

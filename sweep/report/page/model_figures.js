@@ -15,7 +15,16 @@ function drawCrosses(ctx, places) {
   }
 }
 
-function failedSays(failed) { return failed.length > 0 ? " Crosses: failed cases. No response is drawn where the nearest cases failed." : ""; }
+// A plugin of a chart: crosses at `places`, each { x } or { x, y } in units of the axes; without y at the lower edge.
+function crossesAt(places) {
+  return { id: "crosses", afterDatasetsDraw({ ctx, scales, chartArea }) {
+    ctx.save();
+    drawCrosses(ctx, places.map(({ x, y }) => [scales.x.getPixelForValue(x), y === undefined ? chartArea.bottom : scales.y.getPixelForValue(y)]));
+    ctx.restore();
+  } };
+}
+
+function failedSays(failed) { return failed.length > 0 ? " Crosses: failed cases. No response is drawn where a case is likelier to fail than not." : ""; }
 
 // A chart of cells { x0, x1, y0, y1, value, ... } in units of the axes `x` and `y`; cells without a value stay empty.
 // `gap`: pixels between them. `over` draws on them; `label` returns the lines of a cell's tooltip.
@@ -62,7 +71,7 @@ function cellMap(map, factors, values, { title, says, variable, tones, inside, s
     }
     ctx.stroke();
     drawCrosses(ctx, failed.map((one) => place(one.setting)));
-    if (setting) for (const [width, tone] of [[5, "#ffffff"], [2.5, "#000000"]]) strokedRing(ctx, ...place(setting), width, tone);
+    if (setting && setting[map.across] !== null && setting[map.up] !== null) for (const [width, tone] of [[5, "#ffffff"], [2.5, "#000000"]]) strokedRing(ctx, ...place(setting), width, tone);
   };
   const at = (factor, low, high, k) => `${factor.name} ${factor.levels.length > 0 ? factor.levels[k] : show((low + high) / 2)}`;
   const label = (cell) => [`${at(a, cell.x0, cell.x1, cell.i)}, ${at(b, cell.y0, cell.y1, cell.j)}`,
@@ -86,12 +95,7 @@ function bandCurve(factor, ats, lines, { title, value, limits, marker, failed })
     for (const [width, style] of [["mean_half_width", edge], ["run_half_width", dashed]])
       if (lines[width]) sets.push(Object.assign({ data: about(1, width) }, width === "mean_half_width" ? { fill: "+1" } : {}, style), Object.assign({ data: about(-1, width) }, style));
     if (lines.averaged) sets.push(line(lines.averaged, "averaged", colour("two")));
-    const crosses = { id: "crosses", afterDatasetsDraw({ ctx, scales, chartArea }) {
-      ctx.save();
-      drawCrosses(ctx, failed.map((x) => [scales.x.getPixelForValue(shown.of(x)), chartArea.bottom]));
-      ctx.restore();
-    } };
-    return { type: "line", data: { datasets: sets }, plugins: [crosses], options: { scales: { x: variableAxis(factor), y: axis(value.title, limits || {}) },
+    return { type: "line", data: { datasets: sets }, plugins: [crossesAt(failed.map((x) => ({ x: shown.of(x) })))], options: { scales: { x: variableAxis(factor), y: axis(value.title, limits || {}) },
       plugins: Object.assign(marker ? { marker: { at: shown.of(marker.at), label: marker.label } } : {}, { tooltip: { filter: (item) => Boolean(item.dataset.label),
         callbacks: lines.averaged ? { label: (item) => `${item.dataset.label}: ${show(item.parsed.y)}` } : {} } }) } };
   };

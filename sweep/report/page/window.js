@@ -7,6 +7,7 @@ const wanted = data.where || "no condition";
 const sure = `${Number((100 * (1 - data.risk)).toPrecision(4))} %`;
 
 function settingText(one, j) {
+  if (one.setting[j] === null) return one.texts[j];
   const factor = factors[j], { factor: scale, unit } = factor.levels.length > 0 ? { factor: 1, unit: "" } : quantity(factor);
   return factor.levels.length > 0 ? one.texts[j] : `${show(one.setting[j] * scale, 6)}${unit ? " " + unit : ""}`;
 }
@@ -57,7 +58,7 @@ function curveFigure(j, k) {
   const title = `${k === null ? "probability of the condition" : responses[k].name} against ${factors[j].name}`;
   const lines = k === null ? { mean: curve.probability } : { mean: one.map((r) => r.mean), mean_half_width: one.map((r) => r.mean_half_width), run_half_width: one.map((r) => r.run_half_width) };
   return bandCurve(factors[j], curve.at, lines, { title, value: k === null ? { of: (x) => x, title: "probability" } : responseScale(k),
-    limits: k === null ? { min: 0, max: 1 } : {}, marker: { at: data.best.setting[j], label: "setting" }, failed: data.failed.map((one) => one.setting[j]) });
+    limits: k === null ? { min: 0, max: 1 } : {}, marker: data.best.setting[j] === null ? null : { at: data.best.setting[j], label: "setting" }, failed: data.failed.map((one) => one.setting[j]) });
 }
 
 function curvesSection() {

@@ -1,0 +1,232 @@
+#include "sweep/study/window_question.hpp"
+
+#include "sweep/campaign/wrong_question.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace grainsweep::study {
+namespace {
+
+constexpr std::size_t settings_at_once = 4096;
+
+bool is_finite(const Judgement& one) {
+    return std::ranges::all_of(one.predictions,
+                               [](const auto& p) { return std::isfinite(p.mean) && std::isfinite(p.mean_error); });
+}
+
+/// Mean over settings of one weight, see the header.
+stats::Prediction mean_prediction(std::span<const Judgement> behind, std::size_t model) {
+    const auto n = static_cast<double>(behind.size());
+    stats::Prediction sum{.mean = 0, .mean_error = 0, .scatter = 0};
+    double squares = 0;
+    for (const auto& one : behind) {
+        const auto& p = one.predictions[model];
+        sum.mean += p.mean / n;
+        sum.mean_error += p.mean_error / n;
+        sum.inside = sum.inside && p.inside;
+        sum.freedom = p.freedom;
+    }
+    for (const auto& one : behind) {
+        const auto& p = one.predictions[model];
+        squares += (p.scatter * p.scatter + (p.mean - sum.mean) * (p.mean - sum.mean)) / n;
+    }
+    sum.scatter = std::sqrt(squares);
+    return sum;
+}
+
+}  // namespace
+
+WindowQuestion::WindowQuestion(const ModelCases& cases, const WindowRequest& request, Admits admits,
+                               std::span<const ObservableModel> learned, std::shared_ptr<const Answers> answers)
+    : cases_(&cases),
+      request_(&request),
+      stated_(split_condition(request.where)),
+      space_(cases, request.held, stated_.for_all, std::move(admits)),
+      answers_(answers ? std::move(answers) : std::make_shared<const Answers>(cases)) {
+    names_ = cases.observable_names();
+    for (const auto& name : cases.factor_names()) names_.push_back(name);
+    if (!stated_.condition.empty()) condition_ = Condition::read(stated_.condition, names_);
+    if (!request.objective.empty()) find_objective(learned);
+    if (condition_)
+        for (const auto name : condition_->compared())
+            if (name < cases.observables.size()) add_model(name, learned);
+    if (models_.empty()) return;
+    std::vector<double> freedom;
+    for (const auto& model : models_) freedom.push_back(model.freedom());
+    errors_.emplace(freedom);
+}
+
+/// An observable goes before a factor of the same name, as in the condition.
+void WindowQuestion::find_objective(std::span<const ObservableModel> learned) {
+    const auto& name = request_->objective;
+    const auto place = static_cast<std::size_t>(std::ranges::find(names_, name) - names_.begin());
+    const auto observables = cases_->observables.size();
+    if (place < observables) return add_model(place, learned);
+    const auto* const option = request_->maximise ? "--maximize" : "--minimize";
+    if (place == names_.size())
+        throw campaign::wrong_question(option, name, "is neither observable nor factor of the campaign",
+                                       campaign::nearest_word(name, names_));
+    if (cases_->factors[place - observables].is_word())
+        throw campaign::wrong_question(option, name, "is a factor whose levels are words: none is the largest");
+    if (!condition_)
+        throw campaign::wrong_question(option, name, "is a factor: it needs a condition by --where that limits it");
+    if (!space_.searches(place - observables))
+        throw campaign::wrong_question(option, name, "is not searched: it is noise, held, or named by 'for all'");
+    factor_ = place - observables;
+}
+
+void WindowQuestion::add_model(std::size_t name, std::span<const ObservableModel> learned) {
+    if (std::ranges::find(name_of_model_, name) != name_of_model_.end()) return;
+    const auto& column = cases_->observables[name];
+    const auto known = std::ranges::find(learned, column.name, &ObservableModel::observable);
+    models_.push_back(known != learned.end() ? *known : learn_or_refuse(*cases_, column));
+    name_of_model_.push_back(name);
+}
+
+std::vector<Judgement> WindowQuestion::judge(std::span<const Setting> settings) const {
+    return judge_by(models_, settings);
+}
+
+std::vector<Judgement> WindowQuestion::judge_by(std::span<const ObservableModel> by,
+                                                std::span<const Setting> settings) const {
+    if (!space_.averages()) return judge_each(by, settings);
+    std::vector<Judgement> judged;
+    std::vector<Setting> behind;
+    std::vector<std::vector<std::size_t>> sizes;
+    const auto judge_those = [&] {
+        const auto each = judge_each(by, behind);
+        std::size_t from = 0;
+        for (const auto& of_one : sizes) {
+            const auto count = std::accumulate(of_one.begin(), of_one.end(), std::size_t{0});
+            judged.push_back(averaged(settings[judged.size()], of_one, std::span(each).subspan(from, count)));
+            from += count;
+        }
+        behind.clear();
+        sizes.clear();
+    };
+    for (const auto& setting : settings) {
+        auto& of_one = sizes.emplace_back();
+        for (auto& group : space_.behind(setting)) {
+            of_one.push_back(group.size());
+            std::ranges::move(group, std::back_inserter(behind));
+        }
+        if (behind.size() >= settings_at_once) judge_those();
+    }
+    judge_those();
+    return judged;
+}
+
+std::vector<Judgement> WindowQuestion::judge_each(std::span<const ObservableModel> by,
+                                                  std::span<const Setting> settings) const {
+    std::vector<Judgement> judged(settings.size());
+    const auto answers = answers_->probability(settings);
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+        judged[i].setting = settings[i];
+        judged[i].answers = answers[i];
+    }
+    for (const auto& model : by) {
+        const auto predictions = model.predict(settings);
+        const auto defined = model.defined(settings);
+        for (std::size_t i = 0; i < settings.size(); ++i) {
+            judged[i].predictions.push_back(predictions[i]);
+            judged[i].defined.push_back(defined[i]);
+        }
+    }
+    for (auto& one : judged) {
+        const bool known = is_finite(one) && std::isfinite(one.answers);
+        one.believed = known && one.answers >= 0.5;
+        one.probability = known ? one.answers * probability(one) : 0;
+        if (factor_)
+            one.objective = {.mean = one.setting[*factor_], .mean_error = 0, .scatter = 0};
+        else if (modelled_objective())
+            one.objective = one.predictions.front();
+    }
+    return judged;
+}
+
+Judgement WindowQuestion::averaged(const Setting& setting, std::span<const std::size_t> sizes,
+                                   std::span<const Judgement> behind) const {
+    Judgement one{.setting = setting, .predictions = {}, .defined = {}, .probability = 1};
+    std::size_t from = 0;
+    for (const auto size : sizes) {
+        const auto group = behind.subspan(from, size);
+        from += size;
+        if (size == 0) continue;
+        double probability = 0, answers = 0;
+        for (const auto& each : group) {
+            probability += each.probability / static_cast<double>(size);
+            answers += each.answers / static_cast<double>(size);
+        }
+        one.probability = std::min(one.probability, probability);
+        one.answers = std::min(one.answers, answers);
+    }
+    for (std::size_t k = 0; k < models_.size(); ++k) {
+        one.predictions.push_back(mean_prediction(behind, k));
+        double defined = 0;
+        for (const auto& each : behind) defined += each.defined[k] / static_cast<double>(behind.size());
+        one.defined.push_back(defined);
+    }
+    one.believed = !behind.empty() && is_finite(one) && one.answers >= 0.5;
+    if (behind.empty()) one.probability = 0;
+    if (factor_)
+        one.objective = {.mean = setting[*factor_], .mean_error = 0, .scatter = 0};
+    else if (modelled_objective())
+        one.objective = one.predictions.front();
+    return one;
+}
+
+Setting WindowQuestion::least_known(std::span<const ObservableModel> by, const Setting& setting) const {
+    if (!space_.averages()) return setting;
+    std::vector<Setting> all;
+    for (auto& group : space_.behind(setting)) std::ranges::move(group, std::back_inserter(all));
+    const auto judged = judge_each(by, all);
+    const auto unknown = [&](const Judgement& one) {
+        return by.empty() ? -std::abs(one.probability - 0.5) : one.predictions.front().mean_error;
+    };
+    const auto found = std::ranges::max_element(judged, {}, unknown);
+    return found == judged.end() ? setting : found->setting;
+}
+
+bool WindowQuestion::better(const Judgement& a, const Judgement& b) const {
+    const bool a_meets = meets(a), b_meets = meets(b);
+    if (a_meets != b_meets) return a_meets;
+    if (a.believed != b.believed) return a.believed;
+    if (!a_meets || request_->objective.empty()) return a.probability > b.probability;
+    // The objective less one standard error: the largest mean alone is as often an error as a peak.
+    const double sign = request_->maximise ? 1 : -1;
+    return sign * a.objective.mean - a.objective.mean_error > sign * b.objective.mean - b.objective.mean_error;
+}
+
+double WindowQuestion::probability_given(const Judgement& one, std::size_t undefined) const {
+    const bool objective_lost = modelled_objective() && (undefined & 1U) != 0;
+    if (objective_lost) return 0;
+    if (!condition_) return 1;
+    std::vector<double> values(names_.size(), std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t j = 0; j < one.setting.size(); ++j) values[cases_->observables.size() + j] = one.setting[j];
+    const auto holds = [&](std::span<const double> responses) {
+        for (std::size_t k = 0; k < responses.size(); ++k)
+            values[name_of_model_[k]] =
+                (undefined >> k & 1U) != 0 ? std::numeric_limits<double>::quiet_NaN() : responses[k];
+        return condition_->holds(values);
+    };
+    if (models_.empty()) return holds({}) ? 1 : 0;  // over factors alone
+    std::vector<std::vector<stats::Prediction>> here;
+    for (const auto& prediction : one.predictions) here.push_back({prediction});
+    return stats::probability_of(here, holds, request_->judged, *errors_).front();
+}
+
+double WindowQuestion::probability(const Judgement& one) const {
+    const auto& defined = one.defined;
+    double sum = 0;
+    for (std::size_t undefined = 0; undefined < std::size_t{1} << models_.size(); ++undefined) {
+        double weight = 1;
+        for (std::size_t k = 0; k < defined.size(); ++k)
+            weight *= (undefined >> k & 1U) != 0 ? 1 - defined[k] : defined[k];
+        if (weight > 0) sum += weight * probability_given(one, undefined);
+    }
+    return sum;
+}
+
+}  // namespace grainsweep::study
