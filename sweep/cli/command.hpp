@@ -23,6 +23,7 @@ struct Command {
     std::function<Action(Parser& parser, const report::Format& format)> declare;
     bool hidden = false;
     bool verbatim = false;  ///< its text is for programs too: never broken to fit a terminal
+    std::string example = {};  ///< a line of shell that --help ends with
     bool workbook = false;  ///< --format may be xlsx
 };
 

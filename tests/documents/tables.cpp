@@ -7,6 +7,7 @@
 #include "tests/documents/table_rows.hpp"
 #include "tests/support/archive.hpp"
 #include "tests/support/peer_suites.hpp"
+#include "tests/support/places.hpp"
 #include "tests/support/process.hpp"
 
 #include <fmt/format.h>
