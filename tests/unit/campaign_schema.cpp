@@ -160,7 +160,9 @@ TEST(Configs, EveryFileReadsWithoutError) {
         if (entry.path().extension() != ".json") continue;
         EXPECT_NO_THROW({
             const auto experiments = read_experiment_names(entry.path());
-            if (experiments.empty()) EXPECT_EQ(read_campaign(entry.path()).name, entry.path().stem().string());
+            if (experiments.empty()) {
+                EXPECT_EQ(read_campaign(entry.path()).name, entry.path().stem().string());
+            }
             for (const auto& name : experiments)
                 EXPECT_EQ(read_campaign(entry.path(), name).name, entry.path().stem().string() + "_" + name);
         }) << entry.path();
