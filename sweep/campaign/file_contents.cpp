@@ -19,7 +19,7 @@ struct KnownContents {
     std::map<std::string, std::string, std::less<>> by_hash;
 };
 
-KnownContents& known() {
+KnownContents& known_files() {
     static KnownContents all;
     return all;
 }
@@ -28,13 +28,13 @@ KnownContents& known() {
 
 void enter_contents(std::string contents) {
     std::string hash = content_hash(contents);
-    auto& all = known();
+    auto& all = known_files();
     const std::lock_guard lock(all.mutex);
     all.by_hash.insert_or_assign(std::move(hash), std::move(contents));
 }
 
 std::optional<std::string> known_contents(std::string_view hash) {
-    auto& all = known();
+    auto& all = known_files();
     const std::lock_guard lock(all.mutex);
     const auto found = all.by_hash.find(hash);
     return found == all.by_hash.end() ? std::nullopt : std::optional(found->second);

@@ -119,8 +119,8 @@ Allowed allowed_by(const std::vector<Entry>& entries, const ExportColumns& colum
 }
 
 /// passing, retained or each; asks where neither words nor numbers decide.
-std::string meaning_of(const std::vector<Entry>& entries, const ExportColumns& columns, const ExportChoices& choices,
-                       std::string& from) {
+std::string kind_of_shares(const std::vector<Entry>& entries, const ExportColumns& columns,
+                           const ExportChoices& choices, std::string& from) {
     if (choices.as) return from = "--as", *choices.as;
     const Allowed allowed = allowed_by(entries, columns);
     const bool words = columns.as && *columns.as != "sum";
@@ -317,7 +317,7 @@ ImportedSizes import_sizes(std::string_view bytes, const ExportChoices& choices)
     const ExportColumns columns = export_columns(grid, choices);
     const auto entries = entries_of(grid, columns);
     std::string as_from, edge;
-    const std::string as = meaning_of(entries, columns, choices, as_from);
+    const std::string as = kind_of_shares(entries, columns, choices, as_from);
     if (choices.edge && as != "each")
         throw wrong_question("--edge", *choices.edge, fmt::format("has no effect: the shares are '{}' a size", as));
     const auto by = choices.by ? choices.by : columns.by;

@@ -31,7 +31,7 @@ struct PowderRequest {
     std::string sizes, shares, unit, as, by, edge, smallest, largest;
 };
 
-std::optional<std::string> given(const std::string& word) {
+std::optional<std::string> stated(const std::string& word) {
     return word.empty() ? std::nullopt : std::optional(word);
 }
 
@@ -57,8 +57,8 @@ int import_export(const PowderRequest& request, Format format) {
         throw campaign::wrong_question("EXPORT", request.file, fmt::format("cannot be read: {}", error.message()));
     const auto imported = campaign::asked_in(request.file, [&] {
         return campaign::import_sizes(
-            bytes, {given(request.sizes), given(request.shares), given(request.unit), given(request.as),
-                    given(request.by), given(request.edge), given(request.smallest), given(request.largest)});
+            bytes, {stated(request.sizes), stated(request.shares), stated(request.unit), stated(request.as),
+                    stated(request.by), stated(request.edge), stated(request.smallest), stated(request.largest)});
     });
     files::AsideFile file{fs::path(request.output)};
     file.write(imported.csv);
